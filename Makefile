@@ -1,0 +1,46 @@
+.DEFAULT_GOAL := help
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+NATIVE := $(wildcard src/fdvv/_native/*.c src/fdvv/_native/*.h)
+
+.PHONY: help demo test check format bench setup clean
+
+help: ## Show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+setup: $(VENV)/.ready src/fdvv/_native/libfdvv.so ## Make the virtual environment and build the C kernels
+
+$(VENV)/.ready: pyproject.toml constraints.txt hatch_build.py tools/setup.sh
+	bash tools/setup.sh "$(PYTHON)" "$(VENV)"
+	@touch $@
+
+src/fdvv/_native/libfdvv.so: $(VENV)/.ready $(NATIVE) hatch_build.py
+	$(BIN)/python hatch_build.py
+
+demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
+	$(BIN)/fdvv demo --output demo
+
+check: setup ## Format, lint and type checks
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+test: check ## Every check and every test of the default run
+	$(BIN)/pytest -n 2 -m "not slow"
+
+test-slow: setup ## The long tests
+	$(BIN)/pytest -n 2 -m slow
+
+format: setup ## Format the code in place
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: setup ## Time fits, scans and the twin beside plain SciPy
+	$(BIN)/python -m benchmarks
+
+clean: ## Remove what was built
+	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/*.so

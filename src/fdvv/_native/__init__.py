@@ -1,0 +1,34 @@
+"""The compiled kernels, found and called through ctypes.
+
+Foreign calls release the interpreter lock, so threads run them side by side.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import BuildError
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """Load the compiled library once; raise BuildError with the way to build it if it is absent."""
+    path = Path(__file__).with_name("libfdvv.so")
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        raise BuildError(
+            f"the compiled library {path.name} cannot be loaded ({error}); reinstall fdvv with a C compiler"
+        ) from error
+
+
+def address(array: npt.NDArray[np.generic]) -> ctypes.c_void_p:
+    """Give the address of a C-contiguous array; the caller keeps the array alive during the call."""
+    if not array.flags.c_contiguous:
+        raise ValueError(f"array must be C-contiguous, got strides {array.strides}")
+    return ctypes.c_void_p(array.ctypes.data)

@@ -1,0 +1,1 @@
+int fdvv_spline_fit_placeholder;

@@ -1,0 +1,5 @@
+"""The fdvv command."""
+
+
+def main() -> None:
+    """Run the command line."""

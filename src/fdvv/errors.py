@@ -1,0 +1,47 @@
+"""What can go wrong, as one small tree.
+
+FdvvError
+├── InputError    a file or value from a person cannot be used (exit status 2)
+├── ModelError    numbers that do not make a curve or a model
+├── FitError      a curve cannot be fitted as asked
+├── DeviceError   a device refused, failed or went away
+└── BuildError    this installation lacks a part (compiled library, optional extra)
+"""
+
+from __future__ import annotations
+
+
+class FdvvError(Exception):
+    """Base of every error that fdvv raises on purpose; its text is one line for a person."""
+
+
+class InputError(FdvvError):
+    """A file or a value from a person cannot be used.
+
+    Parameters
+    ----------
+    source : the file or option it came from.
+    place : where in it ("line 12, column 2", "$.curves[3].knots_mm", "whole file").
+    reason : what is wrong, with the value received.
+    remedy : what to do about it.
+    """
+
+    def __init__(self, source: object, place: str, reason: str, remedy: str) -> None:
+        self.source, self.place, self.reason, self.remedy = str(source), place, reason, remedy
+        super().__init__(" ".join(f"{source}: {place}: {reason}; {remedy}".split()))
+
+
+class ModelError(FdvvError, ValueError):
+    """Numbers that do not make a curve, a surface or a model; says what was received."""
+
+
+class FitError(FdvvError, ValueError):
+    """A curve cannot be fitted as asked; says what was received and what is needed."""
+
+
+class DeviceError(FdvvError):
+    """A device refused, failed or went away; says which and why."""
+
+
+class BuildError(FdvvError):
+    """This installation lacks a part; says which and how to get it."""

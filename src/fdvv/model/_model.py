@@ -1,0 +1,156 @@
+"""The FDVV model of a button: what it should feel like, whatever renders it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import ModelError
+from fdvv.model._curve import ForceCurve, Stroke
+from fdvv.model._velocity import Interpolation, blend
+from fdvv.model._vibration import Vibration
+from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a model comes from.
+
+    Attributes
+    ----------
+    source : the button and who measured it.
+    licence : of the measurements, as their publisher states it.
+    citation : how to credit it.
+    method : how the curves were made from the source.
+    assumptions : what no measurement backs, one sentence each.
+    simulated : whether the numbers come from the twin.
+    """
+
+    source: str = ""
+    licence: str = ""
+    citation: str = ""
+    method: str = ""
+    assumptions: tuple[str, ...] = ()
+    simulated: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class FDVVModel:
+    """Force over displacement and velocity, press and release, with the vibration of the snap.
+
+    Attributes
+    ----------
+    name : short, as a file would be called.
+    travel_mm : from first contact to bottom-out.
+    actuation_mm, reset_mm : where the contact closes on the way down and opens on the way up;
+        None if unknown.
+    curves : at least one; per stroke the velocities differ, and a curve of unknown velocity stands alone.
+    vibrations : any number; per stroke the velocities differ.
+    interpolation : how force is found between the velocities.
+    provenance : where it comes from.
+
+    Raises ModelError on anything else. Equality is of all numbers, exactly.
+    """
+
+    name: str
+    travel_mm: float
+    curves: tuple[ForceCurve, ...]
+    actuation_mm: float | None = None
+    reset_mm: float | None = None
+    vibrations: tuple[Vibration, ...] = ()
+    interpolation: Interpolation = Interpolation.LINEAR
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "interpolation", Interpolation(self.interpolation))
+        order = sorted(self.curves, key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
+        object.__setattr__(self, "curves", tuple(order))
+        object.__setattr__(self, "vibrations", tuple(self.vibrations))
+        if not self.name or self.name != self.name.strip():
+            raise ModelError(f"name must be text without spaces at its ends, got {self.name!r}")
+        if not (np.isfinite(self.travel_mm) and self.travel_mm > 0):
+            raise ModelError(f"travel_mm must be positive, got {self.travel_mm}")
+        for label in ("actuation_mm", "reset_mm"):
+            point = getattr(self, label)
+            if point is not None and not 0 <= point <= self.travel_mm:
+                raise ModelError(f"{label} must lie within the travel of {self.travel_mm} mm, got {point}")
+        if not self.curves:
+            raise ModelError("a model needs at least one curve, got none")
+        for stroke in Stroke:
+            self._check_velocities(stroke, [c.velocity_mm_s for c in self.of(stroke)], "curve")
+            found = [v.velocity_mm_s for v in self.vibrations if v.stroke is stroke]
+            self._check_velocities(stroke, found, "vibration")
+
+    @staticmethod
+    def _check_velocities(stroke: Stroke, velocities: list[float | None], what: str) -> None:
+        """Refuse two of a kind at one velocity, and an unknown velocity beside others."""
+        if len(set(velocities)) != len(velocities):
+            raise ModelError(f"{stroke} has two {what}s at one velocity: {velocities} mm/s")
+        if None in velocities and len(velocities) > 1:
+            raise ModelError(f"a {stroke} {what} of unknown velocity must stand alone, got {velocities} mm/s")
+
+    def of(self, stroke: Stroke | str) -> tuple[ForceCurve, ...]:
+        """Give the curves of one stroke, velocities rising; empty if it has none."""
+        return tuple(c for c in self.curves if c.stroke is Stroke(stroke))
+
+    def velocities_mm_s(self, stroke: Stroke | str) -> tuple[float, ...]:
+        """Give the known velocities of one stroke, rising."""
+        return tuple(c.velocity_mm_s for c in self.of(stroke) if c.velocity_mm_s is not None)
+
+    def _surface(
+        self, displacement_mm: npt.ArrayLike, velocity_mm_s: npt.ArrayLike, stroke: Stroke | str, nu: int
+    ) -> FloatArray:
+        curves = self.of(stroke)
+        if not curves:
+            raise ModelError(f"model {self.name!r} has no {Stroke(stroke)} curve")
+        x, v = np.broadcast_arrays(
+            np.asarray(displacement_mm, dtype=np.float64), np.asarray(velocity_mm_s, dtype=np.float64)
+        )
+        return blend(curves, self.interpolation, np.asarray(v), np.asarray(x), nu)
+
+    def force_cN(
+        self,
+        displacement_mm: npt.ArrayLike,
+        velocity_mm_s: npt.ArrayLike,
+        stroke: Stroke | str = Stroke.PRESS,
+    ) -> FloatArray:
+        """Evaluate the force anywhere; displacement and velocity broadcast against each other.
+
+        Outside the measured velocities the nearest one holds, outside the knots the end values.
+        Raises ModelError if the model has no curve of that stroke.
+        """
+        return self._surface(displacement_mm, velocity_mm_s, stroke, 0)
+
+    def stiffness_cN_mm(
+        self,
+        displacement_mm: npt.ArrayLike,
+        velocity_mm_s: npt.ArrayLike,
+        stroke: Stroke | str = Stroke.PRESS,
+    ) -> FloatArray:
+        """Evaluate dF/dx (cN/mm) anywhere, as force_cN does the force."""
+        return self._surface(displacement_mm, velocity_mm_s, stroke, 1)
+
+    def vibration(self, stroke: Stroke | str, velocity_mm_s: float) -> Vibration | None:
+        """Give the vibration of the stroke nearest in velocity; None if it has none."""
+        found = [v for v in self.vibrations if v.stroke is Stroke(stroke)]
+        return min(found, key=lambda v: abs((v.velocity_mm_s or 0.0) - velocity_mm_s), default=None)
+
+    def renamed(self, name: str) -> FDVVModel:
+        """Copy the model under another name."""
+        return replace(self, name=name)
+
+    def _key(self) -> tuple[object, ...]:
+        curves = tuple(
+            (c.stroke, c.velocity_mm_s, c.degree, c.knots_mm.tobytes(), c.control_points_cN.tobytes())
+            for c in self.curves
+        )
+        points = (self.name, self.travel_mm, self.actuation_mm, self.reset_mm)
+        return (*points, curves, self.vibrations, self.interpolation, self.provenance)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, FDVVModel) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())

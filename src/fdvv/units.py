@@ -1,0 +1,75 @@
+"""Units: records, files and screens use mm, cN, s and Hz; the plant computes in SI.
+
+This is the only place that converts, in both directions.
+
+- displacement: mm, positive into the button, 0 at first contact with the resting cap.
+- force: cN (1 cN = 10 mN), positive against the finger.
+- velocity: mm/s, the mean speed of a stroke, always positive; the stroke gives the direction.
+- time: s on the clock of the device that made the record.
+"""
+
+from __future__ import annotations
+
+from typing import overload
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+GRAM_FORCE_cN = 0.980665
+"""One gram-force in centinewtons, exact by the definition of standard gravity (9.80665 m/s²)."""
+
+
+@overload
+def cN_from_gf(force_gf: float) -> float: ...
+@overload
+def cN_from_gf(force_gf: FloatArray) -> FloatArray: ...
+def cN_from_gf(force_gf: float | FloatArray) -> float | FloatArray:
+    """Convert gram-force to centinewtons."""
+    return force_gf * GRAM_FORCE_cN
+
+
+@overload
+def gf_from_cN(force_cN: float) -> float: ...
+@overload
+def gf_from_cN(force_cN: FloatArray) -> FloatArray: ...
+def gf_from_cN(force_cN: float | FloatArray) -> float | FloatArray:
+    """Convert centinewtons to gram-force."""
+    return force_cN / GRAM_FORCE_cN
+
+
+@overload
+def N_from_cN(force_cN: float) -> float: ...
+@overload
+def N_from_cN(force_cN: FloatArray) -> FloatArray: ...
+def N_from_cN(force_cN: float | FloatArray) -> float | FloatArray:
+    """Convert centinewtons to newtons."""
+    return force_cN * 0.01
+
+
+@overload
+def cN_from_N(force_N: float) -> float: ...
+@overload
+def cN_from_N(force_N: FloatArray) -> FloatArray: ...
+def cN_from_N(force_N: float | FloatArray) -> float | FloatArray:
+    """Convert newtons to centinewtons."""
+    return force_N * 100.0
+
+
+@overload
+def m_from_mm(length_mm: float) -> float: ...
+@overload
+def m_from_mm(length_mm: FloatArray) -> FloatArray: ...
+def m_from_mm(length_mm: float | FloatArray) -> float | FloatArray:
+    """Convert millimetres (or mm/s, mm/s²) to metres (m/s, m/s²)."""
+    return length_mm * 0.001
+
+
+@overload
+def mm_from_m(length_m: float) -> float: ...
+@overload
+def mm_from_m(length_m: FloatArray) -> FloatArray: ...
+def mm_from_m(length_m: float | FloatArray) -> float | FloatArray:
+    """Convert metres (or m/s, m/s²) to millimetres (mm/s, mm/s²)."""
+    return length_m * 1000.0
