@@ -1,5 +1,6 @@
 """What a button should feel like: curves, vibration, models, landmarks, fits and files."""
 
+from fdvv.model._bump import Bump, find_bump
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
@@ -11,6 +12,16 @@ from fdvv.model._file import (
     save_model,
     schema,
 )
+from fdvv.model._fit import (
+    CurveFit,
+    FitMethod,
+    active_part,
+    bic_star,
+    fit_curve,
+    scan_sizes,
+    smooth,
+)
+from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
 from fdvv.model._surface import ForceSurface
@@ -20,21 +31,32 @@ from fdvv.model._vibration import Mode, Vibration
 __all__ = [
     "SUFFIX",
     "VERSION",
+    "Bump",
+    "CurveFit",
     "FDVVModel",
+    "FitMethod",
     "ForceCurve",
     "ForceSurface",
     "Interpolation",
+    "Landmarks",
     "MeasuredCurve",
     "Mode",
     "Press",
     "Provenance",
     "Stroke",
     "Vibration",
+    "active_part",
+    "bic_star",
     "find_bottom_out_mm",
+    "find_bump",
     "find_contact_mm",
+    "fit_curve",
+    "landmarks",
     "load_model",
     "model_from_json",
     "model_to_json",
     "save_model",
+    "scan_sizes",
     "schema",
+    "smooth",
 ]
