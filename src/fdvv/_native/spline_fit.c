@@ -258,15 +258,6 @@ static double squared_error(Problem *p, int m, const double *t, double *c) {
     return error > 0.0 ? error : 0.0;
 }
 
-double fdvv_spline_lsq(int n, const double *x, const double *y, const double *w, int degree, int m, const double *t,
-                       double *c) {
-    Problem *p = malloc(sizeof *p);
-    double error = -1.0;
-    if (p && prepare(p, n, x, y, w, degree, m, 0.0)) error = squared_error(p, m, t, c);
-    free(p);
-    return error;
-}
-
 double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m, double spacing,
                               int exchanges, double *t, double *c) {
     Problem *p = malloc(sizeof *p);
