@@ -221,6 +221,8 @@ def fit_curve(
 
     Raises FitError if there are too few distinct displacements or a setting is out of range.
     """
+    import scipy.interpolate  # noqa: F401  loaded here so that the first curve's time_s does not hold it
+
     begun = time.perf_counter()
     method = FitMethod(method)
     chosen = _degree(method, degree)

@@ -9,11 +9,14 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model._bump import find_bump
 from fdvv.model._curve import ForceCurve, Stroke
+from fdvv.model._extent import STOP_LEAST_cN_mm
 from fdvv.model._model import FDVVModel
 from fdvv.units import FloatArray
 
 STEP_mm = 0.005
 """Landmarks are read off the spline at this step, that of the finest benches."""
+
+CONTACT_REACH_mm = 0.4
 
 mJ_PER_cN_mm = 0.01
 """1 cN mm = 10 mN x 1 mm = 0.01 mJ."""
@@ -27,8 +30,8 @@ class Landmarks:
     ----------
     velocity_mm_s : of the press curve they are read from.
     contact_mm : where the press curve begins.
-    preload_cN : force at the end of the contact step, where the slope first falls below a fifth of its
-        greatest within the first 0.4 mm.
+    preload_cN : force at the end of the contact step, the last place within 0.4 mm of contact that is
+        steeper than a stop (100 cN/mm); the first force if there is no such step, as on a rubber dome.
     peak_mm, peak_cN, valley_mm, valley_cN : of the bump of the press.
     snap_ratio : (peak - valley) / peak.
     release_peak_cN, release_valley_cN : of the bump of the release.
@@ -38,7 +41,7 @@ class Landmarks:
     pre_travel_mm, post_travel_mm : from contact to actuation, from actuation to bottom-out.
     pre_slope_cN_mm : mean slope from the end of the contact step to the peak (to bottom-out if no bump).
     post_slope_cN_mm : mean slope over the last quarter of the travel: the spring rate.
-    steepest_fall_cN_mm : most negative slope of the press, the sharpness of the snap.
+    steepest_fall_cN_mm : most negative slope of the press after the contact step, the sharpness of the snap.
     work_mJ, release_work_mJ : area under each stroke over the travel.
     hysteresis_loss_mJ : work put in and not given back.
     """
@@ -74,11 +77,10 @@ class Landmarks:
 
 
 def _contact_step_end(x: FloatArray, slope: FloatArray) -> int:
-    """Find the index where the contact step has been climbed."""
-    near = max(2, int(np.searchsorted(x, x[0] + 0.4)))
-    steepest = int(np.argmax(slope[:near]))
-    gentle = np.flatnonzero(slope[steepest:] < 0.2 * slope[steepest])
-    return min(steepest + (int(gentle[0]) if gentle.size else 0), x.size - 2)
+    """Find the index where the contact step has been climbed; 0 if the curve has none."""
+    near = slope[: max(2, int(np.searchsorted(x, x[0] + CONTACT_REACH_mm)))]
+    steep = np.flatnonzero(near > STOP_LEAST_cN_mm)
+    return min(int(steep[-1]) + 1, x.size - 2) if steep.size else 0
 
 
 def _work_mJ(x: FloatArray, force_cN: FloatArray) -> float:
@@ -134,7 +136,7 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
         post_travel_mm=None if close is None else model.travel_mm - close,
         pre_slope_cN_mm=float((force[pre_end] - force[step_end]) / (x[pre_end] - x[step_end])),
         post_slope_cN_mm=float(np.polyfit(x[last], force[last], 1)[0]),
-        steepest_fall_cN_mm=min(0.0, float(slope.min())),
+        steepest_fall_cN_mm=min(0.0, float(slope[step_end:].min())),
         work_mJ=work,
         release_work_mJ=release_work,
         hysteresis_loss_mJ=None if release_work is None else work - release_work,
