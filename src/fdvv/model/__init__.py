@@ -1,5 +1,6 @@
 """What a button should feel like: curves, vibration, models, landmarks, fits and files."""
 
+from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._bump import Bump, find_bump
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
@@ -47,11 +48,13 @@ __all__ = [
     "Vibration",
     "active_part",
     "bic_star",
+    "builtin_names",
     "find_bottom_out_mm",
     "find_bump",
     "find_contact_mm",
     "fit_curve",
     "landmarks",
+    "load_builtin",
     "load_model",
     "model_from_json",
     "model_to_json",
