@@ -1,0 +1,103 @@
+"""Figures of fits: the spline over the raw samples, and what the number of control points costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import CurveFit, MeasuredCurve
+from fdvv.plot import _style as style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+RAW = "#9aa5b1"
+
+
+@style.in_house_style
+def plot_fit(
+    measured: MeasuredCurve,
+    fits: Sequence[CurveFit],
+    axes: tuple[Axes, Axes] | None = None,
+    title: str = "",
+    simulated: bool = False,
+) -> tuple[Axes, Axes]:
+    """Draw raw samples under their fits, with knots and control points, and the residuals below.
+
+    axes : for the curves and for the residuals (fit minus raw, at each distinct displacement).
+    Ticks at the foot are the distinct knots of each fit. Gives both axes. Raises ModelError if there
+    is no fit.
+    """
+    if not fits:
+        raise ModelError("a figure of fits needs at least one fit, got none")
+    if axes is None:
+        fig = style.new_figure(7.5, 5.4)
+        upper, lower = fig.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+        axes = (upper, lower)
+    top, residual = axes
+    dots: Any = {"linestyle": "", "marker": ".", "markersize": 3.0, "color": RAW}
+    top.plot(measured.displacement_mm, measured.force_cN, **dots, label="raw samples")
+    x, raw, _ = measured.by_displacement()
+    residual.axhline(0.0, color=style.QUIET, linewidth=0.8, zorder=1)
+    for row, fit in enumerate(fits):
+        colour = style.PALETTE[row % len(style.PALETTE)]
+        _draw_fit(top, fit, colour, row)
+        residual.plot(x, fit.curve.force_cN(x) - raw, color=colour, linewidth=1.0)
+    top.set(ylabel=style.FORCE)
+    top.set_ylim(style.limits_around(measured.force_cN, [0.0]))
+    residual.set(xlabel=style.DISPLACEMENT, ylabel="fit − raw (cN)")
+    top.legend(loc="lower right")
+    style.set_titles(top, style.name_text(title) if title else str(measured.stroke), simulated)
+    return axes
+
+
+def _draw_fit(ax: Axes, fit: CurveFit, colour: str, row: int) -> None:
+    """Draw one fit: its curve, its control polygon and its knots."""
+    curve = fit.curve
+    drawn = curve.sample(0.01)
+    count = curve.control_points_cN.size
+    label = f"{fit.method}, {count} control points, RMSE {fit.rmse_cN:.2f} cN"
+    ax.plot(drawn.displacement_mm, drawn.force_cN, color=colour, label=label)
+    polygon: Any = {
+        "linestyle": ":",
+        "linewidth": 0.9,
+        "marker": "o",
+        "markersize": 4.5,
+        "markerfacecolor": "white",
+    }
+    ax.plot(curve.control_points_mm, curve.control_points_cN, color=colour, **polygon)
+    # ticks in axes heights, so that they stay at the foot whatever the force
+    knots = np.unique(curve.knots_mm)
+    height = np.full_like(knots, 0.02 + 0.035 * row)
+    ax.plot(knots, height, "|", color=colour, markersize=8.0, transform=ax.get_xaxis_transform())
+
+
+@style.in_house_style
+def plot_scan(
+    scores: Mapping[str, Mapping[int, float]],
+    ax: Axes | None = None,
+    title: str = "",
+    simulated: bool = False,
+) -> Axes:
+    """Draw BIC* against the number of control points for each method, the best of each marked.
+
+    scores : method ("uniform", "adaptive") to size to BIC*, as scan_sizes gives it. Gives the axes.
+    Raises ModelError if no method has a score.
+    """
+    present = {method: found for method, found in scores.items() if found}
+    if not present:
+        raise ModelError("a scan needs at least one score, got none")
+    ax = style.axes_or_new(ax, 7.0, 3.8)
+    for colour, (method, found) in zip(style.PALETTE, present.items(), strict=False):
+        sizes = sorted(found)
+        best = min(sizes, key=lambda size: found[size])
+        label = f"{style.name_text(method)}, least at {best}"
+        ax.plot(sizes, [found[size] for size in sizes], marker=".", color=colour, label=label)
+        ax.plot([best], [found[best]], "o", markersize=9.0, markerfacecolor="none", color=colour)
+    ax.set(xlabel="number of control points (count)", ylabel="BIC* (no unit, lower is better)")
+    ax.legend(loc="upper right")
+    style.set_titles(ax, style.name_text(title), simulated)
+    return ax

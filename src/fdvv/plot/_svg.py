@@ -1,0 +1,74 @@
+"""Figures as text and pixels: the same figure gives the same bytes, and several can share one page."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from typing import TYPE_CHECKING
+
+from fdvv.plot._style import house_style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SALT = "fdvv"
+"""matplotlib names clip paths and glyphs by a random salt unless it is given one."""
+
+
+@contextmanager
+def _saving() -> Iterator[None]:
+    """Set what saving reads, and let a name in a script that the font lacks be drawn as boxes."""
+    with house_style(svg__hashsalt=SALT, svg__fonttype="path"), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        yield
+
+
+def figure_svg(fig: Figure, description: str = "") -> str:
+    """Draw a figure as one `<svg>` element that can stand in a page or in a file.
+
+    description : what the figure shows, for those who cannot see it; by default its titles.
+    The element holds no date, no comment, no document-wide style and no address outside itself; the same
+    figure gives the same text.
+    """
+    stream = io.StringIO()
+    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
+    with _saving():
+        fig.savefig(stream, format="svg", metadata=nothing)
+    return _standalone(stream.getvalue(), description or _titles(fig))
+
+
+def figure_png(fig: Figure, dpi: float = 110.0) -> bytes:
+    """Draw a figure as PNG bytes without date or program name."""
+    stream = io.BytesIO()
+    with _saving():
+        fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def prefix_ids(svg: str, prefix: str) -> str:
+    """Rename every id of an svg element and every use of one, so that two figures cannot mix theirs up."""
+    svg = re.sub(r'(\sid=")([^"]+")', rf"\g<1>{prefix}\g<2>", svg)
+    svg = re.sub(r'(\s(?:xlink:)?href="#)', rf"\g<1>{prefix}", svg)
+    svg = re.sub(r'(\saria-labelledby=")', rf"\g<1>{prefix}", svg)
+    return re.sub(r"(url\(#)", rf"\g<1>{prefix}", svg)
+
+
+def _titles(fig: Figure) -> str:
+    """Join the titles of a figure and its axes into a description."""
+    texts = [ax.get_title(loc=loc) for ax in fig.axes for loc in ("left", "center", "right")]
+    return "; ".join(dict.fromkeys(text for text in texts if text)) or "figure"
+
+
+def _standalone(document: str, description: str) -> str:
+    """Cut matplotlib's document down to its svg element and say what it shows."""
+    svg = document[document.index("<svg") :].rstrip()
+    svg = re.sub(r"<!--.*?-->\s*", "", svg, flags=re.DOTALL)
+    # its style sheet speaks to the whole page; both properties are inherited, so the root can say them
+    svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>\s*", "", svg, count=1, flags=re.DOTALL)
+    look = 'stroke-linejoin="round" stroke-linecap="butt" role="img" aria-labelledby="title"'
+    opening, rest = svg.split(">", 1)
+    return f'{opening} {look}>\n <title id="title">{escape(description)}</title>{rest}\n'
