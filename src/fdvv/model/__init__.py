@@ -2,6 +2,7 @@
 
 from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
     SUFFIX,
@@ -21,6 +22,7 @@ from fdvv.model._vibration import Mode, Vibration
 __all__ = [
     "SUFFIX",
     "VERSION",
+    "Conflict",
     "FDVVModel",
     "ForceCurve",
     "ForceSurface",
@@ -31,13 +33,17 @@ __all__ = [
     "Provenance",
     "Stroke",
     "Vibration",
+    "assign",
     "builtin_names",
+    "copy_curve",
     "find_bottom_out_mm",
     "find_contact_mm",
     "load_builtin",
     "load_model",
+    "merge",
     "model_from_json",
     "model_to_json",
+    "remove_curve",
     "save_model",
     "schema",
 ]
