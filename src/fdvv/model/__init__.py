@@ -3,6 +3,7 @@
 from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._bump import Bump, find_bump
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
     SUFFIX,
@@ -33,6 +34,7 @@ __all__ = [
     "SUFFIX",
     "VERSION",
     "Bump",
+    "Conflict",
     "CurveFit",
     "FDVVModel",
     "FitMethod",
@@ -47,8 +49,10 @@ __all__ = [
     "Stroke",
     "Vibration",
     "active_part",
+    "assign",
     "bic_star",
     "builtin_names",
+    "copy_curve",
     "find_bottom_out_mm",
     "find_bump",
     "find_contact_mm",
@@ -56,8 +60,10 @@ __all__ = [
     "landmarks",
     "load_builtin",
     "load_model",
+    "merge",
     "model_from_json",
     "model_to_json",
+    "remove_curve",
     "save_model",
     "scan_sizes",
     "schema",
