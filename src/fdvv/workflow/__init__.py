@@ -12,6 +12,7 @@ from fdvv.workflow._fit import (
     summarise,
 )
 from fdvv.workflow._open import expand_folder, open_model
+from fdvv.workflow._parts import merge_parts, one_curve, open_part
 
 __all__ = [
     "Comparison",
@@ -25,6 +26,9 @@ __all__ = [
     "fit_file",
     "fit_folder",
     "fit_force_file",
+    "merge_parts",
+    "one_curve",
     "open_model",
+    "open_part",
     "summarise",
 ]
