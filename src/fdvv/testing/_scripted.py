@@ -106,6 +106,6 @@ def _stroke_pair(travel_mm: float, speed_mm_s: float) -> tuple[FloatArray, Float
     down = travel_mm / speed_mm_s
     t = np.arange(round((2 * down + 0.02) / PERIOD_s) + 1) * PERIOD_s
     corners = [0.0, down, down + 0.02, 2 * down + 0.02]
-    x = np.interp(t, corners, [0.0, travel_mm, travel_mm, 0.0])
+    x: FloatArray = np.interp(t, corners, [0.0, travel_mm, travel_mm, 0.0])
     v = np.where(t < down, speed_mm_s, np.where(t < down + 0.02, 0.0, -speed_mm_s))
-    return t, x, v
+    return np.asarray(t, dtype=np.float64), x, np.asarray(v)
