@@ -1,5 +1,6 @@
 """What a button should feel like: curves, vibration, models, landmarks, fits and files."""
 
+from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
@@ -30,8 +31,10 @@ __all__ = [
     "Provenance",
     "Stroke",
     "Vibration",
+    "builtin_names",
     "find_bottom_out_mm",
     "find_contact_mm",
+    "load_builtin",
     "load_model",
     "model_from_json",
     "model_to_json",
