@@ -14,6 +14,9 @@ from fdvv.compensate._observe import Delays
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
+HOME_mm = 0.1
+"""Where a resting cap belongs: above the upper guard of the strokes, where nothing is learned."""
+
 
 @dataclass(frozen=True, eq=False)
 class Best:
@@ -81,14 +84,20 @@ class PaperLaw:
     smoothing_mm : sigma of the Gaussian over the averaged table. The paper prints 1.2 mm, which erases
         the bump it wants to render; 1.2 bins (0.06 mm) keeps it.
     start : where a round starts: "target" the force wanted, "average" the mean of the rounds before (the
-        first from the target), "random" one random level (as the paper's figure shows).
+        first from the target), "random" one level, half to
+        all of the largest target (the paper's figure shows a random level).
     seed : of the random starts.
     delays : addition, off by default: known delays of the rig.
     filter_mm : addition, off at 0: sigma of a zero-phase Gaussian over the learned part (command minus
         target) after each press; keeps the law from learning what no two presses share.
 
-    Outside the bins that a press visited between its guards, the correction of the nearest visited bin
-    holds if ``hold_ends``, else none; commands stay within the device's limit.
+    hold_ends : addition: outside the bins that a press visited between its guards, the correction of the
+        nearest visited bin holds; else those bins learn nothing.
+    hold_cN : addition, off at 0: least command in the first 0.1 mm, and anywhere in a start from the
+        target. It carries the mover's weight and friction, without which the cap sinks or stays down
+        and no press can begin.
+
+    Commands stay within the device's limit.
     """
 
     alpha: float = 0.7
@@ -102,6 +111,7 @@ class PaperLaw:
     delays: Delays = field(default_factory=Delays)
     filter_mm: float = 0.0
     hold_ends: bool = True
+    hold_cN: float = 30.0
 
     def __post_init__(self) -> None:
         if not 0 <= self.alpha <= 1:
@@ -110,6 +120,8 @@ class PaperLaw:
             raise ModelError(f"bin_mm must be positive, got {self.bin_mm}")
         if self.rounds < 1 or self.presses_per_round < 1:
             raise ModelError(f"needs a round and a press, got {self.rounds}, {self.presses_per_round}")
+        if not self.hold_cN >= 0:
+            raise ModelError(f"hold_cN must be at least 0, got {self.hold_cN}")
         if not (self.smoothing_mm >= 0 and self.filter_mm >= 0):
             raise ModelError(f"sigmas must be at least 0, got {self.smoothing_mm}, {self.filter_mm}")
         if self.start not in ("target", "average", "random"):
@@ -118,7 +130,7 @@ class PaperLaw:
     @classmethod
     def literal(cls, **settings: object) -> PaperLaw:
         """Make the law as printed, without additions; the smoothing stays at 1.2 bins unless told."""
-        return cls(**{"start": "random", "hold_ends": False, **settings})  # type: ignore[arg-type]
+        return cls(**{"start": "random", "hold_ends": False, "hold_cN": 0.0, **settings})  # type: ignore[arg-type]
 
     @property
     def additions(self) -> tuple[str, ...]:
@@ -133,6 +145,8 @@ class PaperLaw:
             found.append(f"zero-phase filter of the learned part, sigma {self.filter_mm:g} mm")
         if self.hold_ends:
             found.append("corrections held beyond the visited bins")
+        if self.hold_cN:
+            found.append(f"at least {self.hold_cN:g} cN in the first {HOME_mm:g} mm")
         if self.start != "random":
             found.append(f"rounds start from the {self.start}")
         return tuple(found)
@@ -177,7 +191,7 @@ class PaperLaw:
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         table = smooth(np.mean([b.command_cN for b in bests], axis=0), self.smoothing_mm, step_mm)
         return Learned(
-            _frozen(np.clip(table, -state.limit_cN, state.limit_cN)),
+            self._limited(table, state),
             state.errors_cN,
             float(np.mean([b.mean_error_cN for b in bests])),
             float(np.mean([b.max_error_cN for b in bests])),
@@ -193,17 +207,23 @@ class PaperLaw:
         learned = state.command_cN + change - state.target_cN
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         command = state.target_cN + smooth(learned, self.filter_mm, step_mm)
-        return _frozen(np.clip(command, -state.limit_cN, state.limit_cN))
+        return self._limited(command, state)
+
+    def _limited(self, command_cN: FloatArray, state: State) -> FloatArray:
+        """Hold the cap up at its home and stay within the device's limit."""
+        home = state.grid_mm <= HOME_mm if self.hold_cN else False
+        held = np.where(home, np.maximum(command_cN, self.hold_cN), command_cN)
+        return _frozen(np.clip(held, -state.limit_cN, state.limit_cN))
 
     def _start(self, state: State) -> FloatArray:
         """Give the command a round starts from."""
         if self.start == "random":
             draw = np.random.default_rng((self.seed, len(state.rounds)))
-            level = draw.uniform(0.0, min(float(np.abs(state.target_cN).max()), state.limit_cN))
-            return _frozen(np.full(state.grid_mm.size, level))
+            level = draw.uniform(0.5, 1.0) * float(np.abs(state.target_cN).max())
+            return self._limited(np.full(state.grid_mm.size, level), state)
         if self.start == "average" and state.rounds:
             return _frozen(np.mean([b.command_cN for b in state.rounds], axis=0))
-        return _frozen(np.clip(state.target_cN, -state.limit_cN, state.limit_cN))
+        return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 
     def _sentence(self, state: State, bests: tuple[Best, ...], step_mm: float) -> str:
         kept = bump_kept_ratio(state.target_cN, self.smoothing_mm, step_mm)
