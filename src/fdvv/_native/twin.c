@@ -10,8 +10,9 @@
 
 enum { XF, VF, H1, H2, XT, VT, XC, VC, AMPS, LVDT, SENSED, WORK, LOSS, STATES };
 
-/* what the equations are driven by between two ticks */
+/* what the equations are driven by between two ticks, and inverses that save divisions */
 typedef struct {
+    double finger_1_kg, sensor_1_kg, mover_1_kg, coil_1_H, fast_1_s, slow_1_s, rc_1_s;
     double drive;         /* V, or A behind a current loop */
     double effort;        /* modulation of the finger's force at the tick */
     double effort_per_s;  /* and its slope until the next */
@@ -99,16 +100,16 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
     double volts = voltage(m, in->drive, kt, y[AMPS], y[VC]);
 
     dy[XF] = y[VF];
-    dy[VF] = (muscle - pulp) / m->finger_mass_kg;
-    dy[H1] = m->pulp_fast_ratio * growth - y[H1] / m->pulp_fast_s;
-    dy[H2] = m->pulp_slow_ratio * growth - y[H2] / m->pulp_slow_s;
+    dy[VF] = (muscle - pulp) * in->finger_1_kg;
+    dy[H1] = m->pulp_fast_ratio * growth - y[H1] * in->fast_1_s;
+    dy[H2] = m->pulp_slow_ratio * growth - y[H2] * in->slow_1_s;
     dy[XT] = y[VT];
-    dy[VT] = (pulp - touch) / m->sensor_mass_kg;
+    dy[VT] = (pulp - touch) * in->sensor_1_kg;
     dy[XC] = y[VC];
-    dy[VC] = (touch - kt * y[AMPS] - rub - stop + top) / m->moving_mass_kg + m->gravity_m_s2;
-    dy[AMPS] = (volts - m->resistance_ohm * y[AMPS] + kt * y[VC]) / m->inductance_H;
+    dy[VC] = (touch - kt * y[AMPS] - rub - stop + top) * in->mover_1_kg + m->gravity_m_s2;
+    dy[AMPS] = (volts - m->resistance_ohm * y[AMPS] + kt * y[VC]) * in->coil_1_H;
     dy[LVDT] = m->lvdt_rad_s * (y[XC] - y[LVDT]);
-    dy[SENSED] = (pulp - y[SENSED]) / m->sensor_rc_s;
+    dy[SENSED] = (pulp - y[SENSED]) * in->rc_1_s;
     dy[WORK] = muscle * y[VF] + volts * y[AMPS];
     dy[LOSS] = m->resistance_ohm * y[AMPS] * y[AMPS] + rub * y[VC] + arms * squeeze_rate +
                (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * closing +
@@ -129,15 +130,17 @@ static double stored(const fdvv_twin_model *m, const double *y) {
            m->moving_mass_kg * m->gravity_m_s2 * y[XC];
 }
 
-static void runge_kutta(const fdvv_twin_model *m, const drive_input *in, double t, double *y, const double *k1) {
-    double h = m->step_s, k2[STATES], k3[STATES], k4[STATES], stage[STATES];
-    for (int j = 0; j < STATES; j++) stage[j] = y[j] + 0.5 * h * k1[j];
-    rates(m, in, t + 0.5 * h, stage, k2);
-    for (int j = 0; j < STATES; j++) stage[j] = y[j] + 0.5 * h * k2[j];
-    rates(m, in, t + 0.5 * h, stage, k3);
-    for (int j = 0; j < STATES; j++) stage[j] = y[j] + h * k3[j];
-    rates(m, in, t + h, stage, k4);
-    for (int j = 0; j < STATES; j++) y[j] += h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
+static void runge_kutta(const fdvv_twin_model *m, const drive_input *in, double t, double *y, const double *now) {
+    static const double reach[3] = {0.5, 0.5, 1.0}, weight[3] = {2.0, 2.0, 1.0};
+    double h = m->step_s, slope[STATES], sum[STATES], stage[STATES];
+    memcpy(slope, now, sizeof slope);
+    memcpy(sum, now, sizeof sum);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < STATES; j++) stage[j] = y[j] + reach[i] * h * slope[j];
+        rates(m, in, t + reach[i] * h, stage, slope);
+        for (int j = 0; j < STATES; j++) sum[j] += weight[i] * slope[j];
+    }
+    for (int j = 0; j < STATES; j++) y[j] += h / 6.0 * sum[j];
 }
 
 /* Advance one step; past holds the rates of the two steps before, fresh how many of them still count. */
@@ -267,53 +270,66 @@ static void write_row(const fdvv_twin_model *m, const controller *c, const doubl
     row[12] = stored(m, y) - energy_J - y[WORK] + y[LOSS];
 }
 
-static void start(const fdvv_twin_model *m, double *y, controller *c) {
+static void start(const fdvv_twin_model *m, double *y, drive_input *in, controller *c) {
+    memset(in, 0, sizeof *in);
+    in->finger_1_kg = 1.0 / m->finger_mass_kg, in->sensor_1_kg = 1.0 / m->sensor_mass_kg;
+    in->mover_1_kg = 1.0 / m->moving_mass_kg, in->coil_1_H = 1.0 / m->inductance_H;
+    in->fast_1_s = 1.0 / m->pulp_fast_s, in->slow_1_s = 1.0 / m->pulp_slow_s, in->rc_1_s = 1.0 / m->sensor_rc_s;
     memset(y, 0, STATES * sizeof *y);
     memset(c, 0, sizeof *c);
     y[XF] = y[XT] = m->start_m < 0.0 ? m->start_m : 0.0;
     c->speed_m_s = m->announced_m_s;
 }
 
+/* Let the controller run once on what the sensors gave. */
+static void run_tick(const fdvv_twin_model *m, const fdvv_twin_grid *g, const double *speeds_m_s,
+                     const double *table_N, double raw_m, double filtered_N, double noise_N, controller *c) {
+    double tick_s = m->step_s * (double)g->steps_per_tick;
+    c->sensed_m = sliding_mean(g, c, raw_m);
+    read_force(m, c, filtered_N, noise_N);
+    find_direction(m, c);
+    find_speed(m, g, c, tick_s);
+    set_command(m, c, look_up(m, g, speeds_m_s, table_N, c));
+}
+
 int fdvv_twin_press(const fdvv_twin_model *m, const fdvv_twin_grid *g, const double *speeds_m_s,
                     const double *table_N, const double *position_noise_m, const double *force_noise_N,
                     const double *effort_ratio, double *rows) {
     if (!usable(g)) return 1;
-    double y[STATES], past[2][STATES], read_sum = 0.0, energy_J;
+    double y[STATES], past[2][STATES], energy_J, raw_m;
     double tick_s = m->step_s * (double)g->steps_per_tick;
+    int64_t last = g->settle_ticks + g->ticks - 1, first_read = g->steps_per_tick - (g->reads - 1) * g->read_steps;
     int fresh = 0;
     controller c;
-    drive_input in = {0};
-    start(m, y, &c);
+    drive_input in;
+    start(m, y, &in, &c);
     memset(past, 0, sizeof past);
     energy_J = stored(m, y);
-    read_sum = (double)g->reads * read_position(m, 0.0, 0.0);
+    raw_m = read_position(m, 0.0, 0.0);
 
-    for (int64_t k = 0; k < g->settle_ticks + g->ticks; k++) {
-        int recorded = k >= g->settle_ticks;
+    for (int64_t k = 0; k <= last; k++) {
+        int64_t next_row = k < g->settle_ticks ? g->steps_per_tick : 0, next_read = first_read;
+        /* the reads of the last tick are never used: any noise will do */
+        const double *noise_m = position_noise_m + (k < last ? k + 1 : k) * g->reads;
+        double sum_m = 0.0;
         in.tick_s = tick_s * (double)(k - g->settle_ticks);
         in.effort = effort_ratio[k];
         in.effort_per_s = (effort_ratio[k + 1] - effort_ratio[k]) / tick_s;
-        c.sensed_m = sliding_mean(g, &c, read_sum / (double)g->reads);
-        read_sum = 0.0;
-        read_force(m, &c, y[SENSED], force_noise_N[k]);
-        find_direction(m, &c);
-        find_speed(m, g, &c, tick_s);
-        set_command(m, &c, look_up(m, g, speeds_m_s, table_N, &c));
+        run_tick(m, g, speeds_m_s, table_N, raw_m, y[SENSED], force_noise_N[k], &c);
         for (int64_t s = 0; s < g->steps_per_tick; s++) {
             double t = in.tick_s + m->step_s * (double)s;
             if (s == g->delay_steps && in.drive != c.drive) in.drive = c.drive, fresh = 0;
-            if (recorded && s % g->steps_per_row == 0) {
+            if (s == next_row) {
                 write_row(m, &c, y, t, s == 0, energy_J, rows);
-                rows += FDVV_TWIN_COLUMNS;
+                rows += FDVV_TWIN_COLUMNS, next_row += g->steps_per_row;
             }
             advance(m, &in, t, y, past, &fresh);
-            int64_t before_tick = g->steps_per_tick - 1 - s;
-            if (before_tick % g->read_steps == 0 && before_tick / g->read_steps < g->reads) {
-                int64_t read = g->reads - 1 - before_tick / g->read_steps;
-                double noise = k + 1 < g->settle_ticks + g->ticks ? position_noise_m[(k + 1) * g->reads + read] : 0.0;
-                read_sum += read_position(m, y[LVDT], noise);
+            if (s + 1 == next_read) {
+                sum_m += read_position(m, y[LVDT], *noise_m++);
+                next_read += g->read_steps;
             }
         }
+        raw_m = sum_m / (double)g->reads;
     }
     return 0;
 }

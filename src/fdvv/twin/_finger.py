@@ -41,6 +41,14 @@ class Pulp:
     fast_s: float = quantity(
         0.004, "time constant of the fast arm", "s", (0.003, 0.005), (1e-4, 1.0), "assumed"
     )
+    strap_N: float = quantity(
+        0.2,
+        "squeeze by the strap of the force sensor, nulled in its reading",
+        "N",
+        (0.1, 0.4),
+        (0.0, 5.0),
+        "assumed",
+    )
     slow_s: float = quantity(0.1, "time constant of the slow arm", "s", (0.08, 0.15), (1e-3, 10.0), "assumed")
 
     def __post_init__(self) -> None:
@@ -52,18 +60,17 @@ class Habit:
     """How a person presses, and how much each press differs; a spread is one standard deviation."""
 
     lift_m: float = quantity(
-        0.002,
-        "height of the referent above the cap before a press",
+        0.0,
+        "height of the referent above the cap before a press; 0 rests on it",
         "m",
         (0.0, 0.008),
         (0.0, 0.03),
-        "assumed",
     )
     rest_N: float = quantity(
-        0.25, "force of a finger that rests on the cap (lift 0)", "N", (0.1, 0.3), (0.0, 1.0), "assumed"
+        0.1, "force of a finger that rests on the cap (lift 0)", "N", (0.05, 0.3), (0.0, 1.0), "assumed"
     )
     push_N: float = quantity(
-        1.2, "force at which the referent aims beyond the bottom", "N", (0.8, 2.0), (0.0, 20.0), "assumed"
+        1.5, "force at which the referent aims beyond the bottom", "N", (0.8, 2.0), (0.0, 20.0), "assumed"
     )
     onset_s: float = quantity(0.01, "wait before the finger moves", "s", (0.0, 0.02), (0.0, 1.0), "assumed")
     dwell_s: float = quantity(0.05, "rest at the bottom", "s", (0.03, 0.08), (0.0, 2.0), "assumed")
@@ -75,7 +82,9 @@ class Habit:
     impedance_spread_ratio: float = quantity(
         0.15, "spread of stiffness and of damping", "", (0.1, 0.2), (0.0, 0.5), "assumed"
     )
-    lift_spread_ratio: float = quantity(0.2, "spread of lift_m", "", (0.1, 0.3), (0.0, 0.5), "assumed")
+    lift_spread_ratio: float = quantity(
+        0.2, "spread of lift_m, or of rest_N", "", (0.1, 0.3), (0.0, 0.5), "assumed"
+    )
     onset_spread_s: float = quantity(0.003, "spread of onset_s", "s", (0.001, 0.02), (0.0, 0.5), "assumed")
     effort_noise_ratio: float = quantity(
         0.03, "noise of the muscle in proportion to its force", "", (0.02, 0.05), (0.0, 0.5), "assumed"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,11 +51,10 @@ class Gesture:
 def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
     """Plan the press of a person who never varies; press and release last equally long."""
     habit, stiffness = finger.habit, finger.impedance.stiffness_N_m
-    per_N = 1 / stiffness if stiffness else 0.0
-    start = -habit.lift_m if habit.lift_m else habit.rest_N * per_N
+    start = -habit.lift_m if habit.lift_m else _depth_m(finger, habit.rest_N, stiffness)
     return Gesture(
         start,
-        travel_m + habit.push_N * per_N,
+        travel_m + _depth_m(finger, habit.push_N, stiffness),
         habit.onset_s,
         press_s,
         habit.dwell_s,
@@ -62,6 +62,13 @@ def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
         stiffness,
         finger.impedance.damping_N_s_m,
     )
+
+
+def _depth_m(finger: Finger, force_N: float, stiffness_N_m: float) -> float:
+    """Give how far beyond a wall the referent must be for a held force: joint and relaxed pulp in series."""
+    pulp = finger.pulp
+    squeeze = math.log1p(force_N / (pulp.relaxed_ratio * pulp.scale_N + pulp.strap_N)) / pulp.exponent_1_m
+    return squeeze + (force_N / stiffness_N_m if stiffness_N_m else 0.0)
 
 
 def vary(
@@ -83,7 +90,7 @@ def vary(
     beyond = habit.push_N * max(0.1, scale(habit.push_spread_ratio, push))
     return Gesture(
         start,
-        travel_m + (beyond / stiffness if stiffness else 0.0),
+        travel_m + _depth_m(finger, beyond, stiffness),
         max(0.0, habit.onset_s + habit.onset_spread_s * float(onset)),
         nominal.press_s / speed,
         habit.dwell_s,

@@ -126,9 +126,6 @@ class ForceSensor:
     contact_loss_s_m: float = quantity(
         1.5, "alpha of that contact", "s/m", (0.2, 6.0), (0.0, 50.0), "assumed"
     )
-    strap_N: float = quantity(
-        0.2, "pull of the strap on the pulp, nulled in the reading", "N", (0.1, 0.4), (0.0, 5.0), "assumed"
-    )
     filter_s: float = quantity(
         3.33e-4, "RC of 333 ohm and 1 uF, 478 Hz", "s", (3.2e-4, 3.4e-4), (2e-5, 0.1), "paper"
     )
