@@ -1,6 +1,13 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
 from fdvv.workflow._compare import Comparison, Difference, compare
+from fdvv.workflow._compensate import (
+    CompensationResult,
+    PressDone,
+    compensate,
+    load_actuation,
+    save_actuation,
+)
 from fdvv.workflow._fit import (
     FitSettings,
     FolderFit,
@@ -13,22 +20,31 @@ from fdvv.workflow._fit import (
 )
 from fdvv.workflow._open import expand_folder, open_model
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
+from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
 __all__ = [
     "Comparison",
+    "CompensationResult",
     "Difference",
     "FitSettings",
     "FolderFit",
     "FolderSummary",
     "ModelFit",
+    "PressDone",
+    "ProbeResult",
     "compare",
+    "compensate",
     "expand_folder",
+    "fd_only",
     "fit_file",
     "fit_folder",
     "fit_force_file",
+    "load_actuation",
     "merge_parts",
     "one_curve",
     "open_model",
     "open_part",
+    "probe",
+    "save_actuation",
     "summarise",
 ]

@@ -28,7 +28,6 @@ from fdvv.model import (
     landmarks,
 )
 
-
 DECIMALS_mm = 6
 """A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
 
