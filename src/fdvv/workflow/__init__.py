@@ -8,6 +8,9 @@ from fdvv.workflow._compensate import (
     load_actuation,
     save_actuation,
 )
+from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
+from fdvv.workflow._demo_report import demo_report
+from fdvv.workflow._devices import open_device
 from fdvv.workflow._fit import (
     FitSettings,
     FolderFit,
@@ -25,6 +28,7 @@ from fdvv.workflow._probe import ProbeResult, fd_only, probe
 __all__ = [
     "Comparison",
     "CompensationResult",
+    "DemoResult",
     "Difference",
     "FitSettings",
     "FolderFit",
@@ -32,8 +36,12 @@ __all__ = [
     "ModelFit",
     "PressDone",
     "ProbeResult",
+    "Rendering",
+    "SwitchFit",
     "compare",
     "compensate",
+    "demo",
+    "demo_report",
     "expand_folder",
     "fd_only",
     "fit_file",
@@ -42,6 +50,7 @@ __all__ = [
     "load_actuation",
     "merge_parts",
     "one_curve",
+    "open_device",
     "open_model",
     "open_part",
     "probe",
