@@ -124,7 +124,7 @@ class ForceSensor:
     mass_kg: float = quantity(0.002, "cone and plunger", "kg", (0.001, 0.003), (2e-4, 0.1), "assumed")
     contact_stiffness_N_m: float = quantity(8e4, "cone on cap", "N/m", (2e4, 2e5), (1e3, 5e5), "assumed")
     contact_loss_s_m: float = quantity(
-        1.5, "alpha of that contact", "s/m", (0.2, 6.0), (0.0, 50.0), "assumed"
+        6.0, "alpha of that contact", "s/m", (0.2, 10.0), (0.0, 50.0), "assumed"
     )
     filter_s: float = quantity(
         3.33e-4, "RC of 333 ohm and 1 uF, 478 Hz", "s", (3.2e-4, 3.4e-4), (2e-5, 0.1), "paper"
