@@ -67,8 +67,8 @@ def _switch(result: DemoResult) -> Section:
         ),
     )
     text = (
-        f"{fitted.model.name}: measured, from contact to bottom-out, not smoothed. Errors are against the raw "
-        "curve, each distinct displacement counting once.",
+        f"{fitted.model.name}: measured, from contact to bottom-out, not smoothed. Errors are against the "
+        "raw curve, each distinct displacement counting once.",
         *fitted.warnings,
     )
     return Section("A real switch, fitted", text, figures, (Table(columns, tuple(rows)),))
