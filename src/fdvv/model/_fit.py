@@ -31,10 +31,10 @@ LARGEST = 64
 
 BUMP_KEPT = 0.95
 """A fit that keeps less of its bump is repeated with more weight within BUMP_REACH_mm of peak and valley."""
-BUMP_ROUNDS = 5
+BUMP_ROUNDS = 8
 BUMP_COST = 1.5
 """The error may grow by this factor for the bump's sake, no more."""
-BUMP_WEIGHT = 4.0
+BUMP_WEIGHT = 2.0
 BUMP_REACH_mm = 0.1
 
 

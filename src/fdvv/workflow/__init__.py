@@ -21,7 +21,7 @@ from fdvv.workflow._fit import (
     fit_force_file,
     summarise,
 )
-from fdvv.workflow._open import expand_folder, open_model
+from fdvv.workflow._open import open_model, open_models
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
@@ -42,7 +42,6 @@ __all__ = [
     "compensate",
     "demo",
     "demo_report",
-    "expand_folder",
     "fd_only",
     "fit_file",
     "fit_folder",
@@ -52,6 +51,7 @@ __all__ = [
     "one_curve",
     "open_device",
     "open_model",
+    "open_models",
     "open_part",
     "probe",
     "save_actuation",

@@ -19,11 +19,12 @@ class Difference:
 
     Attributes
     ----------
-    name, stroke : which curve is compared with the reference's.
+    index, name, stroke : which curve is compared with the reference's; index counts the buttons from 0.
     rms_cN, mean_cN, max_cN : of the difference; max is its greatest absolute value, at max_mm.
     from_mm, to_mm : the common range, each button's contact at 0.
     """
 
+    index: int
     name: str
     stroke: Stroke
     rms_cN: float
@@ -52,20 +53,23 @@ class Comparison:
 
 
 def compare(models: Sequence[FDVVModel], velocity_mm_s: float | None = None) -> Comparison:
-    """Compare buttons at one velocity (the slowest of each by default); all need a press curve."""
+    """Compare buttons at one velocity (the slowest of each by default).
+
+    Raises ModelError if a button has no press curve.
+    """
     reference = models[0]
     differences = [
         found
-        for model in models[1:]
+        for index, model in enumerate(models[1:], start=1)
         for stroke in Stroke
-        if (found := _difference(reference, model, stroke, velocity_mm_s)) is not None
+        if (found := _difference(reference, index, model, stroke, velocity_mm_s)) is not None
     ]
     names = tuple(model.name for model in models)
     return Comparison(names, tuple(landmarks(m, velocity_mm_s) for m in models), tuple(differences))
 
 
 def _difference(
-    reference: FDVVModel, model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None
+    reference: FDVVModel, index: int, model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None
 ) -> Difference | None:
     """Subtract the curves of one stroke over their common range; None if either button lacks it."""
     if not reference.of(stroke) or not model.of(stroke):
@@ -82,6 +86,7 @@ def _difference(
     delta = other - base
     at = int(np.argmax(np.abs(delta)))
     return Difference(
+        index=index,
         name=model.name,
         stroke=stroke,
         rms_cN=float(np.sqrt(np.mean(delta**2))),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.model import SUFFIX, FDVVModel, builtin_names, load_builtin, load_model
-from fdvv.workflow._fit import FitSettings, fit_file
+from fdvv.workflow._fit import FitSettings, fit_file, fit_folder
 
 
 def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
@@ -27,9 +28,32 @@ def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
     return fit_file(path, settings).model
 
 
-def expand_folder(folder: str) -> list[str]:
-    """Give every model file of a folder, or every file of measured curves if it holds no model."""
-    from fdvv.capture import find_force_files
+def open_models(specs: Sequence[str], refused: list[str] | None = None) -> list[FDVVModel]:
+    """Open every button that specs name; a folder stands for its model files, else for its measured files.
 
-    models = sorted(Path(folder).rglob(f"*{SUFFIX}"))
-    return [str(path) for path in models or find_force_files(Path(folder))]
+    refused : gains one line per file of a folder that cannot be used. A button named by itself must be
+    usable: raises InputError.
+    """
+    models: list[FDVVModel] = []
+    for spec in specs:
+        if Path(spec).is_dir():
+            models += _open_folder(Path(spec), [] if refused is None else refused)
+        else:
+            models.append(open_model(spec))
+    return models
+
+
+def _open_folder(folder: Path, refused: list[str]) -> list[FDVVModel]:
+    found: list[FDVVModel] = []
+    paths = sorted(folder.rglob(f"*{SUFFIX}"))
+    for path in paths:
+        try:
+            found.append(load_model(path))
+        except InputError as error:
+            refused.append(str(error))
+    for result in () if paths else fit_folder(folder):
+        if result.fit:
+            found.append(result.fit.model)
+        else:
+            refused.append(result.reason)
+    return found
