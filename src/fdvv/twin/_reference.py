@@ -170,16 +170,17 @@ class _Run:
             atol=1e-11,
             max_step=LONGEST_STEP_s,
         )
-        rig = self.plant.rig
+        rig, state_at = self.plant.rig, solution.sol
+        assert state_at is not None  # asked for by dense_output
         rows = start + ROW_s * np.arange(round(rig.controller.tick_s / ROW_s))
         for t in rows[(rows >= a - TINY_s) & (rows < b - TINY_s)] if recorded else ():
-            y = solution.sol(t)
+            y = state_at(t)
             self.rows.append((t, y[6], self.plant.touch(y), *seen))
         spacing = rig.position_sensor.burst_s / self.lvdt_m.size
         reads = start + rig.controller.tick_s - spacing * np.arange(self.lvdt_m.size)[::-1]
         inside = (reads > a + TINY_s) & (reads <= b + TINY_s)
         if inside.any():
-            self.lvdt_m[inside] = solution.sol(reads[inside])[9]
+            self.lvdt_m[inside] = state_at(reads[inside])[9]
         self.y = solution.y[:, -1]
 
 

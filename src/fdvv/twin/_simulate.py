@@ -254,8 +254,15 @@ def simulate(
     travel_mm : where the bottom stop is set.
     announced_mm_s : the speed that the controller takes for granted until it has found its own.
 
-    Raises ModelError if durations of the rig are no multiples of the step. Safe to call from threads.
+    Raises ModelError if durations of the rig are no multiples of the step, or if rig or finger are too
+    stiff for it. Safe to call from threads.
     """
     plant = plant_of(rig, finger, gesture, surface, travel_mm, announced_mm_s)
     grid = grid_of(rig, gesture, surface, step_s)
-    return Trace.of_rows(run(replace(plant, step_s=step_s), grid, inputs_of(surface, noise)))
+    rows = run(replace(plant, step_s=step_s), grid, inputs_of(surface, noise))
+    if not np.isfinite(rows[-1]).all():
+        raise ModelError(
+            f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "
+            "raise the lightest mass or lower the largest stiffness, damping or loss"
+        )
+    return Trace.of_rows(rows)
