@@ -6,6 +6,7 @@ Two cycles are of one population when, judged on the stroke that begins them (th
 - the stop, where the force last passes half of the lesser of the two greatest forces, lies within
   0.05 mm of contact + travel;
 - no stretch of the active travel of either stroke is missing (a jump of more than 0.5 mm);
+- both cover the same travel from contact on, to 90 %;
 - the median over the active travel of the difference in force, contacts aligned, is within
   max(1 gf, 2 % of the typical force) for each stroke, typical being the median force over that travel.
 
@@ -194,6 +195,9 @@ def _differs(a: _Shape, b: _Shape) -> str:
     longer = (stops[1] - b.contact_mm) - (stops[0] - a.contact_mm)
     if abs(longer) > PLACE_mm:
         return f"the stop is shifted by {longer:+.2f} mm"
+    apart = next((told for stroke in a.strokes if (told := _extent_differs(stroke, a, b))), "")
+    if apart:
+        return apart
     travel = min(stops[0] - a.contact_mm, stops[1] - b.contact_mm)
     return next((told for stroke in a.strokes if (told := _force_differs(stroke, a, b, travel))), "")
 
@@ -205,6 +209,20 @@ def _gap(shape: _Shape, contact_mm: float, stop_mm: float) -> str:
         widest = float(missing.max())
         if widest > max(GAP_mm, 20.0 * float(np.median(np.diff(x)))):
             return f"{widest:.1f} mm of the {stroke} are missing"
+    return ""
+
+
+def _extent_differs(stroke: Stroke, a: _Shape, b: _Shape) -> str:
+    """Say if two strokes, contacts aligned, do not cover the same travel; empty if they do to 90 %."""
+    ends = [
+        (max(s.strokes[stroke][0][0] - s.contact_mm, 0.0), s.strokes[stroke][0][-1] - s.contact_mm)
+        for s in (a, b)
+    ]
+    common = min(end for _, end in ends) - max(start for start, _ in ends)
+    if common < 0.9 * max(end - start for start, end in ends) or common <= 2.0 * STEP_mm:
+        return (
+            f"the {stroke} covers {ends[1][0]:.2f} to {ends[1][1]:.2f} mm from contact, not the same travel"
+        )
     return ""
 
 
