@@ -44,7 +44,7 @@ def bits(model: FDVVModel) -> list[bytes]:
     return [np.array(scalars).tobytes(), *(a.tobytes() for a in arrays)]
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(models())
 def test_a_model_comes_back_from_its_text_to_the_bit(model: FDVVModel) -> None:
     text = model_to_json(model)
@@ -186,7 +186,7 @@ def test_a_text_that_is_no_json_is_refused_in_one_line_with_the_place(text: str 
     assert len(message) < 300
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.integers(0, len(TEXT) - 1), st.binary(min_size=0, max_size=3))
 def test_a_damaged_file_is_refused_or_is_a_model_but_never_a_crash(at: int, damage: bytes) -> None:
     data = TEXT.encode()
