@@ -29,7 +29,8 @@ def reference() -> str:
     for name in cli.list_commands(context):
         command = cli.get_command(context, name)
         assert command is not None
-        child = click.Context(command, info_name=name, parent=context, max_content_width=100, terminal_width=100)
+        size = 100
+        child = click.Context(command, context, name, max_content_width=size, terminal_width=size)
         parts.append(f"## fdvv {name}\n\n```\n{command.get_help(child)}\n```\n")
     return "\n".join(parts)
 

@@ -1,15 +1,18 @@
 """One curve from repeats, when they are repeats: the replicate gate and the mean.
 
-Two cycles are of one population when each stroke that both hold agrees:
+Two cycles are of one population when, judged on the stroke that begins them (the press if both have it),
 
-- contact within 0.05 mm;
-- bottom-out, measured from contact, within 0.05 mm (where both reached the stop);
-- the median over the active travel of the difference in force, contacts aligned, within
-  max(1 gf, 2 % of the typical force), typical being the median force over that travel;
-- no stretch of the active travel is missing (a jump of more than 0.5 mm).
+- contact, where the force first carries 10 cN, lies within 0.05 mm;
+- the stop, where the force last passes half of the lesser of the two greatest forces, lies within
+  0.05 mm of contact + travel;
+- no stretch of the active travel of either stroke is missing (a jump of more than 0.5 mm);
+- the median over the active travel of the difference in force, contacts aligned, is within
+  max(1 gf, 2 % of the typical force) for each stroke, typical being the median force over that travel.
 
-The population is the largest set of cycles that agree with one of them. It must be more than half of
-the cycles; otherwise the populations are mixed, and only the first cycle is used.
+Levels of force are used, not the start of the stop: on rubber domes, whose stop is soft, its start
+wavers by 0.2 mm between repeats that otherwise agree to 0.02 mm. The population is the largest set of
+cycles that agree with one of them. It must be more than half of the cycles; otherwise the populations
+are mixed, and only the first cycle is used.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.capture._types import Cycle, ForceFile
-from fdvv.model import MeasuredCurve, Stroke, find_bottom_out_mm, find_contact_mm
+from fdvv.model import MeasuredCurve, Stroke
 from fdvv.units import FloatArray, GRAM_FORCE_cN
 
 PLACE_mm = 0.05
@@ -28,6 +31,7 @@ FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
 FORCE_PART = 0.02
 GAP_mm = 0.5
 STEP_mm = 0.005
+CARRIED_cN = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,13 +58,21 @@ class Averaged:
 
 @dataclass(frozen=True, eq=False)
 class _Shape:
-    """What the gate compares of one stroke: where it begins and stops, and the force between."""
+    """What the gate compares: strictly rising samples of each stroke, and the contact of the first."""
 
+    strokes: dict[Stroke, tuple[FloatArray, FloatArray]]
     contact_mm: float
-    bottom_mm: float | None
-    x_mm: FloatArray
-    force_cN: FloatArray
-    gap_mm: float
+    top_cN: float
+
+    def first(self) -> tuple[FloatArray, FloatArray]:
+        """Give the stroke that begins the cycle."""
+        return self.strokes.get(Stroke.PRESS) or self.strokes[Stroke.RELEASE]
+
+    def last_below_mm(self, level_cN: float) -> float:
+        """Give the deepest place where the force is below a level."""
+        x, force = self.first()
+        below = np.flatnonzero(force < level_cN)
+        return float(x[below[-1]]) if below.size else float(x[0])
 
 
 def average_cycles(file: ForceFile) -> Averaged:
@@ -119,14 +131,12 @@ def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:
     if len(named) == 1:
         cycle, label = named[0]
         return Averaged(cycle.press, cycle.release, cycle.actuation_mm, cycle.reset_mm, (label,))
-    shapes = [
-        {stroke: _shape(curve) for stroke in Stroke if (curve := _stroke(cycle, stroke)) is not None}
-        for cycle, _ in named
-    ]
+    shapes = [_shape(cycle) for cycle, _ in named]
     reasons = [[_differs(a, b) for b in shapes] for a in shapes]
     agreeing = [[i for i, reason in enumerate(row) if not reason] for row in reasons]
     centre = max(range(len(named)), key=lambda i: (len(agreeing[i]), -i))
-    keep, warnings = agreeing[centre], ()
+    keep = agreeing[centre]
+    warnings: tuple[str, ...] = ()
     if 2 * len(keep) <= len(named):
         told = f"mixed populations: at most {len(keep)} of {len(named)} cycles agree; only the first was used"
         keep, centre, warnings = [0], 0, (told,)
@@ -155,68 +165,78 @@ def _stroke(cycle: Cycle, stroke: Stroke) -> MeasuredCurve | None:
     return cycle.press if stroke is Stroke.PRESS else cycle.release
 
 
-def _shape(curve: MeasuredCurve) -> _Shape:
-    contact = find_contact_mm(curve)
-    x, force, _ = curve.by_displacement()
-    bottom = find_bottom_out_mm(curve, contact)
-    end = x[-1] if bottom is None else bottom
-    active = x[(x >= contact) & (x <= end)]
-    gap = float(np.diff(active).max()) if active.size > 1 else 0.0
-    return _Shape(contact, bottom, x, force, gap)
+def _shape(cycle: Cycle) -> _Shape:
+    strokes = {
+        stroke: curve.by_displacement()[:2]
+        for stroke in Stroke
+        if (curve := _stroke(cycle, stroke)) is not None
+    }
+    x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
+    top = float(force.max())
+    loaded = int(np.argmax(force >= min(CARRIED_cN, 0.5 * top)))
+    return _Shape(strokes, float(x[loaded]), top)
 
 
-def _differs(a: dict[Stroke, _Shape], b: dict[Stroke, _Shape]) -> str:
+def _differs(a: _Shape, b: _Shape) -> str:
     """Say in which respect b is of another population than a; empty if it is of the same."""
     if a is b:
         return ""
-    if set(a) != set(b):
+    if set(a.strokes) != set(b.strokes):
         return "it does not hold the same strokes"
-    return next((reason for stroke in a if (reason := _stroke_differs(stroke, a[stroke], b[stroke]))), "")
-
-
-def _stroke_differs(stroke: Stroke, a: _Shape, b: _Shape) -> str:
-    for shape in (a, b):
-        if shape.gap_mm > max(GAP_mm, 20.0 * float(np.median(np.diff(shape.x_mm)))):
-            return f"{stroke}: {shape.gap_mm:.1f} mm of the travel are missing"
+    level = 0.5 * min(a.top_cN, b.top_cN)
+    stops = a.last_below_mm(level), b.last_below_mm(level)
+    contact = min(a.contact_mm, b.contact_mm)
+    gap = _gap(a, contact, stops[0]) or _gap(b, contact, stops[1])
+    if gap:
+        return gap
     if abs(b.contact_mm - a.contact_mm) > PLACE_mm:
-        return f"{stroke}: contact is shifted by {b.contact_mm - a.contact_mm:+.2f} mm"
-    if a.bottom_mm is not None and b.bottom_mm is not None:
-        longer = (b.bottom_mm - b.contact_mm) - (a.bottom_mm - a.contact_mm)
-        if abs(longer) > PLACE_mm:
-            return f"{stroke}: bottom-out is shifted by {longer:+.2f} mm"
-    return _force_differs(stroke, a, b)
+        return f"contact is shifted by {b.contact_mm - a.contact_mm:+.2f} mm"
+    longer = (stops[1] - b.contact_mm) - (stops[0] - a.contact_mm)
+    if abs(longer) > PLACE_mm:
+        return f"the stop is shifted by {longer:+.2f} mm"
+    travel = min(stops[0] - a.contact_mm, stops[1] - b.contact_mm)
+    return next((told for stroke in a.strokes if (told := _force_differs(stroke, a, b, travel))), "")
 
 
-def _force_differs(stroke: Stroke, a: _Shape, b: _Shape) -> str:
-    ends = [s.x_mm[-1] if s.bottom_mm is None else s.bottom_mm for s in (a, b)]
-    travel = min(ends[0] - a.contact_mm, ends[1] - b.contact_mm)
-    x = np.arange(0.0, max(travel, STEP_mm), STEP_mm)
-    mine = np.interp(x + a.contact_mm, a.x_mm, a.force_cN)
-    theirs = np.interp(x + b.contact_mm, b.x_mm, b.force_cN)
-    off, limit = float(np.median(np.abs(theirs - mine))), _force_limit_cN(mine)
-    if off > limit:
-        return f"{stroke}: force differs by {off:.1f} cN (median), more than {limit:.1f}"
+def _gap(shape: _Shape, contact_mm: float, stop_mm: float) -> str:
+    """Say how much of the active travel is missing in one jump; empty if none is."""
+    for stroke, (x, _) in shape.strokes.items():
+        missing = np.minimum(x[1:], stop_mm) - np.maximum(x[:-1], contact_mm)
+        widest = float(missing.max())
+        if widest > max(GAP_mm, 20.0 * float(np.median(np.diff(x)))):
+            return f"{widest:.1f} mm of the {stroke} are missing"
     return ""
 
 
-def _force_limit_cN(force_cN: FloatArray) -> float:
-    return max(FORCE_LEAST_cN, FORCE_PART * float(np.median(np.abs(force_cN))))
+def _force_differs(stroke: Stroke, a: _Shape, b: _Shape, travel_mm: float) -> str:
+    x = np.arange(0.0, max(travel_mm, STEP_mm), STEP_mm)
+    mine = np.interp(x + a.contact_mm, *a.strokes[stroke])
+    theirs = np.interp(x + b.contact_mm, *b.strokes[stroke])
+    off = float(np.median(np.abs(theirs - mine)))
+    limit = max(FORCE_LEAST_cN, FORCE_PART * float(np.median(np.abs(mine))))
+    if off > limit:
+        return f"force of the {stroke} differs by {off:.2f} cN (median), more than {limit:.2f}"
+    return ""
 
 
 def _mean(cycles: Sequence[Cycle], stroke: Stroke) -> MeasuredCurve | None:
-    """Average one stroke over its common extent, contacts aligned at their median."""
-    curves = [curve for cycle in cycles if (curve := _stroke(cycle, stroke)) is not None]
-    if len(curves) < 2:
-        return curves[0] if curves else None
-    contacts = [find_contact_mm(curve) for curve in curves]
+    """Average one stroke over its common extent, cycles aligned at the median of their contacts."""
+    if len(cycles) == 1:
+        return _stroke(cycles[0], stroke)
+    contacts = [_shape(cycle).contact_mm for cycle in cycles]
     home = float(np.median(contacts))
+    curves = [_stroke(cycle, stroke) for cycle in cycles]
     lines = [
         (x - contact + home, force)
-        for contact, (x, force, _) in zip(contacts, (c.by_displacement() for c in curves), strict=True)
+        for contact, curve in zip(contacts, curves, strict=True)
+        if curve is not None
+        for x, force, _ in [curve.by_displacement()]
     ]
+    if not lines:
+        return None
     step = max(STEP_mm, min(float(np.median(np.diff(x))) for x, _ in lines))
     start, end = max(x[0] for x, _ in lines), min(x[-1] for x, _ in lines)
     grid = step * np.arange(np.ceil(start / step), np.floor(end / step) + 1)
     force = np.mean([np.interp(grid, x, f) for x, f in lines], axis=0)
-    speeds = [curve.velocity_mm_s for curve in curves if curve.velocity_mm_s is not None]
+    speeds = [c.velocity_mm_s for c in curves if c is not None and c.velocity_mm_s is not None]
     return MeasuredCurve(grid, force, stroke, _median(speeds))

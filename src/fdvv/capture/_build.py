@@ -49,15 +49,19 @@ def _possible(track: Track | None, notes: Notes) -> Track | None:
     track = _repair.drop_impossible(track, notes)
     if track.x_mm.size >= 3:
         track = _repair.drop_stray_positions(track, notes)
+    return track if _long_enough(track, notes) else None
+
+
+def _long_enough(track: Track, notes: Notes) -> bool:
     if track.x_mm.size < LEAST_SAMPLES:
         notes.say(f"{track.where}: only {track.x_mm.size} usable samples; it was left out")
-        return None
+        return False
     if np.ptp(track.x_mm) < LEAST_TRAVEL_mm:
         notes.say(
             f"{track.where}: the displacement stays within {np.ptp(track.x_mm):.3g} mm; it was left out"
         )
-        return None
-    return track
+        return False
+    return True
 
 
 def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
@@ -86,11 +90,13 @@ def _orient_pair(raw: RawCycle, notes: Notes) -> RawCycle:
 
 
 def _curve(track: Track | None, stroke: Stroke, velocity: float | None, notes: Notes) -> MeasuredCurve | None:
-    if track is None:
+    if track is None or not _long_enough(track, notes):
         return None
     track = _repair.drop_lost_tare(_repair.drop_spikes(track, notes), notes)
     if stroke is Stroke.PRESS:
         track = _repair.drop_stuck_probe(track, notes)
+    if not _long_enough(track, notes):
+        return None
     _repair.tell_jumps(track, notes)
     speed = mean_velocity_mm_s(track) if velocity is None else velocity
     return MeasuredCurve(*_repair.rising(track, notes), stroke, speed)

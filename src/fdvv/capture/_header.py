@@ -46,6 +46,8 @@ WORDS = {
     Quantity.TIME: {"time", "t", "timestamp", "millis"},
     Quantity.CLOSED: {"actuated", "closed", "contact"},
 }  # fmt: skip
+NOT_MEASURED = {"velocity", "speed", "acceleration", "temperature", "judge", "number", "index", "raw"}
+"""Columns that carry a unit or a word of force or travel but are neither."""
 UNITS = {Quantity.FORCE: FORCE_cN, Quantity.DISPLACEMENT: LENGTH_mm, Quantity.TIME: TIME_s}
 STROKES = {
     Stroke.PRESS: {"press", "down", "downstroke", "loading", "pressing"},
@@ -81,6 +83,10 @@ def describe(index: int, title: str) -> Column:
 
 
 def _quantity(tokens: list[str]) -> Quantity:
+    if NOT_MEASURED & set(tokens):
+        return Quantity.OTHER
+    if tokens == ["stroke"]:
+        return Quantity.OTHER
     # the last quantity named is the one measured: "press force", "contact force"
     for token in reversed(tokens):
         for quantity, words in WORDS.items():

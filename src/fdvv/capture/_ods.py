@@ -48,17 +48,16 @@ def read_ods(source: Path, content: bytes, notes: Notes) -> Reading:
         if found:
             cycles += found
         else:
-            reasons.append(f"sheet {name[:30]!r}: {_why_nothing(rows)}")
+            reasons.append(f"sheet {name[:30].replace(':', ' ')!r}: {_why_nothing(rows)}")
     if not cycles:
-        raise refusal(source, reasons[0].split(": ")[0] if reasons else "whole file",
-                      reasons[0].split(": ", 1)[1] if reasons else "it holds no sheet",
-                      "give a sheet with columns X (microns) and Force (gf)")  # fmt: skip
+        place, reason = reasons[0].split(": ", 1) if reasons else ("whole file", "it holds no sheet")
+        raise refusal(source, place, reason, "give a sheet with columns X (microns) and Force (gf)")
     for reason in reasons:
         notes.say(f"{reason}; it was not read")
     if len(cycles) > 1:
         notes.say(
-            f"{len(cycles)} measurements side by side, perhaps of different buttons; each was kept as a cycle "
-            "of its own"
+            f"{len(cycles)} measurements side by side, perhaps of different buttons; "
+            "each was kept as a cycle of its own"
         )
     return Reading("bluepylons-ods", source.stem.replace("-", " "), cycles)
 
@@ -178,4 +177,4 @@ def _is_number(value: Any) -> bool:
 
 
 def _track(x_um: FloatArray, force_gf: FloatArray, closed: list[FloatArray]) -> Track:
-    return Track("run", x_um * 1e-3, cN_from_gf(force_gf), closed=closed[0] if closed else None)
+    return Track("run", np.round(x_um * 1e-3, 9), cN_from_gf(force_gf), closed=closed[0] if closed else None)

@@ -86,10 +86,8 @@ def _check_distinct(source: Path, at: int, forces: Sequence[Column]) -> None:
     titles = [c.title for c in forces]
     for column in forces:
         if titles.count(column.title) > 1 and column.stroke is None and column.velocity_mm_s is None:
-            raise refusal(
-                source, f"line {at + 1}", f"{titles.count(column.title)} columns are all called {column.title!r}",
-                "give each its own name",
-            )  # fmt: skip
+            reason = f"{titles.count(column.title)} columns are all called {column.title[:30]!r}"
+            raise refusal(source, f"line {at + 1}", reason, "give each its own name")
         if column.scale is None:
             raise refusal(
                 source,
@@ -108,17 +106,17 @@ def _curve(
     notes: Notes,
 ) -> RawCycle:
     """Read one force column with its displacement, and the clock and contact if there are any."""
-    x = _beside(columns, Quantity.DISPLACEMENT, force)
-    assert_x = x if x is not None else force
+    travel = _beside(columns, Quantity.DISPLACEMENT, force) or force
     clock, contact = (_beside(columns, q, force) for q in (Quantity.TIME, Quantity.CLOSED))
     clock = clock if clock is not None and clock.scale is not None else None
     extra = [c for c in (clock, contact) if c is not None]
-    read = table.columns([assert_x.index, force.index, *(c.index for c in extra)], notes, force.title)
+    read = table.columns([travel.index, force.index, *(c.index for c in extra)], notes, force.title)
     by = {c.index: values for c, values in zip(extra, read[2:], strict=True)}
     where = force.title if several else "run"
     track = Track(
         where,
-        read[0] * _length_scale(table.source, assert_x, read[0], notes),
+        # rounded to a picometre, so that 1880 um is 1.88 mm
+        np.round(read[0] * _length_scale(table.source, travel, read[0], notes), 9),
         read[1] * (force.scale or 1.0),
         None if clock is None else by[clock.index] * (clock.scale or 1.0),
         None if contact is None else by[contact.index],
@@ -146,8 +144,8 @@ def _length_scale(source: Path, column: Column, values: FloatArray, notes: Notes
         )
     unit = {1.0: "mm", 1e-3: "um", 1000.0: "m"}[scale]
     notes.say(
-        f"column {column.index + 1}: {column.title[:30]!r} has no unit; read as {unit}, the only one in which "
-        f"a span of {span:.3g} is a button's travel"
+        f"column {column.index + 1}: {column.title[:30]!r} has no unit; read as {unit}, the only one "
+        f"in which a span of {span:.3g} is a button's travel"
     )
     return scale
 

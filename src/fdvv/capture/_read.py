@@ -68,7 +68,7 @@ def _read(path: Path, notes: Notes) -> Reading:
     if is_ods(content):
         return read_ods(path, content, notes)
     lines = decode(path, content, notes)
-    head = [line for line in lines if line.strip()][:60]
+    head = [line for line in lines if line.strip()][:60] or [""]
     for recognise, read in READERS:
         if recognise(head):
             return read(path, _from_first(lines), notes)
@@ -89,7 +89,7 @@ def _content(path: Path) -> bytes:
 
 def _from_first(lines: Lines) -> Lines:
     """Leave off the empty lines before the header."""
-    start = next(i for i, line in enumerate(lines) if line.strip())
+    start = next((i for i, line in enumerate(lines) if line.strip()), 0)
     return lines[start:] if start else lines
 
 

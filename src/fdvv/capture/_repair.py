@@ -13,7 +13,6 @@ import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from fdvv.capture._record import Notes, RawCycle, Track
-from fdvv.model import MeasuredCurve, Stroke, find_contact_mm
 from fdvv.units import FloatArray
 
 FAR_mm, STRONG_cN = 1000.0, 100_000.0
@@ -33,6 +32,7 @@ it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
 
 JUMP_mm = 0.5
 PULL_cN = -5.0
+AIR_cN = 2.0
 SLIP_mm = 0.25
 
 
@@ -80,10 +80,15 @@ def drop_spikes(track: Track, notes: Notes) -> Track:
     if force.size < 2 * SPIKE_HALF + 1:
         return track
     padded = np.pad(force, SPIKE_HALF, mode="edge")
-    off = np.abs(force - np.median(sliding_window_view(padded, 2 * SPIKE_HALF + 1), axis=1)) > SPIKE_cN
+    off = np.abs(force - np.median(sliding_window_view(padded, 2 * SPIKE_HALF + 1), axis=1))
     spike = np.zeros(force.size, dtype=bool)
-    for first, last in _runs(_bridge(off)):
-        if first == 0 or last == force.size - 1 or last - first >= 2 * SPIKE_HALF:
+    if off.max() <= SPIKE_cN:
+        return track
+    # the feet of a spike belong to it
+    for first, last in _runs(off > 0.2 * SPIKE_cN):
+        if off[first : last + 1].max() <= SPIKE_cN or last - first >= 2 * SPIKE_HALF:
+            continue
+        if first == 0 or last == force.size - 1:
             continue
         back = abs(force[last + 1] - force[first - 1]) < 0.5 * SPIKE_cN
         if back and abs(x[last + 1] - x[first - 1]) <= SPIKE_WIDTH_mm:
@@ -94,13 +99,6 @@ def drop_spikes(track: Track, notes: Notes) -> Track:
                 f"{_samples(last - first + 1)} left out"
             )
     return track.take(~spike) if spike.any() else track
-
-
-def _bridge(off: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    # a swing through zero between two excursions belongs to them
-    joined = off.copy()
-    joined[1:-1] |= off[:-2] & off[2:]
-    return joined
 
 
 def _runs(mask: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -196,8 +194,10 @@ def mend_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
 
 
 def _contact_mm(track: Track) -> float:
+    # at 10 cN, not at first touch: the air after a release rings
     order = np.argsort(track.x_mm, kind="stable")
-    return find_contact_mm(MeasuredCurve(track.x_mm[order], track.force_cN[order], Stroke.PRESS))
+    force = track.force_cN[order]
+    return float(track.x_mm[order][int(np.argmax(force >= min(10.0, 0.5 * float(force.max()))))])
 
 
 def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
@@ -213,12 +213,15 @@ def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
     back = float((np.maximum.accumulate(x) - x).max())
     forward = np.diff(x)
     quantum = float(np.median(forward[forward > 0])) if (forward > 0).any() else 0.0
-    if back > 1.01 * max(quantum, 0.005):
+    # in the air the order makes no difference to the curve
+    loaded = x[force > AIR_cN]
+    felt = float((np.maximum.accumulate(loaded) - loaded).max()) if loaded.size else 0.0
+    if felt > 1.01 * max(quantum, 0.005):
         notes.tally(
             "{places}: displacement wavers back by up to {most:.3f} mm; the samples were put in the order "
             "of displacement, none dropped",
             track.where,
-            back,
+            felt,
         )
     if back > 0.0:
         order = np.argsort(x, kind="stable")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -48,8 +49,9 @@ def cycle_bounds(x_mm: FloatArray) -> list[slice]:
     if level[at[0]] == 1:
         deep_starts.insert(0, 0)
     cuts = [0]
-    for before, after in zip(deep_starts, deep_starts[1:], strict=False):
-        cuts.append(before + int(np.argmin(x_mm[before:after])))
+    for before, after in pairwise(deep_starts):
+        rest = before + np.flatnonzero(x_mm[before:after] == x_mm[before:after].min())
+        cuts.append(int(rest[0] + rest[-1] + 1) // 2)
     return [slice(a, b) for a, b in zip(cuts, [*cuts[1:], x_mm.size], strict=True)]
 
 

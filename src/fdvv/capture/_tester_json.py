@@ -62,7 +62,7 @@ def _stroke(source: Path, record: Mapping[str, Any], side: str, notes: Notes) ->
     if side == "down" and x.size != force.size:
         count = min(x.size, force.size)
         notes.say(
-            f"$.{side}_x, $.{side}_y: {x.size} displacements and {force.size} forces; the first {count} pairs "
+            f"$.{side}_x, $.{side}_y: {x.size} displacements, {force.size} forces; the first {count} pairs "
             "were kept"
         )
         x, force = x[:count], force[:count]
@@ -135,7 +135,7 @@ def _rebuild_release(
         )
         return None
     index, at_mm = anchor
-    rebuilt = at_mm + (index - np.arange(force.size)) * step
+    rebuilt: FloatArray = at_mm + (index - np.arange(force.size, dtype=np.float64)) * step
     notes.say(
         f"$.up_x: copied from down_x, so it ascends while the force falls; the release was put back from "
         f"{rebuilt[0]:.4g} to {rebuilt[-1]:.4g} mm in steps of {step:.4g} mm, anchored at the release point "

@@ -39,9 +39,9 @@ def decode(source: Path, content: bytes, notes: Notes) -> list[str]:
     for magic, kind in BINARY.items():
         if content.startswith(magic):
             raise refusal(source, "whole file", f"it is {kind}, whatever its name says")
-    if not content.strip(b"\x00\xef\xbb\xbf\xff\xfe \t\r\n"):
-        raise refusal(source, "whole file", "it is empty")
     text = _to_text(source, content, notes)
+    if not text.strip("\x00\ufeff \t\r\n\v\f"):
+        raise refusal(source, "whole file", "it is empty")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -90,12 +90,13 @@ class Table:
         Rows blank in every pick are padding. Rows in which a pick is not a finite number are left out
         and told in notes. Raises InputError if fewer than half of the rows, or than four, remain.
         """
-        fast = None if self.decimal_comma else _all_numbers(self.rows, picks)
+        rows = self.rows[: _used_length(self.rows, picks)]
+        fast = None if self.decimal_comma else _all_numbers(rows, picks)
         if fast is not None:
-            return self._enough(fast, len(self.rows), what)
+            return self._enough(fast, len(rows), what)
         kept: list[list[float]] = []
         bad: list[tuple[int, int, str]] = []
-        for offset, row in enumerate(self.rows):
+        for offset, row in enumerate(rows):
             texts = [row[i].strip() if i < len(row) else "" for i in picks]
             if not any(texts):
                 continue
@@ -126,6 +127,14 @@ class Table:
             place = f"from line {self.first_line}" + (f", {what}" if what else "")
             raise refusal(self.source, place, f"only {count} of {of} rows hold numbers")
         return columns
+
+
+def _used_length(rows: list[list[str]], picks: Sequence[int]) -> int:
+    """Count the rows up to the last one with anything in the picked columns."""
+    end = len(rows)
+    while end and not any(i < len(rows[end - 1]) and rows[end - 1][i].strip() for i in picks):
+        end -= 1
+    return end
 
 
 def _all_numbers(rows: list[list[str]], picks: Sequence[int]) -> list[FloatArray] | None:

@@ -69,7 +69,7 @@ def read_highres(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     interval = re.match(r"\d*\.?\d+", values.get("RECORDING RATE", ""))
     # rows left out would bend the clock; then there is none
     clean = not notes.sentences
-    time = np.arange(x.size) * float(interval.group()) if interval and clean else None
+    time = np.arange(x.size, dtype=np.float64) * float(interval.group()) if interval and clean else None
     name = clean_name(source.stem)
     return _run("thereminGoat-highres", name, x * LENGTH_mm[units[1]], force * FORCE_cN[units[0]], time)
 

@@ -128,10 +128,11 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
     from fdvv.workflow import fit_folder, summarise
 
     results = []
-    with progress("fitting", len(find_force_files(path))) as advance:
+    total = len(find_force_files(path))
+    with progress("fitting", total) as advance:
         for result in fit_folder(path, settings):
             results.append(result)
-            advance(len(results))
+            advance(len(results), total)
             if output and result.fit:
                 relative = result.file.relative_to(path)
                 save_model(result.fit.model, output / relative.with_name(relative.name + SUFFIX))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -50,25 +52,51 @@ def print_warnings(warnings: Sequence[str]) -> None:
 
 
 @contextmanager
-def progress(label: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Show a progress bar on standard error if it is a terminal; yield what advances it."""
-    import sys
-
+def progress(label: str, total: int) -> Iterator[Callable[[int, int], None]]:
+    """Show a progress bar on standard error if it is a terminal; yield what sets (done, total)."""
     if not sys.stderr.isatty():
-        yield lambda _done: None
+        yield lambda _done, _total: None
         return
     from rich.console import Console
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(label, total=total)
-        yield lambda done: bar.update(task, completed=done)
+        yield lambda done, whole: bar.update(task, completed=done, total=whole)
+
+
+@contextmanager
+def stages() -> Iterator[Callable[[str, int, int], None]]:
+    """Show a progress bar for each named stage; yield what sets (label, done, total).
+
+    Where standard error is not a terminal, each stage is told once, as a line.
+    """
+    if not sys.stderr.isatty():
+        told: set[str] = set()
+
+        def tell(label: str, _done: int, _total: int) -> None:
+            if label not in told:
+                told.add(label)
+                click.echo(label, err=True)
+
+        yield tell
+        return
+    from rich.console import Console
+    from rich.progress import Progress, TaskID
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        tasks: dict[str, TaskID] = {}
+
+        def move(label: str, done: int, total: int) -> None:
+            if label not in tasks:
+                tasks[label] = bar.add_task(label, total=total)
+            bar.update(tasks[label], completed=done, total=total)
+
+        yield move
 
 
 def save_figure(figure: Any, path: Path) -> None:
     """Write a matplotlib figure in the format of the path's ending, whole or not at all."""
-    import io
-
     from fdvv.errors import InputError
     from fdvv.files import write_atomic
 

@@ -22,6 +22,8 @@ class Press:
     velocity_mm_s : the speed that was asked for.
     sensed_mm, sensed_cN, commanded_cN : (n,) what the rig believed and did; None where there is no rig.
     saturated : (n,) the command was cut to a limit; None where there is no rig.
+    tick : (n,) the rig's control loop sampled here; between ticks the sensed and commanded columns hold
+        their last values. None where there is no rig.
     simulated : the record comes from the twin.
     """
 
@@ -33,11 +35,12 @@ class Press:
     sensed_cN: FloatArray | None = None
     commanded_cN: FloatArray | None = None
     saturated: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None
+    tick: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None
     simulated: bool = False
 
     def __post_init__(self) -> None:
-        columns = ("displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN", "saturated")
-        for name in columns:
+        sensed = ("sensed_mm", "sensed_cN", "commanded_cN", "saturated", "tick")
+        for name in ("displacement_mm", "force_cN", *sensed):
             column = getattr(self, name)
             if column is not None and column.shape != self.t_s.shape:
                 raise ModelError(f"{name} must match t_s, got {column.shape} and {self.t_s.shape}")

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fdvv.capture import Averaged, Cycle, ForceFile, average_cycles, find_force_files, read_force_file
 from fdvv.errors import FdvvError, InputError
 from fdvv.model import (
@@ -25,6 +27,9 @@ from fdvv.model import (
     fit_curve,
     landmarks,
 )
+
+DECIMALS_mm = 6
+"""A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +134,7 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
         for stroke in (group.press, group.release):
             if stroke is not None:
                 moved = active_part(stroke)
-                x = moved.displacement_mm - zero
+                x = np.round(moved.displacement_mm - zero, DECIMALS_mm)
                 parts.append(MeasuredCurve(x, moved.force_cN, moved.stroke, velocity))
     parts.sort(key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
     fits = tuple(
@@ -165,7 +170,7 @@ def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[f
     if end is None:
         end = float(stroke.displacement_mm[-1])
         warnings.append(f"no stop found on the {stroke.stroke}: travel taken to its last sample")
-    return zero, end - zero
+    return zero, round(end - zero, DECIMALS_mm)
 
 
 def _point(
@@ -180,7 +185,7 @@ def _point(
             f"{what} at {point - zero:.3f} mm lies outside the travel of {travel:.3f} mm: left out"
         )
         return None
-    return point - zero
+    return round(point - zero, DECIMALS_mm)
 
 
 def fit_folder(
@@ -239,8 +244,6 @@ class FolderSummary:
 
 def summarise(results: Sequence[FolderFit]) -> FolderSummary:
     """Sum up a folder: medians and 90th percentiles per stroke, bumps kept."""
-    import numpy as np
-
     fits = [f for r in results if r.fit for f in r.fit.fits]
     kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
 

@@ -1,0 +1,340 @@
+/* One press on the rig: finger, contact, moving coil, sensors and the controller that runs it.
+ *
+ * Equations of motion in docs/explanation/twin.md. Fixed steps: third-order Adams-Bashforth, started by
+ * two fourth-order Runge-Kutta steps wherever the drive jumps, so that one evaluation per step is enough.
+ */
+#include "fdvv.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { XF, VF, H1, H2, XT, VT, XC, VC, AMPS, LVDT, SENSED, WORK, LOSS, STATES };
+
+/* what the equations are driven by between two ticks, and inverses that save divisions */
+typedef struct {
+    double finger_1_kg, sensor_1_kg, mover_1_kg, coil_1_H, fast_1_s, slow_1_s, rc_1_s;
+    double drive;         /* V, or A behind a current loop */
+    double effort;        /* modulation of the finger's force at the tick */
+    double effort_per_s;  /* and its slope until the next */
+    double tick_s;
+} drive_input;
+
+/* what the controller remembers */
+typedef struct {
+    double window_m[FDVV_TWIN_WINDOW];  /* raw positions for the sliding mean */
+    double recent_m[FDVV_TWIN_WINDOW];  /* sensed positions, newest last */
+    double sum_m, sum_t, sum_tt, sum_tm;
+    int64_t raw_count, recent_count, inside_count;
+    double extreme_m, speed_m_s, held_N;
+    int release, decided;
+    double sensed_m, sensed_N, command_N, drive;
+    int saturated;
+} controller;
+
+static double clamp(double value, double low, double high) {
+    return value < low ? low : value > high ? high : value;
+}
+
+/* Hunt and Crossley: stiffness with a loss that grows with depth; never pulls. */
+static inline double contact(double stiffness, double loss, double depth, double rate) {
+    double force = stiffness * depth * (1.0 + loss * rate);
+    return depth > 0.0 && force > 0.0 ? force : 0.0;
+}
+
+static inline double elastic(double stiffness, double depth) { return depth > 0.0 ? stiffness * depth : 0.0; }
+
+/* Minimum jerk from `from` to `to` in `duration`, evaluated `t` after its start (Flash and Hogan 1985). */
+static inline void minimum_jerk(double from, double to, double duration, double t, double *x, double *v) {
+    double s = t / duration, q = 1.0 - s;
+    *x = from + (to - from) * s * s * s * (10.0 + s * (6.0 * s - 15.0));
+    *v = (to - from) * 30.0 * s * s * q * q / duration;
+}
+
+/* Where the finger means to be. */
+static inline void referent(const fdvv_twin_model *m, double t, double *x, double *v) {
+    double up = t - m->onset_s - m->press_s - m->dwell_s;
+    *x = m->start_m, *v = 0.0;
+    if (t <= m->onset_s || up >= m->release_s) return;
+    if (t < m->onset_s + m->press_s)
+        minimum_jerk(m->start_m, m->end_m, m->press_s, t - m->onset_s, x, v);
+    else if (up <= 0.0)
+        *x = m->end_m;
+    else
+        minimum_jerk(m->end_m, m->start_m, m->release_s, up, x, v);
+}
+
+static inline double force_constant(const fdvv_twin_model *m, double x) {
+    double off = x - m->droop_centre_m;
+    return m->force_constant_N_A * (1.0 - m->droop_1_m2 * off * off);
+}
+
+static inline double voltage(const fdvv_twin_model *m, double drive, double kt, double amps, double v) {
+    if (m->current_loop_s <= 0.0) return drive;
+    double wanted = m->resistance_ohm * amps - kt * v + m->inductance_H * (drive - amps) / m->current_loop_s;
+    return clamp(wanted, -m->supply_V, m->supply_V);
+}
+
+static double contact_force(const fdvv_twin_model *m, const double *y) {
+    return contact(m->contact_stiffness_N_m, m->contact_loss_s_m, y[XT] - y[XC], y[VT] - y[VC]);
+}
+
+static inline void rates(const fdvv_twin_model *m, const drive_input *in, double t, const double *y, double *dy) {
+    double xr, vr;
+    referent(m, t, &xr, &vr);
+    double effort = 1.0 + in->effort + in->effort_per_s * (t - in->tick_s);
+    double muscle = effort * (m->finger_stiffness_N_m * (xr - y[XF]) + m->finger_damping_N_s_m * (vr - y[VF]));
+
+    double squeeze_rate = y[VF] - y[VT];
+    double swelling = m->pulp_scale_N * exp(m->pulp_exponent_1_m * (y[XF] - y[XT] + m->strap_m));
+    double growth = m->pulp_exponent_1_m * swelling * squeeze_rate;
+    double arms = y[H1] + y[H2];
+    double pulp = m->pulp_relaxed_ratio * (swelling - m->pulp_scale_N) + arms - m->strap_N;
+
+    double closing = y[VT] - y[VC], touch = contact_force(m, y);
+    double deep = y[XC] - m->travel_m;
+    double stop = contact(m->stop_stiffness_N_m, m->stop_loss_s_m, deep, y[VC]);
+    double top = contact(m->top_stiffness_N_m, m->top_loss_s_m, -y[XC], -y[VC]);
+    double rub = m->coulomb_N * y[VC] / sqrt(y[VC] * y[VC] + m->coulomb_speed_m_s * m->coulomb_speed_m_s) +
+                 m->viscous_N_s_m * y[VC];
+    double kt = force_constant(m, y[XC]);
+    double volts = voltage(m, in->drive, kt, y[AMPS], y[VC]);
+
+    dy[XF] = y[VF];
+    dy[VF] = (muscle - pulp) * in->finger_1_kg;
+    dy[H1] = m->pulp_fast_ratio * growth - y[H1] * in->fast_1_s;
+    dy[H2] = m->pulp_slow_ratio * growth - y[H2] * in->slow_1_s;
+    dy[XT] = y[VT];
+    dy[VT] = (pulp - touch) * in->sensor_1_kg;
+    dy[XC] = y[VC];
+    dy[VC] = (touch - kt * y[AMPS] - rub - stop + top) * in->mover_1_kg + m->gravity_m_s2;
+    dy[AMPS] = (volts - m->resistance_ohm * y[AMPS] + kt * y[VC]) * in->coil_1_H;
+    dy[LVDT] = m->lvdt_rad_s * (y[XC] - y[LVDT]);
+    dy[SENSED] = (pulp - y[SENSED]) * in->rc_1_s;
+    dy[WORK] = muscle * y[VF] + volts * y[AMPS];
+    dy[LOSS] = m->resistance_ohm * y[AMPS] * y[AMPS] + rub * y[VC] + arms * squeeze_rate +
+               (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * closing +
+               (stop - elastic(m->stop_stiffness_N_m, deep)) * y[VC] -
+               (top - elastic(m->top_stiffness_N_m, -y[XC])) * y[VC];
+}
+
+/* Kinetic, elastic, magnetic and gravitational energy. */
+static double stored(const fdvv_twin_model *m, const double *y) {
+    double squeeze = y[XF] - y[XT] + m->strap_m;
+    double swelling = m->pulp_scale_N * (exp(m->pulp_exponent_1_m * squeeze) / m->pulp_exponent_1_m - squeeze);
+    double depth = fmax(y[XT] - y[XC], 0.0), deep = fmax(y[XC] - m->travel_m, 0.0), high = fmax(-y[XC], 0.0);
+    double moving = m->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
+                    m->moving_mass_kg * y[VC] * y[VC] + m->inductance_H * y[AMPS] * y[AMPS];
+    double springs = m->contact_stiffness_N_m * depth * depth + m->stop_stiffness_N_m * deep * deep +
+                     m->top_stiffness_N_m * high * high;
+    return 0.5 * (moving + springs) + m->pulp_relaxed_ratio * swelling - m->strap_N * squeeze -
+           m->moving_mass_kg * m->gravity_m_s2 * y[XC];
+}
+
+static void runge_kutta(const fdvv_twin_model *m, const drive_input *in, double t, double *y, const double *now) {
+    static const double reach[3] = {0.5, 0.5, 1.0}, weight[3] = {2.0, 2.0, 1.0};
+    double h = m->step_s, slope[STATES], sum[STATES], stage[STATES];
+    memcpy(slope, now, sizeof slope);
+    memcpy(sum, now, sizeof sum);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < STATES; j++) stage[j] = y[j] + reach[i] * h * slope[j];
+        rates(m, in, t + reach[i] * h, stage, slope);
+        for (int j = 0; j < STATES; j++) sum[j] += weight[i] * slope[j];
+    }
+    for (int j = 0; j < STATES; j++) y[j] += h / 6.0 * sum[j];
+}
+
+/* Advance one step; past holds the rates of the two steps before, fresh how many of them still count. */
+static void advance(const fdvv_twin_model *m, const drive_input *in, double t, double *y, double past[2][STATES],
+                    int *fresh) {
+    double now[STATES], h = m->step_s / 12.0;
+    rates(m, in, t, y, now);
+    if (*fresh < 2) {
+        runge_kutta(m, in, t, y, now);
+        *fresh += 1;
+    } else {
+        for (int j = 0; j < STATES; j++) y[j] += h * (23.0 * now[j] - 16.0 * past[0][j] + 5.0 * past[1][j]);
+    }
+    memcpy(past[1], past[0], sizeof now);
+    memcpy(past[0], now, sizeof now);
+}
+
+/* -- the controller -- */
+
+static double converter(double value, double lsb) { return lsb > 0.0 ? lsb * floor(value / lsb + 0.5) : value; }
+
+static double read_position(const fdvv_twin_model *m, double lvdt_m, double noise_m) {
+    double bent = lvdt_m + m->lvdt_linearity_m * sin(6.283185307179586 * lvdt_m / m->lvdt_range_m);
+    return converter(bent + noise_m, m->lvdt_lsb_m);
+}
+
+/* The play of the sensor, then gain, range and converter. */
+static void read_force(const fdvv_twin_model *m, controller *c, double filtered_N, double noise_N) {
+    double half = 0.5 * m->sensor_hysteresis_N;
+    c->held_N = clamp(c->held_N, filtered_N - half, filtered_N + half);
+    double value = m->sensor_gain * c->held_N + noise_N;
+    c->sensed_N = converter(clamp(value, -m->sensor_full_scale_N, m->sensor_full_scale_N), m->sensor_lsb_N);
+}
+
+static double sliding_mean(const fdvv_twin_grid *g, controller *c, double raw_m) {
+    c->window_m[c->raw_count++ % g->average_ticks] = raw_m;
+    int64_t n = c->raw_count < g->average_ticks ? c->raw_count : g->average_ticks;
+    double sum = 0.0;
+    for (int64_t j = 0; j < n; j++) sum += c->window_m[j];
+    return sum / (double)n;
+}
+
+/* Turn round once the cap has come back by reversal_m from its extreme; rearm at the top. */
+static void find_direction(const fdvv_twin_model *m, controller *c) {
+    double x = c->sensed_m;
+    if (!c->release) {
+        if (x > c->extreme_m) c->extreme_m = x;
+        if (x < c->extreme_m - m->reversal_m) c->release = 1, c->extreme_m = x;
+    } else {
+        if (x < c->extreme_m) c->extreme_m = x;
+        if (x > c->extreme_m + m->reversal_m || x < m->rearm_m) c->release = 0, c->extreme_m = x;
+    }
+    if (x < m->rearm_m) {
+        c->decided = 0, c->inside_count = 0, c->speed_m_s = m->announced_m_s;
+        c->sum_m = c->sum_t = c->sum_tt = c->sum_tm = 0.0;
+    }
+}
+
+/* Least squares over the samples inside the window, or over the newest few if it held too few. */
+static void find_speed(const fdvv_twin_model *m, const fdvv_twin_grid *g, controller *c, double tick_s) {
+    int64_t few = g->fewest_samples;
+    memmove(c->recent_m, c->recent_m + 1, (size_t)(few - 1) * sizeof(double));
+    c->recent_m[few - 1] = c->sensed_m;
+    c->recent_count++;
+    if (c->decided || c->release || c->sensed_m < m->window_start_m) return;
+    if (c->sensed_m <= m->window_end_m) {
+        double t = (double)c->inside_count++ * tick_s;
+        c->sum_m += c->sensed_m, c->sum_t += t, c->sum_tt += t * t, c->sum_tm += t * c->sensed_m;
+        return;
+    }
+    if (c->inside_count < few) {
+        if (c->recent_count < few) return;
+        c->inside_count = few, c->sum_m = c->sum_t = c->sum_tt = c->sum_tm = 0.0;
+        for (int64_t j = 0; j < few; j++) {
+            double t = (double)j * tick_s, x = c->recent_m[j];
+            c->sum_m += x, c->sum_t += t, c->sum_tt += t * t, c->sum_tm += t * x;
+        }
+    }
+    double n = (double)c->inside_count;
+    double slope = (n * c->sum_tm - c->sum_t * c->sum_m) / (n * c->sum_tt - c->sum_t * c->sum_t);
+    c->speed_m_s = m->velocity_scale * slope;
+    c->decided = 1;
+}
+
+static double look_up(const fdvv_twin_model *m, const fdvv_twin_grid *g, const double *speeds, const double *table,
+                      const controller *c) {
+    const double *stroke = table + (c->release ? g->velocities * g->displacements : 0);
+    double place = clamp((c->sensed_m - m->table_start_m) / m->table_step_m, 0.0, (double)(g->displacements - 1));
+    int64_t i = (int64_t)place, j = 0;
+    if (i > g->displacements - 2) i = g->displacements - 2;
+    double part = place - (double)i, mix = 0.0;
+    while (j < g->velocities - 2 && c->speed_m_s >= speeds[j + 1]) j++;
+    if (g->velocities > 1) mix = clamp((c->speed_m_s - speeds[j]) / (speeds[j + 1] - speeds[j]), 0.0, 1.0);
+    const double *row = stroke + j * g->displacements + i;
+    double low = row[0] + part * (row[1] - row[0]);
+    if (mix <= 0.0) return low;
+    row += g->displacements;
+    return low + mix * (row[0] + part * (row[1] - row[0]) - low);
+}
+
+/* Force to drive: limit, scale, quantise. */
+static void set_command(const fdvv_twin_model *m, controller *c, double wanted_N) {
+    c->command_N = clamp(wanted_N, -m->force_limit_N, m->force_limit_N);
+    double raw = c->command_N * m->drive_per_N;
+    double drive = clamp(raw, m->drive_low, m->drive_high);
+    c->saturated = c->command_N != wanted_N || drive != raw;
+    c->drive = converter(drive, m->drive_lsb);
+}
+
+/* -- the press -- */
+
+static int usable(const fdvv_twin_grid *g) {
+    return g->settle_ticks >= 0 && g->ticks > 0 && g->steps_per_row > 0 && g->steps_per_tick > 0 &&
+           g->steps_per_tick % g->steps_per_row == 0 && g->delay_steps >= 0 && g->delay_steps < g->steps_per_tick &&
+           g->reads > 0 && g->read_steps > 0 && (g->reads - 1) * g->read_steps < g->steps_per_tick &&
+           g->average_ticks > 0 && g->average_ticks <= FDVV_TWIN_WINDOW && g->fewest_samples > 1 &&
+           g->fewest_samples <= FDVV_TWIN_WINDOW && g->displacements > 1 && g->velocities > 0;
+}
+
+static void write_row(const fdvv_twin_model *m, const controller *c, const double *y, double t, int tick,
+                      double energy_J, double *row) {
+    row[0] = t;
+    row[1] = y[XC], row[2] = y[VC], row[3] = contact_force(m, y);
+    row[4] = c->sensed_m, row[5] = c->sensed_N, row[6] = c->command_N;
+    row[7] = c->saturated, row[8] = c->release, row[9] = tick;
+    row[10] = y[AMPS], row[11] = y[XF];
+    row[12] = stored(m, y) - energy_J - y[WORK] + y[LOSS];
+}
+
+static void start(const fdvv_twin_model *m, double *y, drive_input *in, controller *c) {
+    memset(in, 0, sizeof *in);
+    in->finger_1_kg = 1.0 / m->finger_mass_kg, in->sensor_1_kg = 1.0 / m->sensor_mass_kg;
+    in->mover_1_kg = 1.0 / m->moving_mass_kg, in->coil_1_H = 1.0 / m->inductance_H;
+    in->fast_1_s = 1.0 / m->pulp_fast_s, in->slow_1_s = 1.0 / m->pulp_slow_s, in->rc_1_s = 1.0 / m->sensor_rc_s;
+    memset(y, 0, STATES * sizeof *y);
+    memset(c, 0, sizeof *c);
+    y[XF] = y[XT] = m->start_m < 0.0 ? m->start_m : 0.0;
+    c->speed_m_s = m->announced_m_s;
+}
+
+/* Let the controller run once on what the sensors gave. */
+static void run_tick(const fdvv_twin_model *m, const fdvv_twin_grid *g, const double *speeds_m_s,
+                     const double *table_N, double raw_m, double filtered_N, double noise_N, controller *c) {
+    double tick_s = m->step_s * (double)g->steps_per_tick;
+    c->sensed_m = sliding_mean(g, c, raw_m);
+    read_force(m, c, filtered_N, noise_N);
+    find_direction(m, c);
+    find_speed(m, g, c, tick_s);
+    set_command(m, c, look_up(m, g, speeds_m_s, table_N, c));
+}
+
+int fdvv_twin_press(const fdvv_twin_model *m, const fdvv_twin_grid *g, const double *speeds_m_s,
+                    const double *table_N, const double *position_noise_m, const double *force_noise_N,
+                    const double *effort_ratio, double *rows) {
+    if (!usable(g)) return 1;
+    double y[STATES], past[2][STATES], energy_J, raw_m;
+    double tick_s = m->step_s * (double)g->steps_per_tick;
+    int64_t last = g->settle_ticks + g->ticks - 1, first_read = g->steps_per_tick - (g->reads - 1) * g->read_steps;
+    int fresh = 0;
+    controller c;
+    drive_input in;
+    start(m, y, &in, &c);
+    memset(past, 0, sizeof past);
+    energy_J = stored(m, y);
+    raw_m = read_position(m, 0.0, 0.0);
+
+    for (int64_t k = 0; k <= last; k++) {
+        int64_t next_row = k < g->settle_ticks ? g->steps_per_tick : 0, next_read = first_read;
+        /* the reads of the last tick are never used: any noise will do */
+        const double *noise_m = position_noise_m + (k < last ? k + 1 : k) * g->reads;
+        double sum_m = 0.0;
+        in.tick_s = tick_s * (double)(k - g->settle_ticks);
+        in.effort = effort_ratio[k];
+        in.effort_per_s = (effort_ratio[k + 1] - effort_ratio[k]) / tick_s;
+        run_tick(m, g, speeds_m_s, table_N, raw_m, y[SENSED], force_noise_N[k], &c);
+        for (int64_t s = 0; s < g->steps_per_tick; s++) {
+            double t = in.tick_s + m->step_s * (double)s;
+            if (s == g->delay_steps && in.drive != c.drive) in.drive = c.drive, fresh = 0;
+            if (s == next_row) {
+                write_row(m, &c, y, t, s == 0, energy_J, rows);
+                rows += FDVV_TWIN_COLUMNS, next_row += g->steps_per_row;
+            }
+            advance(m, &in, t, y, past, &fresh);
+            if (s + 1 == next_read) {
+                sum_m += read_position(m, y[LVDT], *noise_m++);
+                next_read += g->read_steps;
+            }
+        }
+        raw_m = sum_m / (double)g->reads;
+    }
+    return 0;
+}
+
+void fdvv_twin_sizes(int64_t *model_bytes, int64_t *grid_bytes) {
+    *model_bytes = (int64_t)sizeof(fdvv_twin_model);
+    *grid_bytes = (int64_t)sizeof(fdvv_twin_grid);
+}

@@ -1,0 +1,108 @@
+"""The shape that every method of compensation has, per curve or model-based."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from fdvv.model import ForceSurface, Press, Stroke
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What is wanted of a rig.
+
+    Attributes
+    ----------
+    target : force wanted; its rows are the velocities, its grid the bins of the command tables.
+    travel_mm : where the stop is set.
+    force_limit_cN : largest command of either sign.
+    """
+
+    target: ForceSurface
+    travel_mm: float
+    force_limit_cN: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What to do next: upload surface, have it pressed once at velocity_mm_s."""
+
+    surface: ForceSurface
+    velocity_mm_s: float
+
+
+@dataclass(frozen=True)
+class CurveOutcome:
+    """How one curve went, as the rig measured it while it learned (not what the finger felt).
+
+    Attributes
+    ----------
+    error_cN : error_k of every press used, in order.
+    mean_error_cN, max_error_cN : of |target - felt| over the bins, for the table kept.
+    sentence : how it went.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    error_cN: tuple[float, ...]
+    mean_error_cN: float
+    max_error_cN: float
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a method learned.
+
+    Attributes
+    ----------
+    surface : the actuation, one row per velocity of the job.
+    curves : one per stroke and velocity.
+    presses : made, those skipped among them.
+    skipped : why each skipped press taught nothing.
+    complete : the method did all it meant to; if not, the sentence says what stopped it.
+    """
+
+    surface: ForceSurface
+    curves: tuple[CurveOutcome, ...]
+    presses: int
+    skipped: tuple[str, ...]
+    complete: bool
+    sentence: str
+
+
+class Method(Protocol[S]):
+    """Settings of a way to learn actuation: init, then trial, press and step until trial gives None."""
+
+    @property
+    def name(self) -> str:
+        """Name the method and what it adds to it, for the record."""
+        ...
+
+    @property
+    def bin_mm(self) -> float:
+        """Give the step of the tables it learns."""
+        ...
+
+    def init(self, job: Job) -> S:
+        """Begin."""
+        ...
+
+    def trial(self, state: S) -> Trial | None:
+        """Tell what to press next; None when finished."""
+        ...
+
+    def step(self, press: Press, state: S) -> S:
+        """Learn from the press that the last trial asked for."""
+        ...
+
+    def presses_total(self, state: S) -> int:
+        """Tell how many presses the job takes if none is skipped."""
+        ...
+
+    def done(self, state: S) -> Outcome:
+        """Give what was learned so far; works at any time."""
+        ...

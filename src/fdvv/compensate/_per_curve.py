@@ -1,0 +1,142 @@
+"""Learn every stroke and velocity on its own, both strokes from the same presses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fdvv.compensate._method import CurveOutcome, Job, Outcome, Trial
+from fdvv.compensate._observe import felt_at_mm, observe
+from fdvv.compensate._paper import PaperLaw, State
+from fdvv.compensate._strokes import split_strokes, why_incomplete
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface, Press, Stroke
+from fdvv.units import FloatArray
+
+Pair = tuple[State, State]
+"""Press and release of one velocity."""
+
+
+@dataclass(frozen=True, eq=False)
+class JobState:
+    """Where a job stands: the curves per velocity, presses made, and why presses were skipped."""
+
+    job: Job
+    pairs: tuple[Pair, ...]
+    presses: int = 0
+    skipped: tuple[str, ...] = ()
+    in_a_row: int = 0
+
+
+@dataclass(frozen=True)
+class PerCurve:
+    """Run a law of one curve over all velocities of a job, one velocity after the other.
+
+    Each trial uploads one row, so that what the controller takes for the speed does not matter while
+    it learns. A press that is not complete teaches nothing and is made again; after ``patience`` such
+    presses in a row the job stops.
+    """
+
+    law: PaperLaw = field(default_factory=PaperLaw)
+    patience: int = 10
+
+    @property
+    def name(self) -> str:
+        """Name the law and its additions."""
+        added = self.law.additions
+        return "paper law" + (f" with {'; '.join(added)}" if added else "")
+
+    @property
+    def bin_mm(self) -> float:
+        """Give the width of the bins."""
+        return self.law.bin_mm
+
+    def init(self, job: Job) -> JobState:
+        """Begin both strokes of every velocity."""
+        grid = job.target.displacement_mm
+        tables = zip(job.target.press_cN, job.target.release_cN, strict=True)
+        pairs = tuple(
+            (self.law.init(press, grid, job.force_limit_cN), self.law.init(release, grid, job.force_limit_cN))
+            for press, release in tables
+        )
+        return JobState(job, pairs)
+
+    def presses_total(self, state: JobState) -> int:
+        """Count the presses of a job without failures."""
+        return len(state.pairs) * self.law.rounds * self.law.presses_per_round
+
+    def trial(self, state: JobState) -> Trial | None:
+        """Press the current commands of the first velocity that is not finished."""
+        at = self._at(state)
+        if at is None or state.in_a_row >= self.patience:
+            return None
+        velocity = state.job.target.velocity_mm_s[at : at + 1]
+        press, release = (curve.command_cN[np.newaxis] for curve in state.pairs[at])
+        surface = ForceSurface(state.job.target.displacement_mm, velocity, press, release)
+        return Trial(surface, float(velocity[0]))
+
+    def step(self, press: Press, state: JobState) -> JobState:
+        """Learn both strokes from one press, or skip it with its reason."""
+        at = self._at(state)
+        if at is None:
+            raise ModelError("the job is finished; no press was asked for")
+        pair, reason = self._learn(press, state.job, state.pairs[at])
+        pairs = (*state.pairs[:at], pair, *state.pairs[at + 1 :])
+        skipped, in_a_row = state.skipped, 0
+        if reason:
+            skipped = (*skipped, f"press {state.presses + 1} at {press.velocity_mm_s:g} mm/s: {reason}")
+            in_a_row = state.in_a_row + 1
+        return replace(state, pairs=pairs, presses=state.presses + 1, skipped=skipped, in_a_row=in_a_row)
+
+    def done(self, state: JobState) -> Outcome:
+        """Collect the tables of all curves."""
+        learned = [[self.law.done(curve) for curve in pair] for pair in state.pairs]
+        speeds = state.job.target.velocity_mm_s
+        curves = tuple(
+            CurveOutcome(stroke, float(speeds[i]), c.errors_cN, c.mean_error_cN, c.max_error_cN, c.sentence)
+            for j, stroke in enumerate(Stroke)
+            for i, c in enumerate(pair[j] for pair in learned)
+        )
+        tables = [np.stack([pair[j].command_cN for pair in learned]) for j in range(2)]
+        surface = ForceSurface(state.job.target.displacement_mm, speeds, *tables)
+        complete = self._at(state) is None
+        return Outcome(
+            surface, curves, state.presses, state.skipped, complete, self._sentence(state, complete)
+        )
+
+    def _at(self, state: JobState) -> int | None:
+        """Find the velocity at work."""
+        open_pairs = (i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0]))
+        return next(open_pairs, None)
+
+    def _learn(self, press: Press, job: Job, pair: Pair) -> tuple[Pair, str]:
+        """Step both curves; an unusable press gives them back as they were, and the reason."""
+        t_s, sensed, force = rig_columns(press)
+        felt = felt_at_mm(t_s, sensed, self.law.delays)
+        reason = why_incomplete(felt, job.travel_mm)
+        if reason:
+            return pair, reason
+        measured = [
+            observe(t_s, sensed, force, span, c.target_cN, c.grid_mm, self.law.delays)
+            for span, c in zip(split_strokes(felt, job.travel_mm), pair, strict=True)
+        ]
+        for stroke, column in zip(Stroke, measured, strict=True):
+            if not np.isfinite(column).any():
+                return pair, f"no sample of the {stroke} fell within the guards"
+        press_state, release_state = (self.law.step(m, c)[1] for m, c in zip(measured, pair, strict=True))
+        return (press_state, release_state), ""
+
+    def _sentence(self, state: JobState, complete: bool) -> str:
+        if complete:
+            return f"{state.presses} presses, {len(state.skipped)} of them skipped"
+        why = f": {state.skipped[-1]}" if state.in_a_row >= self.patience else ""
+        return f"stopped after {state.presses} presses{why}"
+
+
+def rig_columns(press: Press) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Give time, displacement and force as the rig knows them, at its ticks; the true ones without a rig."""
+    rows = np.ones(press.t_s.size, dtype=np.bool_) if press.tick is None else press.tick
+    sensed = press.displacement_mm if press.sensed_mm is None else press.sensed_mm
+    force = press.force_cN if press.sensed_cN is None else press.sensed_cN
+    return press.t_s[rows], sensed[rows], force[rows]

@@ -1,0 +1,111 @@
+"""A device of one line of algebra, for tests of whatever drives a device."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fdvv.device import DeviceInfo
+from fdvv.errors import DeviceError
+from fdvv.model import ForceSurface, Press, Stroke
+from fdvv.units import FloatArray
+
+PERIOD_s = 1e-4
+TICKS = 10
+"""Rows of a record per control tick: a 10 kHz record of a 1 kHz loop."""
+
+
+def _read(surface: ForceSurface, x_mm: FloatArray, velocity_mm_s: float, stroke: Stroke) -> FloatArray:
+    table = surface.table_cN(stroke)
+    row = np.array([np.interp(velocity_mm_s, surface.velocity_mm_s, column) for column in table.T])
+    return np.asarray(np.interp(x_mm, surface.displacement_mm, row))
+
+
+class ScriptedDevice:
+    """A cap that moves at constant speed and feels gain * command + offset + drag * velocity + noise.
+
+    Down at the asked speed, a dwell of 20 ms at the stop, up at the same speed. The table is read at the
+    sensed displacement of the last tick and at the asked speed.
+
+    Parameters
+    ----------
+    gain : felt force per commanded force.
+    offset_cN, drag_cN_s_mm : constant force, and force per speed (positive against the motion).
+    noise_cN, noise_mm : standard deviation of the force felt, and of the displacement sensed.
+    pace_spread_ratio : standard deviation of the speed of a press, as a part of the speed asked for.
+    force_limit_cN, travel_limit_mm : limits of upload; commands beyond the force are cut and flagged.
+    seed : of everything random.
+    """
+
+    def __init__(
+        self,
+        gain: float = 1.0,
+        offset_cN: float = 0.0,
+        drag_cN_s_mm: float = 0.0,
+        noise_cN: float = 0.0,
+        noise_mm: float = 0.0,
+        pace_spread_ratio: float = 0.0,
+        force_limit_cN: float = 440.0,
+        travel_limit_mm: float = 6.2,
+        seed: int = 0,
+    ) -> None:
+        self._gain, self._offset_cN, self._drag_cN_s_mm = gain, offset_cN, drag_cN_s_mm
+        self._noise_cN, self._noise_mm, self._pace_spread_ratio = noise_cN, noise_mm, pace_spread_ratio
+        self._info = DeviceInfo("scripted", True, force_limit_cN, travel_limit_mm, PERIOD_s * TICKS)
+        self._random = np.random.default_rng(seed)
+        self._active: tuple[ForceSurface, float] | None = None
+
+    def info(self) -> DeviceInfo:
+        """Tell who this is."""
+        return self._info
+
+    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+        """Make surface the active command table; DeviceError beyond the limits."""
+        limit = self._info.force_limit_cN
+        largest = max(float(np.abs(t).max()) for t in (surface.press_cN, surface.release_cN))
+        if largest > limit:
+            raise DeviceError(f"scripted: table reaches {largest:g} cN, limit {limit:g} cN")
+        if not 0 < travel_mm <= self._info.travel_limit_mm:
+            raise DeviceError(f"scripted: travel {travel_mm:g} mm, limit {self._info.travel_limit_mm:g} mm")
+        self._active = (surface, travel_mm)
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Press once down and up."""
+        if self._active is None:
+            raise DeviceError("scripted: press before upload; upload a surface first")
+        if not velocity_mm_s > 0:
+            raise DeviceError(f"scripted: speed must be positive, got {velocity_mm_s:g} mm/s")
+        surface, travel_mm = self._active
+        speed = velocity_mm_s * max(0.2, 1 + self._pace_spread_ratio * self._random.standard_normal())
+        t, x, v = _stroke_pair(travel_mm, speed)
+        held = np.arange(t.size) // TICKS * TICKS
+        sensed = (x + self._noise_mm * self._random.standard_normal(t.size))[held]
+        wanted = np.where(
+            v[held] >= 0,
+            _read(surface, sensed, velocity_mm_s, Stroke.PRESS),
+            _read(surface, sensed, velocity_mm_s, Stroke.RELEASE),
+        )
+        command = np.clip(wanted, -self._info.force_limit_cN, self._info.force_limit_cN)
+        felt = self._gain * command + self._offset_cN + self._drag_cN_s_mm * v
+        felt = felt + self._noise_cN * self._random.standard_normal(t.size)
+        return Press(
+            t,
+            x,
+            felt,
+            velocity_mm_s,
+            sensed,
+            felt[held],
+            command,
+            command != wanted,
+            np.arange(t.size) % TICKS == 0,
+            simulated=True,
+        )
+
+
+def _stroke_pair(travel_mm: float, speed_mm_s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Make time, displacement and velocity of a ramp down, a dwell of 20 ms and a ramp up."""
+    down = travel_mm / speed_mm_s
+    t = np.arange(round((2 * down + 0.02) / PERIOD_s) + 1) * PERIOD_s
+    corners = [0.0, down, down + 0.02, 2 * down + 0.02]
+    x: FloatArray = np.interp(t, corners, [0.0, travel_mm, travel_mm, 0.0])
+    v = np.where(t < down, speed_mm_s, np.where(t < down + 0.02, 0.0, -speed_mm_s))
+    return np.asarray(t, dtype=np.float64), x, np.asarray(v)

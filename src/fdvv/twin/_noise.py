@@ -1,0 +1,84 @@
+"""Everything random about one press, drawn beforehand so that every solver sees the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.twin._finger import Finger, Habit
+from fdvv.twin._gesture import Gesture
+from fdvv.twin._rig import Rig
+from fdvv.units import FloatArray
+
+SETTLE_s = 0.08
+"""The rig runs this long before the record starts, so that filters and the cap come to rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """Random disturbances of one press; n counts every tick, those of settling included.
+
+    Attributes
+    ----------
+    position_m : (n, reads) added to each converter read of the position.
+    force_N : (n,) added to each force sample.
+    effort_ratio : (n + 1,) modulation of the finger's own force, linear between ticks.
+    """
+
+    position_m: FloatArray
+    force_N: FloatArray
+    effort_ratio: FloatArray
+
+
+def settle_ticks(rig: Rig) -> int:
+    """Count the ticks before the record starts."""
+    return round(SETTLE_s / rig.controller.tick_s)
+
+
+def count_ticks(rig: Rig, gesture: Gesture) -> int:
+    """Count the ticks of the record."""
+    return int(np.ceil(gesture.duration_s / rig.controller.tick_s))
+
+
+def silence(rig: Rig, gesture: Gesture) -> Noise:
+    """Give no noise at all."""
+    n = settle_ticks(rig) + count_ticks(rig, gesture)
+    return Noise(np.zeros((n, reads_of(rig))), np.zeros(n), np.zeros(n + 1))
+
+
+def reads_of(rig: Rig) -> int:
+    """Count the reads per tick: a burst, or one where the average slides over ticks."""
+    return rig.position_sensor.reads if rig.controller.averaging == "burst" else 1
+
+
+def draw_noise(rig: Rig, finger: Finger, gesture: Gesture, random: np.random.Generator) -> Noise:
+    """Draw the noise of sensors and muscle for one press.
+
+    Noise of the demodulator is common to the reads of a burst (its band is far below their rate), noise
+    of the converter is not.
+    """
+    position, force = rig.position_sensor, rig.force_sensor
+    n = settle_ticks(rig) + count_ticks(rig, gesture)
+    common = position.noise_m * random.standard_normal((n, 1))
+    lsb = lsb_of(position.range_m, position.converter_bits)
+    single = position.converter_noise_ratio * lsb * random.standard_normal((n, reads_of(rig)))
+    samples = force.noise_N * random.standard_normal(n)
+    return Noise(common + single, samples, _effort(finger.habit, n + 1, rig.controller.tick_s, random))
+
+
+def lsb_of(span: float, bits: int) -> float:
+    """Give one step of a converter over a span; 0 for a continuous one."""
+    return span / 2**bits if bits else 0.0
+
+
+def _effort(habit: Habit, n: int, tick_s: float, random: np.random.Generator) -> FloatArray:
+    """Make muscle noise of one pole plus a tremor of random phase, (n,)."""
+    from scipy.signal import lfilter
+
+    keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * tick_s))
+    white = random.standard_normal(n) * np.sqrt(1 - keep**2)
+    white[0] /= np.sqrt(1 - keep**2)
+    slow = np.asarray(lfilter([1.0], [1.0, -keep], white))
+    phase = 2 * np.pi * (habit.tremor_Hz * tick_s * np.arange(n) + random.random())
+    return np.asarray(habit.effort_noise_ratio * slow + habit.tremor_ratio * np.sin(phase))

@@ -1,0 +1,203 @@
+"""Judge a rendering: fresh presses, errors in true displacement."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from fdvv.compensate import bin_force, error_cN, grid_mm, mean_speed_mm_s, split_strokes, why_incomplete
+from fdvv.device import Device
+from fdvv.errors import DeviceError
+from fdvv.model import FDVVModel, ForceSurface, Press, Stroke
+from fdvv.units import FloatArray
+from fdvv.workflow._compensate import PressDone, Progress, check_speeds
+
+BIN_mm = 0.05
+FROM_mm = 0.3
+STOP_GUARD_mm = 0.1
+"""Judged is from 0.3 mm, where the finger has met the cap, to 0.1 mm before the stop, ahead of its impact."""
+
+ALPHA = 0.7
+"""Weight of eq. 3, so that the probe's error_k reads like the paper's."""
+
+PATIENCE = 10
+
+
+@dataclass(frozen=True, eq=False)
+class ProbeCurve:
+    """One stroke at one velocity over several fresh presses.
+
+    Attributes
+    ----------
+    displacement_mm, target_cN : (n,) bins judged, and what the model asks for at the asked speed.
+    rendered_cN : (presses, n) force on the finger; 0 in bins the cap did not reach, where there was none.
+    achieved_mm_s : (presses,) mean speed of each stroke.
+    at_achieved_cN : (presses, n) what the model asks for at the achieved speed.
+    reached_ratio : part of the bins that the cap reached, of the worst press.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    displacement_mm: FloatArray
+    target_cN: FloatArray
+    rendered_cN: FloatArray
+    achieved_mm_s: FloatArray
+    at_achieved_cN: FloatArray
+    reached_ratio: float
+
+    @property
+    def error_cN(self) -> FloatArray:
+        """Give error_k (eq. 3) of each press, (presses,)."""
+        return np.array([error_cN(self.target_cN, row, ALPHA) for row in self.rendered_cN])
+
+    @property
+    def mean_errors_cN(self) -> FloatArray:
+        """Give the mean of |target - rendered| over the bins, (presses,)."""
+        return np.asarray(np.abs(self.target_cN - self.rendered_cN).mean(axis=1))
+
+    @property
+    def max_errors_cN(self) -> FloatArray:
+        """Give the largest |target - rendered|, (presses,)."""
+        return np.asarray(np.abs(self.target_cN - self.rendered_cN).max(axis=1))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give medians over the presses, with quartiles as spread."""
+        achieved = np.abs(self.at_achieved_cN - self.rendered_cN).mean(axis=1)
+        return {
+            "stroke": str(self.stroke),
+            "velocity_mm_s": self.velocity_mm_s,
+            "error_cN": self.error_cN.tolist(),
+            "mean_error_cN": float(np.median(self.mean_errors_cN)),
+            "max_error_cN": float(np.median(self.max_errors_cN)),
+            "mean_error_quartiles_cN": np.percentile(self.mean_errors_cN, [25, 75]).tolist(),
+            "max_error_quartiles_cN": np.percentile(self.max_errors_cN, [25, 75]).tolist(),
+            "mean_error_at_achieved_speed_cN": float(np.median(achieved)),
+            "achieved_mm_s": float(np.median(self.achieved_mm_s)),
+            "reached_ratio": self.reached_ratio,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class ProbeResult:
+    """How a surface renders a model, judged on presses that nothing was learned from.
+
+    Attributes
+    ----------
+    method : what made the surface.
+    range_mm : displacement judged.
+    presses : made, those skipped among them.
+    """
+
+    method: str
+    model_name: str
+    device_name: str
+    range_mm: tuple[float, float]
+    curves: tuple[ProbeCurve, ...]
+    presses: int
+    skipped: tuple[str, ...]
+    simulated: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the report; errors in cN, true displacement, median over presses."""
+        return {
+            "method": self.method,
+            "model": self.model_name,
+            "device": self.device_name,
+            "range_mm": list(self.range_mm),
+            "presses": self.presses,
+            "skipped": list(self.skipped),
+            "curves": [c.to_dict() for c in self.curves],
+            "simulated": self.simulated,
+        }
+
+    def to_json(self) -> str:
+        """Write the report as JSON."""
+        return json.dumps(self.to_dict(), allow_nan=False)
+
+
+def fd_only(model: FDVVModel) -> FDVVModel:
+    """Reduce a model to force and displacement: the slowest curve of each stroke, no vibration."""
+    slowest = tuple(model.of(stroke)[0] for stroke in Stroke if model.of(stroke))
+    return replace(model, name=f"{model.name} (FD only)", curves=slowest, vibrations=())
+
+
+def probe(
+    device: Device,
+    model: FDVVModel,
+    surface: ForceSurface,
+    velocities_mm_s: Sequence[float],
+    presses: int = 10,
+    progress: Progress | None = None,
+    method: str = "as uploaded",
+) -> ProbeResult:
+    """Upload a surface once, press it afresh at every speed, and hold the felt force against the model.
+
+    presses : per velocity, complete ones. The force on the finger is binned on the true displacement of
+    the cap and held against the model at the speed that was asked for. A press that does not reach the
+    stop is not judged but counted, with its reason.
+
+    Raises DeviceError if the device fails or ten presses in a row fail, InputError on bad speeds.
+    """
+    info = device.info()
+    speeds = check_speeds(velocities_mm_s)
+    device.upload(surface, model.travel_mm)
+    curves: list[ProbeCurve] = []
+    skipped: list[str] = []
+    for velocity in speeds:
+        found: list[Press] = []
+        failed = 0
+        while len(found) < presses:
+            press = device.press(velocity)
+            reason = why_incomplete(press.displacement_mm, model.travel_mm)
+            if reason:
+                failed += 1
+                skipped.append(f"press at {velocity:g} mm/s: {reason}")
+            else:
+                failed = 0
+                found.append(press)
+            if progress:
+                done = len(curves) // 2 * presses + len(found)
+                progress(PressDone("probe", velocity, done, len(speeds) * presses, press, reason))
+            if failed >= PATIENCE:
+                raise DeviceError(f"{info.name}: {PATIENCE} presses in a row failed; the last {skipped[-1]}")
+        curves += _curves(model, velocity, found)
+    order = sorted(curves, key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s))
+    bounds = (FROM_mm, model.travel_mm - STOP_GUARD_mm)
+    made = len(speeds) * presses + len(skipped)
+    return ProbeResult(
+        method, model.name, info.name, bounds, tuple(order), made, tuple(skipped), info.simulated
+    )
+
+
+def _curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
+    """Judge both strokes of the presses at one speed."""
+    grid = grid_mm(model.travel_mm, BIN_mm)
+    judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
+    curves = []
+    for i, stroke in enumerate(Stroke):
+        rows, speeds = [], []
+        for press in presses:
+            span = split_strokes(press.displacement_mm, model.travel_mm)[i]
+            felt = bin_force(press.displacement_mm[span.rows], press.force_cN[span.rows], grid)
+            rows.append(felt[judged])
+            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, span))
+        felt_rows, achieved = np.stack(rows), np.array(speeds)
+        served = stroke if model.of(stroke) else model.curves[0].stroke
+        x = grid[judged]
+        curves.append(
+            ProbeCurve(
+                stroke,
+                velocity_mm_s,
+                x,
+                model.force_cN(x, velocity_mm_s, served),
+                np.nan_to_num(felt_rows, nan=0.0),
+                achieved,
+                model.force_cN(x[np.newaxis], np.nan_to_num(achieved, nan=velocity_mm_s)[:, None], served),
+                float(np.isfinite(felt_rows).mean(axis=1).min()),
+            )
+        )
+    return curves
