@@ -18,7 +18,7 @@ def segments(draw: st.DrawFn) -> tuple[float, float]:
     return (a, b) if b - a > 1e-3 else (max(0.0, a - 0.1), min(4.0, b + 0.1))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(curves(Stroke.PRESS), curves(Stroke.RELEASE), segments(), st.floats(0.01, 1.0))
 def test_a_splice_is_the_insert_on_the_segment_and_the_base_beyond_the_blend(
     base: ForceCurve, insert: ForceCurve, segment_mm: tuple[float, float], blend_mm: float

@@ -7,12 +7,10 @@ from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
     SUFFIX,
-    VERSION,
     load_model,
     model_from_json,
     model_to_json,
     save_model,
-    schema,
 )
 from fdvv.model._fit import (
     CurveFit,
@@ -26,6 +24,7 @@ from fdvv.model._fit import (
 from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
+from fdvv.model._records import VERSION, schema
 from fdvv.model._surface import ForceSurface
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
