@@ -5,7 +5,8 @@ from fdvv.plot._model_figures import plot_comparison, plot_model, plot_surface, 
 from fdvv.plot._records import ErrorHistory, RenderedBand, RenderedCurve
 from fdvv.plot._rendering_figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
 from fdvv.plot._report import Section, Table, render_html, write_report
-from fdvv.plot._svg import figure_png, figure_svg
+from fdvv.plot._style import house_style
+from fdvv.plot._svg import figure_of, figure_png, figure_svg
 
 __all__ = [
     "ErrorHistory",
@@ -14,8 +15,10 @@ __all__ = [
     "RenderedCurve",
     "Section",
     "Table",
+    "figure_of",
     "figure_png",
     "figure_svg",
+    "house_style",
     "plot_comparison",
     "plot_convergence",
     "plot_fit",

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 STEP_mm = 0.02
-SURFACE_ROWS = 24
-SURFACE_COLUMNS = 60
+SURFACE_ROWS = 16
+SURFACE_COLUMNS = 49
 
 
 @style.in_house_style
@@ -54,29 +54,38 @@ def plot_surface(
             f"a surface of {model.name!r} needs {stroke} curves at 2 velocities, has {len(speeds)}"
         )
     if ax is None:
-        ax = style.new_figure(7.0, 5.2).add_subplot(projection="3d")
+        ax = style.new_figure(7.0, 4.9).add_subplot(projection="3d")
     x = np.linspace(0.0, model.travel_mm, SURFACE_COLUMNS)
-    v = np.linspace(speeds[0], speeds[-1], SURFACE_ROWS)
+    # rows at every measured velocity, so that the curves lie on the surface
+    ranks = np.arange(len(speeds))
+    steps = max(1, SURFACE_ROWS // ranks[-1])
+    v = np.interp(np.linspace(0.0, ranks[-1], steps * ranks[-1] + 1), ranks, speeds)
     force = model.force_cN(x[np.newaxis, :], v[:, np.newaxis], stroke)
-    shades = [[style.velocity_colour(i / (v.size - 1))] * x.size for i in range(v.size)]
+    parts = (v - v[0]) / (v[-1] - v[0])
+    shades = [[(*style.velocity_colour(float(part)), 0.35)] * x.size for part in parts]
     grid_x, grid_v = np.meshgrid(x, v)
-    ax.plot_surface(grid_x, grid_v, force, facecolors=shades, rstride=1, cstride=1, shade=True, alpha=0.85)
+    look: Any = {"rstride": 1, "cstride": 1, "shade": False, "linewidth": 0.0}
+    ax.plot_surface(grid_x, grid_v, force, facecolors=shades, **look)
     for curve in model.of(stroke):
-        ax.plot(
-            x,
-            np.full_like(x, curve.velocity_mm_s),
-            curve.force_cN(x),
-            color=style.INK,
-            linewidth=1.2,
-            zorder=9,
-        )
+        velocity = curve.velocity_mm_s or 0.0
+        colour = style.velocity_colour((velocity - speeds[0]) / (speeds[-1] - speeds[0]))
+        ax.plot(x, np.full_like(x, velocity), curve.force_cN(x), color=colour, linewidth=2.0)
+    _surface_axes(ax)
+    title = f"{style.name_text(model.name)}, {Stroke(stroke)}"
+    style.set_titles(ax, title, simulated or model.provenance.simulated)
+    return ax
+
+
+def _surface_axes(ax: Any) -> None:
+    """Label three-dimensional axes and turn them so that the slow curves stand in front."""
+    from matplotlib.ticker import MaxNLocator
+
     ax.set(xlabel=style.DISPLACEMENT, ylabel=style.VELOCITY, zlabel=style.FORCE)
     ax.view_init(elev=28, azim=-58)
-    ax.set_box_aspect((1.25, 1.0, 0.8), zoom=0.92)
-    style.set_titles(
-        ax, f"{style.name_text(model.name)}, {Stroke(stroke)}", simulated or model.provenance.simulated
-    )
-    return ax
+    ax.set_box_aspect((1.3, 1.0, 0.85), zoom=1.08)
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.labelpad = 7.0
 
 
 @style.in_house_style

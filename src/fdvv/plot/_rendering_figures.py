@@ -41,13 +41,13 @@ def plot_rendering(
     if axes is None:
         fig = style.new_figure(4.2 * len(columns) + 0.4, 2.3 * len(rows) + 0.7)
         axes = fig.subplots(len(rows), len(columns), sharex=True, sharey=True, squeeze=False)
-    said = simulated or any(c.simulated for c in curves)
+    methods = _methods(curves)
     for i, velocity in enumerate(rows):
         for j, stroke in enumerate(columns):
-            _draw_cell(axes[i, j], cells.get((velocity, stroke)), _methods(curves), said)
+            _draw_cell(axes[i, j], cells.get((velocity, stroke)), methods, simulated)
             axes[i, j].set_xlabel(style.DISPLACEMENT if i == len(rows) - 1 else "")
             axes[i, j].set_ylabel(style.FORCE if j == 0 else "")
-    _grid_legend(axes, _methods(curves), title)
+    _grid_legend(axes, methods, title)
     return axes
 
 
@@ -70,16 +70,17 @@ def _draw_cell(ax: Axes, curve: RenderedCurve | None, methods: dict[str, str], s
         ax.fill_between(x, band.low_cN, band.high_cN, color=colour, alpha=0.22, linewidth=0.0)
         ax.plot(x, band.mean_cN, color=colour, linewidth=1.5)
     ax.plot(x, curve.target_cN, color=TARGET, linestyle=(0, (1, 1.2)), linewidth=1.8)
-    style.set_titles(ax, f"{curve.stroke}, {style.velocity_text(curve.velocity_mm_s)}", simulated)
+    title = f"{curve.stroke}, {style.velocity_text(curve.velocity_mm_s)}"
+    style.set_titles(ax, title, simulated or curve.simulated)
 
 
 def _grid_legend(axes: Any, methods: dict[str, str], title: str) -> None:
-    """Name target and methods once for the whole grid, above it."""
+    """Name target and methods once for the whole grid, below it."""
     handles = [style.handle("target", color=TARGET, linestyle=(0, (1, 1.2)), linewidth=1.8)]
     handles += [style.handle(style.name_text(name), color=colour) for name, colour in methods.items()]
     labels = [str(item.get_label()) for item in handles]
     fig = axes[0, 0].figure
-    fig.legend(handles, labels, loc="outside upper right", ncols=len(handles))
+    fig.legend(handles, labels, loc="outside lower center", ncols=min(len(handles), 3 * axes.shape[1]))
     if title:
         fig.suptitle(style.name_text(title), x=0.01, ha="left", fontweight="bold")
 

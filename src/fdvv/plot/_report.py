@@ -15,6 +15,9 @@ from fdvv.plot._svg import prefix_ids
 _NUMBER = re.compile(r"[+\-−]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?\s?(%|[A-Za-zµ/²]{1,6})?")
 """A cell that reads as a number, with a unit or not, is set to the right."""
 
+_NOTHING = {"", "-", "–", "—"}
+"""What a cell says where there is no number."""
+
 
 @dataclass(frozen=True)
 class Table:
@@ -111,14 +114,18 @@ def _section(section: Section, number: int) -> str:
 def _table(table: Table) -> str:
     """Write one table in a box that scrolls sideways where the page is narrow."""
     caption = f"<caption>{escape(table.caption)}</caption>\n" if table.caption else ""
-    numeric = [
-        all(_NUMBER.fullmatch(row[i].strip()) for row in table.rows) for i in range(len(table.columns))
-    ]
-    kinds = [' class="number"' if column and table.rows else "" for column in numeric]
+    columns = list(zip(*table.rows, strict=True)) or [()] * len(table.columns)
+    kinds = [' class="number"' if _is_numeric(column) else "" for column in columns]
     heads = "".join(f'<th scope="col"{k}>{escape(c)}</th>' for c, k in zip(table.columns, kinds, strict=True))
     rows = "".join(f"<tr>{_cells(row, kinds)}</tr>\n" for row in table.rows)
     inner = f"<table>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>"
     return f'<div class="wide" tabindex="0">\n{inner}\n</div>\n'
+
+
+def _is_numeric(column: Sequence[str]) -> bool:
+    """Tell whether a column holds numbers and nothing else."""
+    said = [text.strip() for text in column if text.strip() not in _NOTHING]
+    return bool(said) and all(_NUMBER.fullmatch(text) for text in said)
 
 
 def _cells(row: tuple[str, ...], kinds: Sequence[str]) -> str:
@@ -174,7 +181,7 @@ caption { text-align: left; color: var(--quiet); padding-bottom: 0.4rem; }
 th, td { padding: 0.3rem 0.8rem 0.3rem 0.4rem; text-align: left; vertical-align: top; min-width: 4rem;
   border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 2px solid var(--quiet); }
-tbody th { font-weight: 500; }
+tbody th { font-weight: 500; min-width: 8rem; }
 tbody tr:nth-child(even) { background: var(--stripe); }
 .number { text-align: right; }
 footer { margin-top: 3rem; border-top: 1px solid var(--line); color: var(--quiet); font-size: 0.85rem; }

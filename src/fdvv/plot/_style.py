@@ -34,7 +34,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#0
 
 LINE = {Stroke.PRESS: "-", Stroke.RELEASE: "--"}
 
-LONGEST_NAME = 48
+LONGEST_NAME = 36
 """Names come from foreign files; a longer one would push the axes off the page."""
 
 STYLE: Any = {

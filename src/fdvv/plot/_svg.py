@@ -8,8 +8,11 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from fdvv.errors import ModelError
 from fdvv.plot._style import house_style
 
 if TYPE_CHECKING:
@@ -27,23 +30,34 @@ def _saving() -> Iterator[None]:
         yield
 
 
-def figure_svg(fig: Figure, description: str = "") -> str:
+def figure_of(drawn: Any) -> Figure:
+    """Give the figure of what a plot function gave: axes, several axes, or a figure itself."""
+    while isinstance(drawn, (tuple, np.ndarray)):
+        drawn = drawn[0]
+    fig: Figure | None = drawn.get_figure(root=True)
+    if fig is None:
+        raise ModelError("these axes were taken off their figure")
+    return fig
+
+
+def figure_svg(drawn: Any, description: str = "") -> str:
     """Draw a figure as one `<svg>` element that can stand in a page or in a file.
 
+    drawn : a figure, or what a plot function gave.
     description : what the figure shows, for those who cannot see it; by default its titles.
     The element holds no date, no comment, no document-wide style and no address outside itself; the same
     figure gives the same text.
     """
-    stream = io.StringIO()
+    fig, stream = figure_of(drawn), io.StringIO()
     nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
     with _saving():
         fig.savefig(stream, format="svg", metadata=nothing)
     return _standalone(stream.getvalue(), description or _titles(fig))
 
 
-def figure_png(fig: Figure, dpi: float = 110.0) -> bytes:
-    """Draw a figure as PNG bytes without date or program name."""
-    stream = io.BytesIO()
+def figure_png(drawn: Any, dpi: float = 110.0) -> bytes:
+    """Draw a figure, or what a plot function gave, as PNG bytes without date or program name."""
+    fig, stream = figure_of(drawn), io.BytesIO()
     with _saving():
         fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None})
     return stream.getvalue()
@@ -51,10 +65,13 @@ def figure_png(fig: Figure, dpi: float = 110.0) -> bytes:
 
 def prefix_ids(svg: str, prefix: str) -> str:
     """Rename every id of an svg element and every use of one, so that two figures cannot mix theirs up."""
-    svg = re.sub(r'(\sid=")([^"]+")', rf"\g<1>{prefix}\g<2>", svg)
-    svg = re.sub(r'(\s(?:xlink:)?href="#)', rf"\g<1>{prefix}", svg)
-    svg = re.sub(r'(\saria-labelledby=")', rf"\g<1>{prefix}", svg)
-    return re.sub(r"(url\(#)", rf"\g<1>{prefix}", svg)
+    return re.sub(r"<[^>]+>", lambda tag: _prefix_tag(tag[0], prefix), svg)
+
+
+def _prefix_tag(tag: str, prefix: str) -> str:
+    """Rename ids and their uses within one tag; text between tags may look like either and is let be."""
+    tag = re.sub(r'(\s(?:id|aria-labelledby)=")', rf"\g<1>{prefix}", tag)
+    return re.sub(r'(\s(?:xlink:)?href="#|url\(#)', rf"\g<1>{prefix}", tag)
 
 
 def _titles(fig: Figure) -> str:
@@ -71,4 +88,6 @@ def _standalone(document: str, description: str) -> str:
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>\s*", "", svg, count=1, flags=re.DOTALL)
     look = 'stroke-linejoin="round" stroke-linecap="butt" role="img" aria-labelledby="title"'
     opening, rest = svg.split(">", 1)
-    return f'{opening} {look}>\n <title id="title">{escape(description)}</title>{rest}\n'
+    # XML has no place for control characters
+    spoken = escape("".join(c if c.isprintable() else " " for c in description))
+    return f'{opening} {look}>\n <title id="title">{spoken}</title>{rest}\n'
