@@ -1,12 +1,13 @@
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import BSpline, PchipInterpolator
 
 from fdvv.errors import ModelError
 from fdvv.model import FDVVModel, ForceCurve, Interpolation, Stroke, load_builtin
@@ -15,6 +16,7 @@ from fdvv.model._bspline import uniform_knots
 ROOT = Path(__file__).parents[2]
 CLEAR = load_builtin("mx-clear")
 SPEEDS_mm_s = CLEAR.velocities_mm_s("press")
+SHARED_FIRST = BSpline(CLEAR.curves[0].knots_mm, CLEAR.curves[0].control_points_cN, 3)
 X_mm = np.linspace(-0.5, 4.5, 401)
 
 
@@ -157,3 +159,17 @@ def test_the_documented_table_is_what_the_benchmark_prints() -> None:
     printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=50).stdout
     assert "pchip" in printed
     assert printed.strip() in (ROOT / "docs" / "explanation" / "velocity.md").read_text()
+
+
+@pytest.mark.parametrize("method", Interpolation)
+def test_curves_on_knots_of_their_own_blend_as_curves_on_shared_knots(method: Interpolation) -> None:
+    shared = with_method(method)
+    # a knot inserted into one curve changes its numbers but not its course
+    first = SHARED_FIRST.insert_knot(1.0)
+    own = ForceCurve(Stroke.PRESS, 0.5, 3, first.t, first.c[: first.t.size - 4])
+    apart = replace(shared, curves=(own, *shared.curves[1:]))
+    v = np.array([0.5, 20.0, 75.0, 260.0])[:, np.newaxis]
+    for ask in ("force_cN", "stiffness_cN_mm", "damping_cN_s_mm"):
+        np.testing.assert_allclose(
+            getattr(apart, ask)(X_mm, v), getattr(shared, ask)(X_mm, v), rtol=0, atol=1e-10
+        )

@@ -58,13 +58,13 @@ def blend(
         )
     v = _speeds(curves)
     at = _locate(v, velocity_mm_s)
-    force = np.stack([c.force_cN(displacement_mm) for c in curves])
-    y = np.stack([c.stiffness_cN_mm(displacement_mm) for c in curves]) if derivative else force
+    y = _evaluate(curves, displacement_mm, derivative)
     if method is Interpolation.NEAREST:
         return _take(y, at.lower + (at.part > 0.5))
     low, high = _take(y, at.lower), _take(y, at.lower + 1)
     if method is Interpolation.LINEAR or len(curves) == 2:
         return np.asarray((1 - at.part) * low + at.part * high)
+    force = _evaluate(curves, displacement_mm) if derivative else y
     m = _slopes(v, force, y)
     s = at.part
     bend = s * (1 - s) * at.h * ((1 - s) * _take(m, at.lower) - s * _take(m, at.lower + 1))
@@ -86,7 +86,7 @@ def blend_slope(
         return np.zeros(displacement_mm.shape)
     v = _speeds(curves)
     at = _locate(v, velocity_mm_s)
-    y = np.stack([c.force_cN(displacement_mm) for c in curves])
+    y = _evaluate(curves, displacement_mm)
     secant = (_take(y, at.lower + 1) - _take(y, at.lower)) / at.h
     if method is Interpolation.PCHIP and len(curves) > 2:
         m = _slopes(v, y, y)
@@ -97,6 +97,19 @@ def blend_slope(
 
 def _speeds(curves: Sequence[ForceCurve]) -> FloatArray:
     return np.array([c.velocity_mm_s for c in curves], dtype=np.float64)
+
+
+def _evaluate(curves: Sequence[ForceCurve], x: FloatArray, derivative: int = 0) -> FloatArray:
+    """Evaluate every curve at x, (n, ...); curves that share their knots go through the basis once."""
+    k, t = curves[0].degree, curves[0].knots_mm
+    if any(c.degree != k or not np.array_equal(c.knots_mm, t) for c in curves):
+        return np.stack([c.stiffness_cN_mm(x) if derivative else c.force_cN(x) for c in curves])
+    from scipy.interpolate import BSpline
+
+    inside = np.clip(x, t[0], t[-1])
+    together = BSpline(t, np.stack([c.control_points_cN for c in curves], axis=-1), k)
+    y = np.ascontiguousarray(np.moveaxis(together(inside, nu=derivative), -1, 0))
+    return np.where(inside == x, y, 0.0) if derivative else y
 
 
 def _locate(v: FloatArray, wanted: FloatArray) -> _Place:
