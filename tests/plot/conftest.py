@@ -57,7 +57,7 @@ FIGURES: dict[str, Draw] = {
     "vibration": lambda model, measured, fits, said: plot_vibration(model, simulated=said),
     "fit": lambda model, measured, fits, said: plot_fit(measured, fits, simulated=said),
     "scan": lambda model, measured, fits, said: plot_scan(_SCORES, simulated=said),
-    "rendering": lambda model, measured, fits, said: plot_rendering(_rendered(model), simulated=said),
+    "rendering": lambda model, measured, fits, said: plot_rendering(_rendered(model)[::2], simulated=said),
     "convergence": lambda model, measured, fits, said: plot_convergence(_histories(), simulated=said),
 }
 

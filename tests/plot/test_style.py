@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 from typing import Any
@@ -41,7 +42,10 @@ def test_another_process_with_other_hashes_gives_the_same_bytes(gallery: Any) ->
         "sys.stdout.buffer.write(figure_svg(plot_vibration(load_builtin('mx-clear'))).encode())"
     )
     other = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=True, env={"PYTHONHASHSEED": "7"}
+        [sys.executable, "-c", code],
+        capture_output=True,
+        check=True,
+        env=os.environ | {"PYTHONHASHSEED": "7"},
     )
     assert other.stdout.decode() == gallery.svg("vibration")
 

@@ -34,10 +34,11 @@ def figure_of(drawn: Any) -> Figure:
     """Give the figure of what a plot function gave: axes, several axes, or a figure itself."""
     while isinstance(drawn, (tuple, np.ndarray)):
         drawn = drawn[0]
-    fig: Figure | None = drawn.get_figure(root=True)
-    if fig is None:
+    if drawn.figure is None:
         raise ModelError("these axes were taken off their figure")
-    return fig
+    # axes may sit in a part of a figure, which knows the whole
+    whole: Figure = drawn.figure.figure
+    return whole
 
 
 def figure_svg(drawn: Any, description: str = "") -> str:
