@@ -146,4 +146,5 @@ def test_the_energy_of_a_press_is_accounted_for(tactile: ForceSurface) -> None:
     down = trace.t_s < gesture.onset_s + gesture.press_s
     work_J = np.sum(trace.force_cN[down][1:] / 100 * np.diff(trace.displacement_mm[down]) / 1000)
     assert work_J > 1e-3
+    assert trace.energy_J is not None
     assert np.abs(trace.energy_J).max() < 1e-4 * work_J
