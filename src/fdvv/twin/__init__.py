@@ -4,6 +4,7 @@ from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, plan, vary
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace
+from fdvv.twin._reference import ReferenceTrace, reference_simulate
 from fdvv.twin._rig import Coil, Controller, ForceSensor, Mover, PositionSensor, Rig, Stops
 from fdvv.twin._simulate import Trace, simulate
 from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
@@ -20,6 +21,7 @@ __all__ = [
     "Noise",
     "PositionSensor",
     "Pulp",
+    "ReferenceTrace",
     "Rig",
     "Stops",
     "Trace",
@@ -29,6 +31,7 @@ __all__ = [
     "load_rig",
     "mean_speed_mm_s",
     "plan",
+    "reference_simulate",
     "rig_to_toml",
     "silence",
     "simulate",

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, fields, replace
 from fdvv.errors import ModelError
 from fdvv.twin._quantity import check, quantity
 
+H_H = "Hajian & Howe 1997, recalled"
+P_H = "Pawluk & Howe 1999, values assumed"
+
 
 @dataclass(frozen=True)
 class Impedance:
@@ -15,9 +18,9 @@ class Impedance:
     Ranges after Hajian and Howe (1997) as recalled; one mass is known to be too little from 50 to 500 Hz.
     """
 
-    mass_kg: float = quantity(0.007, "effective mass at the tip", "kg", (0.0035, 0.0087), (5e-4, 0.2), "H&H")
-    stiffness_N_m: float = quantity(450.0, "stiffness", "N/m", (255.0, 1255.0), (0.0, 5000.0), "H&H")
-    damping_N_s_m: float = quantity(4.5, "damping", "N s/m", (4.0, 7.4), (0.0, 100.0), "H&H")
+    mass_kg: float = quantity(0.007, "effective mass at the tip", "kg", (0.0035, 0.0087), (5e-4, 0.2), H_H)
+    stiffness_N_m: float = quantity(450.0, "stiffness", "N/m", (255.0, 1255.0), (0.0, 5000.0), H_H)
+    damping_N_s_m: float = quantity(4.5, "damping", "N s/m", (4.0, 7.4), (0.0, 100.0), H_H)
 
     def __post_init__(self) -> None:
         check(self)
@@ -30,8 +33,8 @@ class Pulp:
     Exponential with relaxation after Pawluk and Howe; the split between the arms is assumed.
     """
 
-    scale_N: float = quantity(0.12, "force scale a", "N", (0.08, 0.15), (0.001, 5.0), "P&H, assumed")
-    exponent_1_m: float = quantity(3000.0, "exponent beta", "1/m", (2000.0, 4000.0), (10.0, 2e4), "P&H")
+    scale_N: float = quantity(0.12, "force scale a", "N", (0.08, 0.15), (0.001, 5.0), P_H)
+    exponent_1_m: float = quantity(3000.0, "exponent beta", "1/m", (2000.0, 4000.0), (10.0, 2e4), P_H)
     relaxed_ratio: float = quantity(
         0.3, "part that stays when relaxed", "", (0.2, 0.4), (0.01, 1.0), "assumed"
     )
@@ -41,6 +44,7 @@ class Pulp:
     fast_s: float = quantity(
         0.004, "time constant of the fast arm", "s", (0.003, 0.005), (1e-4, 1.0), "assumed"
     )
+    slow_s: float = quantity(0.1, "time constant of the slow arm", "s", (0.08, 0.15), (1e-3, 10.0), "assumed")
     strap_N: float = quantity(
         0.2,
         "squeeze by the strap of the force sensor, nulled in its reading",
@@ -49,7 +53,6 @@ class Pulp:
         (0.0, 5.0),
         "assumed",
     )
-    slow_s: float = quantity(0.1, "time constant of the slow arm", "s", (0.08, 0.15), (1e-3, 10.0), "assumed")
 
     def __post_init__(self) -> None:
         check(self)
@@ -61,7 +64,7 @@ class Habit:
 
     lift_m: float = quantity(
         0.0,
-        "height of the referent above the cap before a press; 0 rests on it",
+        "height of the referent above the cap before a press, 0: resting",
         "m",
         (0.0, 0.008),
         (0.0, 0.03),

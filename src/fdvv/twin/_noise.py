@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -74,11 +75,9 @@ def lsb_of(span: float, bits: int) -> float:
 
 def _effort(habit: Habit, n: int, tick_s: float, random: np.random.Generator) -> FloatArray:
     """Make muscle noise of one pole plus a tremor of random phase, (n,)."""
-    from scipy.signal import lfilter
-
     keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * tick_s))
-    white = random.standard_normal(n) * np.sqrt(1 - keep**2)
-    white[0] /= np.sqrt(1 - keep**2)
-    slow = np.asarray(lfilter([1.0], [1.0, -keep], white))
+    white = random.standard_normal(n)
+    white[1:] *= np.sqrt(1 - keep**2)
+    slow = np.array(list(accumulate(white.tolist(), lambda past, fresh: keep * past + fresh)))
     phase = 2 * np.pi * (habit.tremor_Hz * tick_s * np.arange(n) + random.random())
     return np.asarray(habit.effort_noise_ratio * slow + habit.tremor_ratio * np.sin(phase))

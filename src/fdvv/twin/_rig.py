@@ -124,7 +124,7 @@ class ForceSensor:
     mass_kg: float = quantity(0.002, "cone and plunger", "kg", (0.001, 0.003), (2e-4, 0.1), "assumed")
     contact_stiffness_N_m: float = quantity(8e4, "cone on cap", "N/m", (2e4, 2e5), (1e3, 5e5), "assumed")
     contact_loss_s_m: float = quantity(
-        1.5, "alpha of that contact", "s/m", (0.2, 6.0), (0.0, 50.0), "assumed"
+        6.0, "alpha of that contact", "s/m", (0.2, 10.0), (0.0, 50.0), "assumed"
     )
     filter_s: float = quantity(
         3.33e-4, "RC of 333 ohm and 1 uF, 478 Hz", "s", (3.2e-4, 3.4e-4), (2e-5, 0.1), "paper"
@@ -165,7 +165,12 @@ class Controller:
         3, "samples a speed needs; the window widens backwards to hold them", "", (3, 5), (2, 64), "paper"
     )
     velocity_scale: float = quantity(
-        1.0, "mean speed of a stroke per speed found in the window", "", (0.7, 1.5), (0.1, 10.0), "assumed"
+        1.2,
+        "mean speed of a stroke per speed found in the window; 1 is the paper's word",
+        "",
+        (0.7, 1.5),
+        (0.1, 10.0),
+        "rule",
     )
     reversal_m: float = quantity(
         1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (1e-6, 0.01), "assumed"

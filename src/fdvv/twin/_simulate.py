@@ -38,7 +38,7 @@ class Trace:
     tick : rows at which the controller ran.
     current_A : in the coil.
     finger_mm : of the finger.
-    energy_J : energy that the balance cannot account for; 0 for exact integration.
+    energy_J : energy that the balance cannot account for, 0 if integration were exact; None if not asked.
     """
 
     t_s: FloatArray
@@ -53,10 +53,10 @@ class Trace:
     tick: BoolArray
     current_A: FloatArray
     finger_mm: FloatArray
-    energy_J: FloatArray
+    energy_J: FloatArray | None
 
     @classmethod
-    def of_rows(cls, rows: FloatArray) -> Trace:
+    def of_rows(cls, rows: FloatArray, audit: bool = False) -> Trace:
         """Convert the kernel's rows to record units."""
         t, x, v, force, sensed, felt, command, saturated, release, tick, amps, finger, energy = rows.T.copy()
         return cls(
@@ -72,7 +72,7 @@ class Trace:
             tick > 0.5,
             amps,
             mm_from_m(finger),
-            energy,
+            energy if audit else None,
         )
 
     def press(self, velocity_mm_s: float) -> Press:
@@ -247,15 +247,24 @@ def simulate(
     noise: Noise,
     announced_mm_s: float,
     step_s: float = STEP_s,
+    audit: bool = False,
 ) -> Trace:
     """Simulate one press in compiled C.
 
     surface : the command table (cN), which the controller reads at the displacement it senses.
     travel_mm : where the bottom stop is set.
     announced_mm_s : the speed that the controller takes for granted until it has found its own.
+    audit : also account for the energy of the press.
 
-    Raises ModelError if durations of the rig are no multiples of the step. Safe to call from threads.
+    Raises ModelError if durations of the rig are no multiples of the step, or if rig or finger are too
+    stiff for it. Safe to call from threads.
     """
     plant = plant_of(rig, finger, gesture, surface, travel_mm, announced_mm_s)
-    grid = grid_of(rig, gesture, surface, step_s)
-    return Trace.of_rows(run(replace(plant, step_s=step_s), grid, inputs_of(surface, noise)))
+    grid = replace(grid_of(rig, gesture, surface, step_s), audit=int(audit))
+    rows = run(replace(plant, step_s=step_s), grid, inputs_of(surface, noise))
+    if not np.isfinite(rows[-1]).all():
+        raise ModelError(
+            f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "
+            "raise the lightest mass or lower the largest stiffness, damping or loss"
+        )
+    return Trace.of_rows(rows, audit)

@@ -70,7 +70,7 @@ def _load(path: Path, kind: type[Record]) -> Record:
             raise _unknown(path, name, list(sections), "section")
     parts = {name: _section(path, name, sections[name], data.get(name, {})) for name in sections}
     try:
-        return kind(**parts)
+        return cast("type[Any]", kind)(**parts)  # type: ignore[no-any-return]
     except ModelError as error:
         raise InputError(path, "whole file", str(error), "change one of the two") from error
 

@@ -1,0 +1,128 @@
+"""Rigs and fingers as files."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import fdvv.twin
+from fdvv.errors import InputError, ModelError
+from fdvv.twin import Controller, Finger, Mover, Rig, finger_to_toml, load_finger, load_rig, rig_to_toml
+from fdvv.twin._quantity import about
+
+DEFAULT = Path(fdvv.twin.__file__).parent / "rigs" / "default.toml"
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "rig.toml"
+    path.write_text(text)
+    return path
+
+
+def test_the_shipped_rig_is_the_default_one_written_out() -> None:
+    assert DEFAULT.read_text() == rig_to_toml(Rig())
+    assert load_rig(DEFAULT) == Rig()
+
+
+def test_every_parameter_is_told_with_its_range_and_source() -> None:
+    for text in (rig_to_toml(Rig()), finger_to_toml(Finger())):
+        lines = [line for line in text.splitlines() if "=" in line.split("#")[0]]
+        assert len(lines) > 20
+        assert all(line.partition(" # ")[2].count(";") >= 2 for line in lines)
+
+
+def test_every_default_lies_in_its_plausible_range_and_that_within_the_bounds() -> None:
+    for record in (Rig(), Finger()):
+        for section in dataclasses.fields(record):
+            part = getattr(record, section.name)
+            for field in dataclasses.fields(part):
+                known = about(field)
+                if known.choices:
+                    continue
+                assert known.plausible is not None
+                low, high = known.plausible
+                assert known.bounds[0] <= low <= getattr(part, field.name) <= high <= known.bounds[1], (
+                    field.name
+                )
+
+
+def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
+    known = about(field)
+    if known.choices:
+        return st.sampled_from(known.choices)
+    low, high = known.plausible or known.bounds
+    return st.integers(int(low), int(high)) if field.type == "int" else st.floats(low, high)
+
+
+def sections(kind: type) -> st.SearchStrategy[Any]:
+    return st.builds(kind, **{field.name: values(field) for field in dataclasses.fields(kind)})
+
+
+@given(sections(Mover), st.sampled_from(["voltage", "current"]))
+def test_a_rig_comes_back_from_its_text_bit_for_bit(
+    tmp_path_factory: pytest.TempPathFactory, mover: Mover, drive: str
+) -> None:
+    rig = Rig(mover=mover, coil=dataclasses.replace(Rig().coil, drive=drive))
+    path = write(tmp_path_factory.mktemp("rig"), rig_to_toml(rig))
+    assert load_rig(path) == rig
+
+
+def test_a_finger_comes_back_from_its_text(tmp_path: Path) -> None:
+    finger = Finger(habit=dataclasses.replace(Finger().habit, lift_m=0.003, push_N=2.0))
+    assert load_finger(write(tmp_path, finger_to_toml(finger))) == finger
+
+
+def test_a_parameter_left_out_keeps_its_default(tmp_path: Path) -> None:
+    assert load_rig(write(tmp_path, "[mover]\nmass_kg = 0.012\n")) == Rig(mover=Mover(mass_kg=0.012))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "[mover]\nmass_kg = -0.02\n",
+            r"rig.toml: mover.mass_kg: mass_kg must be 0.0005 to 1 kg, got -0.02; .*0.012",
+        ),
+        ("[mover]\nmass_kg = nan\n", "mass_kg must be 0.0005 to 1 kg, got nan"),
+        ("[mover]\nmass_kg = 'heavy'\n", "mass_kg must be a number, got 'heavy'"),
+        ("[mover]\nmass_kg = true\n", "mass_kg must be a number, got True"),
+        ("[mover]\nmass = 0.02\n", 'mover.mass: unknown parameter; did you mean "mass_kg"?'),
+        ("[motor]\nmass_kg = 0.02\n", 'motor: unknown section; did you mean "mover"?'),
+        ("mover = 3\n", "mover: must be a section, got 3; write .mover. above its parameters"),
+        ("[coil]\ndrive = 'pneumatic'\n", 'drive must be "voltage" or "current", got \'pneumatic\''),
+        ("[coil]\ncommand_bits = 10.5\n", "command_bits must be a whole number, got 10.5"),
+        (
+            "[controller]\ncompute_s = 0.002\n",
+            "controller: .*compute_s must be below tick_s 0.001 s, got 0.002",
+        ),
+        ("[controller]\nwindow_end_m = 0.0004\n", "window_end_m must exceed window_start_m"),
+        ("[position_sensor]\nburst_s = 0.002\n", "burst_s must not exceed tick_s"),
+        ("[mover\n", "TOML: "),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_file_key_bound_and_remedy(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    with pytest.raises(InputError, match=message.replace("?", "[?]")) as caught:
+        load_rig(write(tmp_path, text))
+    assert "\n" not in str(caught.value)
+    assert caught.value.remedy
+
+
+def test_a_file_that_is_absent_or_no_text_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file"):
+        load_rig(tmp_path / "none.toml")
+    broken = tmp_path / "broken.toml"
+    broken.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="not UTF-8"):
+        load_rig(broken)
+
+
+def test_values_out_of_bounds_are_refused_in_code_too() -> None:
+    with pytest.raises(ModelError, match=r"Controller: tick_s must be 5e-05 to 0\.02 s, got 1"):
+        Controller(tick_s=1.0)
