@@ -40,6 +40,7 @@ class PerCurve:
 
     law: PaperLaw = field(default_factory=PaperLaw)
     patience: int = 10
+    whole_surface: bool = False
 
     @property
     def name(self) -> str:
@@ -71,10 +72,11 @@ class PerCurve:
         at = self._at(state)
         if at is None or state.in_a_row >= self.patience:
             return None
-        velocity = state.job.target.velocity_mm_s[at : at + 1]
-        press, release = (curve.command_cN[np.newaxis] for curve in state.pairs[at])
-        surface = ForceSurface(state.job.target.displacement_mm, velocity, press, release)
-        return Trial(surface, float(velocity[0]))
+        rows = range(len(state.pairs)) if self.whole_surface else [at]
+        tables = [np.stack([state.pairs[row][j].command_cN for row in rows]) for j in range(2)]
+        target = state.job.target
+        surface = ForceSurface(target.displacement_mm, target.velocity_mm_s[list(rows)], *tables)
+        return Trial(surface, float(target.velocity_mm_s[at]))
 
     def step(self, press: Press, state: JobState) -> JobState:
         """Learn both strokes from one press, or skip it with its reason."""
@@ -106,9 +108,11 @@ class PerCurve:
         )
 
     def _at(self, state: JobState) -> int | None:
-        """Find the velocity at work."""
-        open_pairs = (i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0]))
-        return next(open_pairs, None)
+        """Find the velocity at work: the first with presses to make, or the one with fewest made."""
+        left = [i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0])]
+        if not self.whole_surface:
+            return next(iter(left), None)
+        return min(left, key=lambda i: len(state.pairs[i][0].errors_cN), default=None)
 
     def _learn(self, press: Press, job: Job, pair: Pair) -> tuple[Pair, str]:
         """Step both curves; an unusable press gives them back as they were, and the reason."""
