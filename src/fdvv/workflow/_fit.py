@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fdvv.capture import Averaged, Cycle, ForceFile, average_cycles, find_force_files, read_force_file
+from fdvv.capture import Averaged, ForceFile, average_by_velocity, find_force_files, read_force_file
 from fdvv.errors import FdvvError, InputError
 from fdvv.model import (
     CurveFit,
@@ -124,18 +124,17 @@ def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
 
 def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> ModelFit:
     """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve."""
-    groups = [(v, average_cycles(replace(file, cycles=cycles))) for v, cycles in _by_velocity(file.cycles)]
+    groups = average_by_velocity(file)
     warnings = [*file.warnings]
-    for _, group in groups:
+    for group in groups:
+        warnings += group.warnings
         warnings += [f"{label} left out: {reason}" for label, reason in group.left_out]
-    zero, travel = _zero_and_travel([group for _, group in groups], warnings)
+    zero, travel = _zero_and_travel(groups, warnings)
+    strokes = [stroke for group in groups for stroke in (group.press, group.release) if stroke is not None]
     parts = []
-    for velocity, group in groups:
-        for stroke in (group.press, group.release):
-            if stroke is not None:
-                moved = active_part(stroke)
-                x = np.round(moved.displacement_mm - zero, DECIMALS_mm)
-                parts.append(MeasuredCurve(x, moved.force_cN, moved.stroke, velocity))
+    for part in map(active_part, strokes):
+        x = np.round(part.displacement_mm - zero, DECIMALS_mm)
+        parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
     parts.sort(key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
     fits = tuple(
         fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
@@ -145,21 +144,12 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
         name=file.name,
         travel_mm=travel,
         curves=tuple(fit.curve for fit in fits),
-        actuation_mm=_point([g.actuation_mm for _, g in groups], zero, travel, "actuation", warnings),
-        reset_mm=_point([g.reset_mm for _, g in groups], zero, travel, "reset", warnings),
+        actuation_mm=_point([g.actuation_mm for g in groups], zero, travel, "actuation", warnings),
+        reset_mm=_point([g.reset_mm for g in groups], zero, travel, "reset", warnings),
         provenance=Provenance(source=f"{source} ({file.format})", method=settings.describe()),
     )
     found = landmarks(model) if model.of(Stroke.PRESS) else None
     return ModelFit(model, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
-
-
-def _by_velocity(cycles: Sequence[Cycle]) -> list[tuple[float | None, tuple[Cycle, ...]]]:
-    """Group cycles by the velocity of their strokes, in the file's order."""
-    groups: dict[float | None, list[Cycle]] = {}
-    for cycle in cycles:
-        stroke = cycle.press or cycle.release
-        groups.setdefault(stroke.velocity_mm_s if stroke else None, []).append(cycle)
-    return [(velocity, tuple(members)) for velocity, members in groups.items()]
 
 
 def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
