@@ -25,9 +25,12 @@ def tool(name: str) -> ModuleType:
     return module
 
 
-def test_the_command_reference_is_that_of_the_commands() -> None:
-    page = (REPOSITORY / "docs" / "reference" / "cli.md").read_text()
-    assert page == tool("make_cli_reference").reference(), "run python tools/make_cli_reference.py"
+@pytest.mark.parametrize(
+    ("page", "name"), [("cli.md", "make_cli_reference"), ("rig.md", "make_rig_reference")]
+)
+def test_a_generated_reference_is_that_of_the_code(page: str, name: str) -> None:
+    text = (REPOSITORY / "docs" / "reference" / page).read_text()
+    assert text == tool(name).reference(), f"run python tools/{name}.py"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(REPOSITORY)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -221,13 +220,3 @@ def write(folder: Path, name: str, content: str | bytes) -> Path:
 def files() -> SimpleNamespace:
     """Every maker of files above, by its name."""
     return SimpleNamespace(**{name: value for name, value in globals().items() if not name.startswith("__")})
-
-
-@pytest.fixture(scope="session")
-def shared() -> Path:
-    """The folder of real measurements, or a skip."""
-    beside = Path(__file__).resolve().parents[3] / "shared"
-    folder = Path(os.environ.get("FDVV_SHARED", beside)) / "data"
-    if not folder.is_dir():
-        pytest.skip(f"no real measurements at {folder}")
-    return folder

@@ -84,14 +84,16 @@ def test_text_cells_are_left_out_with_their_place_and_number(files: Any, tmp_pat
     lines[10] = "--,0.2,0,Oak"
     lines[20] = "nan,0.4,0,Oak"
     file = read_force_file(files.write(tmp_path, "a.csv", "\n".join(lines)))
-    assert file.warnings == ("line 11, column 1: '--' is not a number; 2 such rows of 302 were left out",)
+    assert file.warnings == ("line 11, column 1: '--' is no usable number; 2 such rows of 302 were left out",)
 
 
 def test_text_in_a_spreadsheet_is_left_out_too(files: Any, tmp_path: Path) -> None:
     rows = files.raw_rows("A")
     rows[7][2] = "no data"
     file = read_force_file(files.write(tmp_path, "a.ods", files.ods(rows)))
-    assert file.warnings == ("row 8, column 3: 'no data' is not a number; 1 such rows of 302 were left out",)
+    assert file.warnings == (
+        "row 8, column 3: 'no data' is no usable number; 1 such rows of 302 were left out",
+    )
 
 
 def test_a_stage_that_wavers_keeps_every_sample_where_it_was(files: Any, tmp_path: Path) -> None:

@@ -71,11 +71,11 @@ DEFECTS = [
 
 
 @pytest.mark.parametrize("folder", FOLDERS)
-def test_every_file_is_read_or_refused_in_one_line(folder: str, shared: Path) -> None:
-    found = find_force_files(shared / folder)
+def test_every_file_is_read_or_refused_in_one_line(folder: str, shared_data: Path) -> None:
+    found = find_force_files(shared_data / folder)
     assert found
     for path in found:
-        key = path.relative_to(shared).as_posix()
+        key = path.relative_to(shared_data).as_posix()
         if key in REFUSED:
             with pytest.raises(InputError) as caught:
                 read_force_file(path)
@@ -88,28 +88,28 @@ def test_every_file_is_read_or_refused_in_one_line(folder: str, shared: Path) ->
 
 
 @pytest.mark.parametrize(("path", "told"), DEFECTS)
-def test_each_known_defect_is_told(path: str, told: str, shared: Path) -> None:
-    assert any(told in warning for warning in read_force_file(shared / path).warnings)
+def test_each_known_defect_is_told(path: str, told: str, shared_data: Path) -> None:
+    assert any(told in warning for warning in read_force_file(shared_data / path).warnings)
 
 
 @pytest.mark.parametrize("name", ["Jade", "Navy"])
-def test_click_bars_keep_their_drop_between_two_samples(name: str, shared: Path) -> None:
-    path = shared / TG / f"Kailh Box {name}__Kailh Box {name} Raw Data CSV.csv"
+def test_click_bars_keep_their_drop_between_two_samples(name: str, shared_data: Path) -> None:
+    path = shared_data / TG / f"Kailh Box {name}__Kailh Box {name} Raw Data CSV.csv"
     file = read_force_file(path)
     assert file.cycles[0].press is not None
     assert np.diff(file.cycles[0].press.force_cN).min() < -28.0
     assert not any("leaps" in warning or "stuck" in warning for warning in file.warnings)
 
 
-def test_a_clean_file_has_no_warning(shared: Path) -> None:
-    clear = shared / TG / "Cherry MX Clear__Cherry MX Clear Raw Data CSV.csv"
+def test_a_clean_file_has_no_warning(shared_data: Path) -> None:
+    clear = shared_data / TG / "Cherry MX Clear__Cherry MX Clear Raw Data CSV.csv"
     assert read_force_file(clear).warnings == ()
 
 
-def test_the_two_publications_of_one_measurement_agree(shared: Path) -> None:
+def test_the_two_publications_of_one_measurement_agree(shared_data: Path) -> None:
     # the strokes are the tidy run shifted so that contact is 0, the force first above 2 gf
-    tidy = read_force_file(shared / TG / "Cherry MX Clear__Cherry MX Clear Raw Data CSV.csv").cycles[0]
-    pair = read_force_file(shared / "tg-strokes/csv_output/Cherry MX Clear.upstroke.csv").cycles[0]
+    tidy = read_force_file(shared_data / TG / "Cherry MX Clear__Cherry MX Clear Raw Data CSV.csv").cycles[0]
+    pair = read_force_file(shared_data / "tg-strokes/csv_output/Cherry MX Clear.upstroke.csv").cycles[0]
     for stroke in ("press", "release"):
         one, other = getattr(tidy, stroke), getattr(pair, stroke)
         x = np.arange(0.5, 3.5, 0.01)
@@ -118,9 +118,9 @@ def test_the_two_publications_of_one_measurement_agree(shared: Path) -> None:
         assert np.median(np.abs(forces[0] - forces[1])) < 0.5
 
 
-def test_the_spreadsheet_and_its_parsed_table_are_the_same_measurement(shared: Path) -> None:
-    sheet = read_force_file(shared / "bluepylons/Cherry-MX-Red.ods").cycles[0]
-    table = read_force_file(shared / "bluepylons-parsed/Cherry-MX-Red.csv").cycles[0]
+def test_the_spreadsheet_and_its_parsed_table_are_the_same_measurement(shared_data: Path) -> None:
+    sheet = read_force_file(shared_data / "bluepylons/Cherry-MX-Red.ods").cycles[0]
+    table = read_force_file(shared_data / "bluepylons-parsed/Cherry-MX-Red.csv").cycles[0]
     assert (sheet.actuation_mm, sheet.reset_mm) == (table.actuation_mm, table.reset_mm) == (1.805, 1.76)
     assert sheet.press is not None
     assert table.press is not None
@@ -138,24 +138,24 @@ def test_the_spreadsheet_and_its_parsed_table_are_the_same_measurement(shared: P
     ],
 )
 def test_repeats_are_averaged_when_they_are_one_population(
-    name: str, left_out: dict[str, str], shared: Path
+    name: str, left_out: dict[str, str], shared_data: Path
 ) -> None:
-    averaged = average_cycles(read_force_file(shared / f"haata/{name}.csv"))
+    averaged = average_cycles(read_force_file(shared_data / f"haata/{name}.csv"))
     assert averaged.warnings == ()
     assert {label for label, _ in averaged.left_out} == set(left_out)
     assert all(left_out[label] in reason for label, reason in averaged.left_out)
     assert len(averaged.used) + len(left_out) == 4
 
 
-def test_different_buttons_in_one_sheet_are_not_averaged(shared: Path) -> None:
-    averaged = average_cycles(read_force_file(shared / "bluepylons/Gateron-Yellow-leaf-vs-no-leaf.ods"))
+def test_different_buttons_in_one_sheet_are_not_averaged(shared_data: Path) -> None:
+    averaged = average_cycles(read_force_file(shared_data / "bluepylons/Gateron-Yellow-leaf-vs-no-leaf.ods"))
     assert averaged.used == ("(with leaf)",)
     assert averaged.warnings[0].startswith("mixed populations")
 
 
-def test_a_rebuilt_release_agrees_with_every_release_point(shared: Path) -> None:
+def test_a_rebuilt_release_agrees_with_every_release_point(shared_data: Path) -> None:
     # the point's force must be found where the point says, on data that did not have to agree
-    for path in find_force_files(shared / "geekboards"):
+    for path in find_force_files(shared_data / "geekboards"):
         (cycle,) = read_force_file(path).cycles
         assert cycle.press is not None
         assert cycle.release is not None
@@ -165,8 +165,8 @@ def test_a_rebuilt_release_agrees_with_every_release_point(shared: Path) -> None
         assert deep == pytest.approx(step, abs=1e-9), path.name
 
 
-def test_the_published_figure_gives_ten_curves(shared: Path) -> None:
-    file = read_force_file(shared / "paper-figure/fdvv_figure_press.csv")
+def test_the_published_figure_gives_ten_curves(shared_data: Path) -> None:
+    file = read_force_file(shared_data / "paper-figure/fdvv_figure_press.csv")
     assert [c.press and c.press.velocity_mm_s for c in file.cycles] == [0.5, 50.0, 100.0, 150.0, 200.0]
     assert all(c.release is not None and c.release.force_cN.size == 81 for c in file.cycles)
     assert file.cycles[0].press is not None
@@ -175,8 +175,8 @@ def test_the_published_figure_gives_ten_curves(shared: Path) -> None:
     assert file.warnings == ()
 
 
-def test_reading_is_fast(shared: Path) -> None:
-    paths = find_force_files(shared / "tg-tidy")
+def test_reading_is_fast(shared_data: Path) -> None:
+    paths = find_force_files(shared_data / "tg-tidy")
     read_force_file(paths[0])
     took = []
     for path in paths[:15]:

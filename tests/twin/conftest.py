@@ -8,8 +8,8 @@ import pytest
 
 from fdvv.model import ForceSurface
 from fdvv.twin import Finger, Gesture, Rig, Trace, plan, silence
+from fdvv.twin._flatten import grid_of, inputs_of, plant_of
 from fdvv.twin._kernel import Grid, Inputs, Plant, run
-from fdvv.twin._simulate import grid_of, inputs_of, plant_of
 from fdvv.units import FloatArray
 
 
@@ -49,7 +49,7 @@ class Bench:
         rig, finger = Rig(), Finger()
         gesture = gesture or replace(plan(finger, 0.004, 0.1), start_m=-0.02, end_m=-0.02)
         plant = plant_of(rig, finger, gesture, surface, 4.0, 100.0)
-        grid = replace(grid_of(rig, gesture, surface), settle_ticks=0)
+        grid = replace(grid_of(rig, gesture, surface), settle_ticks=0, audit=1)
         return cls(surface, gesture, replace(plant, **changes), grid)
 
     def run(self) -> Trace:
@@ -62,7 +62,7 @@ class Bench:
             inputs.force_noise_N[:n],
             inputs.effort_ratio[: n + 1],
         )
-        return Trace.of_rows(run(self.plant, self.grid, cut))
+        return Trace.of_rows(run(self.plant, self.grid, cut), audit=True)
 
 
 FRICTIONLESS: dict[str, Any] = {"coulomb_N": 0.0, "viscous_N_s_m": 0.0}

@@ -11,7 +11,7 @@ import pytest
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface
 from fdvv.twin import Controller, Finger, Impedance, Rig, draw_noise, plan, silence, simulate
-from fdvv.twin._simulate import grid_of
+from fdvv.twin._flatten import grid_of
 from fdvv.units import FloatArray
 
 from .conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of
@@ -101,7 +101,7 @@ def test_the_speed_is_found_from_the_window_even_in_fast_presses(press_s: float)
     assert found[:first] == pytest.approx(60.0)
     used = np.flatnonzero((x[:first] >= 0.5) & (x[:first] <= 1.0))
     used = used if used.size >= 3 else np.arange(first - 2, first + 1)
-    slope = np.polyfit(t[used], x[used], 1)[0]
+    slope = rig.controller.velocity_scale * np.polyfit(t[used], x[used], 1)[0]
     assert found[first:] == pytest.approx(np.clip(slope, 20, 400), rel=1e-6)
 
 

@@ -57,6 +57,20 @@ def test_the_pace_found_gives_the_speed_asked_for(tactile: ForceSurface, speed: 
     assert mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0) == pytest.approx(speed, rel=0.006)
 
 
+def test_a_cap_that_sinks_under_the_resting_finger_is_still_pressed_at_the_asked_pace() -> None:
+    # 20 cN hold neither the mover nor the finger's 10 cN: the cap rests against a spring of 80 cN/mm
+    rig, finger = Rig(), replace(Finger(), habit=Finger().habit.still())
+    x = np.linspace(0.0, 4.0, 81)
+    weak = np.minimum(20 + 80 * x, 60.0)[np.newaxis]
+    surface = ForceSurface(x, np.array([100.0]), weak, weak)
+    press_s = solve_pace(rig, finger, surface, 4.0, 100.0)
+    gesture = plan(finger, 0.004, press_s)
+    trace = simulate(rig, finger, gesture, surface, 4.0, silence(rig, gesture), 100.0)
+    assert trace.displacement_mm[0] > 0.1
+    assert mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0) == pytest.approx(100.0, rel=0.006)
+    assert np.gradient(trace.displacement_mm, trace.t_s).max() < 250.0
+
+
 def test_the_mean_speed_runs_from_a_tenth_of_a_millimetre_to_the_stop() -> None:
     t = np.linspace(0.0, 1.0, 1001)
     x = np.interp(t, [0.0, 0.3, 0.35, 0.75, 1.0], [-0.1, 0.09, 0.09, 4.2, 0.0])

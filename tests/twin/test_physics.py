@@ -49,7 +49,6 @@ def test_a_shorted_coil_brakes_a_falling_cap_to_its_terminal_velocity() -> None:
 
 
 def test_friction_is_full_well_above_its_smoothing_speed() -> None:
-    """A cap that slides at terminal velocity against Coulomb friction alone has lost exactly m g."""
     bench = Bench.of(flat(0.0), viscous_N_s_m=0.0, force_constant_N_A=0.0, coulomb_N=0.1, travel_m=0.5)
     trace, m = bench.run(), bench.plant
     late = trace.t_s > 0.1
@@ -146,4 +145,5 @@ def test_the_energy_of_a_press_is_accounted_for(tactile: ForceSurface) -> None:
     down = trace.t_s < gesture.onset_s + gesture.press_s
     work_J = np.sum(trace.force_cN[down][1:] / 100 * np.diff(trace.displacement_mm[down]) / 1000)
     assert work_J > 1e-3
+    assert trace.energy_J is not None
     assert np.abs(trace.energy_J).max() < 1e-4 * work_J

@@ -33,7 +33,7 @@ def compare(
     slow = reference_simulate(rig, finger, gesture, surface, 4.0, noise, speed, method)
     fast = simulate(rig, finger, gesture, surface, 4.0, noise, speed)
     assert fast.t_s == pytest.approx(slow.t_s, abs=1e-12)
-    # nine decades below a bound of 1 um and 0.1 cN: kinks of the contact are what is left
+    # the bounds asked for are 1 um and 0.1 cN; kinks of a chattering contact are what is left
     assert rms(fast.displacement_mm - slow.displacement_mm) < 1e-5
     assert rms(fast.force_cN - slow.force_cN) < 0.05
     assert np.array_equal(fast.sensed_cN, slow.sensed_cN)

@@ -92,6 +92,7 @@ typedef struct {
     int64_t fewest_samples;  /* for a velocity, 2 to FDVV_TWIN_WINDOW */
     int64_t displacements;   /* of the table */
     int64_t velocities;      /* of the table */
+    int64_t audit;           /* 1: account for energy, an eighth slower */
 } fdvv_twin_grid;
 
 #define FDVV_TWIN_WINDOW 64
@@ -104,7 +105,7 @@ typedef struct {
  * effort_ratio (settle_ticks + ticks + 1,) modulates the finger's own force, linear between ticks.
  * rows (ticks * steps_per_tick / steps_per_row, FDVV_TWIN_COLUMNS), written: time s, cap m, cap m/s,
  * contact force N, sensed m, sensed N, commanded N, saturated 0/1, release 0/1, tick 0/1, current A,
- * finger m, energy unaccounted for J.
+ * finger m, energy unaccounted for J (0 without audit).
  * Returns 0, or 1 if a count or size is out of its bounds (nothing is written then).
  */
 int fdvv_twin_press(const fdvv_twin_model *model, const fdvv_twin_grid *grid, const double *speeds_m_s,

@@ -17,6 +17,7 @@ typedef struct {
     double effort;        /* modulation of the finger's force at the tick */
     double effort_per_s;  /* and its slope until the next */
     double tick_s;
+    int audit;            /* whether to integrate work and loss */
 } drive_input;
 
 /* what the controller remembers */
@@ -37,8 +38,9 @@ static double clamp(double value, double low, double high) {
 
 /* Hunt and Crossley: stiffness with a loss that grows with depth; never pulls. */
 static inline double contact(double stiffness, double loss, double depth, double rate) {
+    if (depth <= 0.0) return 0.0;
     double force = stiffness * depth * (1.0 + loss * rate);
-    return depth > 0.0 && force > 0.0 ? force : 0.0;
+    return force > 0.0 ? force : 0.0;
 }
 
 static inline double elastic(double stiffness, double depth) { return depth > 0.0 ? stiffness * depth : 0.0; }
@@ -90,7 +92,7 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
     double arms = y[H1] + y[H2];
     double pulp = m->pulp_relaxed_ratio * (swelling - m->pulp_scale_N) + arms - m->strap_N;
 
-    double closing = y[VT] - y[VC], touch = contact_force(m, y);
+    double touch = contact_force(m, y);
     double deep = y[XC] - m->travel_m;
     double stop = contact(m->stop_stiffness_N_m, m->stop_loss_s_m, deep, y[VC]);
     double top = contact(m->top_stiffness_N_m, m->top_loss_s_m, -y[XC], -y[VC]);
@@ -110,9 +112,11 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
     dy[AMPS] = (volts - m->resistance_ohm * y[AMPS] + kt * y[VC]) * in->coil_1_H;
     dy[LVDT] = m->lvdt_rad_s * (y[XC] - y[LVDT]);
     dy[SENSED] = (pulp - y[SENSED]) * in->rc_1_s;
+    dy[WORK] = dy[LOSS] = 0.0;
+    if (!in->audit) return;
     dy[WORK] = muscle * y[VF] + volts * y[AMPS];
     dy[LOSS] = m->resistance_ohm * y[AMPS] * y[AMPS] + rub * y[VC] + arms * squeeze_rate +
-               (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * closing +
+               (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
                (stop - elastic(m->stop_stiffness_N_m, deep)) * y[VC] -
                (top - elastic(m->top_stiffness_N_m, -y[XC])) * y[VC];
 }
@@ -150,21 +154,31 @@ static void advance(const fdvv_twin_model *m, const drive_input *in, double t, d
     rates(m, in, t, y, now);
     if (*fresh < 2) {
         runge_kutta(m, in, t, y, now);
+        memcpy(past[1], past[0], sizeof now);
+        memcpy(past[0], now, sizeof now);
         *fresh += 1;
-    } else {
-        for (int j = 0; j < STATES; j++) y[j] += h * (23.0 * now[j] - 16.0 * past[0][j] + 5.0 * past[1][j]);
+        return;
     }
-    memcpy(past[1], past[0], sizeof now);
-    memcpy(past[0], now, sizeof now);
+    int states = in->audit ? STATES : WORK; /* work and loss come last */
+    for (int j = 0; j < states; j++) {
+        y[j] += h * (23.0 * now[j] - 16.0 * past[0][j] + 5.0 * past[1][j]);
+        past[1][j] = past[0][j];
+        past[0][j] = now[j];
+    }
 }
 
 /* -- the controller -- */
 
-static double converter(double value, double lsb) { return lsb > 0.0 ? lsb * floor(value / lsb + 0.5) : value; }
+static double converter(double value, double lsb) {
+    if (lsb <= 0.0) return value;
+    double steps = value / lsb + 0.5, whole = (double)(int64_t)steps;
+    return lsb * (whole > steps ? whole - 1.0 : whole);
+}
 
+/* The scale bends as u - u^3 over half the range, by lvdt_linearity_m where it bends most. */
 static double read_position(const fdvv_twin_model *m, double lvdt_m, double noise_m) {
-    double bent = lvdt_m + m->lvdt_linearity_m * sin(6.283185307179586 * lvdt_m / m->lvdt_range_m);
-    return converter(bent + noise_m, m->lvdt_lsb_m);
+    double u = 2.0 * lvdt_m / m->lvdt_range_m, most = 2.598076211353316; /* 1 / max(u - u^3) */
+    return converter(lvdt_m + m->lvdt_linearity_m * most * u * (1.0 - u * u) + noise_m, m->lvdt_lsb_m);
 }
 
 /* The play of the sensor, then gain, range and converter. */
@@ -261,13 +275,13 @@ static int usable(const fdvv_twin_grid *g) {
 }
 
 static void write_row(const fdvv_twin_model *m, const controller *c, const double *y, double t, int tick,
-                      double energy_J, double *row) {
+                      int audit, double energy_J, double *row) {
     row[0] = t;
     row[1] = y[XC], row[2] = y[VC], row[3] = contact_force(m, y);
     row[4] = c->sensed_m, row[5] = c->sensed_N, row[6] = c->command_N;
     row[7] = c->saturated, row[8] = c->release, row[9] = tick;
     row[10] = y[AMPS], row[11] = y[XF];
-    row[12] = stored(m, y) - energy_J - y[WORK] + y[LOSS];
+    row[12] = audit ? stored(m, y) - energy_J - y[WORK] + y[LOSS] : 0.0;
 }
 
 static void start(const fdvv_twin_model *m, double *y, drive_input *in, controller *c) {
@@ -303,6 +317,7 @@ int fdvv_twin_press(const fdvv_twin_model *m, const fdvv_twin_grid *g, const dou
     controller c;
     drive_input in;
     start(m, y, &in, &c);
+    in.audit = g->audit != 0;
     memset(past, 0, sizeof past);
     energy_J = stored(m, y);
     raw_m = read_position(m, 0.0, 0.0);
@@ -320,7 +335,7 @@ int fdvv_twin_press(const fdvv_twin_model *m, const fdvv_twin_grid *g, const dou
             double t = in.tick_s + m->step_s * (double)s;
             if (s == g->delay_steps && in.drive != c.drive) in.drive = c.drive, fresh = 0;
             if (s == next_row) {
-                write_row(m, &c, y, t, s == 0, energy_J, rows);
+                write_row(m, &c, y, t, s == 0, in.audit, energy_J, rows);
                 rows += FDVV_TWIN_COLUMNS, next_row += g->steps_per_row;
             }
             advance(m, &in, t, y, past, &fresh);

@@ -1,19 +1,7 @@
-"""One curve from repeats, when they are repeats: the replicate gate and the mean.
+"""One curve from repeats, when they are repeats.
 
-Two cycles are of one population when, judged on the stroke that begins them (the press if both have it),
-
-- contact, where the force first carries 10 cN, lies within 0.05 mm;
-- the stop, where the force last passes half of the lesser of the two greatest forces, lies within
-  0.05 mm of contact + travel;
-- no stretch of the active travel of either stroke is missing (a jump of more than 0.5 mm);
-- both cover the same travel from contact on, to 90 %;
-- the median over the active travel of the difference in force, contacts aligned, is within
-  max(1 gf, 2 % of the typical force) for each stroke, typical being the median force over that travel.
-
-Levels of force are used, not the start of the stop: on rubber domes, whose stop is soft, its start
-wavers by 0.2 mm between repeats that otherwise agree to 0.02 mm. The population is the largest set of
-cycles that agree with one of them. It must be more than half of the cycles; otherwise the populations
-are mixed, and only the first cycle is used.
+The population is the largest set of cycles that agree with one of them (``_gate`` says when two do). It
+must be more than half of the cycles; otherwise the populations are mixed, and only the first is used.
 """
 
 from __future__ import annotations
@@ -23,16 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fdvv.capture._gate import STEP_mm, how_differs, shape_of
 from fdvv.capture._types import Cycle, ForceFile
 from fdvv.model import MeasuredCurve, Stroke
-from fdvv.units import FloatArray, GRAM_FORCE_cN
-
-PLACE_mm = 0.05
-FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
-FORCE_PART = 0.02
-GAP_mm = 0.5
-STEP_mm = 0.005
-CARRIED_cN = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,25 +36,6 @@ class Averaged:
     used: tuple[str, ...]
     left_out: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class _Shape:
-    """What the gate compares: strictly rising samples of each stroke, and the contact of the first."""
-
-    strokes: dict[Stroke, tuple[FloatArray, FloatArray]]
-    contact_mm: float
-    top_cN: float
-
-    def first(self) -> tuple[FloatArray, FloatArray]:
-        """Give the stroke that begins the cycle."""
-        return self.strokes.get(Stroke.PRESS) or self.strokes[Stroke.RELEASE]
-
-    def last_below_mm(self, level_cN: float) -> float:
-        """Give the deepest place where the force is below a level."""
-        x, force = self.first()
-        below = np.flatnonzero(force < level_cN)
-        return float(x[below[-1]]) if below.size else float(x[0])
 
 
 def average_cycles(file: ForceFile) -> Averaged:
@@ -132,8 +94,8 @@ def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:
     if len(named) == 1:
         cycle, label = named[0]
         return Averaged(cycle.press, cycle.release, cycle.actuation_mm, cycle.reset_mm, (label,))
-    shapes = [_shape(cycle) for cycle, _ in named]
-    reasons = [[_differs(a, b) for b in shapes] for a in shapes]
+    shapes = [shape_of(cycle) for cycle, _ in named]
+    reasons = [[how_differs(a, b) for b in shapes] for a in shapes]
     agreeing = [[i for i, reason in enumerate(row) if not reason] for row in reasons]
     centre = max(range(len(named)), key=lambda i: (len(agreeing[i]), -i))
     keep = agreeing[centre]
@@ -166,82 +128,11 @@ def _stroke(cycle: Cycle, stroke: Stroke) -> MeasuredCurve | None:
     return cycle.press if stroke is Stroke.PRESS else cycle.release
 
 
-def _shape(cycle: Cycle) -> _Shape:
-    strokes = {
-        stroke: curve.by_displacement()[:2]
-        for stroke in Stroke
-        if (curve := _stroke(cycle, stroke)) is not None
-    }
-    x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
-    top = float(force.max())
-    loaded = int(np.argmax(force >= min(CARRIED_cN, 0.5 * top)))
-    return _Shape(strokes, float(x[loaded]), top)
-
-
-def _differs(a: _Shape, b: _Shape) -> str:
-    """Say in which respect b is of another population than a; empty if it is of the same."""
-    if a is b:
-        return ""
-    if set(a.strokes) != set(b.strokes):
-        return "it does not hold the same strokes"
-    level = 0.5 * min(a.top_cN, b.top_cN)
-    stops = a.last_below_mm(level), b.last_below_mm(level)
-    contact = min(a.contact_mm, b.contact_mm)
-    gap = _gap(a, contact, stops[0]) or _gap(b, contact, stops[1])
-    if gap:
-        return gap
-    if abs(b.contact_mm - a.contact_mm) > PLACE_mm:
-        return f"contact is shifted by {b.contact_mm - a.contact_mm:+.2f} mm"
-    longer = (stops[1] - b.contact_mm) - (stops[0] - a.contact_mm)
-    if abs(longer) > PLACE_mm:
-        return f"the stop is shifted by {longer:+.2f} mm"
-    apart = next((told for stroke in a.strokes if (told := _extent_differs(stroke, a, b))), "")
-    if apart:
-        return apart
-    travel = min(stops[0] - a.contact_mm, stops[1] - b.contact_mm)
-    return next((told for stroke in a.strokes if (told := _force_differs(stroke, a, b, travel))), "")
-
-
-def _gap(shape: _Shape, contact_mm: float, stop_mm: float) -> str:
-    """Say how much of the active travel is missing in one jump; empty if none is."""
-    for stroke, (x, _) in shape.strokes.items():
-        missing = np.minimum(x[1:], stop_mm) - np.maximum(x[:-1], contact_mm)
-        widest = float(missing.max())
-        if widest > max(GAP_mm, 20.0 * float(np.median(np.diff(x)))):
-            return f"{widest:.1f} mm of the {stroke} are missing"
-    return ""
-
-
-def _extent_differs(stroke: Stroke, a: _Shape, b: _Shape) -> str:
-    """Say if two strokes, contacts aligned, do not cover the same travel; empty if they do to 90 %."""
-    ends = [
-        (max(s.strokes[stroke][0][0] - s.contact_mm, 0.0), s.strokes[stroke][0][-1] - s.contact_mm)
-        for s in (a, b)
-    ]
-    common = min(end for _, end in ends) - max(start for start, _ in ends)
-    if common < 0.9 * max(end - start for start, end in ends) or common <= 2.0 * STEP_mm:
-        return (
-            f"the {stroke} covers {ends[1][0]:.2f} to {ends[1][1]:.2f} mm from contact, not the same travel"
-        )
-    return ""
-
-
-def _force_differs(stroke: Stroke, a: _Shape, b: _Shape, travel_mm: float) -> str:
-    x = np.arange(0.0, max(travel_mm, STEP_mm), STEP_mm)
-    mine = np.interp(x + a.contact_mm, *a.strokes[stroke])
-    theirs = np.interp(x + b.contact_mm, *b.strokes[stroke])
-    off = float(np.median(np.abs(theirs - mine)))
-    limit = max(FORCE_LEAST_cN, FORCE_PART * float(np.median(np.abs(mine))))
-    if off > limit:
-        return f"force of the {stroke} differs by {off:.2f} cN (median), more than {limit:.2f}"
-    return ""
-
-
 def _mean(cycles: Sequence[Cycle], stroke: Stroke) -> MeasuredCurve | None:
     """Average one stroke over its common extent, cycles aligned at the median of their contacts."""
     if len(cycles) == 1:
         return _stroke(cycles[0], stroke)
-    contacts = [_shape(cycle).contact_mm for cycle in cycles]
+    contacts = [shape_of(cycle).contact_mm for cycle in cycles]
     home = float(np.median(contacts))
     curves = [_stroke(cycle, stroke) for cycle in cycles]
     lines = [

@@ -23,9 +23,7 @@ def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
     """Make the checked file of a reading; raises InputError if no stroke is left."""
     cycles: list[Cycle] = []
     for raw in reading.cycles:
-        cleaned = _clean(raw, notes)
-        if cleaned is not None:
-            cycles += [_cycle(part, notes) for part in split_run(cleaned, notes)]
+        cycles += [_cycle(part, notes) for part in split_run(_clean(raw, notes), notes)]
     cycles = [cycle for cycle in cycles if cycle.press or cycle.release]
     if not cycles:
         why = notes.sentences[-1] if notes.sentences else "the displacement never changes"
@@ -33,7 +31,7 @@ def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
     return ForceFile(reading.name, reading.format, tuple(cycles), notes.lines())
 
 
-def _clean(raw: RawCycle, notes: Notes) -> RawCycle | None:
+def _clean(raw: RawCycle, notes: Notes) -> RawCycle:
     """Take from each track what cannot be, before anything is measured on it."""
     return replace(
         raw,
@@ -66,10 +64,7 @@ def _long_enough(track: Track, notes: Notes) -> bool:
 
 def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
     """Repair both strokes of a split cycle and make it a record."""
-    if raw.press is not None and raw.release is not None:
-        raw = _repair.mend_slip(hand_over_turn(_orient_pair(raw, notes), notes), notes)
-    elif raw.press is not None or raw.release is not None:
-        raw = _orient_pair(raw, notes)
+    raw = _repair.mend_slip(hand_over_turn(_orient_pair(raw, notes), notes), notes)
     actuation = switching_mm(raw.press, Stroke.PRESS, notes)
     reset = switching_mm(raw.release, Stroke.RELEASE, notes)
     return Cycle(

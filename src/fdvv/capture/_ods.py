@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import LEAST_SAMPLES, refusal
+from fdvv.capture._text import LARGEST, LEAST_SAMPLES, refusal
 from fdvv.units import FloatArray, cN_from_gf
 
 LARGEST_CONTENT = 64 * 2**20
@@ -163,7 +163,7 @@ def _group(
     if bad:
         line, place, value = bad[0]
         notes.say(
-            f"row {line}, column {place}: {str(value)[:20]!r} is not a number; {len(bad)} such rows of "
+            f"row {line}, column {place}: {str(value)[:20]!r} is no usable number; {len(bad)} such rows of "
             f"{len(bad) + len(kept)} were left out"
         )
     if len(kept) < LEAST_SAMPLES:
@@ -173,7 +173,7 @@ def _group(
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and bool(np.isfinite(value))
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def _track(x_um: FloatArray, force_gf: FloatArray, closed: list[FloatArray]) -> Track:

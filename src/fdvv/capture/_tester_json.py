@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import LEAST_SAMPLES, refusal
+from fdvv.capture._text import LARGEST, LEAST_SAMPLES, refusal
 from fdvv.units import FloatArray, cN_from_gf
 
 POINTS = {"press": ("pressPoint", "press_point"), "release": ("releasePoint", "release_point")}
@@ -69,7 +69,9 @@ def _stroke(source: Path, record: Mapping[str, Any], side: str, notes: Notes) ->
     good = np.isfinite(force) & (np.isfinite(x) if x.size == force.size else True)
     if not good.all():
         first = int(np.flatnonzero(~good)[0])
-        notes.say(f"$.{side}_y[{first}]: not a number; {int((~good).sum())} samples of the {where} left out")
+        notes.say(
+            f"$.{side}_y[{first}]: no usable number; {int((~good).sum())} samples of the {where} left out"
+        )
         x, force = (x[good] if x.size == good.size else x), force[good]
     if force.size < LEAST_SAMPLES:
         raise refusal(source, f"$.{side}_y", f"only {force.size} samples")
@@ -87,10 +89,7 @@ def _numbers(source: Path, values: object, place: str) -> FloatArray:
 def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return np.nan
-    try:
-        return float(value) if np.isfinite(float(value)) else np.nan
-    except OverflowError:
-        return np.nan
+    return float(value) if abs(value) <= LARGEST else np.nan
 
 
 def _point(record: Mapping[str, Any], name: str, notes: Notes) -> tuple[float, float] | None:

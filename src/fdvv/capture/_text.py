@@ -26,6 +26,8 @@ BINARY = {
     b"\x89HDF": "an HDF5 file",
 }
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?\Z", re.ASCII)
+LARGEST = 1e12
+"""No column of a bench holds more, in any unit; what is larger is a fault and would overflow."""
 LEAST_SAMPLES = 4
 """Fewer samples than coefficients of a cubic are not a curve."""
 
@@ -87,8 +89,9 @@ class Table:
     def columns(self, picks: Sequence[int], notes: Notes, what: str = "") -> list[FloatArray]:
         """Read columns as numbers, one array per pick, all of one length.
 
-        Rows blank in every pick are padding. Rows in which a pick is not a finite number are left out
-        and told in notes. Raises InputError if fewer than half of the rows, or than four, remain.
+        Rows blank in every pick are padding. Rows in which a pick is no usable number (finite,
+        below 1e12) are left out and told in notes. Raises InputError if fewer than half of the
+        rows, or than four, remain.
         """
         rows = self.rows[: _used_length(self.rows, picks)]
         fast = None if self.decimal_comma else _all_numbers(rows, picks)
@@ -109,7 +112,7 @@ class Table:
         array = np.array(kept, dtype=np.float64).reshape(len(kept), len(picks))
         if bad:
             line, column, text = bad[0]
-            told = f"line {line}, column {column}: {_short(text)} is not a number"
+            told = f"line {line}, column {column}: {_short(text)} is no usable number"
             rest = "the row was" if len(bad) == 1 else f"{len(bad)} such rows of {len(kept) + len(bad)} were"
             notes.say(f"{told}; {rest} left out")
         return self._enough(list(array.T), len(kept) + len(bad), what)
@@ -119,7 +122,7 @@ class Table:
         if not _NUMBER.match(text):
             return None
         number = float(text)
-        return number if np.isfinite(number) else None
+        return number if abs(number) <= LARGEST else None
 
     def _enough(self, columns: list[FloatArray], of: int, what: str) -> list[FloatArray]:
         count = columns[0].size
@@ -138,7 +141,7 @@ def _used_length(rows: list[list[str]], picks: Sequence[int]) -> int:
 
 
 def _all_numbers(rows: list[list[str]], picks: Sequence[int]) -> list[FloatArray] | None:
-    """Convert columns that hold finite numbers only, else None."""
+    """Convert columns that hold usable numbers only, else None."""
     try:
         found = [[row[i] for row in rows] for i in picks]
         # float() takes 1_000 for a number; a file does not
@@ -147,7 +150,7 @@ def _all_numbers(rows: list[list[str]], picks: Sequence[int]) -> list[FloatArray
         arrays = [np.array(list(map(float, column))) for column in found]
     except (ValueError, IndexError):
         return None
-    return arrays if all(np.isfinite(array).all() for array in arrays) else None
+    return arrays if all((np.abs(array) <= LARGEST).all() for array in arrays) else None
 
 
 def _short(text: str) -> str:

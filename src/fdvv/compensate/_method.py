@@ -74,6 +74,15 @@ class Outcome:
     sentence: str
 
 
+@dataclass(frozen=True)
+class Count:
+    """How far a job is: presses made, presses a job without failures takes, and why some were skipped."""
+
+    made: int
+    total: int
+    skipped: tuple[str, ...]
+
+
 class Method(Protocol[S]):
     """Settings of a way to learn actuation: init, then trial, press and step until trial gives None."""
 
@@ -99,8 +108,8 @@ class Method(Protocol[S]):
         """Learn from the press that the last trial asked for."""
         ...
 
-    def presses_total(self, state: S) -> int:
-        """Tell how many presses the job takes if none is skipped."""
+    def count(self, state: S) -> Count:
+        """Tell how far the job is."""
         ...
 
     def done(self, state: S) -> Outcome:

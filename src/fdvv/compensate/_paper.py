@@ -18,6 +18,11 @@ HOME_mm = 0.1
 """Where a resting cap belongs: above the upper guard of the strokes, where nothing is learned."""
 
 
+RIG_DELAYS = Delays(position_s=0.0005, command_s=0.002)
+"""Delays of the paper's rig, from its parts: the position's demodulator and burst less the force's filter;
+compute, half a tick, the coil's inductance and the force's filter."""
+
+
 @dataclass(frozen=True, eq=False)
 class Best:
     """The press of a round whose command came closest, as the rig measured it."""
@@ -87,15 +92,17 @@ class PaperLaw:
         first from the target), "random" one level, half to
         all of the largest target (the paper's figure shows a random level).
     seed : of the random starts.
-    delays : addition, off by default: known delays of the rig.
+    delays : addition, off at ``Delays()``: known delays of the rig.
     filter_mm : addition, off at 0: sigma of a zero-phase Gaussian over the learned part (command minus
         target) after each press; keeps the law from learning what no two presses share.
 
     hold_ends : addition: outside the bins that a press visited between its guards, the correction of the
         nearest visited bin holds; else those bins learn nothing.
     hold_cN : addition, off at 0: least command in the first 0.1 mm, and anywhere in a start from the
-        target. It carries the mover's weight and friction, without which the cap sinks or stays down
-        and no press can begin.
+        target. It carries the mover's weight and friction and keeps the resting cap out of the
+        commands below zero that a moving one may need; else it sinks and no press can begin.
+
+    The defaults are the law with the additions that suit the paper's rig; ``literal`` is the law as printed.
 
     Commands stay within the device's limit.
     """
@@ -106,12 +113,12 @@ class PaperLaw:
     rounds: int = 4
     presses_per_round: int = 12
     smoothing_mm: float = 0.06
-    start: Literal["target", "average", "random"] = "target"
+    start: Literal["target", "average", "random"] = "average"
     seed: int = 0
-    delays: Delays = field(default_factory=Delays)
-    filter_mm: float = 0.0
+    delays: Delays = RIG_DELAYS
+    filter_mm: float = 0.05
     hold_ends: bool = True
-    hold_cN: float = 30.0
+    hold_cN: float = 50.0
 
     def __post_init__(self) -> None:
         if not 0 <= self.alpha <= 1:
@@ -130,7 +137,8 @@ class PaperLaw:
     @classmethod
     def literal(cls, **settings: object) -> PaperLaw:
         """Make the law as printed, without additions; the smoothing stays at 1.2 bins unless told."""
-        return cls(**{"start": "random", "hold_ends": False, "hold_cN": 0.0, **settings})  # type: ignore[arg-type]
+        plain = {"start": "random", "delays": Delays(), "filter_mm": 0.0, "hold_ends": False, "hold_cN": 0.0}
+        return cls(**{**plain, **settings})  # type: ignore[arg-type]
 
     @property
     def additions(self) -> tuple[str, ...]:

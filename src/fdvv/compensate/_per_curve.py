@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fdvv.compensate._method import CurveOutcome, Job, Outcome, Trial
+from fdvv.compensate._method import Count, CurveOutcome, Job, Outcome, Trial
 from fdvv.compensate._observe import felt_at_mm, observe
 from fdvv.compensate._paper import PaperLaw, State
 from fdvv.compensate._strokes import split_strokes, why_incomplete
@@ -31,21 +31,29 @@ class JobState:
 
 @dataclass(frozen=True)
 class PerCurve:
-    """Run a law of one curve over all velocities of a job, one velocity after the other.
+    """Run a law of one curve over all velocities of a job.
 
-    Each trial uploads one row, so that what the controller takes for the speed does not matter while
-    it learns. A press that is not complete teaches nothing and is made again; after ``patience`` such
-    presses in a row the job stops.
+    Attributes
+    ----------
+    law : of each curve.
+    patience : a press that is not complete teaches nothing and is made again; after so many in a row the
+        job stops.
+    whole_surface : upload all rows and take the velocities in turn, so that a table is learned with the
+        neighbours that the controller will blend it with, by the speed it believes. Else upload one row
+        at a time, one velocity after the other, as the paper's text suggests.
     """
 
     law: PaperLaw = field(default_factory=PaperLaw)
     patience: int = 10
+    whole_surface: bool = True
 
     @property
     def name(self) -> str:
         """Name the law and its additions."""
         added = self.law.additions
-        return "paper law" + (f" with {'; '.join(added)}" if added else "")
+        whole = ("all speeds in turn",) if self.whole_surface else ()
+        parts = "; ".join((*added, *whole))
+        return "paper law" + (f" with {parts}" if parts else "")
 
     @property
     def bin_mm(self) -> float:
@@ -62,19 +70,21 @@ class PerCurve:
         )
         return JobState(job, pairs)
 
-    def presses_total(self, state: JobState) -> int:
-        """Count the presses of a job without failures."""
-        return len(state.pairs) * self.law.rounds * self.law.presses_per_round
+    def count(self, state: JobState) -> Count:
+        """Count presses."""
+        total = len(state.pairs) * self.law.rounds * self.law.presses_per_round
+        return Count(state.presses, total, state.skipped)
 
     def trial(self, state: JobState) -> Trial | None:
         """Press the current commands of the first velocity that is not finished."""
         at = self._at(state)
         if at is None or state.in_a_row >= self.patience:
             return None
-        velocity = state.job.target.velocity_mm_s[at : at + 1]
-        press, release = (curve.command_cN[np.newaxis] for curve in state.pairs[at])
-        surface = ForceSurface(state.job.target.displacement_mm, velocity, press, release)
-        return Trial(surface, float(velocity[0]))
+        rows = range(len(state.pairs)) if self.whole_surface else [at]
+        tables = [np.stack([state.pairs[row][j].command_cN for row in rows]) for j in range(2)]
+        target = state.job.target
+        surface = ForceSurface(target.displacement_mm, target.velocity_mm_s[list(rows)], *tables)
+        return Trial(surface, float(target.velocity_mm_s[at]))
 
     def step(self, press: Press, state: JobState) -> JobState:
         """Learn both strokes from one press, or skip it with its reason."""
@@ -106,9 +116,11 @@ class PerCurve:
         )
 
     def _at(self, state: JobState) -> int | None:
-        """Find the velocity at work."""
-        open_pairs = (i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0]))
-        return next(open_pairs, None)
+        """Find the velocity at work: the first with presses to make, or the one with fewest made."""
+        left = [i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0])]
+        if not self.whole_surface:
+            return next(iter(left), None)
+        return min(left, key=lambda i: len(state.pairs[i][0].errors_cN), default=None)
 
     def _learn(self, press: Press, job: Job, pair: Pair) -> tuple[Pair, str]:
         """Step both curves; an unusable press gives them back as they were, and the reason."""

@@ -98,6 +98,7 @@ class Grid:
     fewest_samples: int
     displacements: int
     velocities: int
+    audit: int = 0
 
     @property
     def rows(self) -> int:

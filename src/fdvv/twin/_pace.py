@@ -15,6 +15,8 @@ from fdvv.twin._simulate import simulate
 from fdvv.units import FloatArray, m_from_mm
 
 PACE_START_mm = 0.1
+SUNK_mm = 0.05
+"""A cap that a weak table lets sink under the resting finger starts this much below where it rests."""
 TOLERANCE_ratio = 0.005
 ROUNDS = 12
 SHORTEST_s, LONGEST_s = 0.01, 20.0
@@ -23,19 +25,19 @@ SHORTEST_s, LONGEST_s = 0.01, 20.0
 def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, travel_mm: float) -> float:
     """Give the mean speed of a press between 0.1 mm and bottom-out; 0 if the cap never got there.
 
-    Both crossings are interpolated between rows, the first as the last one before bottom-out.
+    A cap that rests deeper is timed from 0.05 mm below its rest. Both crossings are interpolated between
+    rows, the first as the last one before bottom-out.
     """
+    start_mm = max(PACE_START_mm, float(displacement_mm[0]) + SUNK_mm)
     bottom = np.flatnonzero(displacement_mm >= travel_mm)
     if not bottom.size or bottom[0] == 0:
         return 0.0
     end = int(bottom[0])
-    low = np.flatnonzero(displacement_mm[:end] < PACE_START_mm)
+    low = np.flatnonzero(displacement_mm[:end] < start_mm)
     if not low.size:
         return 0.0
-    times = [
-        _crossing(t_s, displacement_mm, i, x) for i, x in ((low[-1], PACE_START_mm), (end - 1, travel_mm))
-    ]
-    return (travel_mm - PACE_START_mm) / (times[1] - times[0])
+    times = [_crossing(t_s, displacement_mm, i, x) for i, x in ((low[-1], start_mm), (end - 1, travel_mm))]
+    return (travel_mm - start_mm) / (times[1] - times[0])
 
 
 def _crossing(t_s: FloatArray, x_mm: FloatArray, i: int, level_mm: float) -> float:

@@ -144,8 +144,9 @@ class _Run:
         """Sense, decide, and solve up to the next tick; the new drive comes after the compute delay."""
         rig, noise = self.plant.rig, self.noise
         sensor, control = rig.position_sensor, rig.controller
-        bend = sensor.linearity_ratio * sensor.range_m / 2
-        reads = self.lvdt_m + bend * np.sin(2 * np.pi * self.lvdt_m / sensor.range_m)
+        u = self.lvdt_m / (sensor.range_m / 2)
+        bend = 1.5 * math.sqrt(3) * (u - u**3)
+        reads = self.lvdt_m + bend * sensor.linearity_ratio * sensor.range_m / 2
         if k:
             reads = reads + noise.position_m[k]
         seen = self.firmware.tick(start, reads, float(self.y[10]), float(noise.force_N[k]))

@@ -165,7 +165,12 @@ class Controller:
         3, "samples a speed needs; the window widens backwards to hold them", "", (3, 5), (2, 64), "paper"
     )
     velocity_scale: float = quantity(
-        1.0, "mean speed of a stroke per speed found in the window", "", (0.7, 1.5), (0.1, 10.0), "assumed"
+        1.2,
+        "mean speed of a stroke per speed found in the window; 1 is the paper's word",
+        "",
+        (0.7, 1.5),
+        (0.1, 10.0),
+        "calibrated on this twin, simulated",
     )
     reversal_m: float = quantity(
         1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (1e-6, 0.01), "assumed"

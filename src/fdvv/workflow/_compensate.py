@@ -112,24 +112,45 @@ def compensate(
     Raises DeviceError if the device fails or the method gives up because presses keep failing, and
     InputError on speeds that cannot be learned at.
     """
-    method: Method[Any] = PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
+    method = _method(law)
     info = device.info()
-    target = ForceSurface.of_model(model, check_speeds(velocities_mm_s), method.bin_mm)
-    state = method.init(Job(target, model.travel_mm, info.force_limit_cN))
+    state = method.init(_job(device, model, velocities_mm_s, method))
     while (trial := method.trial(state)) is not None:
         device.upload(trial.surface, model.travel_mm)
         press = device.press(trial.velocity_mm_s)
-        before = method.done(state).skipped if progress else ()
+        known = len(method.count(state).skipped)
         state = method.step(press, state)
         if progress:
-            outcome = method.done(state)
-            why = outcome.skipped[-1] if len(outcome.skipped) > len(before) else ""
-            total = method.presses_total(state)
-            progress(PressDone("compensate", trial.velocity_mm_s, outcome.presses, total, press, why))
+            count = method.count(state)
+            why = "".join(count.skipped[known:])
+            progress(PressDone("compensate", trial.velocity_mm_s, count.made, count.total, press, why))
     outcome = method.done(state)
     if not outcome.complete:
         raise DeviceError(f"{info.name}: {outcome.sentence}; check that the travel and the speeds suit it")
     return CompensationResult(method.name, model.name, info.name, model.travel_mm, outcome, info.simulated)
+
+
+def uncompensated(
+    device: Device,
+    model: FDVVModel,
+    velocities_mm_s: Sequence[float],
+    law: PaperLaw | Method[Any] | None = None,
+) -> ForceSurface:
+    """Give the surface that a method starts from, before any press: what compensation is judged against.
+
+    With the default law that is the model's own force, with the least command that keeps the cap up.
+    """
+    method = _method(law)
+    return method.done(method.init(_job(device, model, velocities_mm_s, method))).surface
+
+
+def _method(law: PaperLaw | Method[Any] | None) -> Method[Any]:
+    return PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
+
+
+def _job(device: Device, model: FDVVModel, velocities_mm_s: Sequence[float], method: Method[Any]) -> Job:
+    target = ForceSurface.of_model(model, check_speeds(velocities_mm_s), method.bin_mm)
+    return Job(target, model.travel_mm, device.info().force_limit_cN)
 
 
 def check_speeds(velocities_mm_s: Sequence[float]) -> list[float]:

@@ -110,11 +110,12 @@ def _rendering(result: DemoResult) -> Section:
 
 
 def _rendered(result: DemoResult) -> list[RenderedCurve]:
-    """Bring the probes' presses into bands: median, quartiles."""
+    """Bring the probes' presses into bands: median, quartiles; uncompensated ones would hide the others."""
     curves = []
-    for i, first in enumerate(result.renderings[0].judged.curves):
+    learned = [r for r in result.renderings if r.learned]
+    for i, first in enumerate(learned[0].judged.curves):
         bands = []
-        for rendering in result.renderings:
+        for rendering in learned:
             low, middle, high = np.percentile(rendering.judged.curves[i].rendered_cN, [25, 50, 75], axis=0)
             bands.append(RenderedBand(rendering.label, middle, low, high))
         curves.append(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fdvv.capture import Averaged, Cycle, ForceFile, average_cycles, read_force_file
+from fdvv.capture import Averaged, ForceFile, average_by_velocity, read_force_file
 from fdvv.errors import FdvvError, InputError
 from fdvv.model import (
     CurveFit,
@@ -117,18 +117,17 @@ def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
 
 def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> ModelFit:
     """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve."""
-    groups = [(v, average_cycles(replace(file, cycles=cycles))) for v, cycles in _by_velocity(file.cycles)]
+    groups = average_by_velocity(file)
     warnings = [*file.warnings]
-    for _, group in groups:
+    for group in groups:
+        warnings += group.warnings
         warnings += [f"{label} left out: {reason}" for label, reason in group.left_out]
-    zero, travel = _zero_and_travel([group for _, group in groups], warnings)
+    zero, travel = _zero_and_travel(groups, warnings)
+    strokes = [stroke for group in groups for stroke in (group.press, group.release) if stroke is not None]
     parts = []
-    for velocity, group in groups:
-        for stroke in (group.press, group.release):
-            if stroke is not None:
-                moved = active_part(stroke)
-                x = np.round(moved.displacement_mm - zero, DECIMALS_mm)
-                parts.append(MeasuredCurve(x, moved.force_cN, moved.stroke, velocity))
+    for part in map(active_part, strokes):
+        x = np.round(part.displacement_mm - zero, DECIMALS_mm)
+        parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
     parts.sort(key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
     fits = tuple(
         fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
@@ -138,8 +137,8 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
         name=one_line(file.name) or "unnamed",
         travel_mm=travel,
         curves=tuple(fit.curve for fit in fits),
-        actuation_mm=_point([g.actuation_mm for _, g in groups], zero, travel, "actuation", warnings),
-        reset_mm=_point([g.reset_mm for _, g in groups], zero, travel, "reset", warnings),
+        actuation_mm=_point([g.actuation_mm for g in groups], zero, travel, "actuation", warnings),
+        reset_mm=_point([g.reset_mm for g in groups], zero, travel, "reset", warnings),
         provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
     )
     found = landmarks(model) if model.of(Stroke.PRESS) else None
@@ -149,15 +148,6 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
 def one_line(text: str) -> str:
     """Make a file's name fit for a model file: no line breaks, nothing that UTF-8 cannot hold."""
     return " ".join(text.encode(errors="replace").decode().split())
-
-
-def _by_velocity(cycles: Sequence[Cycle]) -> list[tuple[float | None, tuple[Cycle, ...]]]:
-    """Group cycles by the velocity of their strokes, in the file's order."""
-    groups: dict[float | None, list[Cycle]] = {}
-    for cycle in cycles:
-        stroke = cycle.press or cycle.release
-        groups.setdefault(stroke.velocity_mm_s if stroke else None, []).append(cycle)
-    return [(velocity, tuple(members)) for velocity, members in groups.items()]
 
 
 def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
