@@ -71,8 +71,9 @@ def print_wrapped(text: str) -> None:
 
 
 def counted(count: int, noun: str) -> str:
-    """Write a number of things: 1 file, 2 files."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+    """Write a number of things: 1 file, 2 files, 3 presses."""
+    plural = noun + ("es" if noun.endswith("s") else "s")
+    return f"{count} {noun if count == 1 else plural}"
 
 
 def print_warnings(warnings: Sequence[str]) -> None:
