@@ -73,7 +73,7 @@ def build(path: Path) -> FDVVModel:
         actuation_mm=2.0,
         reset_mm=2.0,
         vibrations=tuple(Vibration(stroke, None, ONSET_mm, DURATION_s, (mode,)) for stroke in Stroke),
-        interpolation=Interpolation.LINEAR,
+        interpolation=Interpolation.PCHIP,
         provenance=PROVENANCE,
     )
 

@@ -1,5 +1,4 @@
 import importlib.util
-import os
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +8,6 @@ from fdvv.errors import InputError
 from fdvv.model import FDVVModel, Stroke, builtin_names, load_builtin, model_to_json
 
 ROOT = Path(__file__).parents[2]
-SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared"))
-FIGURE = SHARED / "data" / "paper-figure"
-needs_figure = pytest.mark.skipif(not FIGURE.is_dir(), reason="shared/data/paper-figure is absent")
 
 # read from the drawn curves, between the nodes (cN)
 GOLDEN_mm = (0.40, 1.25, 2.10, 2.70, 3.95)
@@ -34,9 +30,9 @@ def clear() -> FDVVModel:
     return load_builtin("mx-clear")
 
 
-def drawn_curves(stroke: Stroke) -> np.ndarray:
+def drawn_curves(folder: Path, stroke: Stroke) -> np.ndarray:
     """The figure's own table: displacement, then force at 0.5, 50, 100, 150 and 200 mm/s."""
-    return np.genfromtxt(FIGURE / f"fdvv_figure_{stroke}.csv", delimiter=",", skip_header=1)
+    return np.genfromtxt(folder / "paper-figure" / f"fdvv_figure_{stroke}.csv", delimiter=",", skip_header=1)
 
 
 @pytest.mark.parametrize(("stroke", "velocity_mm_s"), GOLDEN_cN)
@@ -48,12 +44,11 @@ def test_the_published_forces_come_back_between_the_nodes(
 
 
 @pytest.mark.shared
-@needs_figure
 @pytest.mark.parametrize("stroke", Stroke)
 def test_the_ten_published_curves_are_reproduced_to_a_hundredth_of_a_cN(
-    clear: FDVVModel, stroke: Stroke
+    clear: FDVVModel, stroke: Stroke, shared_data: Path
 ) -> None:
-    table = drawn_curves(stroke)
+    table = drawn_curves(shared_data, stroke)
     drawn = table[table[:, 0] >= 0.249]
     curves = clear.of(stroke)
     assert [c.velocity_mm_s for c in curves] == [0.5, 50.0, 100.0, 150.0, 200.0]
@@ -62,29 +57,29 @@ def test_the_ten_published_curves_are_reproduced_to_a_hundredth_of_a_cN(
 
 
 @pytest.mark.shared
-@needs_figure
 @pytest.mark.parametrize(("stroke", "above_cN", "below_cN"), [("press", 6.4, 0.0), ("release", 3.8, 2.6)])
 def test_below_the_second_node_the_spline_leaves_the_drawn_line_as_far_as_the_provenance_says(
-    clear: FDVVModel, stroke: Stroke, above_cN: float, below_cN: float
+    clear: FDVVModel, stroke: Stroke, above_cN: float, below_cN: float, shared_data: Path
 ) -> None:
     x = np.linspace(0.0, 0.25, 251)
     excess = [
-        curve.force_cN(x) - np.interp(x, drawn_curves(stroke)[:, 0], forces)
-        for curve, forces in zip(clear.of(stroke), drawn_curves(stroke)[:, 1:].T, strict=True)
+        curve.force_cN(x) - np.interp(x, drawn_curves(shared_data, stroke)[:, 0], forces)
+        for curve, forces in zip(clear.of(stroke), drawn_curves(shared_data, stroke)[:, 1:].T, strict=True)
     ]
     assert np.max(excess) == pytest.approx(above_cN, abs=0.05)
     assert -np.min(excess) == pytest.approx(below_cN, abs=0.05)
 
 
 @pytest.mark.shared
-@needs_figure
-def test_the_shipped_file_is_what_its_tool_builds(clear: FDVVModel) -> None:
+def test_the_shipped_file_is_what_its_tool_builds(clear: FDVVModel, shared_data: Path) -> None:
     spec = importlib.util.spec_from_file_location("make_builtin", ROOT / "tools" / "make_builtin.py")
     assert spec is not None
     assert spec.loader is not None
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
-    assert model_to_json(tool.build(FIGURE / "fdvv_figure_nodes.csv")) == model_to_json(clear)
+    assert model_to_json(tool.build(shared_data / "paper-figure" / "fdvv_figure_nodes.csv")) == model_to_json(
+        clear
+    )
 
 
 def test_every_published_curve_has_fifteen_control_points(clear: FDVVModel) -> None:

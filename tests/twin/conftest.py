@@ -8,8 +8,8 @@ import pytest
 
 from fdvv.model import ForceSurface
 from fdvv.twin import Finger, Gesture, Rig, Trace, plan, silence
+from fdvv.twin._flatten import grid_of, inputs_of, plant_of
 from fdvv.twin._kernel import Grid, Inputs, Plant, run
-from fdvv.twin._simulate import grid_of, inputs_of, plant_of
 from fdvv.units import FloatArray
 
 

@@ -11,7 +11,7 @@ import pytest
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface
 from fdvv.twin import Controller, Finger, Impedance, Rig, draw_noise, plan, silence, simulate
-from fdvv.twin._simulate import grid_of
+from fdvv.twin._flatten import grid_of
 from fdvv.units import FloatArray
 
 from .conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of

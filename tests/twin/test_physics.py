@@ -49,7 +49,6 @@ def test_a_shorted_coil_brakes_a_falling_cap_to_its_terminal_velocity() -> None:
 
 
 def test_friction_is_full_well_above_its_smoothing_speed() -> None:
-    """A cap that slides at terminal velocity against Coulomb friction alone has lost exactly m g."""
     bench = Bench.of(flat(0.0), viscous_N_s_m=0.0, force_constant_N_A=0.0, coulomb_N=0.1, travel_m=0.5)
     trace, m = bench.run(), bench.plant
     late = trace.t_s > 0.1

@@ -1,1 +1,295 @@
-int fdvv_spline_fit_placeholder;
+/* Least-squares B-splines whose knots move to where the curve needs them.
+ *
+ * The error depends on the knots alone once the coefficients are eliminated (variable projection, Golub &
+ * Pereyra 1973). Start: many knots, the least needed taken out one by one (Lyche & Morken 1987). Then each
+ * knot walks along the axis, and knots are exchanged: one is taken out where it is missed least and set in
+ * where it helps most. Everything is deterministic.
+ *
+ * Cost: a knot that moves changes two intervals only. Each interval keeps the moments sum(w u^k)
+ * and sum(w y u^k) of its samples in its own coordinate u in [-1, 1], so that the normal equations are rebuilt
+ * from 15 intervals rather than from hundreds of samples. */
+#include "fdvv.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_DEGREE = 3, MAX_COEFFICIENTS = 64, ORDER = MAX_DEGREE + 1, MAX_KNOTS = MAX_COEFFICIENTS + ORDER };
+
+typedef struct { /* samples of one interval of knots, in its own coordinate */
+    double from, to;
+    double power[2 * MAX_DEGREE + 1]; /* sum of w u^k */
+    double weighted[ORDER];           /* sum of w y u^k */
+} Moments;
+
+typedef struct {
+    int n, degree;
+    const double *x, *y, *w;
+    double y_mean, y_squares, spacing;
+    Moments kept[MAX_KNOTS];         /* of the last knots seen, by interval */
+    double band[MAX_COEFFICIENTS][ORDER], right[MAX_COEFFICIENTS];
+} Problem;
+
+static int first_at_least(const Problem *p, double value) {
+    int low = 0, high = p->n;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (p->x[middle] < value) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+static void gather(const Problem *p, double from, double to, int last, Moments *moments) {
+    double middle = 0.5 * (from + to), scale = 2.0 / (to - from);
+    int begin = first_at_least(p, from), end = last ? p->n : first_at_least(p, to), degree = p->degree;
+    memset(moments, 0, sizeof *moments);
+    moments->from = from;
+    moments->to = to;
+    for (int i = begin; i < end; i++) {
+        double u = (p->x[i] - middle) * scale, y = p->y[i] - p->y_mean, power = p->w[i];
+        for (int k = 0; k <= degree; k++, power *= u) {
+            moments->power[k] += power;
+            moments->weighted[k] += y * power;
+        }
+        for (int k = degree + 1; k <= 2 * degree; k++, power *= u) moments->power[k] += power;
+    }
+}
+
+/* Coefficients in u of the degree + 1 basis functions that live on interval s (de Boor's recurrence). */
+static void local_basis(const double *t, int s, int degree, double basis[ORDER][ORDER]) {
+    double middle = 0.5 * (t[s] + t[s + 1]), half = 0.5 * (t[s + 1] - t[s]);
+    memset(basis, 0, sizeof(double) * ORDER * ORDER);
+    basis[0][0] = 1.0;
+    for (int d = 1; d <= degree; d++) {
+        double next[ORDER][ORDER] = {{0}};
+        for (int r = 0; r < d; r++) {
+            double left = t[s + r - d + 1], right = t[s + r + 1], inverse = 1.0 / (right - left);
+            for (int k = 0; k < d; k++) {
+                double value = basis[r][k] * inverse;
+                next[r][k] += (right - middle) * value;
+                next[r][k + 1] -= half * value;
+                next[r + 1][k] += (middle - left) * value;
+                next[r + 1][k + 1] += half * value;
+            }
+        }
+        memcpy(basis, next, sizeof next);
+    }
+}
+
+static void add_interval(Problem *p, const Moments *moments, const double basis[ORDER][ORDER], int first) {
+    for (int r = 0; r <= p->degree; r++) {
+        double column[ORDER];
+        for (int l = 0; l <= p->degree; l++) {
+            column[l] = 0.0;
+            for (int k = 0; k <= p->degree; k++) column[l] += basis[r][k] * moments->power[k + l];
+        }
+        for (int q = 0; q <= r; q++)
+            for (int l = 0; l <= p->degree; l++)
+                p->band[first + r][r - q] += basis[q][l] * column[l];
+        for (int k = 0; k <= p->degree; k++) p->right[first + r] += basis[r][k] * moments->weighted[k];
+    }
+}
+
+static void assemble(Problem *p, int m, const double *t) {
+    memset(p->band, 0, sizeof p->band[0] * (size_t)m);
+    memset(p->right, 0, sizeof p->right[0] * (size_t)m);
+    for (int s = p->degree; s < m; s++) {
+        if (t[s + 1] <= t[s]) continue;
+        Moments *moments = &p->kept[s];
+        if (moments->from != t[s] || moments->to != t[s + 1]) gather(p, t[s], t[s + 1], s == m - 1, moments);
+        double basis[ORDER][ORDER];
+        local_basis(t, s, p->degree, basis);
+        add_interval(p, moments, (const double(*)[ORDER])basis, s - p->degree);
+    }
+}
+
+/* Solve the banded normal equations (Cholesky); give the squared error, and the coefficients if asked. */
+static double solve(Problem *p, int m, double *c) {
+    double explained = 0.0, z[MAX_COEFFICIENTS];
+    for (int i = 0; i < m; i++) {
+        double *row = p->band[i];
+        row[0] += 1e-10; /* a basis function without samples: hold it, do not divide by zero */
+        for (int k = p->degree; k >= 0; k--) {
+            int j = i - k;
+            if (j < 0) continue;
+            double value = row[k];
+            for (int q = i - p->degree > 0 ? i - p->degree : 0; q < j; q++)
+                if (j - q <= p->degree) value -= row[i - q] * p->band[j][j - q];
+            if (k) row[k] = value / p->band[j][0];
+            else row[0] = sqrt(value > 1e-12 ? value : 1e-12);
+        }
+        z[i] = p->right[i];
+        for (int k = 1; k <= p->degree && k <= i; k++) z[i] -= row[k] * z[i - k];
+        z[i] /= row[0];
+        explained += z[i] * z[i];
+    }
+    if (c) {
+        for (int i = m - 1; i >= 0; i--) {
+            double value = z[i];
+            for (int k = 1; k <= p->degree && i + k < m; k++) value -= p->band[i + k][k] * c[i + k];
+            c[i] = value / p->band[i][0];
+        }
+        for (int i = 0; i < m; i++) c[i] += p->y_mean; /* the basis sums to one */
+    }
+    return p->y_squares - explained;
+}
+
+static double error_of(Problem *p, int m, const double *t) {
+    assemble(p, m, t);
+    return solve(p, m, NULL);
+}
+
+static void remove_knot(double *t, int count, int at) {
+    memmove(t + at, t + at + 1, sizeof *t * (size_t)(count - at - 1));
+}
+
+static void insert_knot(double *t, int count, int at, double value) {
+    memmove(t + at + 1, t + at, sizeof *t * (size_t)(count - at));
+    t[at] = value;
+}
+
+/* One step of one knot in one direction; keep it if it helps. */
+static int try_move(Problem *p, int m, double *t, int at, double to, double *best) {
+    double low = t[at - 1] + p->spacing, high = t[at + 1] - p->spacing, was = t[at];
+    if (to < low) to = low;
+    if (to > high) to = high;
+    if (low > high || to == was) return 0;
+    t[at] = to;
+    double error = error_of(p, m, t);
+    if (error < *best) {
+        *best = error;
+        return 1;
+    }
+    t[at] = was;
+    return 0;
+}
+
+/* Let every knot walk, with its own step that grows while it helps and shrinks when it does not. */
+static double walk(Problem *p, int m, double *t, int rounds) {
+    int inner = m - p->degree - 1;
+    double step[MAX_KNOTS], best = error_of(p, m, t), length = t[m] - t[0];
+    for (int j = 0; j < inner; j++) step[j] = length / 60.0;
+    for (int round = 0; round < rounds; round++) {
+        double before = best, longest = 0.0;
+        for (int j = 0; j < inner; j++) {
+            int at = p->degree + 1 + j, moved = 0;
+            for (int sign = -1; sign <= 1 && !moved; sign += 2) {
+                while (moved < 4 && try_move(p, m, t, at, t[at] + sign * step[j], &best)) moved++;
+            }
+            step[j] *= moved ? 1.5 : 0.5;
+            if (step[j] > longest) longest = step[j];
+        }
+        if (longest < 0.1 * p->spacing || (round > 8 && before - best < 1e-5 * best)) break;
+    }
+    return best;
+}
+
+/* Rank the inner knots by how much the error grows without them; give the index of the one at rank. */
+static int least_missed(Problem *p, int m, const double *t, int rank) {
+    double error[MAX_KNOTS], trial[MAX_KNOTS + ORDER];
+    int count = m + p->degree + 1, chosen = p->degree + 1;
+    for (int j = p->degree + 1; j < m; j++) {
+        memcpy(trial, t, sizeof *t * (size_t)count);
+        remove_knot(trial, count, j);
+        error[j] = error_of(p, m - 1, trial);
+    }
+    for (int r = 0; r <= rank; r++) {
+        chosen = p->degree + 1;
+        for (int j = p->degree + 1; j < m; j++)
+            if (error[j] < error[chosen]) chosen = j;
+        if (r < rank) error[chosen] = DBL_MAX;
+    }
+    return chosen;
+}
+
+/* Set a knot where it helps most, of three places in every interval; 0 if there is no room. */
+static int insert_best(Problem *p, int m, double *t) {
+    double best = DBL_MAX, value = 0.0, trial[MAX_KNOTS + ORDER];
+    int count = m + p->degree, at = 0; /* knots of m - 1 coefficients */
+    for (int s = p->degree; s < m - 1; s++) {
+        double length = t[s + 1] - t[s];
+        if (length < 4.0 * p->spacing) continue;
+        for (int part = 1; part < 4; part++) {
+            memcpy(trial, t, sizeof *t * (size_t)count);
+            insert_knot(trial, count, s + 1, t[s] + length * part / 4.0);
+            double error = error_of(p, m, trial);
+            if (error < best) best = error, at = s + 1, value = trial[s + 1];
+        }
+    }
+    if (at) insert_knot(t, count, at, value);
+    return at > 0;
+}
+
+/* Many knots, half by length and half by rise, so that steps get their share. */
+static void dense_knots(const Problem *p, int m, double *t) {
+    int inner = m - p->degree - 1, at = 0;
+    double rise = 0.0, length = p->x[p->n - 1] - p->x[0], sum = 0.0, previous = p->x[0];
+    for (int i = 1; i < p->n; i++) rise += fabs(p->y[i] - p->y[i - 1]);
+    for (int k = 0; k <= p->degree; k++) t[k] = p->x[0], t[m + k] = p->x[p->n - 1];
+    for (int j = 1; j <= inner; j++) {
+        double wanted = (double)j / (inner + 1);
+        while (at < p->n - 2 && sum < wanted) {
+            at++;
+            sum += 0.5 * (p->x[at] - p->x[at - 1]) / length;
+            if (rise > 0.0) sum += 0.5 * fabs(p->y[at] - p->y[at - 1]) / rise;
+        }
+        double latest = p->x[p->n - 1] - (inner + 1 - j) * p->spacing, knot = p->x[at];
+        if (knot < previous + p->spacing) knot = previous + p->spacing;
+        if (knot > latest) knot = latest;
+        t[p->degree + j] = previous = knot;
+    }
+}
+
+static int prepare(Problem *p, int n, const double *x, const double *y, const double *w, int degree, int m, double spacing) {
+    if (degree < 1 || degree > MAX_DEGREE || m <= degree || m > MAX_COEFFICIENTS || n < m) return 0;
+    memset(p, 0, sizeof *p);
+    p->n = n, p->x = x, p->y = y, p->w = w, p->degree = degree, p->spacing = spacing;
+    for (int s = 0; s < MAX_KNOTS; s++) p->kept[s].from = NAN;
+    for (int i = 0; i < n; i++) p->y_mean += y[i] / n;
+    for (int i = 0; i < n; i++) p->y_squares += w[i] * (y[i] - p->y_mean) * (y[i] - p->y_mean);
+    return 1;
+}
+
+static double squared_error(Problem *p, int m, const double *t, double *c) {
+    assemble(p, m, t);
+    double error = solve(p, m, c);
+    return error > 0.0 ? error : 0.0;
+}
+
+double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m, double spacing,
+                              int exchanges, double *t, double *c) {
+    Problem *p = malloc(sizeof *p);
+    if (!p || !prepare(p, n, x, y, w, degree, m, spacing)) {
+        free(p);
+        return -1.0;
+    }
+    double best_t[MAX_KNOTS + ORDER], trial[MAX_KNOTS + ORDER];
+    int room = (int)((x[n - 1] - x[0]) / spacing) - 1, many = 2 * m + 10;
+    if (many > MAX_COEFFICIENTS) many = MAX_COEFFICIENTS;
+    if (many > n / 3) many = n / 3;
+    if (many > room + degree + 1) many = room + degree + 1;
+    if (many < m) many = m;
+    dense_knots(p, many, trial);
+    for (; many > m; many--) {
+        remove_knot(trial, many + degree + 1, least_missed(p, many, trial, 0));
+        if (many - m < 10) walk(p, many - 1, trial, 1);
+    }
+    double best = walk(p, m, trial, 25);
+    memcpy(best_t, trial, sizeof trial);
+    for (int k = 0, rank = 0; k < exchanges && rank < m - degree - 1; k++) {
+        memcpy(trial, best_t, sizeof trial);
+        remove_knot(trial, m + degree + 1, least_missed(p, m, trial, rank));
+        double error = insert_best(p, m, trial) ? walk(p, m, trial, 15) : DBL_MAX;
+        if (error < best * (1.0 - 1e-4)) {
+            best = error, rank = 0;
+            memcpy(best_t, trial, sizeof trial);
+        } else rank++;
+    }
+    walk(p, m, best_t, 40);
+    memcpy(t, best_t, sizeof *t * (size_t)(m + degree + 1));
+    best = squared_error(p, m, t, c);
+    free(p);
+    return best;
+}

@@ -1,5 +1,5 @@
-"""The fdvv command."""
+"""The fdvv command: thin doors to the workflows."""
 
+from fdvv.cli._main import cli, main
 
-def main() -> None:
-    """Run the command line."""
+__all__ = ["cli", "main"]

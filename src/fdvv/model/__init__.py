@@ -1,19 +1,30 @@
 """What a button should feel like: curves, vibration, models, landmarks, fits and files."""
 
 from fdvv.model._builtin import builtin_names, load_builtin
+from fdvv.model._bump import Bump, find_bump
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
 from fdvv.model._file import (
     SUFFIX,
-    VERSION,
     load_model,
     model_from_json,
     model_to_json,
     save_model,
-    schema,
 )
+from fdvv.model._fit import (
+    CurveFit,
+    FitMethod,
+    active_part,
+    bic_star,
+    fit_curve,
+    scan_sizes,
+    smooth,
+)
+from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
+from fdvv.model._records import VERSION, schema
 from fdvv.model._surface import ForceSurface
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
@@ -21,23 +32,39 @@ from fdvv.model._vibration import Mode, Vibration
 __all__ = [
     "SUFFIX",
     "VERSION",
+    "Bump",
+    "Conflict",
+    "CurveFit",
     "FDVVModel",
+    "FitMethod",
     "ForceCurve",
     "ForceSurface",
     "Interpolation",
+    "Landmarks",
     "MeasuredCurve",
     "Mode",
     "Press",
     "Provenance",
     "Stroke",
     "Vibration",
+    "active_part",
+    "assign",
+    "bic_star",
     "builtin_names",
+    "copy_curve",
     "find_bottom_out_mm",
+    "find_bump",
     "find_contact_mm",
+    "fit_curve",
+    "landmarks",
     "load_builtin",
     "load_model",
+    "merge",
     "model_from_json",
     "model_to_json",
+    "remove_curve",
     "save_model",
+    "scan_sizes",
     "schema",
+    "smooth",
 ]

@@ -59,9 +59,17 @@ def design_matrix(t: FloatArray, k: int, x: FloatArray) -> FloatArray:
 
 
 def least_squares(t: FloatArray, k: int, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Find the coefficients that minimise the squared error at (x, y), each sample counting once."""
-    solution, *_ = np.linalg.lstsq(design_matrix(t, k, x), y, rcond=None)
-    return np.asarray(solution)
+    """Find the coefficients that minimise the squared error at (x, y), each sample counting once.
+
+    Where a gap in x leaves a basis function without samples, the solution of least norm is taken.
+    """
+    from scipy.interpolate import make_lsq_spline
+
+    try:
+        return np.asarray(make_lsq_spline(x, y, t, k).c, dtype=np.float64)
+    except (ValueError, np.linalg.LinAlgError):
+        solution, *_ = np.linalg.lstsq(design_matrix(t, k, x), y, rcond=None)
+        return np.asarray(solution)
 
 
 def interpolate(x: FloatArray, y: FloatArray, k: int = 3) -> tuple[FloatArray, FloatArray]:

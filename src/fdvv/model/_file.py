@@ -7,8 +7,8 @@ line, so that a round trip is exact and a diff shows which curve changed.
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -16,76 +16,17 @@ from fdvv.errors import InputError, ModelError
 from fdvv.files import write_atomic
 from fdvv.model._curve import ForceCurve, Stroke
 from fdvv.model._model import FDVVModel, Provenance
+from fdvv.model._records import FORMAT, VERSION, ModelRecord, ModeRecord
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
 
-FORMAT = "fdvv-model"
-VERSION = 1
 SUFFIX = ".fdvv.json"
+LIMIT_bytes = 64_000_000
+"""Far above any button (a curve takes some 400 bytes), far below what would fill a machine's memory."""
 
-Positive = Annotated[float, msgspec.Meta(gt=0)]
-NotNegative = Annotated[float, msgspec.Meta(ge=0)]
-StrokeName = Literal["press", "release"]
-
-
-class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """One B-spline force curve; velocity_mm_s is null if unknown."""
-
-    stroke: StrokeName
-    velocity_mm_s: Positive | None
-    degree: Annotated[int, msgspec.Meta(ge=1, le=5)]
-    knots_mm: list[float]
-    control_points_cN: list[float]
-
-
-class ModeRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """One decaying sinusoid of the cap's acceleration."""
-
-    frequency_Hz: Positive
-    amplitude_m_s2: float
-    decay_1_s: NotNegative
-    phase_rad: float = 0.0
-
-
-class VibrationRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """The vibration of one stroke at one velocity; velocity_mm_s is null if it serves every speed."""
-
-    stroke: StrokeName
-    velocity_mm_s: Positive | None
-    onset_mm: float
-    duration_s: Positive
-    modes: Annotated[list[ModeRecord], msgspec.Meta(min_length=1)]
-
-
-class ProvenanceRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Where the model comes from."""
-
-    source: str = ""
-    licence: str = ""
-    citation: str = ""
-    method: str = ""
-    assumptions: list[str] = []
-    simulated: bool = False
-
-
-class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A button as force over displacement and velocity, with its vibration (FDVV)."""
-
-    format: Literal["fdvv-model"]
-    version: Literal[1]
-    name: Annotated[str, msgspec.Meta(min_length=1)]
-    travel_mm: Positive
-    actuation_mm: NotNegative | None
-    reset_mm: NotNegative | None
-    interpolation: str
-    curves: Annotated[list[CurveRecord], msgspec.Meta(min_length=1)]
-    vibrations: list[VibrationRecord] = []
-    provenance: ProvenanceRecord = msgspec.field(default_factory=ProvenanceRecord)
-
-
-def schema() -> dict[str, Any]:
-    """Give the JSON schema of the file format, as published in docs/reference/fdvv.schema.json."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(ModelRecord)}
+_REMEDY = "compare with docs/reference/model-file.md, or fit the measurement again"
+_NEWLINE = b"\n"
+_CHOICES = {"stroke": Stroke, "interpolation": Interpolation}
 
 
 def model_to_json(model: FDVVModel) -> str:
@@ -140,24 +81,42 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
     Raises InputError that names source, the place in it and the remedy: not JSON, another format or
     version, a missing or unknown field, numbers that make no spline.
     """
-    remedy = "compare with docs/reference/model-file.md, or fit the measurement again"
+    data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
     try:
-        head = msgspec.json.decode(text)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(source, "whole file", f"not valid JSON ({error})", remedy) from error
-    if not isinstance(head, dict) or head.get("format") != FORMAT:
-        raise InputError(source, "$.format", f'not an FDVV model ("format" must be "{FORMAT}")', remedy)
-    if head.get("version") != VERSION:
-        reason = f"file version {head.get('version')!r}, this fdvv reads version {VERSION}"
-        raise InputError(source, "$.version", reason, "install a newer fdvv")
-    try:
-        return _model(msgspec.convert(head, ModelRecord), source, remedy)
+        head = msgspec.json.decode(data, type=_Head)
+        if head.format != FORMAT:
+            raise InputError(source, "$.format", f'not an FDVV model ("format" must be "{FORMAT}")', _REMEDY)
+        if head.version != VERSION:
+            reason = f"file version {head.version!r:.40}, this fdvv reads version {VERSION}"
+            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
+        return _model(msgspec.json.decode(data, type=ModelRecord), source)
     except msgspec.ValidationError as error:
-        reason, _, place = str(error).partition(" - at ")
-        raise InputError(source, place.strip("`") or "$", reason, remedy) from error
+        reason, _, path = str(error).partition(" - at ")
+        place = path.strip("`") or "$"
+        choices = _CHOICES.get(place.rpartition(".")[2])
+        expected = f", expected one of {', '.join(choices)}" if choices else ""
+        raise InputError(source, place, reason + expected, _REMEDY) from error
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        raise InputError(source, _place(data, str(error)), f"not valid JSON ({error})", _REMEDY) from error
 
 
-def _model(record: ModelRecord, source: object, remedy: str) -> FDVVModel:
+class _Head(msgspec.Struct):
+    """What is looked at first, whatever else the file holds."""
+
+    format: object = None
+    version: object = None
+
+
+def _place(data: bytes, reason: str) -> str:
+    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
+    found = re.search(r"\(byte (\d+)\)", reason)
+    if not found:
+        return "end of file" if "truncated" in reason else "whole file"
+    before = data[: int(found[1])]
+    return f"line {before.count(_NEWLINE) + 1}, column {len(before) - before.rfind(_NEWLINE)}"
+
+
+def _model(record: ModelRecord, source: object) -> FDVVModel:
     """Build the model from a record of the right shape; each failure names its place."""
     place = "$"
     try:
@@ -165,17 +124,13 @@ def _model(record: ModelRecord, source: object, remedy: str) -> FDVVModel:
         for i, c in enumerate(record.curves):
             place = f"$.curves[{i}]"
             curves.append(
-                ForceCurve(Stroke(c.stroke), c.velocity_mm_s, c.degree, c.knots_mm, c.control_points_cN)  # type: ignore[arg-type]
+                ForceCurve(c.stroke, c.velocity_mm_s, c.degree, c.knots_mm, c.control_points_cN)  # type: ignore[arg-type]
             )
         vibrations = []
         for i, v in enumerate(record.vibrations):
             place = f"$.vibrations[{i}]"
             modes = tuple(Mode(**msgspec.to_builtins(mode)) for mode in v.modes)
-            vibrations.append(Vibration(Stroke(v.stroke), v.velocity_mm_s, v.onset_mm, v.duration_s, modes))
-        place = "$.interpolation"
-        if record.interpolation not in list(Interpolation):
-            names = ", ".join(Interpolation)
-            raise ModelError(f"interpolation {record.interpolation!r} is not one of {names}")
+            vibrations.append(Vibration(v.stroke, v.velocity_mm_s, v.onset_mm, v.duration_s, modes))
         place = "$"
         fields = msgspec.to_builtins(record.provenance)
         return FDVVModel(
@@ -185,11 +140,11 @@ def _model(record: ModelRecord, source: object, remedy: str) -> FDVVModel:
             actuation_mm=record.actuation_mm,
             reset_mm=record.reset_mm,
             vibrations=tuple(vibrations),
-            interpolation=Interpolation(record.interpolation),
+            interpolation=record.interpolation,
             provenance=Provenance(**{**fields, "assumptions": tuple(fields["assumptions"])}),
         )
     except ModelError as error:
-        raise InputError(source, place, str(error), remedy) from error
+        raise InputError(source, place, str(error), _REMEDY) from error
 
 
 def save_model(model: FDVVModel, path: Path | str) -> None:
@@ -200,8 +155,13 @@ def save_model(model: FDVVModel, path: Path | str) -> None:
 def load_model(path: Path | str) -> FDVVModel:
     """Read a model from a ``*.fdvv.json`` file. Raises InputError, also where the file cannot be read."""
     try:
-        content = Path(path).read_bytes()
+        with Path(path).open("rb") as stream:
+            content = stream.read(LIMIT_bytes + 1)
     except OSError as error:
         remedy = "check the path and its permissions"
         raise InputError(path, "whole file", error.strerror or str(error), remedy) from error
+    if len(content) > LIMIT_bytes:
+        raise InputError(
+            path, "whole file", f"larger than {LIMIT_bytes // 1_000_000} MB", "pass a model file"
+        )
     return model_from_json(content, path)

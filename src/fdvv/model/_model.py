@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model._curve import ForceCurve, Stroke
-from fdvv.model._velocity import Interpolation, blend
+from fdvv.model._velocity import Interpolation, blend, blend_slope
 from fdvv.model._vibration import Vibration
 from fdvv.units import FloatArray
 
@@ -60,7 +60,7 @@ class FDVVModel:
     actuation_mm: float | None = None
     reset_mm: float | None = None
     vibrations: tuple[Vibration, ...] = ()
-    interpolation: Interpolation = Interpolation.LINEAR
+    interpolation: Interpolation = Interpolation.PCHIP
     provenance: Provenance = field(default_factory=Provenance)
 
     def __post_init__(self) -> None:
@@ -99,16 +99,17 @@ class FDVVModel:
         """Give the known velocities of one stroke, rising."""
         return tuple(c.velocity_mm_s for c in self.of(stroke) if c.velocity_mm_s is not None)
 
-    def _surface(
-        self, displacement_mm: npt.ArrayLike, velocity_mm_s: npt.ArrayLike, stroke: Stroke | str, nu: int
-    ) -> FloatArray:
+    def _serving(
+        self, displacement_mm: npt.ArrayLike, velocity_mm_s: npt.ArrayLike, stroke: Stroke | str
+    ) -> tuple[tuple[ForceCurve, ...], Interpolation, FloatArray, FloatArray]:
+        """Gather what blend takes: curves, method, velocities and displacements of one shape."""
         curves = self.of(stroke)
         if not curves:
             raise ModelError(f"model {self.name!r} has no {Stroke(stroke)} curve")
         x, v = np.broadcast_arrays(
             np.asarray(displacement_mm, dtype=np.float64), np.asarray(velocity_mm_s, dtype=np.float64)
         )
-        return blend(curves, self.interpolation, np.asarray(v), np.asarray(x), nu)
+        return curves, self.interpolation, np.asarray(v), np.asarray(x)
 
     def force_cN(
         self,
@@ -121,7 +122,7 @@ class FDVVModel:
         Outside the measured velocities the nearest one holds, outside the knots the end values.
         Raises ModelError if the model has no curve of that stroke.
         """
-        return self._surface(displacement_mm, velocity_mm_s, stroke, 0)
+        return blend(*self._serving(displacement_mm, velocity_mm_s, stroke))
 
     def stiffness_cN_mm(
         self,
@@ -130,7 +131,16 @@ class FDVVModel:
         stroke: Stroke | str = Stroke.PRESS,
     ) -> FloatArray:
         """Evaluate dF/dx (cN/mm) anywhere, as force_cN does the force."""
-        return self._surface(displacement_mm, velocity_mm_s, stroke, 1)
+        return blend(*self._serving(displacement_mm, velocity_mm_s, stroke), derivative=1)
+
+    def damping_cN_s_mm(
+        self,
+        displacement_mm: npt.ArrayLike,
+        velocity_mm_s: npt.ArrayLike,
+        stroke: Stroke | str = Stroke.PRESS,
+    ) -> FloatArray:
+        """Evaluate dF/dv (cN s/mm) anywhere, as force_cN does the force; 0 beyond the measured velocities."""
+        return blend_slope(*self._serving(displacement_mm, velocity_mm_s, stroke))
 
     def vibration(self, stroke: Stroke | str, velocity_mm_s: float) -> Vibration | None:
         """Give the vibration of the stroke nearest in velocity; None if it has none."""

@@ -1,1 +1,32 @@
-"""."""
+"""Figures and reports from records; needs the optional extra ``plot`` (matplotlib) for figures."""
+
+from fdvv.plot._fit_figures import plot_fit, plot_scan
+from fdvv.plot._model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
+from fdvv.plot._records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.plot._rendering_figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
+from fdvv.plot._report import Section, Table, render_html, write_report
+from fdvv.plot._style import house_style
+from fdvv.plot._svg import figure_of, figure_png, figure_svg
+
+__all__ = [
+    "ErrorHistory",
+    "PAPER_ERROR_cN",
+    "RenderedBand",
+    "RenderedCurve",
+    "Section",
+    "Table",
+    "figure_of",
+    "figure_png",
+    "figure_svg",
+    "house_style",
+    "plot_comparison",
+    "plot_convergence",
+    "plot_fit",
+    "plot_model",
+    "plot_rendering",
+    "plot_scan",
+    "plot_surface",
+    "plot_vibration",
+    "render_html",
+    "write_report",
+]

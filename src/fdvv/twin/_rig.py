@@ -170,7 +170,7 @@ class Controller:
         "",
         (0.7, 1.5),
         (0.1, 10.0),
-        "rule",
+        "calibrated on this twin, simulated",
     )
     reversal_m: float = quantity(
         1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (1e-6, 0.01), "assumed"

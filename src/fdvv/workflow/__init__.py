@@ -1,1 +1,59 @@
-"""."""
+"""The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
+
+from fdvv.workflow._compare import Comparison, Difference, compare
+from fdvv.workflow._compensate import (
+    CompensationResult,
+    PressDone,
+    compensate,
+    load_actuation,
+    save_actuation,
+)
+from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
+from fdvv.workflow._demo_report import demo_report
+from fdvv.workflow._devices import open_device
+from fdvv.workflow._fit import (
+    FitSettings,
+    FolderFit,
+    FolderSummary,
+    ModelFit,
+    fit_file,
+    fit_folder,
+    fit_force_file,
+    summarise,
+)
+from fdvv.workflow._open import open_model, open_models
+from fdvv.workflow._parts import merge_parts, one_curve, open_part
+from fdvv.workflow._probe import ProbeResult, fd_only, probe
+
+__all__ = [
+    "Comparison",
+    "CompensationResult",
+    "DemoResult",
+    "Difference",
+    "FitSettings",
+    "FolderFit",
+    "FolderSummary",
+    "ModelFit",
+    "PressDone",
+    "ProbeResult",
+    "Rendering",
+    "SwitchFit",
+    "compare",
+    "compensate",
+    "demo",
+    "demo_report",
+    "fd_only",
+    "fit_file",
+    "fit_folder",
+    "fit_force_file",
+    "load_actuation",
+    "merge_parts",
+    "one_curve",
+    "open_device",
+    "open_model",
+    "open_models",
+    "open_part",
+    "probe",
+    "save_actuation",
+    "summarise",
+]

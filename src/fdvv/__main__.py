@@ -1,0 +1,5 @@
+"""Run the command line as ``python -m fdvv``."""
+
+from fdvv.cli import main
+
+main()

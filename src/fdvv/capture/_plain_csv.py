@@ -1,0 +1,180 @@
+"""Any table with named columns: the header says what each column is, its unit, stroke and velocity."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.capture._header import Column, Quantity, describe, guess_length_mm
+from fdvv.capture._record import Notes, RawCycle, Reading, Track
+from fdvv.capture._text import Table, body, cells, refusal
+from fdvv.model import Stroke
+from fdvv.units import FloatArray
+
+FORMATS = {
+    ("x_um", "force_gf", "actuated"): "bluepylons-csv",
+    ("millis", "steps", "travel (mm)", "scale raw", "scale (grams)"): "buddyog",
+}
+"""Published tables that are known by their exact column names."""
+
+_IGNORED = {"buddyog": {"Steps", "Scale raw"}}
+
+
+def find_header(lines: Sequence[str]) -> tuple[int, str, list[Column]] | None:
+    """Find the first of the leading lines that names a force, and a displacement beside it."""
+    for at, line in enumerate(lines[:60]):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        separator = sniff_separator(line)
+        columns = [describe(i, title) for i, title in enumerate(cells(line, separator))]
+        if len({Quantity.FORCE, Quantity.DISPLACEMENT} & {c.quantity for c in columns}) == 2:
+            return at, separator, columns
+    return None
+
+
+def sniff_separator(line: str) -> str:
+    """Tell the separator of a line: tab, semicolon, comma, else blanks; those in quotes do not count."""
+    bare = re.sub(r'"[^"]*"', "", line)
+    return next((mark for mark in ("\t", ";", ",") if mark in bare), " ")
+
+
+def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, notes: Notes) -> Reading:
+    """Read one curve per force column; ``stroke`` is what the file's name says, if it says anything.
+
+    A force belongs to the nearest displacement on its left, else to the first one.
+    """
+    found = find_header(lines)
+    if found is None:
+        raise refusal(
+            source,
+            "line 1",
+            "no header names a displacement and a force",
+            "name the columns with their units, e.g. displacement_mm,force_cN",
+        )
+    at, separator, columns = found
+    form = FORMATS.get(tuple(c.title.lower() for c in columns), "plain-csv")
+    columns = [c for c in columns if c.title not in _IGNORED.get(form, ())]
+    table = body(source, lines, at + 1, separator)
+    comma = separator != "," and any(re.match(r"^\s*-?\d+,\d+\s*$", c) for row in table.rows[:5] for c in row)
+    table = Table(source, table.rows, table.first_line, comma)
+    _tell_unread(columns, notes)
+    forces = [c for c in columns if c.quantity is Quantity.FORCE]
+    _check_distinct(source, at, forces)
+    cycles = [_curve(table, columns, force, stroke, len(forces) > 1, notes) for force in forces]
+    return Reading(form, _name(source, form), _pair_up(cycles))
+
+
+def _name(source: Path, form: str) -> str:
+    # a log is called DataLog_1; its folder tells which dome it is of
+    if form == "buddyog" and re.match(r"(.*-)?DataLog_\d+$", source.stem):
+        return f"{source.parent.name.replace('_', ' ')}, {source.stem.split('-')[-1]}".lstrip(", ")
+    return source.stem
+
+
+def _tell_unread(columns: Sequence[Column], notes: Notes) -> None:
+    known = (Quantity.OTHER,)
+    unread = [repr(c.title[:30]) for c in columns if c.quantity in known and c.title]
+    if unread:
+        notes.say(f"header: column{'s' if len(unread) > 1 else ''} {', '.join(unread[:6])} not read")
+
+
+def _check_distinct(source: Path, at: int, forces: Sequence[Column]) -> None:
+    """Refuse two force columns that nothing tells apart, and forces without a unit."""
+    titles = [c.title for c in forces]
+    for column in forces:
+        if titles.count(column.title) > 1 and column.stroke is None and column.velocity_mm_s is None:
+            reason = f"{titles.count(column.title)} columns are all called {column.title[:30]!r}"
+            raise refusal(source, f"line {at + 1}", reason, "give each its own name")
+        if column.scale is None:
+            raise refusal(
+                source,
+                f"line {at + 1}, column {column.index + 1}",
+                f"force column {column.title[:30]!r} has no unit, and numbers cannot tell gf from cN",
+                "write the unit into the header, e.g. force_gf or force (N)",
+            )
+
+
+def _curve(
+    table: Table,
+    columns: Sequence[Column],
+    force: Column,
+    stroke: Stroke | None,
+    several: bool,
+    notes: Notes,
+) -> RawCycle:
+    """Read one force column with its displacement, and the clock and contact if there are any."""
+    travel = _beside(columns, Quantity.DISPLACEMENT, force) or force
+    clock, contact = (_beside(columns, q, force) for q in (Quantity.TIME, Quantity.CLOSED))
+    clock = clock if clock is not None and clock.scale is not None else None
+    extra = [c for c in (clock, contact) if c is not None]
+    read = table.columns([travel.index, force.index, *(c.index for c in extra)], notes, force.title)
+    by = {c.index: values for c, values in zip(extra, read[2:], strict=True)}
+    where = force.title if several else "run"
+    track = Track(
+        where,
+        # rounded to a picometre, so that 1880 um is 1.88 mm
+        np.round(read[0] * _length_scale(table.source, travel, read[0], notes), 9),
+        read[1] * (force.scale or 1.0),
+        None if clock is None else by[clock.index] * (clock.scale or 1.0),
+        None if contact is None else by[contact.index],
+    )
+    return _as_cycle(track, force, stroke, where if several else "")
+
+
+def _beside(columns: Sequence[Column], quantity: Quantity, force: Column) -> Column | None:
+    of = [c for c in columns if c.quantity is quantity]
+    left = [c for c in of if c.index < force.index]
+    return left[-1] if left else (of[0] if of else None)
+
+
+def _length_scale(source: Path, column: Column, values: FloatArray, notes: Notes) -> float:
+    if column.scale is not None:
+        return column.scale
+    span = float(np.ptp(values))
+    scale = guess_length_mm(span)
+    if scale is None:
+        raise refusal(
+            source,
+            f"column {column.index + 1}",
+            f"{column.title[:30]!r} has no unit, and a span of {span:.3g} fits none",
+            "write the unit into the header, e.g. displacement_mm",
+        )
+    unit = {1.0: "mm", 1e-3: "um", 1000.0: "m"}[scale]
+    notes.say(
+        f"column {column.index + 1}: {column.title[:30]!r} has no unit; read as {unit}, the only one "
+        f"in which a span of {span:.3g} is a button's travel"
+    )
+    return scale
+
+
+def _as_cycle(track: Track, force: Column, stroke: Stroke | None, label: str) -> RawCycle:
+    """Take a column for a run if it goes down and comes back, else for the one stroke it is."""
+    x = track.x_mm
+    stroke = force.stroke or stroke
+    turns = x.size > 8 and 0.1 * x.size < int(np.argmax(np.abs(x - x[0]))) < 0.9 * x.size
+    if turns and force.stroke is None:
+        return RawCycle(label, run=track, velocity_mm_s=force.velocity_mm_s)
+    if stroke is Stroke.RELEASE or (
+        stroke is None and x[-1] < x[0] and track.force_cN[0] > track.force_cN[-1]
+    ):
+        return RawCycle(label, release=track, velocity_mm_s=force.velocity_mm_s)
+    return RawCycle(label, press=track, velocity_mm_s=force.velocity_mm_s)
+
+
+def _pair_up(cycles: list[RawCycle]) -> list[RawCycle]:
+    """Join each press with the release of its velocity and place in the row."""
+    presses = [c for c in cycles if c.press is not None]
+    releases = [c for c in cycles if c.release is not None]
+    joined = [c for c in cycles if c.run is not None]
+    for press in presses:
+        match = next((r for r in releases if r.velocity_mm_s == press.velocity_mm_s), None)
+        if match is not None:
+            releases.remove(match)
+            press = RawCycle(
+                press.label, press=press.press, release=match.release, velocity_mm_s=press.velocity_mm_s
+            )
+        joined.append(press)
+    return joined + releases

@@ -1,0 +1,81 @@
+"""fdvv compare."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, save_figure
+
+if TYPE_CHECKING:
+    from fdvv.workflow import Comparison
+
+SIDE_BY_SIDE = 6
+"""More buttons than this get a line each instead of a column."""
+LANDMARKS = ("travel_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN", "work_mJ")
+
+
+@click.command()
+@click.argument("buttons", nargs=-1, required=True)
+@click.option(
+    "--velocity", "velocity_mm_s", type=click.FloatRange(min=0, min_open=True),
+    help="Compare at this speed (mm/s); the slowest curves by default.",
+)  # fmt: skip
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the overlay: .svg, .png or .pdf.")
+@json_option
+def compare(
+    buttons: tuple[str, ...], velocity_mm_s: float | None, figure: Path | None, as_json: bool
+) -> None:
+    """Compare buttons: landmarks side by side and force differences.
+
+    BUTTONS are two or more built-ins, *.fdvv.json files, files of measured curves or folders of either.
+    The first is the reference; displacement counts from each button's contact.
+    """
+    from fdvv.model import Stroke
+    from fdvv.workflow import compare as compare_models
+    from fdvv.workflow import open_models
+
+    refused: list[str] = []
+    opened = open_models(buttons, refused)
+    models = [model for model in opened if model.of(Stroke.PRESS)]
+    refused += [f"{model.name}: has no press curve" for model in opened if not model.of(Stroke.PRESS)]
+    print_warnings([f"refused: {reason}" for reason in refused])
+    if len(models) < 2:
+        raise click.UsageError(f"two or more buttons are needed, got {len(models)}")
+    result = compare_models(models, velocity_mm_s)
+    if figure:
+        from fdvv.plot import plot_comparison
+
+        save_figure(plot_comparison(models).figure, figure)
+    if as_json:
+        print_json({**result.to_dict(), "refused": refused})
+    elif len(models) <= SIDE_BY_SIDE:
+        _print_columns(result)
+    else:
+        _print_lines(result)
+
+
+def _print_columns(result: Comparison) -> None:
+    """Print a column per button, then the differences."""
+    marks = [m.to_dict() for m in result.landmarks]
+    print_table(["landmark", *result.names], [[key, *(number(m[key], 3) for m in marks)] for key in marks[0]])
+    click.echo("")
+    print_table(
+        [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
+        [
+            [d.name, str(d.stroke), number(d.rms_cN), number(d.mean_cN), number(d.max_cN), number(d.max_mm)]
+            for d in result.differences
+        ],
+    )
+
+
+def _print_lines(result: Comparison) -> None:
+    """Print a line per button: landmarks and the difference of its press from the reference."""
+    rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
+    rows = [
+        [name, *(number(marks.to_dict()[key]) for key in LANDMARKS), number(rms.get(i))]
+        for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
+    ]
+    print_table(["button", *LANDMARKS, "press rms cN"], rows)

@@ -1,0 +1,176 @@
+"""fdvv fit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, progress
+
+if TYPE_CHECKING:
+    from fdvv.workflow import FitSettings, FolderFit, ModelFit
+
+
+def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) -> int | None:
+    if value == "auto":
+        return None
+    try:
+        count = int(value)
+    except ValueError:
+        raise click.BadParameter(f"{value!r} is neither a number nor 'auto'") from None
+    if not 4 <= count <= 64:
+        raise click.BadParameter(f"{count} is not between 4 and 64")
+    return count
+
+
+@click.command()
+@click.argument("path", type=click.Path(path_type=Path, exists=True))
+@click.option(
+    "--method",
+    type=click.Choice(["adaptive", "uniform"]),
+    default="adaptive",
+    show_default=True,
+    help="Knots where the curve needs them, or the paper's equal spans.",
+)
+@click.option(
+    "--control-points",
+    callback=_control_points,
+    default="15",
+    show_default=True,
+    help="How many per curve; 'auto' lets BIC* choose.",
+)
+@click.option(
+    "--degree", type=click.IntRange(1, 3), help="Of the spline; 2 for adaptive, 3 for uniform knots."
+)
+@click.option(
+    "--smoothing-mm",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    show_default=True,
+    help="Sigma of a Gaussian before the fit. Errors stay against the raw curve.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Where to write the model (a folder's models: a folder).",
+)
+@click.option(
+    "--max-rmse-cN",
+    "max_rmse_cN",
+    type=click.FloatRange(min=0),
+    help="Exit with status 1 if a curve's error exceeds this.",
+)
+@json_option
+def fit(
+    path: Path,
+    method: str,
+    control_points: int | None,
+    degree: int | None,
+    smoothing_mm: float,
+    output: Path | None,
+    max_rmse_cN: float | None,
+    as_json: bool,
+) -> None:
+    """Fit measured force curves: one file, or every file of a folder.
+
+    PATH is a file in any known format (docs/reference/force-files.md) or a folder of them. The report
+    tells the error against the raw curve, how much of the bump is kept, and what was repaired.
+    """
+    from fdvv.model import FitMethod
+    from fdvv.workflow import FitSettings
+
+    settings = FitSettings(FitMethod(method), control_points, degree, smoothing_mm)
+    worst = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
+    if max_rmse_cN is not None and worst > max_rmse_cN:
+        click.echo(f"fdvv: worst RMSE {worst:.3f} cN exceeds the bound of {max_rmse_cN} cN", err=True)
+        raise click.exceptions.Exit(1)
+
+
+def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> float:
+    from fdvv.model import save_model
+    from fdvv.workflow import fit_file
+
+    found = fit_file(path, settings)
+    if output:
+        save_model(found.model, output)
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        _print_fit(found)
+    return max(f.rmse_cN for f in found.fits)
+
+
+def _print_fit(found: ModelFit) -> None:
+    click.echo(f"{found.model.name}: {found.model.provenance.method}")
+    print_table(
+        ["curve", "RMSE cN", "max cN", "points", "bump kept", "ms"],
+        [
+            [
+                f"{f.curve.stroke}" + (f" {f.curve.velocity_mm_s:g} mm/s" if f.curve.velocity_mm_s else ""),
+                number(f.rmse_cN, 3),
+                number(f.max_cN),
+                str(f.curve.control_points_cN.size),
+                "no bump" if f.bump_kept_ratio is None else f"{100 * f.bump_kept_ratio:.1f} %",
+                number(f.time_s * 1e3, 1),
+            ]
+            for f in found.fits
+        ],
+    )
+    print_warnings(found.warnings)
+
+
+def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> float:
+    from fdvv.capture import find_force_files
+    from fdvv.model import SUFFIX, save_model
+    from fdvv.workflow import fit_folder, summarise
+
+    results = []
+    total = len(find_force_files(path))
+    with progress("fitting", total) as advance:
+        for result in fit_folder(path, settings):
+            results.append(result)
+            advance(len(results), total)
+            if output and result.fit:
+                relative = result.file.relative_to(path)
+                save_model(result.fit.model, output / relative.with_name(relative.name + SUFFIX))
+    summary = summarise(results)
+    if as_json:
+        print_json(_document(results, summary.to_dict()))
+    else:
+        _print_folder(results, summary.to_dict())
+    return max((f.rmse_cN for r in results if r.fit for f in r.fit.fits), default=0.0)
+
+
+def _document(results: list[FolderFit], summary: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "results": [{"file": str(r.file), **r.fit.to_dict()} for r in results if r.fit],
+        "refused": [{"file": str(r.file), "reason": r.reason} for r in results if not r.fit],
+        "summary": summary,
+    }
+
+
+def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
+    for result in results:
+        if not result.fit:
+            click.echo(f"refused: {result.reason}", err=True)
+            continue
+        print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
+    click.echo(f"{summary['files']} files, {summary['refused']} refused")
+    print_table(
+        ["stroke", "RMSE cN median", "90 %", "ms median", "90 %"],
+        [
+            [
+                stroke,
+                number(s["rmse_cN"]["median"], 3),
+                number(s["rmse_cN"]["p90"], 3),
+                number(1e3 * s["time_s"]["median"], 1),
+                number(1e3 * s["time_s"]["p90"], 1),
+            ]
+            for stroke, s in summary["strokes"].items()
+        ],
+    )
+    if summary["bumps"]:
+        click.echo(f"{summary['bumps_kept']} of {summary['bumps']} bumps kept to 95 % or more")

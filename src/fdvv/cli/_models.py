@@ -1,0 +1,110 @@
+"""fdvv merge, assign and library: make models out of models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fdvv.cli._output import json_option, number, print_json, print_table
+
+OUTPUT = click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, dir_okay=False),
+    required=True,
+    help="The *.fdvv.json to write.",
+)
+
+
+@click.command()
+@click.argument("parts", nargs=-1, required=True)
+@click.option("--name", required=True, help="Name of the merged button.")
+@click.option(
+    "--travel-mm", type=click.FloatRange(min=0, min_open=True), help="Needed where the parts' travels differ."
+)
+@click.option("--actuation-mm", type=click.FloatRange(min=0), help="Needed where the parts' points differ.")
+@click.option("--reset-mm", type=click.FloatRange(min=0), help="Needed where the parts' points differ.")
+@OUTPUT
+def merge(
+    parts: tuple[str, ...],
+    name: str,
+    travel_mm: float | None,
+    actuation_mm: float | None,
+    reset_mm: float | None,
+    output: Path,
+) -> None:
+    """Merge force curves at several velocities into one FDVV model.
+
+    PARTS are FILE[:press|:release][@VELOCITY]: a built-in, a *.fdvv.json or a measured file; only that
+    stroke of it; declared to be of that velocity in mm/s. Example: merge slow.csv@0.5 fast.csv:press@100
+    """
+    from fdvv.model import save_model
+    from fdvv.workflow import merge_parts
+
+    model = merge_parts(parts, name, travel_mm, actuation_mm, reset_mm)
+    save_model(model, output)
+    click.echo(f"{output}: {len(model.curves)} curves, travel {model.travel_mm:.3f} mm")
+
+
+@click.command()
+@click.argument("button")
+@click.argument("curve")
+@click.option(
+    "--stroke", type=click.Choice(["press", "release"]), required=True, help="What the curve becomes."
+)
+@click.option(
+    "--velocity", "velocity_mm_s", type=click.FloatRange(min=0, min_open=True), help="At which speed (mm/s)."
+)
+@click.option(
+    "--segment", "segment_mm", type=float, nargs=2, metavar="FROM TO", help="Only this part of it (mm)."
+)
+@click.option(
+    "--blend-mm", type=click.FloatRange(min=0, min_open=True), default=0.1, show_default=True,
+    help="Width over which old and new meet at the segment's ends.",
+)  # fmt: skip
+@OUTPUT
+def assign(
+    button: str,
+    curve: str,
+    stroke: str,
+    velocity_mm_s: float | None,
+    segment_mm: tuple[float, float] | None,
+    blend_mm: float,
+    output: Path,
+) -> None:
+    """Give a curve, or a segment of one, to press or release of a model.
+
+    BUTTON is the model that is changed (a copy is written); CURVE is FILE[:press|:release], whose own
+    stroke and velocity do not matter.
+    """
+    from fdvv.model import assign as assign_curve
+    from fdvv.model import save_model
+    from fdvv.workflow import one_curve, open_model
+
+    model = assign_curve(open_model(button), one_curve(curve), stroke, velocity_mm_s, segment_mm, blend_mm)
+    save_model(model, output)
+    click.echo(f"{output}: {len(model.curves)} curves")
+
+
+@click.command()
+@json_option
+def library(as_json: bool) -> None:
+    """List the built-in buttons."""
+    from fdvv.model import builtin_names, landmarks, load_builtin
+
+    models = [load_builtin(name) for name in builtin_names()]
+    marks = [landmarks(model).to_dict() for model in models]
+    if as_json:
+        entries = [
+            {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
+            for m, k in zip(models, marks, strict=True)
+        ]
+        print_json({"buttons": entries})
+        return
+    columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
+    rows = [
+        [m.name, *(number(k[c]) for c in columns), m.provenance.source.split(";")[0][:60]]
+        for m, k in zip(models, marks, strict=True)
+    ]
+    print_table(["button", *columns, "source"], rows)

@@ -1,0 +1,86 @@
+"""What the figures need that no other room's record holds: a rendered curve and a history of errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import Stroke
+from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class RenderedBand:
+    """What one method rendered: mean and spread of several presses.
+
+    Attributes
+    ----------
+    method : as the legend calls it ("FD only", "FDVV").
+    mean_cN, low_cN, high_cN : (n,) at the displacements of the curve; NaN where no press went.
+    """
+
+    method: str
+    mean_cN: FloatArray
+    low_cN: FloatArray
+    high_cN: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class RenderedCurve:
+    """One stroke at one velocity: what was asked for and what each method rendered.
+
+    Attributes
+    ----------
+    displacement_mm : (n,) true displacement, strictly rising.
+    target_cN : (n,) force that the model asks for.
+    bands : one per method, in the order of the legend.
+    simulated : the presses come from the twin.
+
+    Raises ModelError on columns of different length or displacements that do not rise.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    displacement_mm: FloatArray
+    target_cN: FloatArray
+    bands: tuple[RenderedBand, ...] = ()
+    simulated: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stroke", Stroke(self.stroke))
+        object.__setattr__(self, "bands", tuple(self.bands))
+        shape = self.displacement_mm.shape
+        columns = [("target_cN", self.target_cN)]
+        for band in self.bands:
+            columns += [(f"{band.method} {n}", getattr(band, n)) for n in ("mean_cN", "low_cN", "high_cN")]
+        for name, column in columns:
+            if column.shape != shape:
+                raise ModelError(f"{name} must match displacement_mm, got {column.shape} and {shape}")
+        if len(shape) != 1 or shape[0] < 2 or np.any(np.diff(self.displacement_mm) <= 0):
+            raise ModelError(f"displacement_mm must be one strictly rising column, got shape {shape}")
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorHistory:
+    """The error of one curve over the presses that were used to learn it.
+
+    Attributes
+    ----------
+    error_cN : (n,) one per press, in order; NaN where a press gave none.
+    simulated : the presses come from the twin.
+
+    Raises ModelError unless error_cN is one column of at least one press.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    error_cN: FloatArray
+    simulated: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stroke", Stroke(self.stroke))
+        object.__setattr__(self, "error_cN", np.array(self.error_cN, dtype=np.float64))
+        if self.error_cN.ndim != 1 or self.error_cN.size < 1:
+            raise ModelError(f"error_cN must be one column, got shape {self.error_cN.shape}")

@@ -1,0 +1,103 @@
+"""How buttons differ: landmarks side by side, and force between their curves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fdvv.model import FDVVModel, ForceCurve, Landmarks, Stroke, landmarks
+
+STEP_mm = 0.01
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Force of one button less that of the reference, over the displacement that both have.
+
+    Attributes
+    ----------
+    index, name, stroke : which curve is compared with the reference's; index counts the buttons from 0.
+    rms_cN, mean_cN, max_cN : of the difference; max is its greatest absolute value, at max_mm.
+    from_mm, to_mm : the common range, each button's contact at 0.
+    """
+
+    index: int
+    name: str
+    stroke: Stroke
+    rms_cN: float
+    mean_cN: float
+    max_cN: float
+    max_mm: float
+    from_mm: float
+    to_mm: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Buttons side by side; the first is the reference of the differences."""
+
+    names: tuple[str, ...]
+    landmarks: tuple[Landmarks, ...]
+    differences: tuple[Difference, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the report of ``fdvv compare --json``."""
+        buttons = [
+            {"name": name, **marks.to_dict()} for name, marks in zip(self.names, self.landmarks, strict=True)
+        ]
+        differences = [{**vars(d), "stroke": str(d.stroke)} for d in self.differences]
+        return {"reference": self.names[0], "buttons": buttons, "differences": differences}
+
+
+def compare(models: Sequence[FDVVModel], velocity_mm_s: float | None = None) -> Comparison:
+    """Compare buttons at one velocity (the slowest of each by default).
+
+    Raises ModelError if a button has no press curve.
+    """
+    reference = models[0]
+    differences = [
+        found
+        for index, model in enumerate(models[1:], start=1)
+        for stroke in Stroke
+        if (found := _difference(reference, index, model, stroke, velocity_mm_s)) is not None
+    ]
+    names = tuple(model.name for model in models)
+    return Comparison(names, tuple(landmarks(m, velocity_mm_s) for m in models), tuple(differences))
+
+
+def _difference(
+    reference: FDVVModel, index: int, model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None
+) -> Difference | None:
+    """Subtract the curves of one stroke over their common range; None if either button lacks it."""
+    if not reference.of(stroke) or not model.of(stroke):
+        return None
+    pair = (_curve(reference, stroke, velocity_mm_s), _curve(model, stroke, velocity_mm_s))
+    low, high = max(c.start_mm for c in pair), min(c.end_mm for c in pair)
+    if high <= low:
+        return None
+    x = np.linspace(low, high, max(2, round((high - low) / STEP_mm) + 1))
+    base, other = (
+        m.force_cN(x, velocity_mm_s or c.velocity_mm_s or 1.0, stroke)
+        for m, c in zip((reference, model), pair, strict=True)
+    )
+    delta = other - base
+    at = int(np.argmax(np.abs(delta)))
+    return Difference(
+        index=index,
+        name=model.name,
+        stroke=stroke,
+        rms_cN=float(np.sqrt(np.mean(delta**2))),
+        mean_cN=float(delta.mean()),
+        max_cN=float(abs(delta[at])),
+        max_mm=float(x[at]),
+        from_mm=low,
+        to_mm=high,
+    )
+
+
+def _curve(model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None) -> ForceCurve:
+    """Give the stroke's curve nearest in velocity; the slowest if none is asked for."""
+    return min(model.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - (velocity_mm_s or 0.0)))

@@ -1,0 +1,166 @@
+"""The main job, end to end: fit a real switch, render the published button, judge the rendering."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from fdvv.capture import ForceFile, read_force_file
+from fdvv.device import Device
+from fdvv.model import CurveFit, FDVVModel, FitMethod, ForceSurface, fit_curve, load_builtin, scan_sizes
+from fdvv.workflow._compensate import CompensationResult, PressDone, compensate
+from fdvv.workflow._fit import FitSettings, ModelFit, fit_force_file, fit_report
+from fdvv.workflow._probe import ProbeResult, fd_only, probe
+
+BUTTON = "mx-clear"
+SWITCH = "cherry-mx-hyperglide-brown.csv"
+VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
+PROBE_PRESSES = 10
+
+Stage = Callable[[str, int, int], None]
+"""Called with a label, steps done and steps in all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """One way to render a button, and how fresh presses judged it.
+
+    Attributes
+    ----------
+    label : "uncompensated", "FD only" or "FDVV".
+    learned : how its actuation was learned; None if the model itself was uploaded.
+    judged : the probe, always against the full model.
+    """
+
+    label: str
+    learned: CompensationResult | None
+    judged: ProbeResult
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchFit:
+    """The real switch: adaptive and uniform knots on the same raw curves, and the scan of sizes."""
+
+    adaptive: ModelFit
+    uniform: tuple[CurveFit, ...]
+    scan: dict[str, dict[int, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class DemoResult:
+    """Everything the demo found. Rendering figures are simulated."""
+
+    switch: SwitchFit
+    button: FDVVModel
+    renderings: tuple[Rendering, ...]
+    seed: int
+    time_s: float
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Give one row per stroke and velocity: mean and maximum error of each rendering, in cN."""
+        tables = [(r.label, [c.to_dict() for c in r.judged.curves]) for r in self.renderings]
+        rows = []
+        for i, first in enumerate(tables[0][1]):
+            row: dict[str, Any] = {"stroke": first["stroke"], "velocity_mm_s": first["velocity_mm_s"]}
+            for label, curves in tables:
+                row[label] = {key: curves[i][key] for key in ("mean_error_cN", "max_error_cN")}
+            rows.append(row)
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the report of ``fdvv demo --json``."""
+        return {
+            "switch": {
+                **self.switch.adaptive.to_dict(),
+                "uniform": {str(f.curve.stroke): fit_report(f) for f in self.switch.uniform},
+            },
+            "button": self.button.name,
+            "renderings": [
+                {
+                    "label": r.label,
+                    "learned": r.learned.to_dict() if r.learned else None,
+                    "judged": r.judged.to_dict(),
+                }
+                for r in self.renderings
+            ],
+            "rows": self.rows(),
+            "seed": self.seed,
+            "time_s": self.time_s,
+            "simulated": True,
+        }
+
+
+def demo(
+    open_device: Callable[[int], Device],
+    switch: Path | None = None,
+    seed: int = 1,
+    stage: Stage = lambda _label, _done, _total: None,
+) -> DemoResult:
+    """Fit a real switch, learn and judge three renderings of the published button at four velocities.
+
+    open_device : gives a device for a seed; learning and judging use different seeds.
+    switch : a file of measured curves; the shipped one if None. Raises InputError, DeviceError.
+    """
+    begun = time.perf_counter()
+    with _switch_path(switch) as path:
+        file = read_force_file(path)
+        fitted = _fit_switch(file, path.name, stage)
+    button = load_builtin(BUTTON)
+    renderings = _render(open_device, button, seed, stage)
+    return DemoResult(fitted, button, renderings, seed, time.perf_counter() - begun)
+
+
+@contextmanager
+def _switch_path(switch: Path | None) -> Iterator[Path]:
+    """Give the path of the person's switch file, or of the shipped one."""
+    if switch is not None:
+        yield switch
+        return
+    with resources.as_file(resources.files("fdvv.workflow") / "examples" / SWITCH) as path:
+        yield path
+
+
+def _fit_switch(file: ForceFile, source: str, stage: Stage) -> SwitchFit:
+    stage("fitting the switch", 0, 3)
+    adaptive = fit_force_file(file, FitSettings(), source)
+    stage("fitting the switch", 1, 3)
+    uniform = tuple(fit_curve(m, FitMethod.UNIFORM) for m in adaptive.measured)
+    stage("fitting the switch", 2, 3)
+    scan = {str(m): scan_sizes(adaptive.measured[0], m, range(5, 31)) for m in FitMethod}
+    stage("fitting the switch", 3, 3)
+    return SwitchFit(adaptive, uniform, scan)
+
+
+def _render(
+    open_device: Callable[[int], Device], button: FDVVModel, seed: int, stage: Stage
+) -> tuple[Rendering, ...]:
+    """Learn FD and FDVV on their own devices, then judge all on a device of yet another seed."""
+    learned: list[tuple[str, CompensationResult | None]] = [("uncompensated", None)]
+    for label, target in (("FD only", fd_only(button)), ("FDVV", button)):
+        device = open_device(seed)
+        learned.append(
+            (label, compensate(device, target, VELOCITIES_mm_s, progress=_told(stage, f"learning {label}")))
+        )
+    return tuple(
+        Rendering(label, result, _judge(open_device(seed + 1000), button, label, result, stage))
+        for label, result in learned
+    )
+
+
+def _judge(
+    device: Device, button: FDVVModel, label: str, learned: CompensationResult | None, stage: Stage
+) -> ProbeResult:
+    """Probe a rendering; every one meets the same person, that is, the same seed."""
+    surface = learned.surface if learned else ForceSurface.of_model(button, VELOCITIES_mm_s)
+    return probe(
+        device, button, surface, VELOCITIES_mm_s, PROBE_PRESSES, _told(stage, f"probing {label}"), label
+    )
+
+
+def _told(stage: Stage, label: str) -> Callable[[PressDone], None]:
+    return lambda event: stage(label, event.presses_done, event.presses_total)

@@ -1,0 +1,266 @@
+"""From a file of force curves to a model, with what was repaired and how well it fits."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fdvv.capture import Averaged, Cycle, ForceFile, average_cycles, find_force_files, read_force_file
+from fdvv.errors import FdvvError, InputError
+from fdvv.model import (
+    CurveFit,
+    FDVVModel,
+    FitMethod,
+    Landmarks,
+    MeasuredCurve,
+    Provenance,
+    Stroke,
+    active_part,
+    find_bottom_out_mm,
+    find_contact_mm,
+    fit_curve,
+    landmarks,
+)
+
+DECIMALS_mm = 6
+"""A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How to fit; the fields are fdvv.model.fit_curve's."""
+
+    method: FitMethod = FitMethod.ADAPTIVE
+    control_points: int | None = 15
+    degree: int | None = None
+    smoothing_mm: float = 0.0
+
+    def describe(self) -> str:
+        """Say the settings in one sentence, for provenance."""
+        size = "BIC*-chosen" if self.control_points is None else str(self.control_points)
+        smoothing = f"smoothed with sigma {self.smoothing_mm} mm" if self.smoothing_mm else "not smoothed"
+        return f"fitted with {self.method} knots, {size} control points per curve, {smoothing}"
+
+
+@dataclass(frozen=True, eq=False)
+class ModelFit:
+    """A fitted model and how it came about.
+
+    Attributes
+    ----------
+    model : displacement 0 is the contact of the slowest press.
+    fits : one per curve of the model, in the model's order; displacements are the model's.
+    measured : the raw part of each stroke that was fitted, in the model's displacement, in fits' order.
+    landmarks : of the slowest press; None if the file holds no press.
+    warnings : what was repaired, left out or could not be found.
+    """
+
+    model: FDVVModel
+    fits: tuple[CurveFit, ...]
+    measured: tuple[MeasuredCurve, ...]
+    landmarks: Landmarks | None
+    warnings: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the report of ``fdvv fit --json``; "strokes" holds the slowest curve of each stroke."""
+        strokes: dict[str, Any] = {}
+        for fit in self.fits:
+            strokes.setdefault(str(fit.curve.stroke), fit_report(fit))
+        return {
+            "name": self.model.name,
+            "strokes": strokes,
+            "curves": [
+                {"stroke": str(f.curve.stroke), "velocity_mm_s": f.curve.velocity_mm_s, **fit_report(f)}
+                for f in self.fits
+            ],
+            "landmarks": self.landmarks.to_dict() if self.landmarks else {"travel_mm": self.model.travel_mm},
+            "warnings": list(self.warnings),
+        }
+
+
+def fit_report(fit: CurveFit) -> dict[str, Any]:
+    """Give the figures of one fitted curve by name."""
+    return {
+        "rmse_cN": fit.rmse_cN,
+        "max_cN": fit.max_cN,
+        "rows_rmse_cN": fit.rows_rmse_cN,
+        "control_points": fit.curve.control_points_cN.size,
+        "degree": fit.curve.degree,
+        "method": str(fit.method),
+        "smoothing_mm": fit.smoothing_mm,
+        "bump_kept_ratio": fit.bump_kept_ratio,
+        "bic_star": fit.bic_star,
+        "samples": fit.samples,
+        "time_s": fit.time_s,
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class FolderFit:
+    """What became of one file of a folder: a fit, or the reason why not."""
+
+    file: Path
+    fit: ModelFit | None
+    reason: str = ""
+
+
+def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
+    """Read, repair, average and fit one file of force curves. Raises InputError."""
+    file = read_force_file(path)
+    try:
+        return fit_force_file(file, settings or FitSettings(), str(Path(path).name))
+    except InputError:
+        raise
+    except FdvvError as error:
+        remedy = "check that the file holds one whole stroke from contact to the stop"
+        raise InputError(path, "curve", str(error), remedy) from error
+
+
+def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> ModelFit:
+    """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve."""
+    groups = [(v, average_cycles(replace(file, cycles=cycles))) for v, cycles in _by_velocity(file.cycles)]
+    warnings = [*file.warnings]
+    for _, group in groups:
+        warnings += [f"{label} left out: {reason}" for label, reason in group.left_out]
+    zero, travel = _zero_and_travel([group for _, group in groups], warnings)
+    parts = []
+    for velocity, group in groups:
+        for stroke in (group.press, group.release):
+            if stroke is not None:
+                moved = active_part(stroke)
+                x = np.round(moved.displacement_mm - zero, DECIMALS_mm)
+                parts.append(MeasuredCurve(x, moved.force_cN, moved.stroke, velocity))
+    parts.sort(key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
+    fits = tuple(
+        fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
+        for p in parts
+    )
+    model = FDVVModel(
+        name=file.name,
+        travel_mm=travel,
+        curves=tuple(fit.curve for fit in fits),
+        actuation_mm=_point([g.actuation_mm for _, g in groups], zero, travel, "actuation", warnings),
+        reset_mm=_point([g.reset_mm for _, g in groups], zero, travel, "reset", warnings),
+        provenance=Provenance(source=f"{source} ({file.format})", method=settings.describe()),
+    )
+    found = landmarks(model) if model.of(Stroke.PRESS) else None
+    return ModelFit(model, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
+
+
+def _by_velocity(cycles: Sequence[Cycle]) -> list[tuple[float | None, tuple[Cycle, ...]]]:
+    """Group cycles by the velocity of their strokes, in the file's order."""
+    groups: dict[float | None, list[Cycle]] = {}
+    for cycle in cycles:
+        stroke = cycle.press or cycle.release
+        groups.setdefault(stroke.velocity_mm_s if stroke else None, []).append(cycle)
+    return [(velocity, tuple(members)) for velocity, members in groups.items()]
+
+
+def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
+    """Find contact and travel on the first press (the first release if there is none)."""
+    stroke = next(s for g in groups for s in (g.press, g.release) if s is not None)
+    zero = find_contact_mm(stroke)
+    end = find_bottom_out_mm(stroke, zero)
+    if end is None:
+        end = float(stroke.displacement_mm[-1])
+        warnings.append(f"no stop found on the {stroke.stroke}: travel taken to its last sample")
+    return zero, round(end - zero, DECIMALS_mm)
+
+
+def _point(
+    found: Sequence[float | None], zero: float, travel: float, what: str, warnings: list[str]
+) -> float | None:
+    """Bring the first known contact point into the model's displacement; None beyond the travel."""
+    point = next((p for p in found if p is not None), None)
+    if point is None:
+        return None
+    if not 0 <= point - zero <= travel:
+        warnings.append(
+            f"{what} at {point - zero:.3f} mm lies outside the travel of {travel:.3f} mm: left out"
+        )
+        return None
+    return round(point - zero, DECIMALS_mm)
+
+
+def fit_folder(
+    folder: Path, settings: FitSettings | None = None, workers: int | None = None
+) -> Iterator[FolderFit]:
+    """Fit every file of force curves below a folder, in order; a refused file yields its reason.
+
+    The compiled fits release the interpreter lock, so threads share the cores.
+    Raises InputError if the folder holds no candidate.
+    """
+    files = find_force_files(folder)
+    if not files:
+        raise InputError(folder, "folder", "no .csv, .ods, .json or .txt file in it", "name another folder")
+
+    def one(path: Path) -> FolderFit:
+        try:
+            return FolderFit(path, fit_file(path, settings))
+        except FdvvError as error:
+            return FolderFit(path, None, str(error))
+
+    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        yield from pool.map(one, files)
+
+
+@dataclass(frozen=True)
+class FolderSummary:
+    """The spread of a folder's fits, per stroke.
+
+    Attributes
+    ----------
+    rmse_cN, rows_rmse_cN, time_s : (median, 90th percentile) by stroke.
+    bumps, bumps_kept : strokes with a bump, and those of which at least 95 % was kept.
+    """
+
+    files: int
+    refused: int
+    rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
+    rows_rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
+    time_s: dict[str, tuple[float, float]] = field(default_factory=dict)
+    bumps: int = 0
+    bumps_kept: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the summary of ``fdvv fit FOLDER --json``."""
+        strokes = {
+            stroke: {
+                "rmse_cN": {"median": self.rmse_cN[stroke][0], "p90": self.rmse_cN[stroke][1]},
+                "rows_rmse_cN": {"median": self.rows_rmse_cN[stroke][0], "p90": self.rows_rmse_cN[stroke][1]},
+                "time_s": {"median": self.time_s[stroke][0], "p90": self.time_s[stroke][1]},
+            }
+            for stroke in self.rmse_cN
+        }
+        counts = {"files": self.files, "refused": self.refused}
+        return {**counts, "bumps": self.bumps, "bumps_kept": self.bumps_kept, "strokes": strokes}
+
+
+def summarise(results: Sequence[FolderFit]) -> FolderSummary:
+    """Sum up a folder: medians and 90th percentiles per stroke, bumps kept."""
+    fits = [f for r in results if r.fit for f in r.fit.fits]
+    kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
+
+    def spread(attribute: str) -> dict[str, tuple[float, float]]:
+        found: dict[str, tuple[float, float]] = {}
+        for stroke in Stroke:
+            values = [getattr(f, attribute) for f in fits if f.curve.stroke is stroke]
+            if values:
+                found[str(stroke)] = (float(np.median(values)), float(np.percentile(values, 90)))
+        return found
+
+    return FolderSummary(
+        files=len(results),
+        refused=sum(r.fit is None for r in results),
+        rmse_cN=spread("rmse_cN"),
+        rows_rmse_cN=spread("rows_rmse_cN"),
+        time_s=spread("time_s"),
+        bumps=len(kept),
+        bumps_kept=sum(ratio >= 0.95 for ratio in kept),
+    )

@@ -1,0 +1,166 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fdvv.capture import find_force_files, read_force_file, reader_names
+from fdvv.errors import InputError
+from fdvv.units import GRAM_FORCE_cN
+
+FORMATS = [name for name in reader_names() if name != "bluepylons-ods"]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tmp_path: Path) -> None:
+    _, text = files.TEXTS[name]
+    suffix = ".downstroke.csv" if name == "stroke-pair" else ".txt"
+    file = read_force_file(files.write(tmp_path, f"anything{suffix}", text()))
+    assert file.format == name
+
+
+@pytest.mark.parametrize("name", [name for name in FORMATS if name not in ("stroke-pair", "tester-json")])
+def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_path: Path) -> None:
+    filename, text = files.TEXTS[name]
+    cycle = read_force_file(files.write(tmp_path, filename, text())).cycles[0]
+    x, force = files.stroke()
+    assert cycle.press is not None
+    assert cycle.release is not None
+    np.testing.assert_allclose(cycle.press.displacement_mm, x, atol=1e-12)
+    np.testing.assert_allclose(cycle.press.force_cN, force * scale(name), atol=1e-9)
+    np.testing.assert_allclose(cycle.release.displacement_mm, x, atol=1e-12)
+    lighter = np.round(np.maximum(force - 3.0, 0.0), 1) * scale(name)
+    np.testing.assert_allclose(cycle.release.force_cN, lighter, atol=1e-9)
+
+
+def scale(name: str) -> float:
+    # the plain file holds the same figures divided by 100, in newtons
+    return 1.0 if name == "plain-csv" else GRAM_FORCE_cN
+
+
+@pytest.mark.parametrize("layout", ["A", "B", "C"])
+def test_each_layout_of_spreadsheet_gives_the_same_run(layout: str, files: Any, tmp_path: Path) -> None:
+    file = read_force_file(files.write(tmp_path, "Oak.ods", files.ods(files.raw_rows(layout))))
+    (cycle,) = file.cycles
+    x, force = files.stroke()
+    assert cycle.press is not None
+    np.testing.assert_allclose(cycle.press.displacement_mm, x, atol=1e-12)
+    np.testing.assert_allclose(cycle.press.force_cN, force * GRAM_FORCE_cN, atol=1e-9)
+    assert (cycle.actuation_mm, cycle.reset_mm) == ((None, None) if layout == "C" else (1.5, 1.4))
+
+
+def test_either_half_of_a_stroke_pair_brings_the_other(files: Any, tmp_path: Path) -> None:
+    down = files.write(tmp_path, "Oak.downstroke.csv", files.downstroke())
+    up = files.write(tmp_path, "Oak.upstroke.csv", files.upstroke())
+    assert find_force_files(tmp_path) == [down]
+    for path in (down, up):
+        file = read_force_file(path)
+        assert (file.name, file.format, len(file.cycles)) == ("Oak", "stroke-pair", 1)
+        assert file.cycles[0].press is not None
+        assert file.cycles[0].release is not None
+        assert file.cycles[0].press.force_cN[-1] > file.cycles[0].release.force_cN[-1]
+
+
+def test_a_lone_half_says_that_the_other_is_missing(files: Any, tmp_path: Path) -> None:
+    file = read_force_file(files.write(tmp_path, "Oak.upstroke.csv", files.upstroke()))
+    assert file.cycles[0].press is None
+    assert file.warnings == ("Oak.downstroke.csv is not there; the file holds the release only",)
+
+
+def test_a_published_table_gives_one_cycle_per_velocity(files: Any, tmp_path: Path) -> None:
+    press = files.write(tmp_path, "fig_press.csv", files.velocities())
+    files.write(tmp_path, "fig_release.csv", files.velocities())
+    file = read_force_file(press)
+    speeds = [(c.press and c.press.velocity_mm_s, c.release and c.release.velocity_mm_s) for c in file.cycles]
+    assert speeds == [(0.5, 0.5), (50.0, 50.0)]
+    _, force = files.stroke()
+    assert file.cycles[1].press is not None
+    np.testing.assert_allclose(file.cycles[1].press.force_cN, np.round(force * 1.1, 3), atol=1e-12)
+
+
+def test_timestamps_give_the_speed_of_the_stroke(files: Any, tmp_path: Path) -> None:
+    file = read_force_file(files.write(tmp_path, "log.csv", files.buddyog()))
+    assert file.cycles[0].press is not None
+    assert file.cycles[0].press.velocity_mm_s == pytest.approx(0.02 / 0.136, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("header", "x_scale", "force_scale", "separator"),
+    [
+        ("displacement_mm,force_cN", 1.0, 1.0, ","),
+        ("Travel [µm];Load (N)", 1000.0, 0.01, ";"),
+        ("x (um)\tF (mN)", 1000.0, 10.0, "\t"),
+        ("distance (m),force/g", 0.001, 1 / GRAM_FORCE_cN, ","),
+        ("position in inches,force ozf", 1 / 25.4, 1 / (28.349523125 * GRAM_FORCE_cN), ","),
+        ("depth mm force gf", 1.0, 1 / GRAM_FORCE_cN, " "),
+    ],
+)
+def test_units_in_the_header_are_converted(
+    header: str, x_scale: float, force_scale: float, separator: str, files: Any, tmp_path: Path
+) -> None:
+    if separator == " ":
+        header = "depth_mm force_gf"
+    x, force = files.run()
+    rows = [
+        f"{a * x_scale!r}{separator}{b * force_scale!r}"
+        for a, b in zip(x.tolist(), force.tolist(), strict=True)
+    ]
+    file = read_force_file(files.write(tmp_path, "p.csv", "\n".join([header, *rows])))
+    press = file.cycles[0].press
+    assert press is not None
+    np.testing.assert_allclose(press.displacement_mm, files.stroke()[0], atol=1e-8)
+    np.testing.assert_allclose(press.force_cN, files.stroke()[1], atol=1e-9)
+    assert file.warnings == ()
+
+
+def test_a_decimal_comma_is_read_where_semicolons_separate(files: Any, tmp_path: Path) -> None:
+    x, force = files.run()
+    rows = [f"{a};{b}".replace(".", ",") for a, b in zip(x.tolist(), force.tolist(), strict=True)]
+    file = read_force_file(files.write(tmp_path, "p.csv", "\r\n".join(["Weg x (mm);Force (cN)", *rows])))
+    assert file.cycles[0].press is not None
+    np.testing.assert_allclose(file.cycles[0].press.force_cN, files.stroke()[1])
+
+
+def test_a_length_without_unit_is_guessed_aloud_and_a_force_never(files: Any, tmp_path: Path) -> None:
+    x, force = files.run()
+    rows = "\n".join(f"{a},{b}" for a, b in zip(1000 * x, force, strict=True))
+    file = read_force_file(files.write(tmp_path, "a.csv", "travel,force_cN\n" + rows))
+    assert "read as um" in file.warnings[0]
+    with pytest.raises(InputError, match="force column 'force' has no unit"):
+        read_force_file(files.write(tmp_path, "b.csv", "travel_mm,force\n" + rows))
+
+
+def test_a_run_of_three_presses_gives_three_cycles(files: Any, tmp_path: Path) -> None:
+    x, force = files.run()
+    rows = [f"{a},{b}" for a, b in zip(np.tile(x, 3), np.tile(force, 3), strict=True)]
+    file = read_force_file(files.write(tmp_path, "p.csv", "\n".join(["x_mm,force_cN", *rows])))
+    assert [cycle.label for cycle in file.cycles] == ["cycle 1", "cycle 2", "cycle 3"]
+    for cycle in file.cycles:
+        assert cycle.press is not None
+        np.testing.assert_allclose(cycle.press.force_cN, files.stroke()[1])
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_marked_encodings_read_the_same(encoding: str, files: Any, tmp_path: Path) -> None:
+    path = files.write(tmp_path, "oak.csv", files.tidy().replace("Oak", "Öak").encode(encoding))
+    file = read_force_file(path)
+    assert (file.name, file.warnings) == ("Öak", ())
+
+
+def test_latin_1_is_read_with_a_warning(files: Any, tmp_path: Path) -> None:
+    file = read_force_file(
+        files.write(tmp_path, "oak.csv", files.tidy().replace("Oak", "Öak").encode("latin-1"))
+    )
+    assert file.name == "Öak"
+    assert "not UTF-8" in file.warnings[0]
+
+
+def test_candidates_leave_out_readmes_hidden_and_other_files(files: Any, tmp_path: Path) -> None:
+    for name in ("b.csv", "a.ods", "README.txt", "LICENSE-CC.txt", ".hidden.csv", "c.png", "d.JSON"):
+        files.write(tmp_path / "sub", name, "x")
+    found = [path.name for path in find_force_files(tmp_path)]
+    assert found == ["a.ods", "b.csv", "d.JSON"]
+    with pytest.raises(InputError, match="no such folder"):
+        find_force_files(tmp_path / "nowhere")

@@ -1,0 +1,24 @@
+"""What all tests share: real measurements where they are present."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+def shared_folder() -> Path:
+    """Give the folder of real measurements: FDVV_SHARED, else beside the checkout."""
+    return Path(os.environ.get("FDVV_SHARED", REPOSITORY.parent / "shared"))
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """Give ../shared/data, or skip by name where it is absent."""
+    folder = shared_folder() / "data"
+    if not folder.is_dir():
+        pytest.skip("the real measurements (../shared/data or FDVV_SHARED) are not on this machine")
+    return folder

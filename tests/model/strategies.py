@@ -1,0 +1,81 @@
+"""Hypothesis strategies of valid knots, curves, vibrations and models."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import strategies as st
+
+from fdvv.model import FDVVModel, ForceCurve, Interpolation, Mode, Provenance, Stroke, Vibration
+from fdvv.units import FloatArray
+
+forces_cN = st.floats(-100, 300, allow_subnormal=False)
+velocities_mm_s = st.floats(0.01, 1000, allow_subnormal=False)
+names = st.text(st.characters(codec="utf-8", exclude_categories=["C", "Z"]), min_size=1, max_size=12)
+sentences = st.text(st.characters(codec="utf-8"), max_size=30)
+
+
+@st.composite
+def knots(draw: st.DrawFn, degree: int, start_mm: float = 0.0, end_mm: float = 4.0) -> FloatArray:
+    """Draw clamped knots; an inner one repeats up to degree times, so that the curve is continuous."""
+    spans = draw(st.lists(st.floats(0.05, 1.0), min_size=1, max_size=8))
+    places = start_mm + (end_mm - start_mm) * np.cumsum(spans) / np.sum(spans)
+    repeats = [draw(st.integers(1, degree)) for _ in places[:-1]]
+    ends = [np.full(degree + 1, start_mm), np.repeat(places[:-1], repeats), np.full(degree + 1, end_mm)]
+    return np.concatenate(ends)
+
+
+@st.composite
+def curves(
+    draw: st.DrawFn,
+    stroke: Stroke | None = None,
+    velocity_mm_s: float | None = 50.0,
+    degree: int | None = None,
+) -> ForceCurve:
+    """Draw a curve from 0 to 4 mm."""
+    k = degree or draw(st.integers(1, 5))
+    t = draw(knots(k))
+    n = t.size - k - 1
+    c = np.array(draw(st.lists(forces_cN, min_size=n, max_size=n)))
+    return ForceCurve(stroke or draw(st.sampled_from(Stroke)), velocity_mm_s, k, t, c)
+
+
+@st.composite
+def vibrations(draw: st.DrawFn, stroke: Stroke, velocity_mm_s: float | None) -> Vibration:
+    """Draw a vibration of one to three modes."""
+    mode = st.builds(
+        Mode, st.floats(1, 5000), st.floats(-100, 100), st.floats(0, 1000), st.floats(-np.pi, np.pi)
+    )
+    modes = tuple(draw(st.lists(mode, min_size=1, max_size=3)))
+    return Vibration(stroke, velocity_mm_s, draw(st.floats(-1, 5)), draw(st.floats(1e-4, 1)), modes)
+
+
+@st.composite
+def models(draw: st.DrawFn) -> FDVVModel:
+    """Draw a model with a few curves per stroke, or one of unknown velocity, and a few vibrations."""
+    known: st.SearchStrategy[list[float | None]] = st.lists(velocities_mm_s, max_size=4, unique=True)
+    speeds = st.one_of(known, st.just([None]))
+    found: list[ForceCurve] = [draw(curves(Stroke.PRESS, v)) for v in draw(speeds)]
+    found += [draw(curves(Stroke.RELEASE, v)) for v in draw(speeds)]
+    travel_mm = draw(st.floats(0.1, 10))
+    point = st.one_of(st.none(), st.floats(0, travel_mm))
+    return FDVVModel(
+        name=draw(names),
+        travel_mm=travel_mm,
+        curves=tuple(found) or (draw(curves()),),
+        actuation_mm=draw(point),
+        reset_mm=draw(point),
+        vibrations=tuple(draw(vibrations(s, v)) for s in Stroke for v in draw(speeds)),
+        interpolation=draw(st.sampled_from(Interpolation)),
+        provenance=draw(provenances),
+    )
+
+
+provenances = st.builds(
+    Provenance,
+    source=sentences,
+    licence=sentences,
+    citation=sentences,
+    method=sentences,
+    assumptions=st.lists(sentences, max_size=3).map(tuple),
+    simulated=st.booleans(),
+)

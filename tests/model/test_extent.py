@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.model import MeasuredCurve, Stroke, active_part, find_bottom_out_mm, find_contact_mm
+from fdvv.units import FloatArray
+
+
+def bench_stroke(
+    air_mm: float = 0.3,
+    travel_mm: float = 4.0,
+    stop_cN_mm: float = 1500.0,
+    noise_cN: float = 0.05,
+    seed: int = 1,
+) -> tuple[FloatArray, FloatArray]:
+    """Make a slow bench stroke: air, contact step of 35 cN in 0.07 mm, spring of 12 cN/mm, stop."""
+    x = np.arange(-air_mm, travel_mm + 0.08, 0.005)
+    force = np.where(x < 0, 0.0, np.minimum(500.0 * x, 35 + 12 * x))
+    force = np.where(x > travel_mm, force + stop_cN_mm * (x - travel_mm), force)
+    return x, force + np.random.default_rng(seed).normal(0, noise_cN, x.size)
+
+
+def test_contact_is_the_last_sample_of_air() -> None:
+    x, force = bench_stroke()
+    assert find_contact_mm(MeasuredCurve(x, force, "press")) == pytest.approx(0.0, abs=0.006)  # type: ignore[arg-type]
+
+
+def test_contact_of_a_stroke_that_begins_loaded_is_its_first_sample() -> None:
+    x, force = bench_stroke(air_mm=-0.5)
+    assert find_contact_mm(MeasuredCurve(x, force, "press")) == x[0]  # type: ignore[arg-type]
+
+
+def test_a_light_touch_in_the_air_is_not_the_contact() -> None:
+    x, force = bench_stroke(air_mm=1.0)
+    force[20:24] += 5.0
+    assert find_contact_mm(MeasuredCurve(x, force, "press")) == pytest.approx(0.0, abs=0.006)  # type: ignore[arg-type]
+
+
+def test_bottom_out_is_where_the_stop_begins() -> None:
+    x, force = bench_stroke()
+    assert find_bottom_out_mm(MeasuredCurve(x, force, "press")) == pytest.approx(4.0, abs=0.021)  # type: ignore[arg-type]
+
+
+def test_a_stroke_that_never_meets_the_stop_has_no_bottom_out() -> None:
+    x, force = bench_stroke()
+    short = MeasuredCurve(x[x < 3.5], force[x < 3.5], Stroke.PRESS)
+    assert find_bottom_out_mm(short) is None
+    assert active_part(short).displacement_mm[-1] == short.displacement_mm[-1]
+
+
+def test_a_click_in_the_middle_is_not_the_stop() -> None:
+    x, force = bench_stroke()
+    force[(x > 1.5) & (x < 1.7)] += 30.0
+    assert find_bottom_out_mm(MeasuredCurve(x, force, "press")) == pytest.approx(4.0, abs=0.021)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("stop_cN_mm", [150.0, 400.0, 3000.0])
+def test_soft_and_hard_stops_are_found(stop_cN_mm: float) -> None:
+    x, force = bench_stroke(stop_cN_mm=stop_cN_mm)
+    assert find_bottom_out_mm(MeasuredCurve(x, force, "press")) == pytest.approx(4.0, abs=0.025)  # type: ignore[arg-type]
+
+
+@pytest.mark.shared
+def test_the_extent_of_real_cherry_switches_is_that_of_their_data_sheet(shared_data: Path) -> None:
+    table = np.loadtxt(
+        shared_data / "bluepylons-parsed" / "Cherry-MX-Red.csv", delimiter=",", skiprows=1, usecols=(0, 1)
+    )
+    deepest = int(np.argmax(table[:, 0]))
+    press = MeasuredCurve(table[: deepest + 1, 0] / 1000, table[: deepest + 1, 1] * 0.980665, Stroke.PRESS)
+    part = active_part(press)
+    # total travel of an MX switch: 4 mm, less 0.5 mm at most (Cherry's data sheet)
+    assert 3.5 <= part.displacement_mm[-1] - part.displacement_mm[0] <= 4.1

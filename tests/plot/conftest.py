@@ -1,0 +1,143 @@
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fdvv.model import CurveFit, FDVVModel, MeasuredCurve, Provenance, Stroke, fit_curve, load_builtin
+from fdvv.plot import (
+    ErrorHistory,
+    RenderedBand,
+    RenderedCurve,
+    figure_of,
+    figure_svg,
+    plot_comparison,
+    plot_convergence,
+    plot_fit,
+    plot_model,
+    plot_rendering,
+    plot_scan,
+    plot_surface,
+    plot_vibration,
+)
+
+Draw = Callable[[FDVVModel, MeasuredCurve, list[CurveFit], bool], Any]
+_SCORES = {"uniform": {5: 40.0, 6: 20.0, 7: 30.0}, "adaptive": {5: 30.0, 6: 12.0, 7: 11.0}}
+
+
+def _rendered(model: FDVVModel, simulated: bool = False) -> list[RenderedCurve]:
+    x = np.linspace(0.0, model.travel_mm, 41)
+    curves = []
+    for stroke in Stroke:
+        for velocity in (200.0, 50.0):
+            target = model.force_cN(x, velocity, stroke)
+            bands = tuple(
+                RenderedBand(method, target + bias, target + bias - 1.0, target + bias + 2.0)
+                for method, bias in (("FD only", 6.0), ("FDVV", 0.5))
+            )
+            curves.append(RenderedCurve(stroke, velocity, x, target, bands, simulated))
+    return curves
+
+
+def _histories(simulated: bool = False) -> list[ErrorHistory]:
+    return [
+        ErrorHistory(stroke, velocity, np.array([velocity, 12.0, 5.0, 3.0]), simulated)
+        for stroke in Stroke
+        for velocity in (100.0, 50.0)
+    ]
+
+
+FIGURES: dict[str, Draw] = {
+    "model": lambda model, measured, fits, said: plot_model(model, simulated=said),
+    "surface": lambda model, measured, fits, said: plot_surface(model, "release", simulated=said),
+    "comparison": lambda model, measured, fits, said: plot_comparison(
+        [model, replace(model, name="other")], simulated=said
+    ),
+    "vibration": lambda model, measured, fits, said: plot_vibration(model, simulated=said),
+    "fit": lambda model, measured, fits, said: plot_fit(measured, fits, simulated=said),
+    "scan": lambda model, measured, fits, said: plot_scan(_SCORES, simulated=said),
+    "rendering": lambda model, measured, fits, said: plot_rendering(_rendered(model)[::2], simulated=said),
+    "convergence": lambda model, measured, fits, said: plot_convergence(_histories(), simulated=said),
+}
+
+
+class Gallery:
+    """One of every figure, for what holds for all of them; drawn once where that is enough."""
+
+    def __init__(self, model: FDVVModel, measured: MeasuredCurve, fits: list[CurveFit]) -> None:
+        self.parts = (model, measured, fits)
+        self.figures: dict[str, Any] = {}
+        self.svgs: dict[str, str] = {}
+
+    def draw(self, name: str, said: bool = False) -> Any:
+        return figure_of(FIGURES[name](*self.parts, said))
+
+    def figure(self, name: str) -> Any:
+        if name not in self.figures:
+            self.figures[name] = self.draw(name)
+        return self.figures[name]
+
+    def svg(self, name: str) -> str:
+        if name not in self.svgs:
+            self.svgs[name] = figure_svg(self.figure(name))
+        return self.svgs[name]
+
+    @staticmethod
+    def texts(drawn: Any) -> str:
+        """Join everything that a figure writes."""
+        from matplotlib.text import Text
+
+        return "\n".join(text.get_text() for text in figure_of(drawn).findobj(Text))
+
+
+@pytest.fixture(scope="session")
+def gallery(model: FDVVModel, measured: MeasuredCurve, fits: list[CurveFit]) -> Gallery:
+    return Gallery(model, measured, fits)
+
+
+@pytest.fixture(params=FIGURES)
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="session")
+def names() -> list[str]:
+    return list(FIGURES)
+
+
+@pytest.fixture
+def rendered(model: FDVVModel) -> list[RenderedCurve]:
+    return _rendered(model)
+
+
+@pytest.fixture
+def histories() -> list[ErrorHistory]:
+    return _histories()
+
+
+@pytest.fixture
+def scores() -> dict[str, dict[int, float]]:
+    return _SCORES
+
+
+@pytest.fixture(scope="session")
+def model() -> FDVVModel:
+    return load_builtin("mx-clear")
+
+
+@pytest.fixture(scope="session")
+def simulated_model(model: FDVVModel) -> FDVVModel:
+    return replace(model, name="twin of mx-clear", provenance=Provenance(simulated=True))
+
+
+@pytest.fixture(scope="session")
+def measured(model: FDVVModel) -> MeasuredCurve:
+    noise = np.random.default_rng(3).normal(0.0, 0.3, 401)
+    x = np.round(np.linspace(0.0, 4.0, 401), 2)
+    return MeasuredCurve(x, model.of(Stroke.PRESS)[0].force_cN(x) + noise, Stroke.PRESS)
+
+
+@pytest.fixture(scope="session")
+def fits(measured: MeasuredCurve) -> list[CurveFit]:
+    return [fit_curve(measured, "uniform", 15), fit_curve(measured, "adaptive", 12)]

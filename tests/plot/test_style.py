@@ -1,0 +1,128 @@
+import os
+import subprocess
+import sys
+from typing import Any
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+
+from fdvv.model import FDVVModel
+from fdvv.plot import _style as style
+from fdvv.plot import figure_svg, plot_comparison
+
+UNITS = ("(mm)", "(cN)", "(mm/s)", "(s)", "(m/s²)", "(count)", "(no unit, lower is better)")
+
+
+def test_every_axis_of_every_figure_names_its_unit(gallery: Any, name: str) -> None:
+    labels = []
+    for ax in gallery.figure(name).axes:
+        labels += [ax.get_xlabel(), ax.get_ylabel(), getattr(ax, "get_zlabel", str)()]
+    written = [label for label in labels if label]
+    assert len(written) >= 2
+    assert all(label.endswith(UNITS) for label in written), written
+
+
+def test_a_figure_of_simulated_data_says_so_and_one_of_measured_data_does_not(
+    gallery: Any, name: str
+) -> None:
+    assert "simulated" in gallery.texts(gallery.draw(name, said=True)).splitlines()
+    assert "simulated" not in gallery.texts(gallery.figure(name))
+
+
+def test_the_same_data_gives_the_same_bytes(gallery: Any, name: str) -> None:
+    assert figure_svg(gallery.draw(name)) == gallery.svg(name)
+
+
+def test_another_process_with_other_hashes_gives_the_same_bytes(gallery: Any) -> None:
+    code = (
+        "import sys\nfrom fdvv.model import load_builtin\nfrom fdvv.plot import figure_svg, plot_vibration\n"
+        "sys.stdout.buffer.write(figure_svg(plot_vibration(load_builtin('mx-clear'))).encode())"
+    )
+    other = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        check=True,
+        env=os.environ | {"PYTHONHASHSEED": "7"},
+    )
+    assert other.stdout.decode() == gallery.svg("vibration")
+
+
+def test_drawing_leaves_no_open_figure_and_no_changed_setting(gallery: Any, name: str) -> None:
+    before = dict(matplotlib.rcParams)
+    gallery.draw(name)
+    gallery.svg(name)
+    assert plt.get_fignums() == []
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_a_users_own_settings_do_not_reach_the_figures(gallery: Any) -> None:
+    with matplotlib.rc_context({"font.size": 30.0, "axes.grid": False, "lines.linestyle": ":"}):
+        assert figure_svg(gallery.draw("vibration")) == gallery.svg("vibration")
+
+
+def test_nothing_is_cut_off_at_the_edges(gallery: Any, name: str) -> None:
+    gallery.svg(name)
+    figure = gallery.figure(name)
+    box, page = figure.get_tightbbox(), figure.bbox_inches
+    assert box.x0 >= page.x0 - 0.03
+    assert box.y0 >= page.y0 - 0.03
+    assert box.x1 <= page.x1 + 0.03
+    assert box.y1 <= page.y1 + 0.03
+
+
+def test_faster_is_darker_in_steps_an_eye_can_tell() -> None:
+    colours = style.velocity_colours([200.0, 0.5, 50.0, None, 100.0, 0.5])
+    assert list(colours) == [None, 0.5, 50.0, 100.0, 200.0]
+    # relative luminance of the sRGB colour space
+    linear = [np.array(to_rgb(c)) ** 2.2 @ [0.2126, 0.7152, 0.0722] for c in colours.values()]
+    assert np.all(np.diff(linear) < -0.02)
+
+
+def test_text_contrasts_with_white() -> None:
+    for colour in (style.INK, "#b42318"):
+        luminance = np.array(to_rgb(colour)) ** 2.2 @ [0.2126, 0.7152, 0.0722]
+        assert 1.05 / (luminance + 0.05) > 4.5
+
+
+@pytest.mark.parametrize(
+    ("foreign", "drawn"),
+    [
+        ("plain", "plain"),
+        ("_hidden", " _hidden"),
+        ("two\nlines\tand\x00more", "two lines and more"),
+        ("x" * 99, "x" * (style.LONGEST_NAME - 1) + "…"),
+    ],
+)
+def test_a_foreign_name_is_drawn_on_one_short_line(foreign: str, drawn: str) -> None:
+    assert style.name_text(foreign) == drawn
+
+
+def test_hostile_names_are_drawn_as_they_stand(gallery: Any, model: FDVVModel) -> None:
+    names = ["a $x_1$ b", r"$\frac", "<script>& -- -->", "_x", "樱桃 MX", "\U0001f600"]
+    ax = plot_comparison([model.renamed(name) for name in names])
+    assert all(name in gallery.texts(ax) for name in names)
+    svg = figure_svg(ax, " ".join(names))
+    assert "<script" not in svg
+    assert "<!--" not in svg
+
+
+def test_without_matplotlib_the_error_tells_how_to_get_it() -> None:
+    code = (
+        "import sys\nsys.modules['matplotlib'] = None\n"
+        "from fdvv.errors import BuildError\nfrom fdvv.model import load_builtin\n"
+        "from fdvv.plot import Section, plot_model, render_html\n"
+        "assert 'words' in render_html('t', 'words', [Section('s')])\n"
+        "try:\n    plot_model(load_builtin('mx-clear'))\nexcept BuildError as error:\n    print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip().endswith('pip install "fdvv[plot]"')
+    assert len(done.stdout.splitlines()) == 1
+
+
+def test_importing_the_room_does_not_import_matplotlib() -> None:
+    code = "import sys, fdvv.plot\nprint(any(m.split('.')[0] == 'matplotlib' for m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"

@@ -1,0 +1,82 @@
+import re
+import struct
+import xml.etree.ElementTree as ET
+from typing import Any
+
+import pytest
+
+from fdvv.errors import ModelError
+from fdvv.model import FDVVModel
+from fdvv.plot import figure_png, figure_svg, plot_model, plot_vibration
+from fdvv.plot._svg import prefix_ids
+
+SVG = "{http://www.w3.org/2000/svg}"
+LINK = "{http://www.w3.org/1999/xlink}href"
+
+
+@pytest.fixture(scope="module")
+def svg(gallery: Any) -> str:
+    return str(gallery.svg("model"))
+
+
+def ids_and_uses(text: str) -> tuple[list[str], set[str]]:
+    root = ET.fromstring(text)
+    ids = [e.attrib["id"] for e in root.iter() if "id" in e.attrib]
+    uses = {e.attrib[LINK].removeprefix("#") for e in root.iter() if LINK in e.attrib}
+    return ids, uses | set(re.findall(r"url\(#([^)]+)\)", text)) | {root.attrib["aria-labelledby"]}
+
+
+def test_a_figure_is_one_well_formed_svg_element(svg: str) -> None:
+    assert svg.startswith("<svg ")
+    assert ET.fromstring(svg).tag == f"{SVG}svg"
+
+
+def test_a_figure_carries_no_date_comment_style_sheet_or_script(svg: str) -> None:
+    for piece in ("<!--", "<!DOCTYPE", "<?xml", "<style", "<script", "<metadata", "dc:date"):
+        assert piece not in svg
+
+
+def test_a_figure_points_only_into_itself(svg: str) -> None:
+    ids, uses = ids_and_uses(svg)
+    assert uses
+    assert uses <= set(ids)
+
+
+def test_a_figure_tells_what_it_shows_to_those_who_cannot_see(model: FDVVModel, svg: str) -> None:
+    root = ET.fromstring(svg)
+    assert root.attrib["role"] == "img"
+    title = root.find(f"{SVG}title")
+    assert title is not None
+    assert title.text == "mx-clear"
+    hostile = ET.fromstring(figure_svg(plot_vibration(model), 'a <b> & "c"\x00'))
+    assert hostile.findtext(f"{SVG}title") == 'a <b> & "c" '
+
+
+def test_prefixed_ids_are_unique_across_figures_and_still_meet_their_uses(svg: str) -> None:
+    first, second = prefix_ids(svg, "a-"), prefix_ids(svg, "b-")
+    for text in (first, second):
+        ids, uses = ids_and_uses(text)
+        assert len(ids) == len(set(ids))
+        assert uses <= set(ids)
+    assert not set(ids_and_uses(first)[0]) & set(ids_and_uses(second)[0])
+
+
+def test_a_description_that_looks_like_markup_is_not_renamed(model: FDVVModel) -> None:
+    svg = figure_svg(plot_vibration(model), 'see id="x" and url(#y)')
+    root = ET.fromstring(prefix_ids(svg, "p-"))
+    assert root.findtext(f"{SVG}title") == 'see id="x" and url(#y)'
+
+
+def test_a_png_has_the_size_asked_for_and_the_same_bytes_each_time(model: FDVVModel) -> None:
+    content = figure_png(plot_vibration(model), dpi=50.0)
+    width, height = struct.unpack(">II", content[16:24])
+    assert (width, height) == (350, 170)
+    assert content == figure_png(plot_vibration(model), dpi=50.0)
+    assert b"matplotlib" not in content
+
+
+def test_axes_that_left_their_figure_have_no_picture(model: FDVVModel) -> None:
+    ax = plot_model(model)
+    ax.remove()
+    with pytest.raises(ModelError, match="taken off"):
+        figure_svg(ax)

@@ -1,0 +1,66 @@
+"""The documents say what the program does."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+PAGES = [*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").rglob("*.md")]
+
+
+def tool(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, REPOSITORY / "tools" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("page", "name"), [("cli.md", "make_cli_reference"), ("rig.md", "make_rig_reference")]
+)
+def test_a_generated_reference_is_that_of_the_code(page: str, name: str) -> None:
+    text = (REPOSITORY / "docs" / "reference" / page).read_text()
+    assert text == tool(name).reference(), f"run python tools/{name}.py"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(REPOSITORY)))
+def test_links_to_files_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", page.read_text()):
+        assert (page.parent / target).exists(), f"{page.name} links to {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(REPOSITORY)))
+def test_commands_in_documents_exist(page: Path) -> None:
+    from fdvv.cli._main import COMMANDS
+
+    for name in re.findall(r"(?:^|`)fdvv ([a-z]+)", page.read_text(), flags=re.MULTILINE):
+        assert name in COMMANDS, f"{page.name} tells of fdvv {name}"
+
+
+def test_the_changelog_tells_of_every_command() -> None:
+    from fdvv.cli._main import COMMANDS
+
+    text = (REPOSITORY / "CHANGELOG.md").read_text()
+    assert [name for name in COMMANDS if f"`{name}`" not in text] == []
+
+
+def test_help_is_there_in_three_tenths_of_a_second() -> None:
+    command = [sys.executable, "-m", "fdvv", "--help"]
+    subprocess.run(command, check=True, capture_output=True)
+    spent = []
+    for _ in range(5):
+        begun = time.perf_counter()
+        subprocess.run(command, check=True, capture_output=True)
+        spent.append(time.perf_counter() - begun)
+    # the least of five: other work on the machine can only add
+    assert min(spent) < 0.3

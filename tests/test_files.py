@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fdvv.files import write_atomic
+
+
+def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
+    write_atomic(tmp_path / "new" / "a.txt", "héllo\n")
+    assert (tmp_path / "new" / "a.txt").read_bytes() == "héllo\n".encode()
+    assert [p.name for p in (tmp_path / "new").iterdir()] == ["a.txt"]
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path: Path) -> None:
+    target = tmp_path / "a.txt"
+    write_atomic(target, "old")
+    with pytest.raises(UnicodeEncodeError):
+        write_atomic(target, "\ud800")
+    with pytest.raises(TypeError):
+        write_atomic(target, 12)  # type: ignore[arg-type]
+    assert target.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_process_killed_while_writing_leaves_the_old_file_whole(tmp_path: Path) -> None:
+    target = tmp_path / "a.txt"
+    write_atomic(target, "old")
+    code = (
+        "import os, sys, pathlib, fdvv.files as f\n"
+        "os.fsync = lambda _fd: os._exit(9)\n"
+        f"f.write_atomic(pathlib.Path({str(target)!r}), 'new' * 100000)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 9
+    assert target.read_text() == "old"
+
+
+def test_a_written_file_has_the_permissions_of_an_ordinary_one(tmp_path: Path) -> None:
+    (tmp_path / "plain").write_text("")
+    write_atomic(tmp_path / "atomic", "")
+    assert (tmp_path / "atomic").stat().st_mode == (tmp_path / "plain").stat().st_mode
