@@ -39,11 +39,12 @@ def bin_force(displacement_mm: FloatArray, force_cN: FloatArray, grid_mm: FloatA
 
 
 def smooth(values: FloatArray, sigma_mm: float, step_mm: float) -> FloatArray:
-    """Run a zero-phase Gaussian filter over a table, (n,); sigma 0 changes nothing.
+    """Run a zero-phase Gaussian filter over a table, (n,); a sigma below a tenth of a
+    step reaches no neighbour and changes nothing.
 
     The table goes on beyond its ends as its own point reflection, so that a straight line stays itself.
     """
-    if sigma_mm <= 0:
+    if sigma_mm < 0.1 * step_mm:
         return values.copy()
     reach = int(np.ceil(4 * sigma_mm / step_mm))
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) * step_mm / sigma_mm) ** 2)
