@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.compensate import bin_force, bump_cN, bump_kept_ratio, grid_mm, smooth
+from fdvv.compensate import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.errors import ModelError
 from fdvv.model import Stroke, load_builtin
 from fdvv.units import FloatArray
@@ -90,20 +90,15 @@ def test_smoothing_is_zero_phase() -> None:
     np.testing.assert_allclose(out, out[::-1], atol=1e-12)
 
 
-def test_a_bump_is_the_deepest_fall() -> None:
-    assert bump_cN(np.array([0.0, 5.0, 3.0, 9.0, 2.0, 4.0])) == 7.0
-    assert bump_cN(np.array([0.0, 1.0, 1.0, 2.0])) == 0.0
-
-
 def test_the_printed_smoothing_erases_the_bump_and_the_default_keeps_it() -> None:
     model = load_builtin("mx-clear")
     clear = model.force_cN(GRID, 50.0, Stroke.PRESS)
     # the contact flank of the press is steeper than any bump and lies before it
-    erased, kept = bump_kept_ratio(clear, 1.2, 0.05), bump_kept_ratio(clear, 0.06, 0.05)
+    erased, kept = bump_kept_ratio(GRID, clear, 1.2), bump_kept_ratio(GRID, clear, 0.06)
     assert erased == pytest.approx(0.0, abs=0.02)
     assert kept is not None
     assert 0.9 < kept < 1.0
 
 
 def test_a_curve_without_a_bump_has_nothing_to_keep() -> None:
-    assert bump_kept_ratio(GRID * 20.0, 0.06, 0.05) is None
+    assert bump_kept_ratio(GRID, GRID * 20.0, 0.06) is None

@@ -155,7 +155,7 @@ def test_a_curve_that_was_never_pressed_is_the_target_and_says_so() -> None:
 def test_the_sentence_tells_what_smoothing_leaves_of_the_bump() -> None:
     law = plain(0.3, smoothing_mm=0.06, rounds=1, presses_per_round=1)
     state = run(law, lambda u: u, 1)[-1]
-    kept = bump_kept_ratio(TARGET, 0.06, 0.05)
+    kept = bump_kept_ratio(GRID, TARGET, 0.06)
     assert f"sigma 0.06 mm (keeps {kept:.0%} of the target's bump)" in law.done(state).sentence
 
 

@@ -1,6 +1,6 @@
 """Learning laws that find the command tables which make a rig feel like a model."""
 
-from fdvv.compensate._bins import bin_force, bump_cN, bump_kept_ratio, grid_mm, smooth
+from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.compensate._curve_state import Best, Learned, State
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
@@ -29,7 +29,6 @@ __all__ = [
     "State",
     "Trial",
     "bin_force",
-    "bump_cN",
     "bump_kept_ratio",
     "dense_velocities",
     "error_cN",

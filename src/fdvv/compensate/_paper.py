@@ -181,7 +181,7 @@ class PaperLaw:
         return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 
     def _sentence(self, state: State, bests: tuple[Best, ...], step_mm: float) -> str:
-        kept = bump_kept_ratio(state.target_cN, self.smoothing_mm, step_mm)
+        kept = bump_kept_ratio(state.grid_mm, state.target_cN, self.smoothing_mm)
         bump = "the target has no bump" if kept is None else f"keeps {kept:.0%} of the target's bump"
         ends = ", ".join(f"{b.error_cN:.1f}" for b in bests)
         return (
