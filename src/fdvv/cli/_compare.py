@@ -7,20 +7,32 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, save_figure
+from fdvv.cli._output import (
+    FIGURES,
+    WIDTH,
+    Finite,
+    check_output,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_warnings,
+    save_figure,
+)
 
 if TYPE_CHECKING:
     from fdvv.workflow import Comparison
 
-SIDE_BY_SIDE = 6
-"""More buttons than this get a line each instead of a column."""
+LABEL_WIDTH, NAME_WIDTH = 19, 28
+"""Of the names of landmarks, and what the columns of LANDMARKS leave for the names of buttons."""
 LANDMARKS = ("travel_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN", "work_mJ")
 
 
 @click.command()
 @click.argument("buttons", nargs=-1, required=True)
 @click.option(
-    "--velocity", "velocity_mm_s", type=click.FloatRange(min=0, min_open=True),
+    "--velocity", "velocity_mm_s", type=Finite(min=0, min_open=True),
     help="Compare at this speed (mm/s); the slowest curves by default.",
 )  # fmt: skip
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the overlay: .svg, .png or .pdf.")
@@ -33,6 +45,7 @@ def compare(
     BUTTONS are two or more built-ins, *.fdvv.json files, files of measured curves or folders of either.
     The first is the reference; displacement counts from each button's contact.
     """
+    check_output(figure, *FIGURES)
     from fdvv.model import Stroke
     from fdvv.workflow import compare as compare_models
     from fdvv.workflow import open_models
@@ -43,7 +56,7 @@ def compare(
     refused += [f"{model.name}: has no press curve" for model in opened if not model.of(Stroke.PRESS)]
     print_warnings([f"refused: {reason}" for reason in refused])
     if len(models) < 2:
-        raise click.UsageError(f"two or more buttons are needed, got {len(models)}")
+        raise click.UsageError(f"two or more buttons with a press are needed, got {len(models)}")
     result = compare_models(models, velocity_mm_s)
     if figure:
         from fdvv.plot import plot_comparison
@@ -51,7 +64,7 @@ def compare(
         save_figure(plot_comparison(models).figure, figure)
     if as_json:
         print_json({**result.to_dict(), "refused": refused})
-    elif len(models) <= SIDE_BY_SIDE:
+    elif LABEL_WIDTH + sum(2 + max(8, len(name)) for name in result.names) <= WIDTH:
         _print_columns(result)
     else:
         _print_lines(result)
@@ -72,10 +85,11 @@ def _print_columns(result: Comparison) -> None:
 
 
 def _print_lines(result: Comparison) -> None:
-    """Print a line per button: landmarks and the difference of its press from the reference."""
+    """Print a line per button: landmarks and how far its press is from that of the reference."""
+    click.echo(f"rms cN: force of the press less that of {one_line(result.names[0])}")
     rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
     rows = [
-        [name, *(number(marks.to_dict()[key]) for key in LANDMARKS), number(rms.get(i))]
+        [one_line(name, NAME_WIDTH), *(number(marks.to_dict()[key]) for key in LANDMARKS), number(rms.get(i))]
         for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
     ]
-    print_table(["button", *LANDMARKS, "press rms cN"], rows)
+    print_table(["button", *LANDMARKS, "rms cN"], rows)

@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, progress
+from fdvv.cli._output import (
+    Finite,
+    check_output,
+    counted,
+    json_option,
+    number,
+    print_json,
+    print_table,
+    print_warnings,
+    print_wrapped,
+    progress,
+)
 
 if TYPE_CHECKING:
     from fdvv.workflow import PressDone
@@ -25,7 +36,7 @@ def device_options(command: Command) -> Command:
         click.option("--finger", type=path, help="TOML file of the twin's finger."),
         click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
                      help="Repeats the twin."),
-        click.option("--velocity", "velocities_mm_s", type=click.FloatRange(min=5, max=500), multiple=True,
+        click.option("--velocity", "velocities_mm_s", type=Finite(min=5, max=500), multiple=True,
                      default=(50.0, 100.0, 150.0, 200.0), show_default=True, help="mm/s; repeatable."),
     )  # fmt: skip
     for option in reversed(options):
@@ -53,6 +64,7 @@ def compensate(
     BUTTON is a built-in, a *.fdvv.json file or a measured file. The paper's iterative law presses until
     its rounds are done; its errors are those the rig measured while it learned. Judge with fdvv probe.
     """
+    check_output(output, ".actuation.json")
     from fdvv.workflow import compensate as learn
     from fdvv.workflow import open_device, open_model, save_actuation
 
@@ -66,6 +78,8 @@ def compensate(
     if output:
         save_actuation(result, output)
     _print(result.to_dict(), as_json)
+    if output and not as_json:
+        click.echo(f"written to {output}")
 
 
 @click.command()
@@ -74,7 +88,7 @@ def compensate(
 @device_options
 @click.option("--presses", type=click.IntRange(1, 200), default=10, show_default=True, help="Per velocity.")
 @click.option(
-    "--max-mean-error-cN", "bound_cN", type=click.FloatRange(min=0),
+    "--max-mean-error-cN", "bound_cN", type=Finite(min=0),
     help="Exit with status 1 if a curve's mean error exceeds this.",
 )  # fmt: skip
 @json_option
@@ -104,6 +118,8 @@ def probe(
     learned = load_actuation(actuation) if actuation else None
     surface = learned.surface if learned else ForceSurface.of_model(model, sorted(velocities_mm_s))
     method = learned.method if learned else "not compensated"
+    if learned and learned.model_name != model.name:
+        print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
     with progress("probing", 1) as advance:
         result = judge(
             open_device(device, rig, finger, seed),
@@ -116,9 +132,10 @@ def probe(
         )
     document = result.to_dict()
     _print(document, as_json)
-    worst = max(c["mean_error_cN"] for c in document["curves"])
-    if bound_cN is not None and worst > bound_cN:
-        click.echo(f"fdvv: worst mean error {worst:.2f} cN exceeds the bound of {bound_cN} cN", err=True)
+    worst = max(document["curves"], key=lambda c: c["mean_error_cN"])
+    if bound_cN is not None and worst["mean_error_cN"] > bound_cN:
+        reason = f"mean error of {worst['mean_error_cN']:.2f} cN exceeds the bound of {bound_cN:g} cN"
+        click.echo(f"fdvv: {_curve_name(worst)}: {reason}", err=True)
         raise click.exceptions.Exit(1)
 
 
@@ -134,12 +151,13 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
         return
     told = " (simulated)" if document["simulated"] else ""
     on = f"{document['model']} on {document['device']}{told}"
-    click.echo(f"{on}: {document['method']}, {document['presses']} presses")
+    click.echo(f"{on}, {counted(document['presses'], 'press')}")
+    print_wrapped(f"method: {document['method']}")
     print_table(
         ["curve", "first cN", "last cN", "mean cN", "max cN"],
         [
             [
-                f"{c['stroke']} {c['velocity_mm_s']:g} mm/s",
+                _curve_name(c),
                 *(
                     number(e)
                     for e in ((c["error_cN"][0], c["error_cN"][-1]) if c["error_cN"] else (None, None))
@@ -150,4 +168,10 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
             for c in document["curves"]
         ],
     )
-    print_warnings(document["skipped"])
+    if document["skipped"]:
+        count, last = counted(len(document["skipped"]), "press"), document["skipped"][-1]
+        print_warnings([f"{count} skipped; the last: {last}"])
+
+
+def _curve_name(curve: dict[str, Any]) -> str:
+    return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"

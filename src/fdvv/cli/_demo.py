@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fdvv.cli._output import json_option, number, print_json, print_table, stages
+from fdvv.cli._output import check_folder, json_option, number, print_json, print_table, stages
 
 if TYPE_CHECKING:
     from fdvv.workflow import DemoResult
@@ -38,6 +38,7 @@ def demo(switch: Path | None, rig: Path | None, seed: int, output: Path, as_json
     Fits a real switch, learns to render the published button at four velocities, judges the rendering on
     fresh presses, prints the table and writes OUTPUT/report.html. Rendering figures are simulated.
     """
+    check_folder(output)
     from fdvv.files import write_atomic
     from fdvv.model import SUFFIX, save_model
     from fdvv.workflow import demo as run

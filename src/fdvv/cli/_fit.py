@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, progress
+from fdvv.cli._output import (
+    Finite,
+    check_folder,
+    check_output,
+    counted,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_warnings,
+    progress,
+)
 
 if TYPE_CHECKING:
     from fdvv.workflow import FitSettings, FolderFit, ModelFit
@@ -46,7 +58,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 )
 @click.option(
     "--smoothing-mm",
-    type=click.FloatRange(min=0),
+    type=Finite(min=0, max=5),
     default=0.0,
     show_default=True,
     help="Sigma of a Gaussian before the fit. Errors stay against the raw curve.",
@@ -60,7 +72,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 @click.option(
     "--max-rmse-cN",
     "max_rmse_cN",
-    type=click.FloatRange(min=0),
+    type=Finite(min=0),
     help="Exit with status 1 if a curve's error exceeds this.",
 )
 @json_option
@@ -83,16 +95,21 @@ def fit(
     from fdvv.workflow import FitSettings
 
     settings = FitSettings(FitMethod(method), control_points, degree, smoothing_mm)
-    worst = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
+    worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
-        click.echo(f"fdvv: worst RMSE {worst:.3f} cN exceeds the bound of {max_rmse_cN} cN", err=True)
+        reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"
+        click.echo(f"fdvv: {one_line(where)}: {reason}", err=True)
         raise click.exceptions.Exit(1)
 
 
-def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> float:
-    from fdvv.model import save_model
+def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
+    """Fit one file; give the worst error and what has it."""
+    from fdvv.model import SUFFIX, save_model
     from fdvv.workflow import fit_file
 
+    check_output(output, SUFFIX)
+    if output and output.exists() and output.samefile(path):
+        raise click.UsageError(f"{output} is the measurement itself; give the model another name")
     found = fit_file(path, settings)
     if output:
         save_model(found.model, output)
@@ -100,11 +117,14 @@ def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool)
         print_json(found.to_dict())
     else:
         _print_fit(found)
-    return max(f.rmse_cN for f in found.fits)
+        if output:
+            click.echo(f"written to {output}")
+    worst = max(found.fits, key=lambda f: f.rmse_cN)
+    return worst.rmse_cN, f"{path}, {worst.curve.stroke}"
 
 
 def _print_fit(found: ModelFit) -> None:
-    click.echo(f"{found.model.name}: {found.model.provenance.method}")
+    click.echo(f"{one_line(found.model.name)}: {found.model.provenance.method}")
     print_table(
         ["curve", "RMSE cN", "max cN", "points", "bump kept", "ms"],
         [
@@ -122,13 +142,15 @@ def _print_fit(found: ModelFit) -> None:
     print_warnings(found.warnings)
 
 
-def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> float:
-    from fdvv.capture import find_force_files
+def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
+    """Fit a folder; give the worst error and the file that has it."""
     from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import fit_folder, summarise
+    from fdvv.workflow import fit_folder, measured_files, summarise
 
+    if output:
+        check_folder(output)
     results = []
-    total = len(find_force_files(path))
+    total = len(measured_files(path))
     with progress("fitting", total) as advance:
         for result in fit_folder(path, settings):
             results.append(result)
@@ -141,7 +163,12 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
         print_json(_document(results, summary.to_dict()))
     else:
         _print_folder(results, summary.to_dict())
-    return max((f.rmse_cN for r in results if r.fit for f in r.fit.fits), default=0.0)
+        if output:
+            click.echo(f"{counted(total - summary.refused, 'model')} written below {output}")
+    if summary.refused == total:
+        click.echo(f"fdvv: {path}: no file of it could be fitted; the reasons are above", err=True)
+        raise click.exceptions.Exit(2)
+    return max((f.rmse_cN, str(r.file)) for r in results if r.fit for f in r.fit.fits)
 
 
 def _document(results: list[FolderFit], summary: dict[str, Any]) -> dict[str, Any]:
@@ -155,10 +182,10 @@ def _document(results: list[FolderFit], summary: dict[str, Any]) -> dict[str, An
 def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
     for result in results:
         if not result.fit:
-            click.echo(f"refused: {result.reason}", err=True)
+            click.echo(f"refused: {one_line(result.reason)}", err=True)
             continue
         print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
-    click.echo(f"{summary['files']} files, {summary['refused']} refused")
+    click.echo(f"{counted(summary['files'], 'file')}, {summary['refused']} refused")
     print_table(
         ["stroke", "RMSE cN median", "90 %", "ms median", "90 %"],
         [

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
-import os
 import sys
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import click
 
@@ -45,38 +45,65 @@ class LazyGroup(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in sorted(COMMANDS.items())])
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click would turn Ctrl-C into an empty line of its own."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise Interrupted from None
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+
+class Interrupted(Exception):  # noqa: N818 - nothing failed
+    """The person pressed Ctrl-C."""
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    invoke_without_command=True,
+)
 @click.version_option(__version__, prog_name="fdvv")
-def cli() -> None:
+@click.pass_context
+def cli(ctx: click.Context) -> None:
     """Capture, model, render and compare the feel of push-buttons."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(2)
 
 
 def main() -> NoReturn:
     """Run the command line; exit 0 done, 1 missed a bound or failed, 2 unusable input, 130 interrupted."""
     try:
-        cli.main(standalone_mode=False)
-        status = 0
-    except click.exceptions.Exit as stop:
-        status = stop.exit_code
-    except click.Abort:
-        click.echo("fdvv: interrupted", err=True)
-        status = 130
+        # click gives the status of an Exit, and None or whatever a command returns otherwise
+        status = cli.main(standalone_mode=False)
+        sys.exit(status if isinstance(status, int) else 0)
+    except click.UsageError as error:
+        _stop(2, _usage(error))
     except click.ClickException as error:
-        error.show()
-        status = error.exit_code
+        _stop(2, error.format_message())
     except FdvvError as error:
-        click.echo(f"fdvv: {error}", err=True)
-        status = 1 if isinstance(error, BuildError | DeviceError) else 2
-    except BrokenPipeError:
-        # the reader of a pipe left; point stdout elsewhere so that Python's exit does not complain
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = 1
+        _stop(1 if isinstance(error, BuildError | DeviceError) else 2, str(error))
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        click.echo(f"fdvv: {where}{error.strerror or error}; check the path and its permissions", err=True)
-        status = 2
-    except KeyboardInterrupt:
-        click.echo("fdvv: interrupted", err=True)
-        status = 130
+        _stop(2, _system(error))
+    except (Interrupted, KeyboardInterrupt, click.Abort):
+        _stop(130, "interrupted")
+
+
+def _stop(status: int, reason: str) -> NoReturn:
+    """Say in one line why, and exit."""
+    click.echo(f"fdvv: {' '.join(reason.split())}", err=True)
     sys.exit(status)
+
+
+def _usage(error: click.UsageError) -> str:
+    """Say which option or argument is wrong, and where to read about it."""
+    command = error.ctx.command_path if error.ctx else "fdvv"
+    return f"{error.format_message().rstrip('.')}; see {command} --help"
+
+
+def _system(error: OSError) -> str:
+    """Say which path the system refused; of a rename it is the target, not our temporary file."""
+    path = error.filename2 or error.filename
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    remedy = "make room on the disk" if full else "check the path and its permissions"
+    return f"{f'{path}: ' if path else ''}{error.strerror or error}; {remedy}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -13,6 +14,11 @@ from typing import Any
 
 import click
 
+WIDTH = 100
+"""Columns that a table should keep to."""
+
+FIGURES = (".svg", ".png", ".pdf")
+
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON document and nothing else."
 )
@@ -20,7 +26,13 @@ json_option = click.option(
 
 def print_json(document: dict[str, Any]) -> None:
     """Print one JSON document; numbers that are not finite become null."""
-    click.echo(json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False))
+    text = json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False)
+    try:
+        text.encode(sys.stdout.encoding)
+    except UnicodeEncodeError:
+        # a file's name may hold what the terminal's encoding, or even UTF-8, cannot
+        text = json.dumps(_finite(document), indent=2, allow_nan=False)
+    click.echo(text)
 
 
 def _finite(value: Any) -> Any:
@@ -36,19 +48,76 @@ def number(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
-def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print aligned columns: the first to the left, the others to the right."""
-    table = [list(columns), *(list(row) for row in rows)]
+def one_line(text: str, width: int | None = None) -> str:
+    """Make text from a file fit for a terminal: one line, no control characters, at most width long."""
+    plain = "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+    return plain if width is None or len(plain) <= width else plain[: width - 1] + "…"
+
+
+def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> None:
+    """Print aligned columns: the first ``left`` ones to the left, the others to the right."""
+    table = [[one_line(cell) for cell in row] for row in (columns, *rows)]
     widths = [max(len(row[i]) for row in table) for i in range(len(columns))]
     for row in table:
-        first, rest = row[0].ljust(widths[0]), [c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True)]
-        click.echo("  ".join([first, *rest]).rstrip())
+        cells = [
+            c.ljust(w) if i < left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
+        ]
+        click.echo("  ".join(cells).rstrip())
+
+
+def print_wrapped(text: str) -> None:
+    """Print a sentence over as many lines as it takes, those after the first indented."""
+    click.echo(click.wrap_text(one_line(text), WIDTH, subsequent_indent="  "))
+
+
+def counted(count: int, noun: str) -> str:
+    """Write a number of things: 1 file, 2 files, 3 presses."""
+    plural = noun + ("es" if noun.endswith("s") else "s")
+    return f"{count} {noun if count == 1 else plural}"
 
 
 def print_warnings(warnings: Sequence[str]) -> None:
     """Print warnings to standard error."""
     for warning in warnings:
-        click.echo(f"warning: {warning}", err=True)
+        click.echo(f"warning: {one_line(warning)}", err=True)
+
+
+class Finite(click.FloatRange):
+    """A range of numbers without nan and infinity."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Read the number, or refuse it."""
+        found = float(super().convert(value, param, ctx))
+        if not math.isfinite(found):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return found
+
+
+def check_output(path: Path | None, *endings: str) -> None:
+    """Refuse at once a file that could not be written after long work. Raises InputError."""
+    from fdvv.errors import InputError
+
+    if path is None:
+        return
+    told = " or ".join(endings)
+    if path.is_dir():
+        raise InputError(path, "output", "is a folder", f"name a file ending in {told}")
+    if path.suffix.lower() not in {"." + ending.rpartition(".")[2] for ending in endings}:
+        raise InputError(
+            path, "output", "its name has another ending than what is written", f"end it in {told}"
+        )
+    check_folder(path.parent)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse at once a folder that could be neither made nor written to. Raises InputError."""
+    from fdvv.errors import InputError
+
+    there = next(part for part in (folder, *folder.absolute().parents) if part.exists())
+    if not there.is_dir():
+        raise InputError(there, "output", "is a file, a folder is needed", "name another place")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(there, "output", "may not be written to", "name another place or change permissions")
 
 
 @contextmanager
@@ -96,15 +165,9 @@ def stages() -> Iterator[Callable[[str, int, int], None]]:
 
 
 def save_figure(figure: Any, path: Path) -> None:
-    """Write a matplotlib figure in the format of the path's ending, whole or not at all."""
-    from fdvv.errors import InputError
+    """Write a matplotlib figure in the format of the path's ending (FIGURES), whole or not at all."""
     from fdvv.files import write_atomic
 
-    kind = path.suffix.lstrip(".").lower()
-    if kind not in {"svg", "png", "pdf"}:
-        raise InputError(
-            path, "file name", f"cannot draw a {kind or 'nameless'} file", "end it in .svg, .png or .pdf"
-        )
     buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind, bbox_inches="tight", dpi=150)
+    figure.savefig(buffer, format=path.suffix.lstrip(".").lower(), bbox_inches="tight", dpi=150)
     write_atomic(path, buffer.getvalue())

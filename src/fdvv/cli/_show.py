@@ -6,9 +6,24 @@ from pathlib import Path
 
 import click
 
-from fdvv.cli._output import json_option, number, print_json, print_table, print_warnings, save_figure
+from fdvv.cli._output import (
+    FIGURES,
+    Finite,
+    check_output,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_warnings,
+    print_wrapped,
+    progress,
+    save_figure,
+)
 
-TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "valley_cN", "snap_ratio", "bottom_out_cN")
+TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
+NAME_WIDTH = 28
+"""What the columns of TABLE leave of the width of a line."""
 
 
 @click.command()
@@ -16,7 +31,7 @@ TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "valley_cN", "snap_r
 @click.option(
     "--velocity",
     "velocity_mm_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Finite(min=0, min_open=True),
     help="Read the landmarks from the press nearest to this speed (mm/s); the slowest by default.",
 )
 @click.option(
@@ -29,13 +44,21 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
     BUTTON is a built-in's name, a *.fdvv.json file, a file of measured curves, or a folder of them (a
     table, one line per button).
     """
-    if Path(button).is_dir():
+    check_output(figure, *FIGURES)
+    if button and Path(button).is_dir():
+        if figure:
+            raise click.UsageError(f"--figure draws one button, and {button} is a folder")
         _show_folder(Path(button), velocity_mm_s, as_json)
         return
+    from fdvv.errors import InputError
     from fdvv.model import landmarks
     from fdvv.workflow import open_model
 
     model = open_model(button)
+    if not model.of("press"):
+        raise InputError(
+            button, "curves", "it has no press, which landmarks are read from", "merge one into it"
+        )
     marks = landmarks(model, velocity_mm_s).to_dict()
     if figure:
         from fdvv.plot import plot_model
@@ -46,7 +69,7 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
         source = model.provenance.source
         print_json({"name": model.name, "source": source, "landmarks": marks, "curves": curves})
         return
-    click.echo(f"{model.name}: {model.provenance.source or 'source not stated'}")
+    print_wrapped(f"{model.name}: {model.provenance.source or 'source not stated'}")
     for stroke in ("press", "release"):
         speeds = ", ".join(f"{v:g}" for v in model.velocities_mm_s(stroke))
         if model.of(stroke):
@@ -56,26 +79,25 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
 
 def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:
     """Print one line of landmarks per button of a folder."""
-    from fdvv.errors import FdvvError
-    from fdvv.model import SUFFIX, landmarks, load_model
-    from fdvv.workflow import fit_folder
+    from fdvv.model import landmarks
+    from fdvv.workflow import button_files, open_folder
 
     found, refused = [], []
-    models = sorted(folder.rglob(f"*{SUFFIX}"))
-    for path in models:
-        try:
-            found.append((str(path), landmarks(load_model(path), velocity_mm_s).to_dict()))
-        except FdvvError as error:
-            refused.append({"file": str(path), "reason": str(error)})
-    for result in fit_folder(folder) if not models else ():
-        if result.fit and result.fit.landmarks:
-            found.append((str(result.file), result.fit.landmarks.to_dict()))
-        else:
-            reason = result.reason or f"{result.file}: whole file: holds no press; capture one"
-            refused.append({"file": str(result.file), "reason": reason})
+    total = len(button_files(folder))
+    with progress("opening", total) as advance:
+        for done, button in enumerate(open_folder(folder), start=1):
+            if button.model and button.model.of("press"):
+                found.append((str(button.file), landmarks(button.model, velocity_mm_s).to_dict()))
+            else:
+                reason = button.reason or f"{button.file}: curves: holds no press; merge one into it"
+                refused.append({"file": str(button.file), "reason": reason})
+            advance(done, total)
     if as_json:
         print_json({"results": [{"file": f, "landmarks": m} for f, m in found], "refused": refused})
-        return
-    rows = [[Path(f).name, *(number(m[key], 2) for key in TABLE)] for f, m in found]
-    print_table(["button", *TABLE], rows)
+    elif found:
+        rows = [[one_line(Path(f).name, NAME_WIDTH), *(number(m[key], 2) for key in TABLE)] for f, m in found]
+        print_table(["button", *TABLE], rows)
     print_warnings([f"refused: {r['reason']}" for r in refused])
+    if not found:
+        click.echo(f"fdvv: {folder}: no button of it can be shown; the reasons are above", err=True)
+        raise click.exceptions.Exit(2)

@@ -12,17 +12,9 @@ from fdvv.workflow._compensate import (
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
-from fdvv.workflow._fit import (
-    FitSettings,
-    FolderFit,
-    FolderSummary,
-    ModelFit,
-    fit_file,
-    fit_folder,
-    fit_force_file,
-    summarise,
-)
-from fdvv.workflow._open import open_model, open_models
+from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
+from fdvv.workflow._folder import FolderFit, FolderSummary, fit_folder, measured_files, summarise
+from fdvv.workflow._open import FolderButton, button_files, open_folder, open_model, open_models
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
@@ -32,6 +24,7 @@ __all__ = [
     "DemoResult",
     "Difference",
     "FitSettings",
+    "FolderButton",
     "FolderFit",
     "FolderSummary",
     "ModelFit",
@@ -39,6 +32,7 @@ __all__ = [
     "ProbeResult",
     "Rendering",
     "SwitchFit",
+    "button_files",
     "compare",
     "compensate",
     "demo",
@@ -48,9 +42,11 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "load_actuation",
+    "measured_files",
     "merge_parts",
     "one_curve",
     "open_device",
+    "open_folder",
     "open_model",
     "open_models",
     "open_part",

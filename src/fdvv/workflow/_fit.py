@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fdvv.capture import Averaged, ForceFile, average_by_velocity, find_force_files, read_force_file
+from fdvv.capture import Averaged, ForceFile, average_by_velocity, read_force_file
 from fdvv.errors import FdvvError, InputError
 from fdvv.model import (
     CurveFit,
@@ -27,6 +25,7 @@ from fdvv.model import (
     fit_curve,
     landmarks,
 )
+from fdvv.workflow._kind import own_kind
 
 DECIMALS_mm = 6
 """A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
@@ -101,17 +100,11 @@ def fit_report(fit: CurveFit) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True, eq=False)
-class FolderFit:
-    """What became of one file of a folder: a fit, or the reason why not."""
-
-    file: Path
-    fit: ModelFit | None
-    reason: str = ""
-
-
 def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
     """Read, repair, average and fit one file of force curves. Raises InputError."""
+    kind = own_kind(Path(path))
+    if kind:
+        raise InputError(path, "whole file", f"holds {kind}, not a measurement", "name a measured file")
     file = read_force_file(path)
     try:
         return fit_force_file(file, settings or FitSettings(), str(Path(path).name))
@@ -141,15 +134,20 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
         for p in parts
     )
     model = FDVVModel(
-        name=file.name,
+        name=one_line(file.name) or "unnamed",
         travel_mm=travel,
         curves=tuple(fit.curve for fit in fits),
         actuation_mm=_point([g.actuation_mm for g in groups], zero, travel, "actuation", warnings),
         reset_mm=_point([g.reset_mm for g in groups], zero, travel, "reset", warnings),
-        provenance=Provenance(source=f"{source} ({file.format})", method=settings.describe()),
+        provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
     )
     found = landmarks(model) if model.of(Stroke.PRESS) else None
     return ModelFit(model, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
+
+
+def one_line(text: str) -> str:
+    """Make a file's name fit for a model file: no line breaks, nothing that UTF-8 cannot hold."""
+    return " ".join(text.encode(errors="replace").decode().split())
 
 
 def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
@@ -176,81 +174,3 @@ def _point(
         )
         return None
     return round(point - zero, DECIMALS_mm)
-
-
-def fit_folder(
-    folder: Path, settings: FitSettings | None = None, workers: int | None = None
-) -> Iterator[FolderFit]:
-    """Fit every file of force curves below a folder, in order; a refused file yields its reason.
-
-    The compiled fits release the interpreter lock, so threads share the cores.
-    Raises InputError if the folder holds no candidate.
-    """
-    files = find_force_files(folder)
-    if not files:
-        raise InputError(folder, "folder", "no .csv, .ods, .json or .txt file in it", "name another folder")
-
-    def one(path: Path) -> FolderFit:
-        try:
-            return FolderFit(path, fit_file(path, settings))
-        except FdvvError as error:
-            return FolderFit(path, None, str(error))
-
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        yield from pool.map(one, files)
-
-
-@dataclass(frozen=True)
-class FolderSummary:
-    """The spread of a folder's fits, per stroke.
-
-    Attributes
-    ----------
-    rmse_cN, rows_rmse_cN, time_s : (median, 90th percentile) by stroke.
-    bumps, bumps_kept : strokes with a bump, and those of which at least 95 % was kept.
-    """
-
-    files: int
-    refused: int
-    rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
-    rows_rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
-    time_s: dict[str, tuple[float, float]] = field(default_factory=dict)
-    bumps: int = 0
-    bumps_kept: int = 0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give the summary of ``fdvv fit FOLDER --json``."""
-        strokes = {
-            stroke: {
-                "rmse_cN": {"median": self.rmse_cN[stroke][0], "p90": self.rmse_cN[stroke][1]},
-                "rows_rmse_cN": {"median": self.rows_rmse_cN[stroke][0], "p90": self.rows_rmse_cN[stroke][1]},
-                "time_s": {"median": self.time_s[stroke][0], "p90": self.time_s[stroke][1]},
-            }
-            for stroke in self.rmse_cN
-        }
-        counts = {"files": self.files, "refused": self.refused}
-        return {**counts, "bumps": self.bumps, "bumps_kept": self.bumps_kept, "strokes": strokes}
-
-
-def summarise(results: Sequence[FolderFit]) -> FolderSummary:
-    """Sum up a folder: medians and 90th percentiles per stroke, bumps kept."""
-    fits = [f for r in results if r.fit for f in r.fit.fits]
-    kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
-
-    def spread(attribute: str) -> dict[str, tuple[float, float]]:
-        found: dict[str, tuple[float, float]] = {}
-        for stroke in Stroke:
-            values = [getattr(f, attribute) for f in fits if f.curve.stroke is stroke]
-            if values:
-                found[str(stroke)] = (float(np.median(values)), float(np.percentile(values, 90)))
-        return found
-
-    return FolderSummary(
-        files=len(results),
-        refused=sum(r.fit is None for r in results),
-        rmse_cN=spread("rmse_cN"),
-        rows_rmse_cN=spread("rows_rmse_cN"),
-        time_s=spread("time_s"),
-        bumps=len(kept),
-        bumps_kept=sum(ratio >= 0.95 for ratio in kept),
-    )

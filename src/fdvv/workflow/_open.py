@@ -2,30 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import InputError
 from fdvv.model import SUFFIX, FDVVModel, builtin_names, load_builtin, load_model
-from fdvv.workflow._fit import FitSettings, fit_file, fit_folder
+from fdvv.workflow._fit import FitSettings, fit_file
+from fdvv.workflow._folder import fit_folder, measured_files
+from fdvv.workflow._kind import MODEL, own_kind
+
+LARGEST_mm, LARGEST_cN = 1e3, 1e6
+"""A metre and ten kilonewtons: beyond any button, within what can be tabulated and squared."""
 
 
 def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
     """Give the model that spec names.
 
-    A built-in's name, a ``*.fdvv.json`` file, or a file of measured curves, which is fitted.
+    A built-in's name, a file that fdvv wrote, or a file of measured curves, which is fitted.
     Raises InputError.
     """
     if spec in builtin_names():
         return load_builtin(spec)
     path = Path(spec)
-    if path.name.endswith(SUFFIX):
-        return load_model(path)
-    if not path.is_file():
+    if path.name.endswith(SUFFIX) or own_kind(path) == MODEL:
+        return _load(path)
+    if not spec or not path.is_file():
         known = ", ".join(builtin_names())
         reason = "is a folder, one button is needed" if path.is_dir() else "no such file or built-in button"
-        raise InputError(spec, "argument", reason, f"name a file or one of {known}")
+        raise InputError(spec or "''", "argument", reason, f"name a file or one of {known}")
     return fit_file(path, settings).model
+
+
+def _load(path: Path) -> FDVVModel:
+    """Load a model file and refuse numbers that no button has."""
+    model = load_model(path)
+    _check(path, "$.travel_mm", model.travel_mm, LARGEST_mm, "mm")
+    for i, curve in enumerate(model.curves):
+        _check(path, f"$.curves[{i}].knots_mm", curve.knots_mm, LARGEST_mm, "mm")
+        _check(path, f"$.curves[{i}].control_points_cN", curve.control_points_cN, LARGEST_cN, "cN")
+    return model
+
+
+def _check(path: Path, place: str, values: npt.ArrayLike, limit: float, unit: str) -> None:
+    worst = float(np.abs(values).max())
+    if worst > limit:
+        reason = f"{worst:g} {unit} is beyond the {limit:g} {unit} that a button can have"
+        raise InputError(path, place, reason, "correct it, or fit the measurement again")
+
+
+@dataclass(frozen=True, eq=False)
+class FolderButton:
+    """What became of one file of a folder: a button, or the reason why not."""
+
+    file: Path
+    model: FDVVModel | None
+    reason: str = ""
+
+
+def button_files(folder: Path) -> list[Path]:
+    """List the model files below a folder, or, if there is none, its measured files. Raises InputError."""
+    return sorted(folder.rglob(f"*{SUFFIX}")) or measured_files(folder)
+
+
+def open_folder(folder: Path) -> Iterator[FolderButton]:
+    """Open the button_files of a folder, in order; a refused file yields its reason. Raises InputError."""
+    files = button_files(folder)
+    if not files[0].name.endswith(SUFFIX):
+        for result in fit_folder(folder):
+            yield FolderButton(result.file, result.fit.model if result.fit else None, result.reason)
+        return
+    for path in files:
+        try:
+            yield FolderButton(path, _load(path))
+        except InputError as error:
+            yield FolderButton(path, None, str(error))
 
 
 def open_models(specs: Sequence[str], refused: list[str] | None = None) -> list[FDVVModel]:
@@ -36,24 +90,12 @@ def open_models(specs: Sequence[str], refused: list[str] | None = None) -> list[
     """
     models: list[FDVVModel] = []
     for spec in specs:
-        if Path(spec).is_dir():
-            models += _open_folder(Path(spec), [] if refused is None else refused)
-        else:
+        if not spec or not Path(spec).is_dir():
             models.append(open_model(spec))
+            continue
+        for button in open_folder(Path(spec)):
+            if button.model:
+                models.append(button.model)
+            elif refused is not None:
+                refused.append(button.reason)
     return models
-
-
-def _open_folder(folder: Path, refused: list[str]) -> list[FDVVModel]:
-    found: list[FDVVModel] = []
-    paths = sorted(folder.rglob(f"*{SUFFIX}"))
-    for path in paths:
-        try:
-            found.append(load_model(path))
-        except InputError as error:
-            refused.append(str(error))
-    for result in () if paths else fit_folder(folder):
-        if result.fit:
-            found.append(result.fit.model)
-        else:
-            refused.append(result.reason)
-    return found

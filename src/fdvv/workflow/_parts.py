@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, merge
+from fdvv.model import Conflict, FDVVModel, ForceCurve, Stroke, merge
 from fdvv.workflow._open import open_model
 
 PART = re.compile(r"(?P<file>.+?)(?::(?P<stroke>press|release))?(?:@(?P<velocity>[0-9.eE+-]+))?")
@@ -53,18 +54,33 @@ def _declared(curves: tuple[ForceCurve, ...], velocity_mm_s: float, spec: str) -
 
 
 def merge_parts(
-    specs: tuple[str, ...],
+    specs: Sequence[str],
     name: str,
     travel_mm: float | None = None,
     actuation_mm: float | None = None,
     reset_mm: float | None = None,
+    conflict: Conflict | str = Conflict.REFUSE,
 ) -> FDVVModel:
     """Merge parts into one FDVV model; where they differ in a point, it must be given.
 
+    conflict : what becomes of two different curves of one stroke and velocity.
     Raises InputError, ModelError.
     """
     parts = [open_part(spec) for spec in specs]
-    return merge(parts, name, travel_mm=travel_mm, actuation_mm=actuation_mm, reset_mm=reset_mm)
+    _check_velocities(specs, parts)
+    return merge(
+        parts, name, conflict=conflict, travel_mm=travel_mm, actuation_mm=actuation_mm, reset_mm=reset_mm
+    )
+
+
+def _check_velocities(specs: Sequence[str], parts: Sequence[FDVVModel]) -> None:
+    """Refuse a curve of unknown velocity beside others of its stroke, naming the part that brings it."""
+    for stroke in Stroke:
+        curves = [(spec, curve) for spec, part in zip(specs, parts, strict=True) for curve in part.of(stroke)]
+        unknown = [spec for spec, curve in curves if curve.velocity_mm_s is None]
+        if unknown and len(unknown) < len(curves):
+            reason = f"its {stroke} is of unknown velocity, but other parts have a {stroke} too"
+            raise InputError(unknown[0], "velocity", reason, f"tell it: {unknown[0]}@VELOCITY in mm/s")
 
 
 def one_curve(spec: str) -> ForceCurve:
