@@ -20,7 +20,7 @@ from fdvv.workflow._probe import ProbeResult, fd_only, probe
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
-PROBE_PRESSES = 10
+PROBE_PRESSES = 30
 
 Stage = Callable[[str, int, int], None]
 """Called with a label, steps done and steps in all."""
