@@ -106,23 +106,24 @@ def probe(
 ) -> None:
     """Measure on fresh presses how well a rig renders a model.
 
-    BUTTON is what should be felt; ACTUATION the file that fdvv compensate wrote (without it the model
-    itself is uploaded, uncompensated). Errors are in true displacement, median over the presses. Use
+    BUTTON is what should be felt; ACTUATION the file that fdvv compensate wrote (without it what
+    learning starts from: the model's own force). Errors are in true displacement, median over the presses.
+    Use
     another --seed than for learning.
     """
-    from fdvv.model import ForceSurface
-    from fdvv.workflow import load_actuation, open_device, open_model
+    from fdvv.workflow import load_actuation, open_device, open_model, uncompensated
     from fdvv.workflow import probe as judge
 
     model = open_model(button)
     learned = load_actuation(actuation) if actuation else None
-    surface = learned.surface if learned else ForceSurface.of_model(model, sorted(velocities_mm_s))
+    rendering = open_device(device, rig, finger, seed)
+    surface = learned.surface if learned else uncompensated(rendering, model, velocities_mm_s)
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
         print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
     with progress("probing", 1) as advance:
         result = judge(
-            open_device(device, rig, finger, seed),
+            rendering,
             model,
             surface,
             velocities_mm_s,

@@ -1,11 +1,12 @@
 """Learning laws that find the command tables which make a rig feel like a model."""
 
-from fdvv.compensate._bins import bin_force, bump_cN, bump_kept_ratio, grid_mm, smooth
+from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
+from fdvv.compensate._curve_state import Best, Learned, State
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._method import Count, CurveOutcome, Job, Method, Outcome, Trial
 from fdvv.compensate._observe import Delays, observe
-from fdvv.compensate._paper import RIG_DELAYS, Best, Learned, PaperLaw, State
+from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
@@ -28,7 +29,6 @@ __all__ = [
     "State",
     "Trial",
     "bin_force",
-    "bump_cN",
     "bump_kept_ratio",
     "dense_velocities",
     "error_cN",

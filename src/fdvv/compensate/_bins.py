@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.model import find_bump
 from fdvv.units import FloatArray
-
-SMALLEST_BUMP_cN = 1.0
-"""A drop below this is noise of a capture, not a bump (replicates of one switch differ by about 1 cN)."""
 
 
 def grid_mm(travel_mm: float, bin_mm: float) -> FloatArray:
@@ -39,11 +37,12 @@ def bin_force(displacement_mm: FloatArray, force_cN: FloatArray, grid_mm: FloatA
 
 
 def smooth(values: FloatArray, sigma_mm: float, step_mm: float) -> FloatArray:
-    """Run a zero-phase Gaussian filter over a table, (n,); sigma 0 changes nothing.
+    """Run a zero-phase Gaussian filter over a table, (n,); a sigma below a tenth of a
+    step reaches no neighbour and changes nothing.
 
     The table goes on beyond its ends as its own point reflection, so that a straight line stays itself.
     """
-    if sigma_mm <= 0:
+    if sigma_mm < 0.1 * step_mm:
         return values.copy()
     reach = int(np.ceil(4 * sigma_mm / step_mm))
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) * step_mm / sigma_mm) ** 2)
@@ -51,14 +50,11 @@ def smooth(values: FloatArray, sigma_mm: float, step_mm: float) -> FloatArray:
     return np.convolve(padded, kernel / kernel.sum(), mode="valid")
 
 
-def bump_cN(force_cN: FloatArray) -> float:
-    """Measure the bump: the deepest fall of force with rising displacement, 0 if it never falls."""
-    return float(np.max(np.maximum.accumulate(force_cN) - force_cN))
-
-
-def bump_kept_ratio(force_cN: FloatArray, sigma_mm: float, step_mm: float) -> float | None:
+def bump_kept_ratio(grid_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> float | None:
     """Tell how much of a curve's bump outlives smoothing: 1 all, 0 none; None if it has no bump."""
-    before = bump_cN(force_cN)
-    if before < SMALLEST_BUMP_cN:
+    bump = find_bump(grid_mm, force_cN)
+    if bump is None:
         return None
-    return bump_cN(smooth(force_cN, sigma_mm, step_mm)) / before
+    smoothed = smooth(force_cN, sigma_mm, float(grid_mm[1] - grid_mm[0]))
+    left = find_bump(grid_mm, smoothed, least_drop_cN=0.0)
+    return left.drop_cN / bump.drop_cN if left else 0.0

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from fdvv.compensate._bins import bump_kept_ratio, smooth
+from fdvv.compensate._curve_state import Best, Learned, State, better, frozen
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._observe import Delays
@@ -21,58 +22,6 @@ HOME_mm = 0.1
 RIG_DELAYS = Delays(position_s=0.0005, command_s=0.002)
 """Delays of the paper's rig, from its parts: the position's demodulator and burst less the force's filter;
 compute, half a tick, the coil's inductance and the force's filter."""
-
-
-@dataclass(frozen=True, eq=False)
-class Best:
-    """The press of a round whose command came closest, as the rig measured it."""
-
-    error_cN: float
-    mean_error_cN: float
-    max_error_cN: float
-    command_cN: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """What the law knows about one curve.
-
-    Attributes
-    ----------
-    grid_mm, target_cN, command_cN : (n,) bins, the force wanted, the table to press next.
-    limit_cN : bound on the size of a command.
-    errors_cN : error_k of every press so far, all rounds.
-    best : of the round that runs; None before its first press.
-    rounds : the best of every finished round.
-    """
-
-    grid_mm: FloatArray
-    target_cN: FloatArray
-    command_cN: FloatArray
-    limit_cN: float
-    errors_cN: tuple[float, ...] = ()
-    best: Best | None = None
-    rounds: tuple[Best, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class Learned:
-    """What came of one curve.
-
-    Attributes
-    ----------
-    command_cN : (n,) the table to render with.
-    errors_cN : error_k of every press, as the rig measured it while it learned.
-    mean_error_cN, max_error_cN : of the best press of each round, averaged over the rounds. Picked for
-        being small and measured by the rig's own lagging sensors: the probe tells the truth.
-    sentence : how it went.
-    """
-
-    command_cN: FloatArray
-    errors_cN: tuple[float, ...]
-    mean_error_cN: float
-    max_error_cN: float
-    sentence: str
 
 
 @dataclass(frozen=True)
@@ -95,7 +44,6 @@ class PaperLaw:
     delays : addition, off at ``Delays()``: known delays of the rig.
     filter_mm : addition, off at 0: sigma of a zero-phase Gaussian over the learned part (command minus
         target) after each press; keeps the law from learning what no two presses share.
-
     hold_ends : addition: outside the bins that a press visited between its guards, the correction of the
         nearest visited bin holds; else those bins learn nothing.
     hold_cN : addition, off at 0: least command in the first 0.1 mm, and anywhere in a start from the
@@ -103,7 +51,6 @@ class PaperLaw:
         commands below zero that a moving one may need; else it sinks and no press can begin.
 
     The defaults are the law with the additions that suit the paper's rig; ``literal`` is the law as printed.
-
     Commands stay within the device's limit.
     """
 
@@ -165,7 +112,7 @@ class PaperLaw:
             raise ModelError(f"target and grid must pair up, got {target_cN.shape}, {grid_mm.shape}")
         if not limit_cN > 0:
             raise ModelError(f"limit_cN must be positive, got {limit_cN}")
-        state = State(_frozen(grid_mm), _frozen(target_cN), _frozen(target_cN), limit_cN)
+        state = State(frozen(grid_mm), frozen(target_cN), frozen(target_cN), limit_cN)
         return replace(state, command_cN=self._start(state))
 
     def step(self, measured_cN: FloatArray, state: State) -> tuple[FloatArray, State]:
@@ -175,7 +122,7 @@ class PaperLaw:
         Raises ModelError where nothing was measured.
         """
         error = error_cN(state.target_cN, measured_cN, self.alpha)
-        best = _better(state, measured_cN, error)
+        best = better(state, measured_cN, error)
         errors = (*state.errors_cN, error)
         if len(errors) % self.presses_per_round:
             command = self._correct(measured_cN, error, state)
@@ -221,7 +168,7 @@ class PaperLaw:
         """Hold the cap up at its home and stay within the device's limit."""
         home = state.grid_mm <= HOME_mm if self.hold_cN else False
         held = np.where(home, np.maximum(command_cN, self.hold_cN), command_cN)
-        return _frozen(np.clip(held, -state.limit_cN, state.limit_cN))
+        return frozen(np.clip(held, -state.limit_cN, state.limit_cN))
 
     def _start(self, state: State) -> FloatArray:
         """Give the command a round starts from."""
@@ -230,29 +177,14 @@ class PaperLaw:
             level = draw.uniform(0.5, 1.0) * float(np.abs(state.target_cN).max())
             return self._limited(np.full(state.grid_mm.size, level), state)
         if self.start == "average" and state.rounds:
-            return _frozen(np.mean([b.command_cN for b in state.rounds], axis=0))
+            return frozen(np.mean([b.command_cN for b in state.rounds], axis=0))
         return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 
     def _sentence(self, state: State, bests: tuple[Best, ...], step_mm: float) -> str:
-        kept = bump_kept_ratio(state.target_cN, self.smoothing_mm, step_mm)
+        kept = bump_kept_ratio(state.grid_mm, state.target_cN, self.smoothing_mm)
         bump = "the target has no bump" if kept is None else f"keeps {kept:.0%} of the target's bump"
         ends = ", ".join(f"{b.error_cN:.1f}" for b in bests)
         return (
             f"error_k {state.errors_cN[0]:.1f} cN at press 1, best of each round {ends} cN; "
             f"smoothing sigma {self.smoothing_mm:g} mm ({bump})"
         )
-
-
-def _better(state: State, measured_cN: FloatArray, error: float) -> Best:
-    """Keep the round's best command; a worse press never replaces it."""
-    if state.best is not None and state.best.error_cN <= error:
-        return state.best
-    deviation = np.abs(state.target_cN - measured_cN)
-    return Best(error, float(np.nanmean(deviation)), float(np.nanmax(deviation)), state.command_cN)
-
-
-def _frozen(values: FloatArray) -> FloatArray:
-    """Copy an array and lock it."""
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fdvv.compensate._curve_state import State
 from fdvv.compensate._method import Count, CurveOutcome, Job, Outcome, Trial
 from fdvv.compensate._observe import felt_at_mm, observe
-from fdvv.compensate._paper import PaperLaw, State
+from fdvv.compensate._paper import PaperLaw
 from fdvv.compensate._strokes import split_strokes, why_incomplete
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press, Stroke

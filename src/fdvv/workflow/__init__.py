@@ -7,6 +7,7 @@ from fdvv.workflow._compensate import (
     compensate,
     load_actuation,
     save_actuation,
+    uncompensated,
 )
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
@@ -52,4 +53,5 @@ __all__ = [
     "probe",
     "save_actuation",
     "summarise",
+    "uncompensated",
 ]

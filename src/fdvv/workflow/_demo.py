@@ -12,15 +12,15 @@ from typing import Any
 
 from fdvv.capture import ForceFile, read_force_file
 from fdvv.device import Device
-from fdvv.model import CurveFit, FDVVModel, FitMethod, ForceSurface, fit_curve, load_builtin, scan_sizes
-from fdvv.workflow._compensate import CompensationResult, PressDone, compensate
+from fdvv.model import CurveFit, FDVVModel, FitMethod, fit_curve, load_builtin, scan_sizes
+from fdvv.workflow._compensate import CompensationResult, PressDone, compensate, uncompensated
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_force_file, fit_report
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
-PROBE_PRESSES = 10
+PROBE_PRESSES = 30
 
 Stage = Callable[[str, int, int], None]
 """Called with a label, steps done and steps in all."""
@@ -33,7 +33,7 @@ class Rendering:
     Attributes
     ----------
     label : "uncompensated", "FD only" or "FDVV".
-    learned : how its actuation was learned; None if the model itself was uploaded.
+    learned : how its actuation was learned; None if it is what learning starts from, the model's own force.
     judged : the probe, always against the full model.
     """
 
@@ -156,7 +156,7 @@ def _judge(
     device: Device, button: FDVVModel, label: str, learned: CompensationResult | None, stage: Stage
 ) -> ProbeResult:
     """Probe a rendering; every one meets the same person, that is, the same seed."""
-    surface = learned.surface if learned else ForceSurface.of_model(button, VELOCITIES_mm_s)
+    surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
     return probe(
         device, button, surface, VELOCITIES_mm_s, PROBE_PRESSES, _told(stage, f"probing {label}"), label
     )

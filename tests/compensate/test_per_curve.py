@@ -1,0 +1,119 @@
+"""A whole job, and tables between its speeds."""
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import GainSchedule, Job, PaperLaw, PerCurve, dense_velocities
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface, Press, load_builtin
+
+MODEL = load_builtin("mx-clear")
+LAW = PaperLaw.literal(rounds=1, presses_per_round=2, start="target", gain=GainSchedule.constant(0.5))
+
+
+def job(speeds: tuple[float, ...] = (50.0, 100.0)) -> Job:
+    return Job(ForceSurface.of_model(MODEL, speeds), MODEL.travel_mm, 440.0)
+
+
+def press(speed: float = 50.0, depth_mm: float = 4.0, force_cN: float = 0.0) -> Press:
+    """Make a press at constant speed, with one force throughout."""
+    t = np.arange(0.0, 2 * depth_mm / speed + 0.02, 0.0005)
+    down = depth_mm / speed
+    x = np.interp(t, [0, down, down + 0.02, 2 * down + 0.02], [0, depth_mm, depth_mm, 0])
+    return Press(t, x, np.full(t.size, force_cN), speed)
+
+
+def test_speeds_take_turns_on_the_whole_surface() -> None:
+    method = PerCurve(LAW)
+    state, asked = method.init(job()), []
+    while (trial := method.trial(state)) is not None:
+        asked.append(trial.velocity_mm_s)
+        assert trial.surface.velocity_mm_s.size == 2
+        state = method.step(press(trial.velocity_mm_s), state)
+    assert asked == [50.0, 100.0, 50.0, 100.0]
+    assert method.count(state).made == method.count(state).total == 4
+
+
+def test_one_row_at_a_time_finishes_a_speed_before_the_next() -> None:
+    method = PerCurve(LAW, whole_surface=False)
+    state, asked = method.init(job()), []
+    while (trial := method.trial(state)) is not None:
+        asked.append(trial.velocity_mm_s)
+        assert trial.surface.velocity_mm_s.tolist() == [trial.velocity_mm_s]
+        state = method.step(press(trial.velocity_mm_s), state)
+    assert asked == [50.0, 50.0, 100.0, 100.0]
+
+
+def test_one_press_teaches_both_strokes_of_its_speed_and_no_other() -> None:
+    method = PerCurve(LAW)
+    before = method.init(job())
+    after = method.step(press(50.0), before)
+    assert [len(c.errors_cN) for pair in after.pairs for c in pair] == [1, 1, 0, 0]
+    for old, new in zip(before.pairs[0], after.pairs[0], strict=True):
+        learned = (new.grid_mm > 0.2) & (new.grid_mm < 3.8)
+        np.testing.assert_allclose((new.command_cN - old.command_cN)[learned], 0.5 * old.target_cN[learned])
+
+
+def test_nothing_is_learned_between_the_guard_and_the_stop() -> None:
+    method = PerCurve(LAW)
+    before = method.init(job())
+    after = method.step(press(50.0), before)
+    for old, new in zip(before.pairs[0], after.pairs[0], strict=True):
+        guarded = (old.grid_mm > 3.93) | (old.grid_mm < 0.07)
+        np.testing.assert_array_equal(new.command_cN[guarded], old.command_cN[guarded])
+
+
+def test_a_failed_press_is_skipped_with_its_reason_and_made_again() -> None:
+    method = PerCurve(LAW)
+    state = method.step(press(50.0, depth_mm=2.0), method.init(job()))
+    assert "press 1 at 50 mm/s: the press stopped at 2.00 of 4.00 mm" in state.skipped
+    assert state.pairs[0][0].errors_cN == ()
+    trial = method.trial(state)
+    assert trial is not None
+    assert trial.velocity_mm_s == 50.0
+
+
+def test_a_release_without_samples_is_a_reason() -> None:
+    t = np.arange(0.0, 0.2, 0.001)
+    stuck = Press(t, np.minimum(50 * t, 4.0), np.zeros(t.size), 50.0)
+    state = PerCurve(LAW).step(stuck, PerCurve(LAW).init(job()))
+    assert "release" in state.skipped[0]
+
+
+def test_too_many_failures_in_a_row_stop_the_job_with_a_sentence() -> None:
+    method = PerCurve(LAW, patience=3)
+    state = method.init(job())
+    for _ in range(3):
+        state = method.step(press(50.0, depth_mm=2.0), state)
+    assert method.trial(state) is None
+    outcome = method.done(state)
+    assert not outcome.complete
+    assert "stopped after 3 presses" in outcome.sentence
+
+
+def test_a_finished_job_takes_no_press() -> None:
+    method = PerCurve(LAW)
+    state = method.init(job((50.0,)))
+    for _ in range(2):
+        state = method.step(press(), state)
+    with pytest.raises(ModelError, match="finished"):
+        method.step(press(), state)
+
+
+def test_the_outcome_lists_presses_then_releases_by_speed() -> None:
+    method = PerCurve(LAW)
+    curves = method.done(method.init(job())).curves
+    assert [(str(c.stroke), c.velocity_mm_s) for c in curves] == [
+        ("press", 50.0),
+        ("press", 100.0),
+        ("release", 50.0),
+        ("release", 100.0),
+    ]
+
+
+def test_dense_tables_are_straight_between_speeds_and_hold_outside() -> None:
+    surface = ForceSurface.of_model(MODEL, [50.0, 100.0])
+    dense = dense_velocities(surface, [20.0, 50.0, 75.0, 100.0, 300.0])
+    np.testing.assert_array_equal(dense.press_cN[0], surface.press_cN[0])
+    np.testing.assert_allclose(dense.release_cN[2], surface.release_cN.mean(axis=0))
+    np.testing.assert_array_equal(dense.press_cN[4], surface.press_cN[1])
