@@ -32,7 +32,11 @@ def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
         return _load(path)
     if not spec or not path.is_file():
         known = ", ".join(builtin_names())
-        reason = "is a folder, one button is needed" if path.is_dir() else "no such file or built-in button"
+        reason = (
+            "is a folder, one button is needed"
+            if spec and path.is_dir()
+            else "no such file or built-in button"
+        )
         raise InputError(spec or "''", "argument", reason, f"name a file or one of {known}")
     return fit_file(path, settings).model
 
