@@ -107,9 +107,8 @@ def probe(
     """Measure on fresh presses how well a rig renders a model.
 
     BUTTON is what should be felt; ACTUATION the file that fdvv compensate wrote (without it what
-    learning starts from: the model's own force). Errors are in true displacement, median over the presses.
-    Use
-    another --seed than for learning.
+    learning starts from: the model's own force). Errors are in true displacement, median over the
+    presses. Use another --seed than for learning.
     """
     from fdvv.workflow import load_actuation, open_device, open_model, uncompensated
     from fdvv.workflow import probe as judge

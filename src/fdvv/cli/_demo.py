@@ -46,18 +46,18 @@ def demo(switch: Path | None, rig: Path | None, seed: int, output: Path, as_json
 
     with stages() as stage:
         result = run(lambda chosen: open_device("twin", rig, None, chosen), switch, seed, stage)
-        stage("writing the report", 0, 1)
-        report = output / "report.html"
-        write_atomic(report, demo_report(result))
-    model = result.switch.adaptive.model
-    save_model(model, output / f"switch{SUFFIX}")
+    save_model(result.switch.adaptive.model, output / f"switch{SUFFIX}")
     if as_json:
         print_json(result.to_dict())
     else:
-        _print(result, report)
+        _print(result)
+    # last, because it alone needs matplotlib: without it the table is there all the same
+    report = output / "report.html"
+    write_atomic(report, demo_report(result))
+    click.echo(f"{report}, {result.time_s:.0f} s", err=as_json)
 
 
-def _print(result: DemoResult, report: Path) -> None:
+def _print(result: DemoResult) -> None:
     fits = result.switch.adaptive.fits
     name, count = result.switch.adaptive.model.name, fits[0].curve.control_points_cN.size
     click.echo(f"{name}, fitted with {count} control points")
@@ -83,4 +83,4 @@ def _print(result: DemoResult, report: Path) -> None:
             for row in result.rows()
         ],
     )
-    click.echo(f"\n{report}, {result.time_s:.0f} s")
+    click.echo("")

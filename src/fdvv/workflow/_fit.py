@@ -54,6 +54,7 @@ class ModelFit:
     Attributes
     ----------
     model : displacement 0 is the contact of the slowest press.
+    zero_mm : where that contact lies in the file's own displacement.
     fits : one per curve of the model, in the model's order; displacements are the model's.
     measured : the raw part of each stroke that was fitted, in the model's displacement, in fits' order.
     landmarks : of the slowest press; None if the file holds no press.
@@ -61,6 +62,7 @@ class ModelFit:
     """
 
     model: FDVVModel
+    zero_mm: float
     fits: tuple[CurveFit, ...]
     measured: tuple[MeasuredCurve, ...]
     landmarks: Landmarks | None
@@ -73,6 +75,7 @@ class ModelFit:
             strokes.setdefault(str(fit.curve.stroke), fit_report(fit))
         return {
             "name": self.model.name,
+            "zero_mm": self.zero_mm,
             "strokes": strokes,
             "curves": [
                 {"stroke": str(f.curve.stroke), "velocity_mm_s": f.curve.velocity_mm_s, **fit_report(f)}
@@ -142,7 +145,7 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
         provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
     )
     found = landmarks(model) if model.of(Stroke.PRESS) else None
-    return ModelFit(model, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
+    return ModelFit(model, zero, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
 
 
 def one_line(text: str) -> str:
@@ -158,7 +161,7 @@ def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[f
     if end is None:
         end = float(stroke.displacement_mm[-1])
         warnings.append(f"no stop found on the {stroke.stroke}: travel taken to its last sample")
-    return zero, round(end - zero, DECIMALS_mm)
+    return round(zero, DECIMALS_mm), round(end - zero, DECIMALS_mm)
 
 
 def _point(
