@@ -47,6 +47,11 @@ def device_options(command: Command) -> Command:
 @click.command()
 @click.argument("button")
 @device_options
+@click.option("--rounds", type=click.IntRange(1, 20), default=4, show_default=True, help="Runs averaged.")
+@click.option(
+    "--presses", type=click.IntRange(1, 100), default=12, show_default=True, help="Per round and velocity."
+)
+@click.option("--literal", is_flag=True, help="The law exactly as printed, without additions.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The *.actuation.json to write.")
 @json_option
 def compensate(
@@ -56,6 +61,9 @@ def compensate(
     finger: Path | None,
     seed: int,
     velocities_mm_s: tuple[float, ...],
+    rounds: int,
+    presses: int,
+    literal: bool,
     output: Path | None,
     as_json: bool,
 ) -> None:
@@ -65,14 +73,18 @@ def compensate(
     its rounds are done; its errors are those the rig measured while it learned. Judge with fdvv probe.
     """
     check_output(output, ".actuation.json")
+    from fdvv.compensate import PaperLaw
     from fdvv.workflow import compensate as learn
     from fdvv.workflow import open_device, open_model, save_actuation
 
+    make = PaperLaw.literal if literal else PaperLaw
+    law = make(rounds=rounds, presses_per_round=presses)
     with progress("pressing", 1) as advance:
         result = learn(
             open_device(device, rig, finger, seed),
             open_model(button),
             velocities_mm_s,
+            law,
             progress=_bar(advance),
         )
     if output:

@@ -1,0 +1,80 @@
+"""The compiled kernels under the undefined-behaviour sanitiser."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+NATIVE = Path(__file__).resolve().parents[1] / "src" / "fdvv" / "_native"
+
+# run in a process of its own: the sanitiser ends it at the first fault
+EXERCISE = """
+import ctypes, sys
+import fdvv._native as native
+sanitised = ctypes.CDLL(sys.argv[1])
+native.library = lambda: sanitised
+import fdvv.model._fit as fit, fdvv.twin._kernel as kernel
+fit.library = kernel.library = native.library
+import numpy as np
+from fdvv.device import TwinDevice
+from fdvv.model import ForceSurface, MeasuredCurve, Stroke, fit_curve, load_builtin
+rng = np.random.default_rng(1)
+for count in (4, 16, 17, 120, 800):
+    x = np.cumsum(rng.uniform(1e-6, 0.02, count))
+    for degree in (1, 2, 3):
+        for size in {degree + 1, 4, min(15, count), min(64, count)}:
+            if degree < size <= count:
+                curve = MeasuredCurve(x, rng.normal(50, 30, count), Stroke.PRESS)
+                fit_curve(curve, degree=degree, control_points=size)
+button = load_builtin("mx-clear")
+device = TwinDevice(seed=1)
+device.upload(ForceSurface.of_model(button, [50.0, 200.0]), button.travel_mm)
+for velocity in (5.0, 100.0, 500.0):
+    device.press(velocity)
+print("done")
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_fits_and_presses_run_without_undefined_behaviour(tmp_path: Path) -> None:
+    library = tmp_path / "libsanitised.so"
+    flags = ["-std=c99", "-O1", "-g", "-fPIC", "-shared", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
+    sources = [str(path) for path in sorted(NATIVE.glob("*.c"))]
+    subprocess.run(["cc", *flags, "-o", str(library), *sources, "-lm"], check=True)
+    out = subprocess.run(
+        [sys.executable, "-c", EXERCISE, str(library)], capture_output=True, text=True, check=False
+    )
+    assert (out.returncode, out.stdout.strip(), out.stderr) == (0, "done", "")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_the_kernels_free_what_they_take_and_stay_in_bounds(tmp_path: Path) -> None:
+    # valgrind would do as well; the address sanitiser comes with the compiler
+    program = tmp_path / "program.c"
+    program.write_text(
+        '#include "fdvv.h"\n#include <stdlib.h>\nint main(void) {\n'
+        "  for (int n = 4; n < 400; n += 37) {\n"
+        "    double *x = malloc(n * 8), *y = malloc(n * 8), *w = malloc(n * 8), t[68], c[64];\n"
+        "    for (int i = 0; i < n; i++) x[i] = i * 0.005, y[i] = (i * 7919) % 101, w[i] = 1;\n"
+        "    for (int d = 1; d <= 3; d++) for (int m = d + 1; m <= 64; m += 6)\n"
+        "      fdvv_spline_free_knots(n, x, y, w, d, m, 0.004, 5, t, c);\n"
+        "    free(x); free(y); free(w);\n  }\n  return 0;\n}\n"
+    )
+    binary = tmp_path / "program"
+    flags = [
+        "-std=c99",
+        "-O1",
+        "-g",
+        "-fsanitize=address,undefined",
+        "-fno-sanitize-recover=all",
+        f"-I{NATIVE}",
+    ]
+    sources = [str(program), *(str(path) for path in sorted(NATIVE.glob("*.c")))]
+    subprocess.run(["cc", *flags, "-o", str(binary), *sources, "-lm"], check=True)
+    out = subprocess.run([str(binary)], capture_output=True, text=True, check=False)
+    assert (out.returncode, out.stderr) == (0, "")
