@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 import pytest
 
 from fdvv.cli import main
+from fdvv.cli._main import COMMANDS, cli
 from fdvv.units import FloatArray
 
 
@@ -70,7 +72,9 @@ Run = Callable[..., Ran]
 
 
 @pytest.fixture
-def fdvv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+def fdvv(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Iterator[Run]:
     """Give a function that runs the command in the test's folder, within this process."""
     monkeypatch.chdir(tmp_path)
 
@@ -83,4 +87,9 @@ def fdvv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
         assert isinstance(stop.value.code, int)
         return Ran(stop.value.code, out, err)
 
-    return run
+    yield run
+    for name in COMMANDS:
+        # click keeps the help option of the first context that asked, which other tests must not see
+        command = cli.get_command(click.Context(cli), name)
+        assert command is not None
+        command._help_option = None
