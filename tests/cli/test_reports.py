@@ -184,3 +184,23 @@ def test_unknown_figures_are_null_in_json(fdvv: Run) -> None:
     text = fdvv("show", "mx-red", "--json").out
     assert json.loads(text)["landmarks"]["peak_cN"] is None
     assert "NaN" not in text
+
+
+def test_compensate_and_probe_report_errors_per_curve_and_say_simulated(fdvv: Run) -> None:
+    short = ("--velocity", "50", "--json")
+    learn = ("compensate", "mx-red", *short, "--rounds", "1", "--presses", "8", "-o", "red.actuation.json")
+    learned, judged = (
+        fdvv(*learn),
+        fdvv("probe", "mx-red", "red.actuation.json", *short, "--presses", "2", "--seed", "3"),
+    )
+    for ran in (learned, judged):
+        assert (ran.status, ran.err) == (0, "")
+        assert ran.json["simulated"] is True
+        assert [(c["stroke"], c["velocity_mm_s"]) for c in ran.json["curves"]] == [
+            ("press", 50.0),
+            ("release", 50.0),
+        ]
+    assert [len(c["error_cN"]) for c in judged.json["curves"]] == [2, 2]
+    other = fdvv("probe", "mx-blue", "red.actuation.json", *short, "--presses", "1")
+    assert other.err == "warning: red.actuation.json was learned for mx-red, not for mx-blue\n"
+    assert other.json["model"] == "mx-blue"
