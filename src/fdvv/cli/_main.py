@@ -75,7 +75,7 @@ def main() -> NoReturn:
     """Run the command line; exit 0 done, 1 missed a bound or failed, 2 unusable input, 130 interrupted."""
     try:
         # click gives the status of an Exit, and None or whatever a command returns otherwise
-        status = cli.main(standalone_mode=False)
+        status = cli.main(prog_name="fdvv", standalone_mode=False)
         sys.exit(status if isinstance(status, int) else 0)
     except click.UsageError as error:
         _stop(2, _usage(error))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.model import Conflict, FDVVModel, ForceCurve, Stroke, merge
@@ -18,9 +19,14 @@ def open_part(spec: str) -> FDVVModel:
 
     Raises InputError, also where a velocity is given to several curves of one stroke.
     """
+    if Path(spec).is_file():
+        # a file that is there under the whole name is meant, however its name reads
+        return open_model(spec)
     found = PART.fullmatch(spec)
     if found is None:
-        raise InputError(spec, "argument", "is not FILE[:press|:release][@VELOCITY]", "write it that way")
+        raise InputError(
+            spec or "''", "argument", "is not FILE[:press|:release][@VELOCITY]", "write it that way"
+        )
     model = open_model(found["file"])
     curves = model.of(found["stroke"]) if found["stroke"] else model.curves
     if not curves:

@@ -1,0 +1,95 @@
+"""What tutorials and the README show is what runs, on real files, in an empty folder."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+TUTORIAL = REPOSITORY / "docs" / "tutorials" / "first-button.md"
+NOT_RUN = ("make", ".")
+"""Setting up and the whole demo have their own runs."""
+NOT_COMPARED = ("compensate", "probe")
+"""Their figures belong to docs/explanation/compensation.md."""
+MILLISECONDS = re.compile(r"\s+\d+\.\d$")
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Give (language, text) of the fenced blocks of a page."""
+    return re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+
+
+def steps(text: str) -> list[tuple[list[str], list[str]]]:
+    """Split a console block into commands, each with the lines shown for it."""
+    found: list[tuple[list[str], list[str]]] = []
+    for line in text.splitlines():
+        if line.startswith("$ "):
+            found.append((shlex.split(line[2:]), []))
+        else:
+            found[-1][1].append(line)
+    return found
+
+
+def run(command: list[str], folder: Path, environment: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8", check=False
+    )
+
+
+@pytest.fixture
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONUTF8": "1"}
+
+
+def test_the_first_button_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    pytest.importorskip("matplotlib")
+    (tmp_path / "src").symlink_to(REPOSITORY / "src")
+    printed = ""
+    for language, text in blocks(TUTORIAL):
+        if language == "python":
+            ran = run([sys.executable, "-c", text], tmp_path, environment)
+            assert (ran.returncode, ran.stderr) == (0, "")
+            printed = ran.stdout
+        elif language == "console":
+            for command, shown in steps(text):
+                check(command, shown, tmp_path, environment)
+        else:
+            assert text == printed, "the block after a program shows what it prints"
+    assert (tmp_path / "first" / "brown.svg").read_text().startswith("<?xml")
+
+
+def check(command: list[str], shown: list[str], folder: Path, environment: dict[str, str]) -> None:
+    if command[0] in NOT_RUN:
+        return
+    assert command[0] == "fdvv"
+    ran = run([sys.executable, "-m", *command], folder, environment)
+    expected = 2 if shown and shown[0].startswith("fdvv: ") else 0
+    assert ran.returncode == expected, f"{shlex.join(command)}: {ran.stderr}"
+    if command[1] in NOT_COMPARED:
+        return
+    printed = [MILLISECONDS.sub("", line) for line in (ran.stdout + ran.stderr).splitlines()]
+    for line in shown:
+        assert MILLISECONDS.sub("", line) in printed, f"{shlex.join(command)} does not print {line!r}"
+
+
+def test_every_command_of_the_tutorial_is_run_and_most_are_compared() -> None:
+    commands = [step for language, text in blocks(TUTORIAL) if language == "console" for step in steps(text)]
+    run_here = [command[1] for command, _ in commands if command[0] == "fdvv"]
+    assert set(run_here) == {"library", "fit", "show", "compare", "merge", "compensate", "probe"}
+    assert all(shown for command, shown in commands if command[0] == "fdvv" and command[1] != "compensate")
+
+
+def test_the_readmes_program_runs(tmp_path: Path, environment: dict[str, str]) -> None:
+    programs = [text for language, text in blocks(REPOSITORY / "README.md") if language == "python"]
+    assert programs
+    for program in programs:
+        ran = run([sys.executable, "-W", "error", "-c", program], tmp_path, environment)
+        assert (ran.returncode, ran.stderr) == (0, "")
+        assert len(ran.stdout.splitlines()) == program.count("print(")

@@ -1,0 +1,178 @@
+"""Buttons and parts of buttons by the words of a command line."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.workflow.conftest import line_model, write_cycle
+
+from fdvv.errors import InputError, ModelError
+from fdvv.model import SUFFIX, FDVVModel, Stroke, load_builtin, save_model
+from fdvv.workflow import (
+    fit_file,
+    merge_parts,
+    one_curve,
+    open_device,
+    open_folder,
+    open_model,
+    open_models,
+    open_part,
+)
+
+
+@pytest.fixture
+def measured(tmp_path: Path) -> Path:
+    return write_cycle(tmp_path / "switch.csv")
+
+
+def saved(path: Path, model: FDVVModel) -> Path:
+    save_model(model, path)
+    return path
+
+
+def test_a_button_is_a_builtin_a_model_file_or_a_measurement(tmp_path: Path, measured: Path) -> None:
+    assert open_model("mx-red") == load_builtin("mx-red")
+    model = line_model("line", 40)
+    assert open_model(str(saved(tmp_path / f"line{SUFFIX}", model))) == model
+    assert open_model(str(measured)) == fit_file(measured).model
+
+
+def test_a_model_is_known_by_its_inside_where_its_name_does_not_say(tmp_path: Path) -> None:
+    model = line_model("line", 40)
+    assert open_model(str(saved(tmp_path / "line.json", model))) == model
+
+
+@pytest.mark.parametrize("spec", ["", "mx-blu", "gone.csv", "."])
+def test_what_names_no_button_is_refused_with_those_there_are(spec: str) -> None:
+    with pytest.raises(InputError, match="mx-black, mx-blue"):
+        open_model(spec)
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [({"travel_mm": 2e3}, r"\$\.travel_mm: 2000 mm"), ({}, r"\$\.curves\[0\]\.control_points_cN: 2e\+06 cN")],
+)
+def test_numbers_beyond_any_button_are_refused_by_place(
+    tmp_path: Path, change: dict[str, float], place: str
+) -> None:
+    model = replace(line_model("wild", 40.0 if change else 2e6, 0.0), **change)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=place):
+        open_model(str(saved(tmp_path / f"wild{SUFFIX}", model)))
+
+
+def test_a_folder_stands_for_its_models_else_for_its_measurements(tmp_path: Path, measured: Path) -> None:
+    assert [m.name for m in open_models([str(tmp_path), "mx-red"])] == ["switch", "mx-red"]
+    saved(tmp_path / f"b{SUFFIX}", line_model("b", 30))
+    saved(tmp_path / f"a{SUFFIX}", line_model("a", 30))
+    assert [m.name for m in open_models([str(tmp_path)])] == ["a", "b"]
+    assert measured.is_file()
+
+
+def test_a_folders_unusable_files_are_told_and_passed_over(tmp_path: Path) -> None:
+    saved(tmp_path / f"a{SUFFIX}", line_model("a", 30))
+    (tmp_path / f"b{SUFFIX}").write_text("{")
+    refused: list[str] = []
+    assert [m.name for m in open_models([str(tmp_path)], refused)] == ["a"]
+    assert len(refused) == 1
+    assert f"b{SUFFIX}" in refused[0]
+    assert [(b.file.name, b.model is None, b.reason) for b in open_folder(tmp_path)] == [
+        (f"a{SUFFIX}", False, ""),
+        (f"b{SUFFIX}", True, refused[0]),
+    ]
+
+
+def test_a_part_is_cut_to_its_stroke_and_declared_to_be_of_its_velocity() -> None:
+    assert [(c.stroke, c.velocity_mm_s) for c in open_part("mx-red:press@50").curves] == [
+        (Stroke.PRESS, 50.0)
+    ]
+    assert [c.velocity_mm_s for c in open_part("mx-red@1e2").curves] == [100.0, 100.0]
+    assert open_part("mx-red") == load_builtin("mx-red")
+    clear = open_part("mx-clear:release")
+    assert {c.stroke for c in clear.curves} == {Stroke.RELEASE}
+    assert {v.stroke for v in clear.vibrations} <= {Stroke.RELEASE}
+
+
+@pytest.mark.parametrize(
+    "name", ["a:b.csv", "a@b.csv", "c:press.csv", "d@50.csv", "e x.csv", "f:press@9.csv"]
+)
+def test_colons_and_at_signs_in_a_path_are_part_of_it(tmp_path: Path, name: str) -> None:
+    path = write_cycle(tmp_path / name)
+    assert len(open_part(str(path)).curves) == 2
+    (curve,) = open_part(f"{path}:release@7").curves
+    assert (curve.stroke, curve.velocity_mm_s) == (Stroke.RELEASE, 7.0)
+
+
+@pytest.mark.parametrize("name", ["g@50", "h:press", "i:press@50"])
+def test_a_file_whose_whole_name_reads_like_a_part_is_that_file(tmp_path: Path, name: str) -> None:
+    path = write_cycle(tmp_path / name)
+    assert [c.velocity_mm_s for c in open_part(str(path)).curves] == [None, None]
+
+
+@pytest.mark.parametrize("velocity", ["0", "-5", "1e999", "5-5"])
+def test_a_velocity_must_be_a_positive_number(velocity: str) -> None:
+    with pytest.raises(InputError, match="is not a speed above 0 mm/s"):
+        open_part(f"mx-red@{velocity}")
+
+
+def test_one_velocity_cannot_serve_several_curves() -> None:
+    with pytest.raises(InputError, match="5 press curves"):
+        open_part("mx-clear@50")
+
+
+def test_a_stroke_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    lone = replace(line_model("lone", 30), curves=line_model("lone", 30).of("press"))
+    spec = f"{saved(tmp_path / f'lone{SUFFIX}', lone)}:release"
+    with pytest.raises(InputError, match="no release curve"):
+        open_part(spec)
+
+
+def test_one_curve_is_one_curve() -> None:
+    (press,) = load_builtin("mx-red").of("press")
+    assert (one_curve("mx-red:press").control_points_cN == press.control_points_cN).all()
+    with pytest.raises(InputError, match="holds 2 curves"):
+        one_curve("mx-red")
+
+
+def test_merged_parts_keep_their_curves_bit_for_bit() -> None:
+    merged = merge_parts(["mx-red@50", "mx-red@100"], "both")
+    red = load_builtin("mx-red")
+    assert [(c.stroke, c.velocity_mm_s) for c in merged.curves] == [
+        (stroke, velocity) for stroke in Stroke for velocity in (50.0, 100.0)
+    ]
+    for curve in merged.curves:
+        (original,) = red.of(curve.stroke)
+        assert (curve.control_points_cN == original.control_points_cN).all()
+    assert (merged.travel_mm, merged.actuation_mm) == (red.travel_mm, red.actuation_mm)
+
+
+def test_parts_that_differ_need_a_decision() -> None:
+    parts = ["mx-red:press@50", "mx-blue:press@100"]
+    with pytest.raises(ModelError, match="travel_mm"):
+        merge_parts(parts, "both")
+    merged = merge_parts(parts, "both", travel_mm=3.5, actuation_mm=2.0, reset_mm=1.5)
+    assert (merged.travel_mm, merged.actuation_mm, merged.reset_mm) == (3.5, 2.0, 1.5)
+
+
+def test_two_curves_of_one_velocity_need_a_decision_too() -> None:
+    parts = ["mx-red:press@50", "mx-blue:press@50"]
+    points: dict[str, Any] = {"travel_mm": 3.5, "actuation_mm": 2.0, "reset_mm": 1.5}
+    with pytest.raises(ModelError, match="two different curves"):
+        merge_parts(parts, "both", **points)
+    for conflict, name in (("first", "mx-red"), ("last", "mx-blue")):
+        (curve,) = merge_parts(parts, "both", **points, conflict=conflict).curves
+        (original,) = load_builtin(name).of("press")
+        assert (curve.control_points_cN == original.control_points_cN).all()
+
+
+def test_the_part_of_unknown_velocity_is_named() -> None:
+    with pytest.raises(InputError, match="mx-blue: velocity: its press is of unknown velocity"):
+        merge_parts(["mx-red@50", "mx-blue"], "both", travel_mm=3.5, actuation_mm=2, reset_mm=1)
+
+
+def test_the_twin_is_the_device_there_is() -> None:
+    assert open_device("twin").info().simulated
+    with pytest.raises(InputError, match="use --device twin"):
+        open_device("serial:/dev/ttyACM0")
