@@ -131,7 +131,7 @@ def _fit_switch(file: ForceFile, source: str, stage: Stage) -> SwitchFit:
     stage("fitting the switch", 1, 3)
     uniform = tuple(fit_curve(m, FitMethod.UNIFORM) for m in adaptive.measured)
     stage("fitting the switch", 2, 3)
-    scan = {str(m): scan_sizes(adaptive.measured[0], m, range(5, 31)) for m in FitMethod}
+    scan = {str(m): scan_sizes(adaptive.measured[0], m) for m in FitMethod}
     stage("fitting the switch", 3, 3)
     return SwitchFit(adaptive, uniform, scan)
 

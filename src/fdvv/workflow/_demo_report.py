@@ -30,9 +30,16 @@ def demo_report(result: DemoResult) -> str:
     source = (
         f"the twin, seed {result.seed} for learning, {result.seed + 1000} for judging; no hardware was used"
     )
+    fit, uniform = result.switch.adaptive.fits[0], result.switch.uniform[0]
+    errors = ", ".join(
+        f"{r.label} {np.mean([row[r.label]['mean_error_cN'] for row in result.rows()]):.1f} cN"
+        for r in result.renderings
+    )
     summary = (
-        "A real switch is fitted from its raw curve; the published FDVV button is rendered on the simulated "
-        "rig at four velocities and judged on fresh presses in true displacement."
+        f"A real switch is fitted from its raw curve to {fit.rmse_cN:.2f} cN (uniform knots: "
+        f"{uniform.rmse_cN:.2f} cN). The published FDVV button is rendered on the simulated rig at four "
+        "velocities and judged on fresh presses in true displacement. Mean error over all curves: "
+        f"{errors}."
     )
     footer = f"fdvv {__version__}; {result.time_s:.0f} s; built-in sources and licences: fdvv library --json"
     sections = [_switch(result), _button(result), _rendering(result), _learning(result)]
@@ -69,7 +76,7 @@ def _switch(result: DemoResult) -> Section:
     text = (
         f"{fitted.model.name}: measured, from contact to bottom-out, not smoothed. Errors are against the "
         "raw curve, each distinct displacement counting once.",
-        *fitted.warnings,
+        *(f"Warning: {warning}." for warning in fitted.warnings),
     )
     return Section("A real switch, fitted", text, figures, (Table(columns, tuple(rows)),))
 
@@ -103,6 +110,8 @@ def _rendering(result: DemoResult) -> Section:
         "FD only renders the slowest curve at every speed, as data sheets describe a button; FDVV renders "
         "the speed's own curve. Both were learned by the paper's iterative law and are judged against the "
         "full model.",
+        "The bands grow with speed because the simulated person varies the pace by a tenth and this rig's "
+        "coil brakes in proportion to speed; the paper's law learns one table per speed and cannot know.",
     )
     grid = plot_rendering(_rendered(result), title=result.button.name, simulated=True)
     figure = _figure(grid, "Target and rendered force per velocity and stroke")
