@@ -124,7 +124,7 @@ def test_ctrl_c_ends_with_130_one_line_and_whole_files(many: Path, tmp_path: Pat
     process = subprocess.Popen(
         [*FDVV, "fit", str(many), "-o", str(models)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
-    begun(process, models)
+    begun(process, models / "00.csv.fdvv.json")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
     assert (process.returncode, out, err) == (130, b"", b"fdvv: interrupted\n")
@@ -136,7 +136,7 @@ def test_ctrl_c_ends_with_130_one_line_and_whole_files(many: Path, tmp_path: Pat
 def test_a_killed_command_leaves_no_half_written_model(many: Path, tmp_path: Path) -> None:
     models = tmp_path / "models"
     process = subprocess.Popen([*FDVV, "fit", str(many), "-o", str(models)], stderr=subprocess.DEVNULL)
-    begun(process, models)
+    begun(process, models / "00.csv.fdvv.json")
     process.kill()
     process.wait()
     written = list(models.glob("*.fdvv.json"))
