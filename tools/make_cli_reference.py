@@ -24,7 +24,7 @@ file, the place in it and what to do; 130 interrupted.
 
 def reference() -> str:
     """Give the page's text."""
-    context = click.Context(cli, info_name="fdvv")
+    context = click.Context(cli, info_name="fdvv", **cli.context_settings)
     parts = [INTRODUCTION]
     for name in cli.list_commands(context):
         command = cli.get_command(context, name)

@@ -164,3 +164,13 @@ def test_candidates_leave_out_readmes_hidden_and_other_files(files: Any, tmp_pat
     assert found == ["a.ods", "b.csv", "d.JSON"]
     with pytest.raises(InputError, match="no such folder"):
         find_force_files(tmp_path / "nowhere")
+
+
+def test_a_table_with_a_header_says_its_own_units_whatever_its_file_is_called(tmp_path: Path) -> None:
+    rows = "".join(f"{0.1 * i:.4f},{30 + i:.4f}\n" for i in range(30))
+    path = tmp_path / "x.downstroke.csv"
+    path.write_text("displacement_mm,force_cN\n" + rows)
+    read = read_force_file(path)
+    assert read.format == "plain-csv"
+    assert read.cycles[0].press is not None
+    assert read.cycles[0].press.force_cN[0] == 30.0

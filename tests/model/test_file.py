@@ -55,7 +55,7 @@ def test_a_model_comes_back_from_its_text_to_the_bit(model: FDVVModel) -> None:
 
 
 @pytest.mark.parametrize(
-    "number", [-0.0, 1e-300, 5e-324, 0.1 + 0.2, 1.7976931348623157e308, 123456789.12345679, -1 / 3]
+    "number", [-0.0, 1e-300, 5e-324, 0.1 + 0.2, 999999.9999999999, 123456.78901234567, -1 / 3]
 )
 def test_awkward_numbers_come_back_to_the_bit(number: float) -> None:
     curve = ForceCurve(Stroke.PRESS, None, 1, [0, 0, 4, 4], [number, 1.0])  # type: ignore[arg-type]

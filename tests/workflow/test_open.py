@@ -52,15 +52,21 @@ def test_what_names_no_button_is_refused_with_those_there_are(spec: str) -> None
 
 
 @pytest.mark.parametrize(
-    ("change", "place"),
-    [({"travel_mm": 2e3}, r"\$\.travel_mm: 2000 mm"), ({}, r"\$\.curves\[0\]\.control_points_cN: 2e\+06 cN")],
+    ("number", "wild", "place"),
+    [
+        ('"travel_mm": 4.0', '"travel_mm": 2e3', r"\$: travel_mm must stay within 1000, got 2000"),
+        ("[40.0", "[2e6", r"\$\.curves\[0\]: control_points_cN must stay within 1e\+06, got 2e\+06"),
+    ],
 )
 def test_numbers_beyond_any_button_are_refused_by_place(
-    tmp_path: Path, change: dict[str, float], place: str
+    tmp_path: Path, number: str, wild: str, place: str
 ) -> None:
-    model = replace(line_model("wild", 40.0 if change else 2e6, 0.0), **change)  # type: ignore[arg-type]
+    path = saved(tmp_path / f"wild{SUFFIX}", line_model("wild", 40.0, 0.0))
+    text = path.read_text()
+    assert number in text
+    path.write_text(text.replace(number, wild))
     with pytest.raises(InputError, match=place):
-        open_model(str(saved(tmp_path / f"wild{SUFFIX}", model)))
+        open_model(str(path))
 
 
 def test_a_folder_stands_for_its_models_else_for_its_measurements(tmp_path: Path, measured: Path) -> None:

@@ -91,7 +91,9 @@ def is_stroke(lines: Sequence[str]) -> bool:
     """Recognise half of a stroke pair: no header, displacement and force with four decimals each."""
     pattern = re.compile(r"^-?\d+\.\d{4},-?\d+\.\d{4}$")
     head = [line.strip() for line in lines[:20] if line.strip()]
-    return len(head) >= 2 and sum(bool(pattern.match(line)) for line in head) >= 0.8 * len(head)
+    fits = [bool(pattern.match(line)) for line in head]
+    # a first line that does not fit is a header, and a table with a header says its own units
+    return len(head) >= 2 and fits[0] and sum(fits) >= 0.8 * len(head)
 
 
 def read_stroke(source: Path, lines: Sequence[str], where: str, notes: Notes) -> Track:

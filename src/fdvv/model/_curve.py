@@ -12,6 +12,9 @@ from fdvv.errors import ModelError
 from fdvv.model import _bspline
 from fdvv.units import FloatArray
 
+LARGEST_mm, LARGEST_cN = 1e3, 1e6
+"""A metre and ten kilonewtons: beyond any button, within what can be tabulated and squared."""
+
 
 class Stroke(StrEnum):
     """The two halves of a button's cycle."""
@@ -30,6 +33,13 @@ def _column(values: npt.ArrayLike, name: str) -> FloatArray:
         raise ModelError(f"{name} must be finite, got {array[at]} at index {at}")
     array.setflags(write=False)
     return array
+
+
+def check_size(values: npt.ArrayLike, limit: float, name: str) -> None:
+    """Refuse numbers that no button has."""
+    worst = float(np.abs(values).max())
+    if worst > limit:
+        raise ModelError(f"{name} must stay within {limit:g}, got {worst:g}")
 
 
 def check_velocity(velocity_mm_s: float | None) -> None:
@@ -121,6 +131,8 @@ class ForceCurve:
         object.__setattr__(self, "knots_mm", _column(self.knots_mm, "knots_mm"))
         object.__setattr__(self, "control_points_cN", _column(self.control_points_cN, "control_points_cN"))
         check_velocity(self.velocity_mm_s)
+        check_size(self.knots_mm, LARGEST_mm, "knots_mm")
+        check_size(self.control_points_cN, LARGEST_cN, "control_points_cN")
         _bspline.check(self.knots_mm, self.control_points_cN, self.degree)
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._curve import ForceCurve, Stroke
+from fdvv.model._curve import ForceCurve, LARGEST_mm, Stroke, check_size
 from fdvv.model._velocity import Interpolation, blend, blend_slope
 from fdvv.model._vibration import Vibration
 from fdvv.units import FloatArray
@@ -72,6 +72,7 @@ class FDVVModel:
             raise ModelError(f"name must be text without spaces at its ends, got {self.name!r}")
         if not (np.isfinite(self.travel_mm) and self.travel_mm > 0):
             raise ModelError(f"travel_mm must be positive, got {self.travel_mm}")
+        check_size(self.travel_mm, LARGEST_mm, "travel_mm")
         for label in ("actuation_mm", "reset_mm"):
             point = getattr(self, label)
             if point is not None and not 0 <= point <= self.travel_mm:

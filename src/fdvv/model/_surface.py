@@ -46,11 +46,14 @@ class ForceSurface:
 
     @classmethod
     def of_model(cls, model: FDVVModel, velocity_mm_s: npt.ArrayLike, step_mm: float = 0.05) -> ForceSurface:
-        """Sample a model over its travel; a model of one stroke serves both."""
+        """Sample a model over its travel; without a release curve the press serves for both strokes.
+
+        Raises ModelError if the model has no press curve.
+        """
         count = round(model.travel_mm / step_mm) + 1
         x = np.arange(count, dtype=np.float64) * step_mm
         v = np.asarray(velocity_mm_s, dtype=np.float64)
-        strokes = [s if model.of(s) else model.curves[0].stroke for s in Stroke]
+        strokes = [s if model.of(s) else Stroke.PRESS for s in Stroke]
         press, release = (model.force_cN(x[np.newaxis, :], v[:, np.newaxis], s) for s in strokes)
         return cls(x, v, press, release)
 

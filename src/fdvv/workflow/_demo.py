@@ -10,11 +10,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from fdvv.capture import ForceFile, read_force_file
 from fdvv.device import Device
 from fdvv.model import CurveFit, FDVVModel, FitMethod, fit_curve, load_builtin, scan_sizes
 from fdvv.workflow._compensate import CompensationResult, PressDone, compensate, uncompensated
-from fdvv.workflow._fit import FitSettings, ModelFit, fit_force_file, fit_report
+from fdvv.workflow._fit import ModelFit, fit_file, fit_report
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
 BUTTON = "mx-clear"
@@ -108,8 +107,7 @@ def demo(
     """
     begun = time.perf_counter()
     with _switch_path(switch) as path:
-        file = read_force_file(path)
-        fitted = _fit_switch(file, path.name, stage)
+        fitted = _fit_switch(path, stage)
     button = load_builtin(BUTTON)
     renderings = _render(open_device, button, seed, stage)
     return DemoResult(fitted, button, renderings, seed, time.perf_counter() - begun)
@@ -125,9 +123,9 @@ def _switch_path(switch: Path | None) -> Iterator[Path]:
         yield path
 
 
-def _fit_switch(file: ForceFile, source: str, stage: Stage) -> SwitchFit:
+def _fit_switch(path: Path, stage: Stage) -> SwitchFit:
     stage("fitting the switch", 0, 3)
-    adaptive = fit_force_file(file, FitSettings(), source)
+    adaptive = fit_file(path)
     stage("fitting the switch", 1, 3)
     uniform = tuple(fit_curve(m, FitMethod.UNIFORM) for m in adaptive.measured)
     stage("fitting the switch", 2, 3)

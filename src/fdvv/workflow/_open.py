@@ -6,17 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-
 from fdvv.errors import InputError
 from fdvv.model import SUFFIX, FDVVModel, builtin_names, load_builtin, load_model
 from fdvv.workflow._fit import FitSettings, fit_file
 from fdvv.workflow._folder import fit_folder, measured_files
 from fdvv.workflow._kind import MODEL, own_kind
-
-LARGEST_mm, LARGEST_cN = 1e3, 1e6
-"""A metre and ten kilonewtons: beyond any button, within what can be tabulated and squared."""
 
 
 def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
@@ -29,7 +23,7 @@ def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
         return load_builtin(spec)
     path = Path(spec)
     if path.name.endswith(SUFFIX) or own_kind(path) == MODEL:
-        return _load(path)
+        return load_model(path)
     if not spec or not path.is_file():
         known = ", ".join(builtin_names())
         reason = (
@@ -39,23 +33,6 @@ def open_model(spec: str, settings: FitSettings | None = None) -> FDVVModel:
         )
         raise InputError(spec or "''", "argument", reason, f"name a file or one of {known}")
     return fit_file(path, settings).model
-
-
-def _load(path: Path) -> FDVVModel:
-    """Load a model file and refuse numbers that no button has."""
-    model = load_model(path)
-    _check(path, "$.travel_mm", model.travel_mm, LARGEST_mm, "mm")
-    for i, curve in enumerate(model.curves):
-        _check(path, f"$.curves[{i}].knots_mm", curve.knots_mm, LARGEST_mm, "mm")
-        _check(path, f"$.curves[{i}].control_points_cN", curve.control_points_cN, LARGEST_cN, "cN")
-    return model
-
-
-def _check(path: Path, place: str, values: npt.ArrayLike, limit: float, unit: str) -> None:
-    worst = float(np.abs(values).max())
-    if worst > limit:
-        reason = f"{worst:g} {unit} is beyond the {limit:g} {unit} that a button can have"
-        raise InputError(path, place, reason, "correct it, or fit the measurement again")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +58,7 @@ def open_folder(folder: Path) -> Iterator[FolderButton]:
         return
     for path in files:
         try:
-            yield FolderButton(path, _load(path))
+            yield FolderButton(path, load_model(path))
         except InputError as error:
             yield FolderButton(path, None, str(error))
 

@@ -186,7 +186,7 @@ def _curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) ->
             rows.append(felt[judged])
             speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, span))
         felt_rows, achieved = np.stack(rows), np.array(speeds)
-        served = stroke if model.of(stroke) else model.curves[0].stroke
+        served = stroke if model.of(stroke) else Stroke.PRESS
         x = grid[judged]
         curves.append(
             ProbeCurve(
