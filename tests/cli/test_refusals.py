@@ -83,7 +83,7 @@ REFUSED = {
     "a model without curves": (("show", "curveless.fdvv.json"), "$.curves"),
     "a model without a press": (("show", "pressless.fdvv.json"), "it has no press"),
     "an absurd travel": (("show", "huge.fdvv.json"), "$: travel_mm must stay within 1000, got 1e+300"),
-    "an absurd force": (("compare", "mx-red", "strong.fdvv.json"), "control_points_cN must stay within 1e+06"),
+    "an absurd force": (("compare", "mx-red", "strong.fdvv.json"), "must stay within 1e+06"),
     "a speed of nan": (("show", "mx-blue", "--velocity", "nan"), "not a finite number"),
     "a speed of nothing": (("show", "mx-blue", "--velocity", "0"), "x>0"),
     "a figure of no kind": (("show", "mx-blue", "--figure", "x.txt"), "end it in .svg"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fdvv.device import TwinDevice
@@ -19,7 +20,7 @@ def result() -> DemoResult:
 
 def mean_cN(result: DemoResult, label: str, stroke: str) -> float:
     rows = [row for row in result.rows() if row["stroke"] == stroke]
-    return sum(row[label]["mean_error_cN"] for row in rows) / len(rows)
+    return float(np.mean([row[label]["mean_error_cN"] for row in rows]))
 
 
 @pytest.mark.slow
