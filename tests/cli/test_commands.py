@@ -122,7 +122,11 @@ def test_progress_is_shown_on_a_terminal_only_and_never_on_standard_output(folde
 def test_ctrl_c_ends_with_130_one_line_and_whole_files(many: Path, tmp_path: Path) -> None:
     models = tmp_path / "models"
     process = subprocess.Popen(
-        [*FDVV, "fit", str(many), "-o", str(models)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [*FDVV, "fit", str(many), "-o", str(models)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        # a shell's background job ignores Ctrl-C, and so would what it starts
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     begun(process, models / "00.csv.fdvv.json")
     process.send_signal(signal.SIGINT)
