@@ -182,3 +182,11 @@ def test_the_twin_is_the_device_there_is() -> None:
     assert open_device("twin").info().simulated
     with pytest.raises(InputError, match="use --device twin"):
         open_device("serial:/dev/ttyACM0")
+
+
+def test_opening_a_folder_tells_how_far_it_is(tmp_path: Path) -> None:
+    for name in "ab":
+        saved(tmp_path / f"{name}{SUFFIX}", line_model(name, 30))
+    told: list[tuple[int, int]] = []
+    open_models(["mx-red", str(tmp_path)], None, lambda done, total: told.append((done, total)))
+    assert told == [(1, 2), (2, 2)]

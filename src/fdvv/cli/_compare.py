@@ -18,6 +18,7 @@ from fdvv.cli._output import (
     print_json,
     print_table,
     print_warnings,
+    progress,
     save_figure,
 )
 
@@ -51,7 +52,8 @@ def compare(
     from fdvv.workflow import open_models
 
     refused: list[str] = []
-    opened = open_models(buttons, refused)
+    with progress("opening", len(buttons)) as advance:
+        opened = open_models(buttons, refused, advance)
     models = [model for model in opened if model.of(Stroke.PRESS)]
     refused += [f"{model.name}: has no press curve" for model in opened if not model.of(Stroke.PRESS)]
     print_warnings([f"refused: {reason}" for reason in refused])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,18 +63,24 @@ def open_folder(folder: Path) -> Iterator[FolderButton]:
             yield FolderButton(path, None, str(error))
 
 
-def open_models(specs: Sequence[str], refused: list[str] | None = None) -> list[FDVVModel]:
+def open_models(
+    specs: Sequence[str],
+    refused: list[str] | None = None,
+    progress: Callable[[int, int], None] = lambda _done, _total: None,
+) -> list[FDVVModel]:
     """Open every button that specs name; a folder stands for its model files, else for its measured files.
 
     refused : gains one line per file of a folder that cannot be used. A button named by itself must be
-    usable: raises InputError.
+    usable: raises InputError. progress : called after every file of a folder.
     """
     models: list[FDVVModel] = []
     for spec in specs:
         if not spec or not Path(spec).is_dir():
             models.append(open_model(spec))
             continue
-        for button in open_folder(Path(spec)):
+        total = len(button_files(Path(spec)))
+        for done, button in enumerate(open_folder(Path(spec)), start=1):
+            progress(done, total)
             if button.model:
                 models.append(button.model)
             elif refused is not None:
