@@ -15,7 +15,7 @@ import numpy as np
 
 from fdvv.capture import average_cycles, find_force_files, read_force_file
 from fdvv.errors import InputError
-from fdvv.model import CurveFit, FitMethod, MeasuredCurve, Stroke, active_part, fit_curve
+from fdvv.model import BUMP_KEPT_ratio, CurveFit, FitMethod, MeasuredCurve, Stroke, active_part, fit_curve
 
 WAYS: dict[str, Callable[[MeasuredCurve], CurveFit]] = {
     "free knots, degree 2 (default)": fit_curve,
@@ -45,7 +45,7 @@ def strokes(folder: Path) -> list[MeasuredCurve]:
 def row(label: str, fits: list[CurveFit]) -> str:
     rmse, rows = ([getattr(f, name) for f in fits] for name in ("rmse_cN", "rows_rmse_cN"))
     kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
-    held = f"{sum(k >= 0.95 for k in kept)}/{len(kept)}"
+    held = f"{sum(k >= BUMP_KEPT_ratio for k in kept)}/{len(kept)}"
     ms = 1e3 * np.array([f.time_s for f in fits])
     return (
         f"{label:36s} {np.median(rmse):7.3f} {np.percentile(rmse, 90):7.3f} {np.median(rows):7.3f} "

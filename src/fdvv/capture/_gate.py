@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.capture._types import Cycle
-from fdvv.model import Stroke
+from fdvv.model import Stroke, first_loaded
 from fdvv.units import FloatArray, GRAM_FORCE_cN
 
 PLACE_mm = 0.05
@@ -29,7 +29,6 @@ FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
 FORCE_PART = 0.02
 GAP_mm = 0.5
 STEP_mm = 0.005
-CARRIED_cN = 10.0
 TRAVEL_PART = 0.9
 
 
@@ -60,9 +59,7 @@ def shape_of(cycle: Cycle) -> Shape:
         if (curve := cycle.press if stroke is Stroke.PRESS else cycle.release) is not None
     }
     x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
-    top = float(force.max())
-    loaded = int(np.argmax(force >= min(CARRIED_cN, 0.5 * top)))
-    return Shape(strokes, float(x[loaded]), top)
+    return Shape(strokes, float(x[first_loaded(force)]), float(force.max()))
 
 
 def how_differs(a: Shape, b: Shape) -> str:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from fdvv.capture._record import Notes, RawCycle, Track
+from fdvv.model import first_loaded
 from fdvv.units import FloatArray
 
 FAR_mm, STRONG_cN = 1000.0, 100_000.0
@@ -196,8 +197,7 @@ def mend_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
 def _contact_mm(track: Track) -> float:
     # at 10 cN, not at first touch: the air after a release rings
     order = np.argsort(track.x_mm, kind="stable")
-    force = track.force_cN[order]
-    return float(track.x_mm[order][int(np.argmax(force >= min(10.0, 0.5 * float(force.max()))))])
+    return float(track.x_mm[order][first_loaded(track.force_cN[order])])
 
 
 def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:

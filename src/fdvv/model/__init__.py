@@ -2,9 +2,9 @@
 
 from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._bump import Bump, find_bump
-from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke, reading_order
 from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
-from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
+from fdvv.model._extent import find_bottom_out_mm, find_contact_mm, first_loaded
 from fdvv.model._file import (
     SUFFIX,
     load_model,
@@ -13,6 +13,7 @@ from fdvv.model._file import (
     save_model,
 )
 from fdvv.model._fit import (
+    BUMP_KEPT_ratio,
     CurveFit,
     FitMethod,
     active_part,
@@ -32,6 +33,7 @@ from fdvv.model._vibration import Mode, Vibration
 __all__ = [
     "SUFFIX",
     "VERSION",
+    "BUMP_KEPT_ratio",
     "Bump",
     "Conflict",
     "CurveFit",
@@ -55,6 +57,7 @@ __all__ = [
     "find_bottom_out_mm",
     "find_bump",
     "find_contact_mm",
+    "first_loaded",
     "fit_curve",
     "landmarks",
     "load_builtin",
@@ -62,6 +65,7 @@ __all__ = [
     "merge",
     "model_from_json",
     "model_to_json",
+    "reading_order",
     "remove_curve",
     "save_model",
     "scan_sizes",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +41,25 @@ def check_size(values: npt.ArrayLike, limit: float, name: str) -> None:
     worst = float(np.abs(values).max())
     if worst > limit:
         raise ModelError(f"{name} must stay within {limit:g}, got {worst:g}")
+
+
+class OfStroke(Protocol):
+    """Anything that belongs to one stroke at one velocity."""
+
+    @property
+    def stroke(self) -> Stroke:
+        """Get the stroke."""
+        ...
+
+    @property
+    def velocity_mm_s(self) -> float | None:
+        """Get the velocity; None if it is unknown."""
+        ...
+
+
+def reading_order(part: OfStroke) -> tuple[bool, float]:
+    """Give the key that sorts as people read: presses before releases, slow before fast."""
+    return part.stroke is not Stroke.PRESS, part.velocity_mm_s or 0.0
 
 
 def check_velocity(velocity_mm_s: float | None) -> None:

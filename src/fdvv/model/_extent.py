@@ -22,6 +22,11 @@ STOP_LEAST_cN_mm = 100.0
 have 3 to 25 cN/mm; stops of measured switches 400 to 3000 cN/mm, of rubber domes above 150 cN/mm."""
 
 
+def first_loaded(force_cN: FloatArray) -> int:
+    """Find the first sample that carries the cap: 10 cN, or half of the greatest force if that is less."""
+    return int(np.argmax(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max()))))
+
+
 def find_contact_mm(curve: MeasuredCurve) -> float:
     """Find where the force leaves the air: the last displacement below 2 cN before the stroke is loaded.
 
@@ -29,9 +34,7 @@ def find_contact_mm(curve: MeasuredCurve) -> float:
     A curve that begins loaded has its contact at its first sample.
     """
     x, force = curve.displacement_mm, curve.force_cN
-    loaded = np.flatnonzero(force >= min(LOADED_cN, 0.5 * float(force.max())))
-    first = int(loaded[0]) if loaded.size else 0
-    free = np.flatnonzero(force[:first] < CONTACT_cN)
+    free = np.flatnonzero(force[: first_loaded(force)] < CONTACT_cN)
     return float(x[free[-1]]) if free.size else float(x[0])
 
 

@@ -29,7 +29,7 @@ EXCHANGES = 15
 
 LARGEST = 64
 
-BUMP_KEPT = 0.95
+BUMP_KEPT_ratio = 0.95
 """A fit that keeps less of its bump is repeated with more weight within BUMP_REACH_mm of peak and valley."""
 BUMP_ROUNDS = 8
 BUMP_COST = 1.5
@@ -100,19 +100,18 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
     return np.interp(x_mm, grid, smoothed)
 
 
-def _uniform(
-    x: FloatArray, y: FloatArray, degree: int, size: int, weight: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Space the knots equally; the paper's way knows no weights."""
+def _uniform(x: FloatArray, y: FloatArray, degree: int, size: int) -> tuple[FloatArray, FloatArray]:
+    """Space the knots equally."""
     t = _bspline.uniform_knots(x[0], x[-1], size, degree)
     return t, _bspline.least_squares(t, degree, x, y)
 
 
 def _adaptive(
-    x: FloatArray, y: FloatArray, degree: int, size: int, weight: FloatArray
+    x: FloatArray, y: FloatArray, degree: int, size: int, weight: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Place the knots freely; no two closer than the samples, so that samples hold every basis function."""
     t, c = np.zeros(size + degree + 1), np.zeros(size)
+    weight = np.ones_like(x) if weight is None else weight
     x, y, weight = (np.ascontiguousarray(column) for column in (x, y, weight))
     spacing = min(float(np.median(np.diff(x))), (x[-1] - x[0]) / (2 * size))
     search = library().fdvv_spline_free_knots
@@ -125,16 +124,14 @@ def _adaptive(
 
 
 def _knots_and_points(
-    x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int, weight: FloatArray | None = None
+    x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int
 ) -> tuple[FloatArray, FloatArray]:
     if not degree < size <= min(LARGEST, x.size):
         raise FitError(
             f"degree {degree} with {x.size} distinct displacements takes {degree + 1} to "
             f"{min(LARGEST, x.size)} control points, got {size}"
         )
-    return (_uniform if method is FitMethod.UNIFORM else _adaptive)(
-        x, y, degree, size, np.ones_like(x) if weight is None else weight
-    )
+    return (_uniform if method is FitMethod.UNIFORM else _adaptive)(x, y, degree, size)
 
 
 def _hold_bump(
@@ -156,10 +153,10 @@ def _hold_bump(
         bound = min(bound, BUMP_COST**2 * error)
         if error > bound:
             break
-        if kept and kept.drop_cN >= BUMP_KEPT * bump.drop_cN:
+        if kept and kept.drop_cN >= BUMP_KEPT_ratio * bump.drop_cN:
             return trial
         weight[near] *= BUMP_WEIGHT
-        trial = _knots_and_points(x, y, FitMethod.ADAPTIVE, degree, c.size, weight)
+        trial = _adaptive(x, y, degree, c.size, weight)
     return t, c
 
 

@@ -98,10 +98,10 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     The release, where there is one, is the curve nearest to the same velocity. Raises ModelError if the
     model has no press curve.
     """
-    press = _nearest(model, Stroke.PRESS, velocity_mm_s)
+    press = model.nearest(Stroke.PRESS, velocity_mm_s)
     if press is None:
         raise ModelError(f"model {model.name!r} has no press curve to read landmarks from")
-    release = _nearest(model, Stroke.RELEASE, velocity_mm_s)
+    release = model.nearest(Stroke.RELEASE, velocity_mm_s)
     x = _dense(press, max(model.travel_mm, press.start_mm + STEP_mm))
     force, slope = press.force_cN(x), press.stiffness_cN_mm(x)
     bump = find_bump(x, force)
@@ -112,7 +112,8 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     release_bump = release_work = None
     if release is not None:
         xr = _dense(release, max(model.travel_mm, release.start_mm + STEP_mm))
-        release_bump, release_work = find_bump(xr, release.force_cN(xr)), _work_mJ(xr, release.force_cN(xr))
+        given_cN = release.force_cN(xr)
+        release_bump, release_work = find_bump(xr, given_cN), _work_mJ(xr, given_cN)
     last = x >= x[-1] - 0.25 * (x[-1] - x[0])
     close = model.actuation_mm
     return Landmarks(
@@ -141,9 +142,3 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
         release_work_mJ=release_work,
         hysteresis_loss_mJ=None if release_work is None else work - release_work,
     )
-
-
-def _nearest(model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None) -> ForceCurve | None:
-    """Give the stroke's curve nearest in velocity; the slowest if no velocity is asked for."""
-    wanted = velocity_mm_s or 0.0
-    return min(model.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - wanted), default=None)

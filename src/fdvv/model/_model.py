@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._curve import ForceCurve, LARGEST_mm, Stroke, check_size
+from fdvv.model._curve import ForceCurve, LARGEST_mm, Stroke, check_size, reading_order
 from fdvv.model._velocity import Interpolation, blend, blend_slope
 from fdvv.model._vibration import Vibration
 from fdvv.units import FloatArray
@@ -65,7 +65,7 @@ class FDVVModel:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "interpolation", Interpolation(self.interpolation))
-        order = sorted(self.curves, key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
+        order = sorted(self.curves, key=reading_order)
         object.__setattr__(self, "curves", tuple(order))
         object.__setattr__(self, "vibrations", tuple(self.vibrations))
         if not self.name or self.name != self.name.strip():
@@ -95,6 +95,11 @@ class FDVVModel:
     def of(self, stroke: Stroke | str) -> tuple[ForceCurve, ...]:
         """Give the curves of one stroke, velocities rising; empty if it has none."""
         return tuple(c for c in self.curves if c.stroke is Stroke(stroke))
+
+    def nearest(self, stroke: Stroke | str, velocity_mm_s: float | None = None) -> ForceCurve | None:
+        """Give the curve nearest in velocity, the slowest if none is asked for; None if there is none."""
+        wanted = velocity_mm_s or 0.0
+        return min(self.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - wanted), default=None)
 
     def velocities_mm_s(self, stroke: Stroke | str) -> tuple[float, ...]:
         """Give the known velocities of one stroke, rising."""

@@ -106,7 +106,7 @@ def plot_comparison(
     handles = []
     for model, colour in zip(models, _category_colours(len(models)), strict=True):
         for stroke in Stroke:
-            _draw_curve(ax, _nearest(model, stroke, velocity_mm_s), colour=colour)
+            _draw_curve(ax, model.nearest(stroke, velocity_mm_s), colour=colour)
         _mark_points(ax, model, velocity_mm_s, colour)
         said = " (simulated)" if model.provenance.simulated else ""
         handles.append(style.handle(style.name_text(model.name) + said, color=colour))
@@ -187,15 +187,9 @@ def _mark_landmarks(ax: Axes, model: FDVVModel) -> list[Line2D]:
     return list(handles.values())
 
 
-def _nearest(model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None) -> ForceCurve | None:
-    """Give the stroke's curve nearest in velocity, the slowest if none is asked for."""
-    wanted = velocity_mm_s or 0.0
-    return min(model.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - wanted), default=None)
-
-
 def _mark_points(ax: Axes, model: FDVVModel, velocity_mm_s: float | None, colour: Any) -> None:
     """Mark peak, valley, actuation and reset of one model on its curves."""
-    release = _nearest(model, Stroke.RELEASE, velocity_mm_s)
+    release = model.nearest(Stroke.RELEASE, velocity_mm_s)
     points: list[tuple[str, float | None, float | None]] = []
     if model.of(Stroke.PRESS):
         found = landmarks(model, velocity_mm_s)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.model import FDVVModel, ForceCurve, Landmarks, Stroke, landmarks
+from fdvv.model import FDVVModel, Landmarks, Stroke, landmarks
 
 STEP_mm = 0.01
 
@@ -72,16 +72,16 @@ def _difference(
     reference: FDVVModel, index: int, model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None
 ) -> Difference | None:
     """Subtract the curves of one stroke over their common range; None if either button lacks it."""
-    if not reference.of(stroke) or not model.of(stroke):
+    mine, theirs = reference.nearest(stroke, velocity_mm_s), model.nearest(stroke, velocity_mm_s)
+    if mine is None or theirs is None:
         return None
-    pair = (_curve(reference, stroke, velocity_mm_s), _curve(model, stroke, velocity_mm_s))
-    low, high = max(c.start_mm for c in pair), min(c.end_mm for c in pair)
+    low, high = max(mine.start_mm, theirs.start_mm), min(mine.end_mm, theirs.end_mm)
     if high <= low:
         return None
     x = np.linspace(low, high, max(2, round((high - low) / STEP_mm) + 1))
     base, other = (
         m.force_cN(x, velocity_mm_s or c.velocity_mm_s or 1.0, stroke)
-        for m, c in zip((reference, model), pair, strict=True)
+        for m, c in ((reference, mine), (model, theirs))
     )
     delta = other - base
     at = int(np.argmax(np.abs(delta)))
@@ -96,8 +96,3 @@ def _difference(
         from_mm=low,
         to_mm=high,
     )
-
-
-def _curve(model: FDVVModel, stroke: Stroke, velocity_mm_s: float | None) -> ForceCurve:
-    """Give the stroke's curve nearest in velocity; the slowest if none is asked for."""
-    return min(model.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - (velocity_mm_s or 0.0)))

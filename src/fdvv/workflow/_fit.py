@@ -24,6 +24,7 @@ from fdvv.model import (
     find_contact_mm,
     fit_curve,
     landmarks,
+    reading_order,
 )
 from fdvv.workflow._kind import own_kind
 
@@ -131,7 +132,7 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
     for part in map(active_part, strokes):
         x = np.round(part.displacement_mm - zero, DECIMALS_mm)
         parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
-    parts.sort(key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s or 0.0))
+    parts.sort(key=reading_order)
     fits = tuple(
         fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
         for p in parts

@@ -13,7 +13,7 @@ import numpy as np
 
 from fdvv.capture import find_force_files
 from fdvv.errors import FdvvError, InputError
-from fdvv.model import Stroke
+from fdvv.model import BUMP_KEPT_ratio, Stroke
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file
 from fdvv.workflow._kind import own_kind
 
@@ -112,5 +112,5 @@ def summarise(results: Sequence[FolderFit]) -> FolderSummary:
         rows_rmse_cN=spread("rows_rmse_cN"),
         time_s=spread("time_s"),
         bumps=len(kept),
-        bumps_kept=sum(ratio >= 0.95 for ratio in kept),
+        bumps_kept=sum(ratio >= BUMP_KEPT_ratio for ratio in kept),
     )

@@ -12,7 +12,7 @@ import numpy as np
 from fdvv.compensate import bin_force, error_cN, grid_mm, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.device import Device
 from fdvv.errors import DeviceError
-from fdvv.model import FDVVModel, ForceSurface, Press, Stroke
+from fdvv.model import FDVVModel, ForceSurface, Press, Stroke, reading_order
 from fdvv.units import FloatArray
 from fdvv.workflow._compensate import PressDone, Progress, check_speeds
 
@@ -165,7 +165,7 @@ def probe(
             if failed >= PATIENCE:
                 raise DeviceError(f"{info.name}: {PATIENCE} presses in a row failed; the last {skipped[-1]}")
         curves += _curves(model, velocity, found)
-    order = sorted(curves, key=lambda c: (c.stroke != Stroke.PRESS, c.velocity_mm_s))
+    order = sorted(curves, key=reading_order)
     bounds = (FROM_mm, model.travel_mm - STOP_GUARD_mm)
     made = len(speeds) * presses + len(skipped)
     return ProbeResult(
@@ -178,10 +178,11 @@ def _curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) ->
     grid = grid_mm(model.travel_mm, BIN_mm)
     judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
     curves = []
+    spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
         rows, speeds = [], []
-        for press in presses:
-            span = split_strokes(press.displacement_mm, model.travel_mm)[i]
+        for press, strokes in zip(presses, spans, strict=True):
+            span = strokes[i]
             felt = bin_force(press.displacement_mm[span.rows], press.force_cN[span.rows], grid)
             rows.append(felt[judged])
             speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, span))
