@@ -12,11 +12,12 @@ from tests.workflow.conftest import line_model, write_cycle
 from fdvv.errors import InputError, ModelError
 from fdvv.model import SUFFIX, FDVVModel, Stroke, load_builtin, save_model
 from fdvv.workflow import (
+    button_files,
     fit_file,
     merge_parts,
     one_curve,
     open_device,
-    open_folder,
+    open_files,
     open_model,
     open_models,
     open_part,
@@ -84,7 +85,7 @@ def test_a_folders_unusable_files_are_told_and_passed_over(tmp_path: Path) -> No
     assert [m.name for m in open_models([str(tmp_path)], refused)] == ["a"]
     assert len(refused) == 1
     assert f"b{SUFFIX}" in refused[0]
-    assert [(b.file.name, b.model is None, b.reason) for b in open_folder(tmp_path)] == [
+    assert [(b.file.name, b.model is None, b.reason) for b in open_files(button_files(tmp_path))] == [
         (f"a{SUFFIX}", False, ""),
         (f"b{SUFFIX}", True, refused[0]),
     ]

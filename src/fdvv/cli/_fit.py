@@ -145,16 +145,16 @@ def _print_fit(found: ModelFit) -> None:
 def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
     """Fit a folder; give the worst error and the file that has it."""
     from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import fit_folder, measured_files, summarise
+    from fdvv.workflow import fit_files, measured_files, summarise
 
     if output:
         check_folder(output)
     results = []
-    total = len(measured_files(path))
-    with progress("fitting", total) as advance:
-        for result in fit_folder(path, settings):
+    files = measured_files(path)
+    with progress("fitting", len(files)) as advance:
+        for result in fit_files(files, settings):
             results.append(result)
-            advance(len(results), total)
+            advance(len(results), len(files))
             if output and result.fit:
                 relative = result.file.relative_to(path)
                 save_model(result.fit.model, output / relative.with_name(relative.name + SUFFIX))
@@ -164,8 +164,8 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
     else:
         _print_folder(results, summary.to_dict())
         if output:
-            click.echo(f"{counted(total - summary.refused, 'model')} written below {output}")
-    if summary.refused == total:
+            click.echo(f"{counted(len(files) - summary.refused, 'model')} written below {output}")
+    if summary.refused == len(files):
         click.echo(f"fdvv: {path}: no file of it could be fitted; the reasons are above", err=True)
         raise click.exceptions.Exit(2)
     return max((f.rmse_cN, str(r.file)) for r in results if r.fit for f in r.fit.fits)

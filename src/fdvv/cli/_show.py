@@ -80,18 +80,18 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
 def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:
     """Print one line of landmarks per button of a folder."""
     from fdvv.model import landmarks
-    from fdvv.workflow import button_files, open_folder
+    from fdvv.workflow import button_files, open_files
 
     found, refused = [], []
-    total = len(button_files(folder))
-    with progress("opening", total) as advance:
-        for done, button in enumerate(open_folder(folder), start=1):
+    files = button_files(folder)
+    with progress("opening", len(files)) as advance:
+        for done, button in enumerate(open_files(files), start=1):
             if button.model and button.model.of("press"):
                 found.append((str(button.file), landmarks(button.model, velocity_mm_s).to_dict()))
             else:
                 reason = button.reason or f"{button.file}: curves: holds no press; merge one into it"
                 refused.append({"file": str(button.file), "reason": reason})
-            advance(done, total)
+            advance(done, len(files))
     if as_json:
         print_json({"results": [{"file": f, "landmarks": m} for f, m in found], "refused": refused})
     elif found:

@@ -13,8 +13,8 @@ from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
-from fdvv.workflow._folder import FolderFit, FolderSummary, fit_folder, measured_files, summarise
-from fdvv.workflow._open import FolderButton, button_files, open_folder, open_model, open_models
+from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
+from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 
@@ -39,6 +39,7 @@ __all__ = [
     "demo_report",
     "fd_only",
     "fit_file",
+    "fit_files",
     "fit_folder",
     "fit_force_file",
     "load_actuation",
@@ -46,7 +47,7 @@ __all__ = [
     "merge_parts",
     "one_curve",
     "open_device",
-    "open_folder",
+    "open_files",
     "open_model",
     "open_models",
     "open_part",

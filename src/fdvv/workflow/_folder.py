@@ -43,12 +43,17 @@ def measured_files(folder: Path) -> list[Path]:
 def fit_folder(
     folder: Path, settings: FitSettings | None = None, workers: int | None = None
 ) -> Iterator[FolderFit]:
-    """Fit every file of force curves below a folder, in order; a refused file yields its reason.
+    """Fit the measured_files of a folder, as fit_files does. Raises InputError if there is none."""
+    yield from fit_files(measured_files(folder), settings, workers)
+
+
+def fit_files(
+    files: Sequence[Path], settings: FitSettings | None = None, workers: int | None = None
+) -> Iterator[FolderFit]:
+    """Fit files of force curves, in order; a refused file yields its reason.
 
     The compiled fits release the interpreter lock, so threads share the cores.
-    Raises InputError if the folder holds no candidate.
     """
-    files = measured_files(folder)
 
     def one(path: Path) -> FolderFit:
         try:

@@ -9,7 +9,7 @@ from pathlib import Path
 from fdvv.errors import InputError
 from fdvv.model import SUFFIX, FDVVModel, builtin_names, load_builtin, load_model
 from fdvv.workflow._fit import FitSettings, fit_file
-from fdvv.workflow._folder import fit_folder, measured_files
+from fdvv.workflow._folder import fit_files, measured_files
 from fdvv.workflow._kind import MODEL, own_kind
 
 
@@ -49,11 +49,10 @@ def button_files(folder: Path) -> list[Path]:
     return sorted(folder.rglob(f"*{SUFFIX}")) or measured_files(folder)
 
 
-def open_folder(folder: Path) -> Iterator[FolderButton]:
-    """Open the button_files of a folder, in order; a refused file yields its reason. Raises InputError."""
-    files = button_files(folder)
+def open_files(files: Sequence[Path]) -> Iterator[FolderButton]:
+    """Open files that button_files lists, in order; a refused one yields its reason."""
     if not files[0].name.endswith(SUFFIX):
-        for result in fit_folder(folder):
+        for result in fit_files(files):
             yield FolderButton(result.file, result.fit.model if result.fit else None, result.reason)
         return
     for path in files:
@@ -78,9 +77,9 @@ def open_models(
         if not spec or not Path(spec).is_dir():
             models.append(open_model(spec))
             continue
-        total = len(button_files(Path(spec)))
-        for done, button in enumerate(open_folder(Path(spec)), start=1):
-            progress(done, total)
+        files = button_files(Path(spec))
+        for done, button in enumerate(open_files(files), start=1):
+            progress(done, len(files))
             if button.model:
                 models.append(button.model)
             elif refused is not None:
