@@ -1,0 +1,78 @@
+"""The generated files are those of the definition, and its structures keep their promises."""
+
+from __future__ import annotations
+
+import importlib.util
+import struct
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from fdvv import protocol
+from fdvv.errors import ModelError
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCE = tomllib.loads((ROOT / "protocol" / "fdvv.toml").read_text())
+
+
+def generator() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("make_protocol", ROOT / "tools" / "make_protocol.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_generated_files_are_those_of_the_definition() -> None:
+    make = generator()
+    assert make.header(SOURCE) == make.HEADER.read_text()
+    assert make.tables(SOURCE) == make.TABLES.read_text()
+
+
+def test_prose_does_not_change_the_hash_and_a_range_does() -> None:
+    make = generator()
+    prose = tomllib.loads((ROOT / "protocol" / "fdvv.toml").read_text())
+    prose["structs"]["settings"]["fields"][0][5] = "other words"
+    assert make.meaning_hash(prose) == protocol.HASH
+    prose["structs"]["settings"]["fields"][0][4] += 1
+    assert make.meaning_hash(prose) != protocol.HASH
+
+
+def test_the_header_compiles_alone(tmp_path: Path) -> None:
+    probe = tmp_path / "probe.c"
+    probe.write_text('#include "protocol.h"\nint main(void) { return sizeof(fdvv_settings) != 80; }\n')
+    program = tmp_path / "probe"
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'firmware' / 'core'}"]
+    subprocess.run(["cc", *flags, "-o", program, probe], check=True)
+    assert subprocess.run([program], check=False).returncode == 0
+
+
+def test_default_settings_pack_and_unpack_to_themselves() -> None:
+    settings = protocol.Settings()
+    assert len(settings.pack()) == protocol.Settings.length_bytes() == 80
+    assert protocol.Settings.unpack(settings.pack()) == settings
+
+
+def test_a_number_out_of_range_is_refused_by_name() -> None:
+    with pytest.raises(ModelError, match="tick_us must be 100 to 1000, got 7"):
+        protocol.Settings(tick_us=7)
+
+
+def test_too_few_bytes_are_refused() -> None:
+    with pytest.raises(ModelError, match="80 bytes, got 79"):
+        protocol.Settings.unpack(bytes(79))
+
+
+def test_every_request_fits_a_frame() -> None:
+    room = protocol.FRAME_BYTES - 4
+    assert max(protocol.REQUEST_BYTES.values()) <= room
+    assert max(protocol.REPLY_BYTES.values()) <= room
+    records = protocol.RecordsRequest.length_bytes()
+    records += protocol.TELEMETRY_RECORDS * struct.calcsize(protocol.TickRecord.FORMAT)
+    assert records <= room

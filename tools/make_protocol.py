@@ -1,0 +1,289 @@
+"""Turn protocol/fdvv.toml into firmware/core/protocol.h and src/fdvv/protocol/_tables.py."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "protocol" / "fdvv.toml"
+HEADER = ROOT / "firmware" / "core" / "protocol.h"
+TABLES = ROOT / "src" / "fdvv" / "protocol" / "_tables.py"
+SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
+C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES}
+FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
+
+
+@dataclass(frozen=True)
+class Field:
+    """One number, or a run of bytes, of a structure."""
+
+    name: str
+    kind: str
+    count: int
+    unit: str
+    low: int
+    high: int
+    about: str
+
+    @classmethod
+    def of(cls, row: list[Any]) -> Field:
+        """Read [name, type, unit, low, high, about]."""
+        name, kind, *rest = row
+        kind, _, count = kind.partition("[")
+        return cls(name, kind, int(count.rstrip("]") or 0), *rest)
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return SIZES[self.kind] * max(1, self.count)
+
+    @property
+    def text(self) -> str:
+        """Unit, range and reason, for a comment."""
+        words = [w for w in (self.unit, f"{self.low} to {self.high}" if self.high else "", self.about) if w]
+        return "; ".join(words)
+
+
+def fields_of(name: str, rows: list[list[Any]]) -> list[Field]:
+    """Read a structure; fail where a field does not lie at a multiple of its size."""
+    fields = [Field.of(row) for row in rows]
+    place = 0
+    for field in fields:
+        if place % SIZES[field.kind]:
+            raise SystemExit(f"{SOURCE.name}: {name}.{field.name} lies at {place}, no multiple of its size")
+        place += field.size
+    if fields and place % max(SIZES[f.kind] for f in fields):
+        raise SystemExit(f"{SOURCE.name}: {name} has {place} bytes, no multiple of its widest field")
+    return fields
+
+
+def structures(source: dict[str, Any]) -> dict[str, list[Field]]:
+    """Give every structure by name: the named ones, and NAME_request and NAME_reply of the messages."""
+    found = {name: fields_of(name, body["fields"]) for name, body in source["structs"].items()}
+    for name, body in source["messages"].items():
+        for part, key in (("request", "fields"), ("reply", "reply")):
+            if isinstance(body.get(key), list) and body[key]:
+                found[f"{name}_{part}"] = fields_of(name, body[key])
+    return found
+
+
+def about(source: dict[str, Any], name: str) -> str:
+    """Give the sentence about a structure."""
+    if name in source["structs"]:
+        return str(source["structs"][name]["about"])
+    base, _, part = name.rpartition("_")
+    return f"{source['messages'][base]['about']} ({part})"
+
+
+def meaning_hash(source: dict[str, Any]) -> int:
+    """Hash all that both sides must agree on: names, types, order, ranges, numbers; not the prose."""
+    plain = {key: value for key, value in source.items() if key not in ("version", "defaults")}
+
+    def strip(node: Any) -> Any:
+        if isinstance(node, dict):
+            return {key: strip(value) for key, value in node.items() if key != "about"}
+        if isinstance(node, list) and len(node) == 6 and isinstance(node[0], str):
+            return node[:5]
+        return [strip(item) for item in node] if isinstance(node, list) else node
+
+    digest = hashlib.sha256(json.dumps(strip(plain), sort_keys=True).encode()).digest()
+    return int.from_bytes(digest[:4], "little")
+
+
+def sizes(source: dict[str, Any], structs: dict[str, list[Field]], name: str, key: str) -> int:
+    """Count the bytes of a message's request or reply."""
+    body = source["messages"][name].get(key, [])
+    fields = structs[body] if isinstance(body, str) else structs.get(f"{name}_{_part(key)}", [])
+    return sum(field.size for field in fields)
+
+
+def _part(key: str) -> str:
+    return "request" if key == "fields" else "reply"
+
+
+# -- C ------------------------------------------------------------------------------------------------------
+
+
+def header(source: dict[str, Any]) -> str:
+    """Write the C header."""
+    structs = structures(source)
+    lines = [
+        "/* Made by tools/make_protocol.py from protocol/fdvv.toml; do not edit. */",
+        "#ifndef FDVV_PROTOCOL_H",
+        "#define FDVV_PROTOCOL_H",
+        "",
+        "#include <stdint.h>",
+        "",
+        f"#define FDVV_PROTOCOL_VERSION {source['version']}",
+        f"#define FDVV_PROTOCOL_HASH 0x{meaning_hash(source):08x}u",
+        "",
+    ]
+    lines += [
+        f"#define FDVV_{k.upper()} {v['value']} /* {v['about']} */" for k, v in source["constants"].items()
+    ]
+    for kind in ("enums", "flags"):
+        for name, body in source[kind].items():
+            lines += ["", f"/* {body['about']} */", "enum {", *_c_members(kind, name, body), "};"]
+    for name, fields in structs.items():
+        lines += ["", *_c_struct(source, name, fields)]
+    lines += ["", *_c_messages(source, structs), *_c_defaults(source), "#endif", ""]
+    return "\n".join(lines)
+
+
+def _c_members(kind: str, name: str, body: dict[str, Any]) -> list[str]:
+    values = {k: v for k, v in body.items() if k != "about"}
+    stem = f"FDVV_{name.upper()}"
+    if kind == "flags":
+        return [f"    {stem}_FLAG_{k.upper()} = 1 << {v}," for k, v in values.items()]
+    return [*(f"    {stem}_{k.upper()} = {v}," for k, v in values.items()), f"    {stem}S = {len(values)},"]
+
+
+def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[str]:
+    lines = [f"/* {about(source, name)} */", "typedef struct {"]
+    for field in fields:
+        array = f"[{field.count}]" if field.count else ""
+        lines.append(f"    {C_TYPES[field.kind]} {field.name}{array}; /* {field.text} */")
+    total = sum(field.size for field in fields)
+    lines += [
+        f"}} fdvv_{name};",
+        f"typedef char fdvv_{name}_has_{total}_bytes[sizeof(fdvv_{name}) == {total} ? 1 : -1];",
+    ]
+    ranged = [f for f in fields if not f.count and not _full(f)]
+    lines.append(f"#define FDVV_{name.upper()}_RANGES(X) \\")
+    lines += [f"    X({f.name}, {f.low}, {f.high}) \\" for f in ranged]
+    return [*lines, ""]
+
+
+def _full(field: Field) -> bool:
+    bits = 8 * SIZES[field.kind]
+    low, high = (0, 2**bits - 1) if field.kind[0] == "u" else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+    return field.low <= low and field.high >= high
+
+
+def _c_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
+    lines = ["/* name, id, bytes of the request (or of what is sent unasked), bytes of the reply */"]
+    lines.append("#define FDVV_MESSAGES(X) \\")
+    for name, body in source["messages"].items():
+        counts = (sizes(source, structs, name, key) for key in ("fields", "reply"))
+        lines.append(f"    X({name.upper()}, 0x{body['id']:02x}, {', '.join(map(str, counts))}) \\")
+    lines += ["", "enum {"]
+    lines += [
+        f"    FDVV_MSG_{k.upper()} = 0x{v['id']:02x}, /* {v['about']} */"
+        for k, v in source["messages"].items()
+    ]
+    return [*lines, "};", ""]
+
+
+def _c_defaults(source: dict[str, Any]) -> list[str]:
+    lines = []
+    for name, values in source["defaults"].items():
+        order = [Field.of(row).name for row in source["structs"][name]["fields"]]
+        lines += [f"#define FDVV_{name.upper()}_DEFAULTS \\", "    { \\"]
+        lines += [f"        {values[field]}, /* {field} */ \\" for field in order]
+        lines += ["    }", ""]
+    return lines
+
+
+# -- Python -------------------------------------------------------------------------------------------------
+
+
+def tables(source: dict[str, Any]) -> str:
+    """Write the Python module."""
+    structs = structures(source)
+    lines = [
+        '"""Made by tools/make_protocol.py from protocol/fdvv.toml; do not edit."""',
+        "",
+        "# ruff: noqa: E501",
+        "# fmt: off",
+        "from __future__ import annotations",
+        "",
+        "from dataclasses import dataclass",
+        "from enum import IntEnum, IntFlag",
+        "from typing import ClassVar",
+        "",
+        "from fdvv.protocol._record import Limits, Record",
+        "",
+        f"VERSION = {source['version']}",
+        f"HASH = 0x{meaning_hash(source):08X}",
+        "",
+    ]
+    for name, body in source["constants"].items():
+        lines += [f"{name.upper()} = {body['value']}", f'"""{_sentence(body["about"])}"""']
+    for kind in ("enums", "flags"):
+        for name, body in source[kind].items():
+            lines += _py_enum(kind, name, body)
+    lines += _py_messages(source, structs)
+    for name, fields in structs.items():
+        lines += _py_record(source, name, fields)
+    return "\n".join(lines) + "\n"
+
+
+def camel(name: str) -> str:
+    """Turn image_header into ImageHeader."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def _sentence(text: str) -> str:
+    return text[0].upper() + text[1:].rstrip(".") + "."
+
+
+def _py_enum(kind: str, name: str, body: dict[str, Any]) -> list[str]:
+    values = {k: v for k, v in body.items() if k != "about"}
+    title = camel(name) + ("Flag" if kind == "flags" else "")
+    lines = [
+        "",
+        "",
+        f"class {title}({'IntFlag' if kind == 'flags' else 'IntEnum'}):",
+        f'    """{_sentence(body["about"])}"""',
+        "",
+    ]
+    return lines + [f"    {k.upper()} = {f'1 << {v}' if kind == 'flags' else v}" for k, v in values.items()]
+
+
+def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
+    lines = ["", "", "class Message(IntEnum):", '    """Numbers of the messages."""', ""]
+    for name, body in source["messages"].items():
+        lines += [f"    {name.upper()} = 0x{body['id']:02X}", f'    """{_sentence(body["about"])}"""']
+    for key in ("fields", "reply"):
+        title = "REQUEST_BYTES" if key == "fields" else "REPLY_BYTES"
+        lines += ["", f"{title} = {{"]
+        lines += [f"    Message.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
+        lines += ["}"]
+    return lines
+
+
+def _py_record(source: dict[str, Any], name: str, fields: list[Field]) -> list[str]:
+    form = "<" + "".join(f"{f.count}s" if f.count else FORMATS[f.kind] for f in fields)
+    lines = ["", "", "@dataclass(frozen=True, kw_only=True)", f"class {camel(name)}(Record):"]
+    lines += [f'    """{_sentence(about(source, name))}', "", "    Attributes", "    ----------"]
+    lines += [f"    {f.name} : {f.text or 'zero'}" for f in fields]
+    lines += ['    """', "", f'    FORMAT: ClassVar[str] = "{form}"', "    LIMITS: ClassVar[Limits] = {"]
+    lines += [f'        "{f.name}": ({f.low}, {f.high}),' for f in fields if not f.count]
+    lines += ["    }", ""]
+    defaults = source["defaults"].get(name, {})
+    return lines + [_py_field(field, defaults) for field in fields]
+
+
+def _py_field(field: Field, defaults: dict[str, int]) -> str:
+    kind = "bytes" if field.count else "int"
+    if field.name in defaults:
+        return f"    {field.name}: {kind} = {defaults[field.name]}"
+    return f"    {field.name}: {kind}" + (" = 0" if field.name.startswith("spare") else "")
+
+
+def main() -> None:
+    """Write both files."""
+    source = tomllib.loads(SOURCE.read_text())
+    HEADER.write_text(header(source))
+    TABLES.write_text(tables(source))
+    sys.stdout.write(f"protocol {meaning_hash(source):08x}\n")
+
+
+if __name__ == "__main__":
+    main()
