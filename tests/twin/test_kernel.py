@@ -15,8 +15,12 @@ HEADER = (Path(fdvv._native.__file__).parent / "fdvv.h").read_text()
 
 
 def fields_in_header(struct: str) -> list[str]:
+    """Name the numbers of a structure, those of structures inside it in their place."""
     body = HEADER[: HEADER.index(f"}} {struct};")].rpartition("typedef struct {")[2]
-    return re.findall(r"(?:double|int64_t) (\w+);", body)
+    names: list[str] = []
+    for kind, name in re.findall(r"(double|int64_t|fdvv_\w+) (\w+);", body):
+        names += fields_in_header(kind) if kind.startswith("fdvv_") else [name]
+    return names
 
 
 def test_both_structures_have_the_fields_of_the_header_in_order() -> None:

@@ -12,9 +12,9 @@
 double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m,
                               double spacing, int exchanges, double *t, double *c);
 
-/* -- twin: finger, rig and controller of one press; SI units, x positive downward -- */
+/* -- twins: finger and gesture, shared; SI units, x positive downward -- */
 
-/* What does not change during a press. A loss is 1.5 times Hunt and Crossley's alpha. */
+/* The finger that presses: one mass on a spring and a damper, pulp with two relaxing arms. */
 typedef struct {
     double finger_mass_kg;
     double finger_stiffness_N_m;
@@ -28,6 +28,23 @@ typedef struct {
     double pulp_slow_s;
     double strap_N;
     double strap_m;
+} fdvv_finger;
+
+/* Where its referent goes: minimum jerk down, dwell, minimum jerk back. */
+typedef struct {
+    double start_m;
+    double end_m;
+    double onset_s;
+    double press_s;
+    double dwell_s;
+    double release_s;
+} fdvv_gesture;
+
+/* -- twin.c: finger, rig and controller of one press -- */
+
+/* What does not change during a press. A loss is 1.5 times Hunt and Crossley's alpha. */
+typedef struct {
+    fdvv_finger finger;
     double sensor_mass_kg;
     double contact_stiffness_N_m;
     double contact_loss_s_m;
@@ -68,12 +85,7 @@ typedef struct {
     double drive_lsb;
     double drive_low;
     double drive_high;
-    double start_m;
-    double end_m;
-    double onset_s;
-    double press_s;
-    double dwell_s;
-    double release_s;
+    fdvv_gesture gesture;
     double table_start_m;
     double table_step_m;
     double step_s;

@@ -3,9 +3,8 @@
  * Equations of motion in docs/explanation/twin.md. Fixed steps: third-order Adams-Bashforth, started by
  * two fourth-order Runge-Kutta steps wherever the drive jumps, so that one evaluation per step is enough.
  */
-#include "fdvv.h"
+#include "finger.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { XF, VF, H1, H2, XT, VT, XC, VC, AMPS, LVDT, SENSED, WORK, LOSS, STATES };
@@ -36,35 +35,6 @@ static double clamp(double value, double low, double high) {
     return value < low ? low : value > high ? high : value;
 }
 
-/* Hunt and Crossley: stiffness with a loss that grows with depth; never pulls. */
-static inline double contact(double stiffness, double loss, double depth, double rate) {
-    if (depth <= 0.0) return 0.0;
-    double force = stiffness * depth * (1.0 + loss * rate);
-    return force > 0.0 ? force : 0.0;
-}
-
-static inline double elastic(double stiffness, double depth) { return depth > 0.0 ? stiffness * depth : 0.0; }
-
-/* Minimum jerk from `from` to `to` in `duration`, evaluated `t` after its start (Flash and Hogan 1985). */
-static inline void minimum_jerk(double from, double to, double duration, double t, double *x, double *v) {
-    double s = t / duration, q = 1.0 - s;
-    *x = from + (to - from) * s * s * s * (10.0 + s * (6.0 * s - 15.0));
-    *v = (to - from) * 30.0 * s * s * q * q / duration;
-}
-
-/* Where the finger means to be. */
-static inline void referent(const fdvv_twin_model *m, double t, double *x, double *v) {
-    double up = t - m->onset_s - m->press_s - m->dwell_s;
-    *x = m->start_m, *v = 0.0;
-    if (t <= m->onset_s || up >= m->release_s) return;
-    if (t < m->onset_s + m->press_s)
-        minimum_jerk(m->start_m, m->end_m, m->press_s, t - m->onset_s, x, v);
-    else if (up <= 0.0)
-        *x = m->end_m;
-    else
-        minimum_jerk(m->end_m, m->start_m, m->release_s, up, x, v);
-}
-
 static inline double force_constant(const fdvv_twin_model *m, double x) {
     double off = x - m->droop_centre_m;
     return m->force_constant_N_A * (1.0 - m->droop_1_m2 * off * off);
@@ -81,16 +51,11 @@ static double contact_force(const fdvv_twin_model *m, const double *y) {
 }
 
 static inline void rates(const fdvv_twin_model *m, const drive_input *in, double t, const double *y, double *dy) {
-    double xr, vr;
-    referent(m, t, &xr, &vr);
     double effort = 1.0 + in->effort + in->effort_per_s * (t - in->tick_s);
-    double muscle = effort * (m->finger_stiffness_N_m * (xr - y[XF]) + m->finger_damping_N_s_m * (vr - y[VF]));
-
-    double squeeze_rate = y[VF] - y[VT];
-    double swelling = m->pulp_scale_N * exp(m->pulp_exponent_1_m * (y[XF] - y[XT] + m->strap_m));
-    double growth = m->pulp_exponent_1_m * swelling * squeeze_rate;
+    double pull = effort * muscle(&m->finger, &m->gesture, t, y[XF], y[VF]);
+    double squeeze_rate = y[VF] - y[VT], growth;
     double arms = y[H1] + y[H2];
-    double pulp = m->pulp_relaxed_ratio * (swelling - m->pulp_scale_N) + arms - m->strap_N;
+    double pulp = squeeze(&m->finger, y[XF] - y[XT], squeeze_rate, arms, &growth);
 
     double touch = contact_force(m, y);
     double deep = y[XC] - m->travel_m;
@@ -102,9 +67,9 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
     double volts = voltage(m, in->drive, kt, y[AMPS], y[VC]);
 
     dy[XF] = y[VF];
-    dy[VF] = (muscle - pulp) * in->finger_1_kg;
-    dy[H1] = m->pulp_fast_ratio * growth - y[H1] * in->fast_1_s;
-    dy[H2] = m->pulp_slow_ratio * growth - y[H2] * in->slow_1_s;
+    dy[VF] = (pull - pulp) * in->finger_1_kg;
+    dy[H1] = m->finger.pulp_fast_ratio * growth - y[H1] * in->fast_1_s;
+    dy[H2] = m->finger.pulp_slow_ratio * growth - y[H2] * in->slow_1_s;
     dy[XT] = y[VT];
     dy[VT] = (pulp - touch) * in->sensor_1_kg;
     dy[XC] = y[VC];
@@ -114,7 +79,7 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
     dy[SENSED] = (pulp - y[SENSED]) * in->rc_1_s;
     dy[WORK] = dy[LOSS] = 0.0;
     if (!in->audit) return;
-    dy[WORK] = muscle * y[VF] + volts * y[AMPS];
+    dy[WORK] = pull * y[VF] + volts * y[AMPS];
     dy[LOSS] = m->resistance_ohm * y[AMPS] * y[AMPS] + rub * y[VC] + arms * squeeze_rate +
                (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
                (stop - elastic(m->stop_stiffness_N_m, deep)) * y[VC] -
@@ -123,15 +88,15 @@ static inline void rates(const fdvv_twin_model *m, const drive_input *in, double
 
 /* Kinetic, elastic, magnetic and gravitational energy. */
 static double stored(const fdvv_twin_model *m, const double *y) {
-    double squeeze = y[XF] - y[XT] + m->strap_m;
-    double swelling = m->pulp_scale_N * (exp(m->pulp_exponent_1_m * squeeze) / m->pulp_exponent_1_m - squeeze);
+    const fdvv_finger *f = &m->finger;
+    double squeezed = y[XF] - y[XT];
     double depth = fmax(y[XT] - y[XC], 0.0), deep = fmax(y[XC] - m->travel_m, 0.0), high = fmax(-y[XC], 0.0);
-    double moving = m->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
+    double moving = f->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
                     m->moving_mass_kg * y[VC] * y[VC] + m->inductance_H * y[AMPS] * y[AMPS];
     double springs = m->contact_stiffness_N_m * depth * depth + m->stop_stiffness_N_m * deep * deep +
                      m->top_stiffness_N_m * high * high;
-    return 0.5 * (moving + springs) + m->pulp_relaxed_ratio * swelling - m->strap_N * squeeze -
-           m->moving_mass_kg * m->gravity_m_s2 * y[XC];
+    return 0.5 * (moving + springs) + f->pulp_relaxed_ratio * swollen(f, squeezed) -
+           f->strap_N * (squeezed + f->strap_m) - m->moving_mass_kg * m->gravity_m_s2 * y[XC];
 }
 
 static void runge_kutta(const fdvv_twin_model *m, const drive_input *in, double t, double *y, const double *now) {
@@ -286,12 +251,13 @@ static void write_row(const fdvv_twin_model *m, const controller *c, const doubl
 
 static void start(const fdvv_twin_model *m, double *y, drive_input *in, controller *c) {
     memset(in, 0, sizeof *in);
-    in->finger_1_kg = 1.0 / m->finger_mass_kg, in->sensor_1_kg = 1.0 / m->sensor_mass_kg;
+    in->finger_1_kg = 1.0 / m->finger.finger_mass_kg, in->sensor_1_kg = 1.0 / m->sensor_mass_kg;
     in->mover_1_kg = 1.0 / m->moving_mass_kg, in->coil_1_H = 1.0 / m->inductance_H;
-    in->fast_1_s = 1.0 / m->pulp_fast_s, in->slow_1_s = 1.0 / m->pulp_slow_s, in->rc_1_s = 1.0 / m->sensor_rc_s;
+    in->fast_1_s = 1.0 / m->finger.pulp_fast_s, in->slow_1_s = 1.0 / m->finger.pulp_slow_s;
+    in->rc_1_s = 1.0 / m->sensor_rc_s;
     memset(y, 0, STATES * sizeof *y);
     memset(c, 0, sizeof *c);
-    y[XF] = y[XT] = m->start_m < 0.0 ? m->start_m : 0.0;
+    y[XF] = y[XT] = m->gesture.start_m < 0.0 ? m->gesture.start_m : 0.0;
     c->speed_m_s = m->announced_m_s;
 }
 
