@@ -1,5 +1,6 @@
 """Physics of finger and rig: constants apart from state, a compiled press and a slow reference. Simulated."""
 
+from fdvv.twin._draw import draw_finger, draw_rig
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, plan, vary
 from fdvv.twin._noise import Noise, draw_noise, silence
@@ -25,7 +26,9 @@ __all__ = [
     "Rig",
     "Stops",
     "Trace",
+    "draw_finger",
     "draw_noise",
+    "draw_rig",
     "finger_to_toml",
     "load_finger",
     "load_rig",

@@ -68,6 +68,7 @@ class Habit:
         "m",
         (0.0, 0.008),
         (0.0, 0.03),
+        chosen=True,
     )
     rest_N: float = quantity(
         0.1, "force of a finger that rests on the cap (lift 0)", "N", (0.05, 0.3), (0.0, 1.0), "assumed"

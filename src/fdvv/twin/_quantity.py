@@ -22,6 +22,7 @@ class About:
     bounds : the range the equations and the step can bear; beyond it a value is refused.
     source : the tag of its source, "assumed" where there is none.
     choices : the words allowed, for a parameter that is a word.
+    chosen : set by whoever builds the thing, so known to them and not drawn at random.
     """
 
     text: str
@@ -30,6 +31,7 @@ class About:
     bounds: tuple[float, float] = (-math.inf, math.inf)
     source: str = "assumed"
     choices: tuple[str, ...] = ()
+    chosen: bool = False
 
 
 def quantity(
@@ -39,11 +41,11 @@ def quantity(
     plausible: tuple[float, float],
     bounds: tuple[float, float],
     source: str = "assumed",
+    chosen: bool = False,
 ) -> Any:
-    """Make a dataclass field for a number."""
-    return dataclasses.field(
-        default=default, metadata={"about": About(text, unit, plausible, bounds, source)}
-    )
+    """Make a dataclass field for a number; chosen: by the builder, never drawn at random."""
+    known = About(text, unit, plausible, bounds, source, chosen=chosen)
+    return dataclasses.field(default=default, metadata={"about": known})
 
 
 def choice(default: str, text: str, choices: tuple[str, ...], source: str = "assumed") -> Any:

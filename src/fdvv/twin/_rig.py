@@ -32,10 +32,14 @@ class Coil:
     centre_m: float = quantity(
         0.0031, "displacement of the full force constant", "m", (0.002, 0.0042), (-0.02, 0.02), "assumed"
     )
-    stroke_m: float = quantity(0.0062, "usable stroke", "m", (0.0062, 0.0127), (0.001, 0.05), "paper")
+    stroke_m: float = quantity(
+        0.0062, "usable stroke", "m", (0.0062, 0.0127), (0.001, 0.05), "paper", chosen=True
+    )
     resistance_ohm: float = quantity(2.9, "resistance when cold", "ohm", (2.5, 8.0), (0.05, 100.0), "class")
     inductance_H: float = quantity(0.0015, "inductance", "H", (5e-4, 5e-3), (5e-5, 0.1), "assumed")
-    supply_V: float = quantity(12.0, "largest voltage, both signs", "V", (5.0, 24.0), (0.1, 200.0), "assumed")
+    supply_V: float = quantity(
+        12.0, "largest voltage, both signs", "V", (5.0, 24.0), (0.1, 200.0), "assumed", chosen=True
+    )
     bipolar: str = choice("yes", "whether the bridge can pull", ("yes", "no"), "assumed")
     current_loop_s: float = quantity(
         1e-4,
@@ -46,7 +50,7 @@ class Coil:
         "assumed",
     )
     command_bits: int = quantity(
-        11, "bits of the command over the supply (0: continuous)", "", (8, 12), (0, 24), "rule"
+        11, "bits of the command over the supply (0: continuous)", "", (8, 12), (0, 24), "rule", chosen=True
     )
 
     def __post_init__(self) -> None:
@@ -59,7 +63,13 @@ class Mover:
 
     mass_kg: float = quantity(0.02, "moving mass", "kg", (0.012, 0.04), (5e-4, 1.0), "class, assumed")
     gravity_m_s2: float = quantity(
-        9.81, "gravity along the stroke: 9.81 upright, 0 lying", "m/s2", (0.0, 9.81), (-9.9, 9.9), "rule"
+        9.81,
+        "gravity along the stroke: 9.81 upright, 0 lying",
+        "m/s2",
+        (0.0, 9.81),
+        (-9.9, 9.9),
+        "rule",
+        chosen=True,
     )
     coulomb_N: float = quantity(0.03, "friction of the bushing", "N", (0.01, 0.1), (0.0, 5.0), "assumed")
     coulomb_speed_m_s: float = quantity(
@@ -106,12 +116,18 @@ class PositionSensor:
         0.0025, "largest bend of the scale, of half the range", "", (0.0, 0.0025), (0.0, 0.1), "class"
     )
     range_m: float = quantity(0.0127, "full range", "m", (0.0127, 0.0127), (0.001, 0.2), "class")
-    converter_bits: int = quantity(12, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "rule")
+    converter_bits: int = quantity(
+        12, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "rule", chosen=True
+    )
     converter_noise_ratio: float = quantity(
         0.5, "noise per read, rms, of one step of the converter", "", (0.3, 2.0), (0.0, 20.0), "assumed"
     )
-    reads: int = quantity(25, "reads averaged in a burst before each tick", "", (1, 25), (1, 200), "paper")
-    burst_s: float = quantity(2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05), "assumed")
+    reads: int = quantity(
+        25, "reads averaged in a burst before each tick", "", (1, 25), (1, 200), "paper", chosen=True
+    )
+    burst_s: float = quantity(
+        2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05), "assumed", chosen=True
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -141,7 +157,9 @@ class ForceSensor:
         (0.0, 1.0),
     )
     full_scale_N: float = quantity(9.81, "range, both signs", "N", (4.45, 9.81), (0.1, 1000.0), "class")
-    converter_bits: int = quantity(10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "class")
+    converter_bits: int = quantity(
+        10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "class", chosen=True
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -151,18 +169,30 @@ class ForceSensor:
 class Controller:
     """The 1 kHz loop: average, direction, speed, table, command."""
 
-    tick_s: float = quantity(0.001, "period of the loop", "s", (0.0001, 0.001), (5e-5, 0.02), "paper")
+    tick_s: float = quantity(
+        0.001, "period of the loop", "s", (0.0001, 0.001), (5e-5, 0.02), "paper", chosen=True
+    )
     compute_s: float = quantity(
-        3e-4, "from the sample to the new drive", "s", (1e-4, 1e-3), (0.0, 0.02), "paper"
+        3e-4, "from the sample to the new drive", "s", (1e-4, 1e-3), (0.0, 0.02), "paper", chosen=True
     )
     averaging: str = choice("burst", "what the 25-sample average runs over", ("burst", "sliding"), "paper")
-    average_ticks: int = quantity(25, "ticks of the sliding average", "", (1, 25), (1, 64), "paper")
-    window_start_m: float = quantity(
-        5e-4, "where the search for speed begins", "m", (4e-4, 6e-4), (0.0, 0.05), "paper"
+    average_ticks: int = quantity(
+        25, "ticks of the sliding average", "", (1, 25), (1, 64), "paper", chosen=True
     )
-    window_end_m: float = quantity(1e-3, "where speed is decided", "m", (9e-4, 1.2e-3), (1e-5, 0.05), "paper")
+    window_start_m: float = quantity(
+        5e-4, "where the search for speed begins", "m", (4e-4, 6e-4), (0.0, 0.05), "paper", chosen=True
+    )
+    window_end_m: float = quantity(
+        1e-3, "where speed is decided", "m", (9e-4, 1.2e-3), (1e-5, 0.05), "paper", chosen=True
+    )
     fewest_samples: int = quantity(
-        3, "samples a speed needs; the window widens backwards to hold them", "", (3, 5), (2, 64), "paper"
+        3,
+        "samples a speed needs; the window widens backwards to hold them",
+        "",
+        (3, 5),
+        (2, 64),
+        "paper",
+        chosen=True,
     )
     velocity_scale: float = quantity(
         1.2,
@@ -171,15 +201,22 @@ class Controller:
         (0.7, 1.5),
         (0.1, 10.0),
         "calibrated on this twin, simulated",
+        chosen=True,
     )
     reversal_m: float = quantity(
-        1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (1e-6, 0.01), "assumed"
+        1e-4,
+        "way back that turns press into release",
+        "m",
+        (5e-5, 3e-4),
+        (1e-6, 0.01),
+        "assumed",
+        chosen=True,
     )
     rearm_m: float = quantity(
-        1e-4, "height at which a new press begins", "m", (5e-5, 3e-4), (0.0, 0.01), "assumed"
+        1e-4, "height at which a new press begins", "m", (5e-5, 3e-4), (0.0, 0.01), "assumed", chosen=True
     )
     force_limit_N: float = quantity(
-        4.4, "largest command, both signs", "N", (4.4, 4.4), (0.01, 100.0), "paper"
+        4.4, "largest command, both signs", "N", (4.4, 4.4), (0.01, 100.0), "paper", chosen=True
     )
     gain_error_ratio: float = quantity(
         0.0, "error of the scale from force to drive", "", (-0.05, 0.05), (-0.5, 0.5), "assumed"

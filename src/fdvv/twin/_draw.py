@@ -1,0 +1,49 @@
+"""Rigs and fingers drawn at random over the ranges that their parameters state."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, TypeVar
+
+import numpy as np
+
+from fdvv.twin._finger import Finger
+from fdvv.twin._quantity import About, about
+from fdvv.twin._rig import Rig
+
+Record = TypeVar("Record")
+
+
+def draw_rig(random: np.random.Generator) -> Rig:
+    """Draw a rig: every uncertain parameter uniform over its plausible range, what a builder chooses kept."""
+    return draw_parts(Rig(), random)
+
+
+def draw_finger(random: np.random.Generator) -> Finger:
+    """Draw a finger: impedance, pulp and habit, each parameter uniform over its plausible range."""
+    return draw_parts(Finger(), random)
+
+
+def draw_parts(record: Record, random: np.random.Generator) -> Record:
+    """Draw every section of a record afresh; the order of the fields is that of the draws."""
+    whole: Any = record
+    parts = {f.name: draw_section(getattr(whole, f.name), random) for f in dataclasses.fields(whole)}
+    return type(record)(**parts)
+
+
+def draw_section(section: Record, random: np.random.Generator) -> Record:
+    """Draw one section: words and choices of the builder stay as they are."""
+    whole: Any = section
+    fields = [f for f in dataclasses.fields(whole) if _uncertain(about(f))]
+    drawn = {f.name: _draw(about(f), f.type in (int, "int"), random) for f in fields}
+    return dataclasses.replace(whole, **drawn)  # type: ignore[no-any-return]
+
+
+def _uncertain(known: About) -> bool:
+    return known.plausible is not None and not known.chosen
+
+
+def _draw(known: About, whole: bool, random: np.random.Generator) -> float:
+    assert known.plausible is not None  # held by _uncertain
+    low, high = known.plausible
+    return int(random.integers(int(low), int(high), endpoint=True)) if whole else random.uniform(low, high)
