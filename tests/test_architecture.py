@@ -10,10 +10,14 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "src" / "fdvv"
 
-GROUND = {"errors", "units", "files", "_native", "protocol"}
+GROUND = {"errors", "units", "files", "_native", "protocol", "core"}
 LEVELS = [GROUND, {"model"}, {"capture", "compensate", "twin"}, {"device", "plot"}, {"workflow"}, {"cli"}]
 # inside the ground and between rooms of one level, only these arrows
-SAME_LEVEL = {("_native", "errors"), ("files", "errors"), ("protocol", "errors")}
+SAME_LEVEL = {
+    *((room, "errors") for room in ("_native", "core", "files", "protocol")),
+    ("core", "_native"),
+    ("core", "protocol"),
+}
 # shipped helpers for tests: they may use any room, and no room may use them
 TESTING = "testing"
 

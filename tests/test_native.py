@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-NATIVE = Path(__file__).resolve().parents[1] / "src" / "fdvv" / "_native"
+ROOT = Path(__file__).resolve().parents[1]
+NATIVE, CORE = ROOT / "src" / "fdvv" / "_native", ROOT / "firmware" / "core"
+SOURCES = [f"-I{CORE}", *(str(path) for part in (NATIVE, CORE) for path in sorted(part.glob("*.c")))]
 
 # run in a process of its own: the sanitiser ends it at the first fault
 EXERCISE = """
@@ -43,8 +45,7 @@ print("done")
 def test_fits_and_presses_run_without_undefined_behaviour(tmp_path: Path) -> None:
     library = tmp_path / "libsanitised.so"
     flags = ["-std=c99", "-O1", "-g", "-fPIC", "-shared", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
-    sources = [str(path) for path in sorted(NATIVE.glob("*.c"))]
-    subprocess.run(["cc", *flags, "-o", str(library), *sources, "-lm"], check=True)
+    subprocess.run(["cc", *flags, "-o", str(library), *SOURCES, "-lm"], check=True)
     out = subprocess.run(
         [sys.executable, "-c", EXERCISE, str(library)], capture_output=True, text=True, check=False
     )
@@ -74,7 +75,6 @@ def test_the_kernels_free_what_they_take_and_stay_in_bounds(tmp_path: Path) -> N
         "-fno-sanitize-recover=all",
         f"-I{NATIVE}",
     ]
-    sources = [str(program), *(str(path) for path in sorted(NATIVE.glob("*.c")))]
-    subprocess.run(["cc", *flags, "-o", str(binary), *sources, "-lm"], check=True)
+    subprocess.run(["cc", *flags, "-o", str(binary), str(program), *SOURCES, "-lm"], check=True)
     out = subprocess.run([str(binary)], capture_output=True, text=True, check=False)
     assert (out.returncode, out.stderr) == (0, "")

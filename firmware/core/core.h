@@ -18,6 +18,8 @@ typedef struct {
     uint32_t events;         /* host events not yet seen by the program, a bit each */
     int16_t command_cN64;    /* of the last tick */
     uint16_t announced_mm_s16;
+    uint16_t stop_us;        /* servo pulse for the program's travel */
+    fdvv_ratio drive;        /* duty per force, times the supply in mV */
 } fdvv_core;
 
 /* Start with checked settings (fdvv_settings_check), no program, mode boot. */

@@ -1,0 +1,180 @@
+#include "core.h"
+
+/* Servo pulse for a travel: rounded to the nearest, within what servos take. */
+static uint16_t stop_pulse_us(const fdvv_settings *settings, const uint8_t *image)
+{
+    int32_t way_us16000;
+    if (!image)
+        return settings->stop_zero_us;
+    way_us16000 = settings->stop_us_mm * fdvv_image_head(image)->travel_um16;
+    way_us16000 += way_us16000 < 0 ? -8000 : 8000;
+    return (uint16_t)fdvv_clamp(settings->stop_zero_us + way_us16000 / 16000, 400, 2600);
+}
+
+void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings)
+{
+    fdvv_supervisor_init(&core->supervisor);
+    core->image = 0;
+    core->events = 0;
+    fdvv_core_set(core, settings);
+}
+
+void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings)
+{
+    core->settings = *settings;
+    core->announced_mm_s16 = settings->announced_mm_s16;
+    core->command_cN64 = 0;
+    /* duty per force at 1 mV of supply */
+    core->drive = fdvv_ratio_product(fdvv_ratio_of((uint32_t)settings->duty_gain_q16),
+                                     fdvv_ratio_of(settings->nominal_supply_mV));
+    core->drive.shift = (int16_t)(core->drive.shift + 16);
+    core->stop_us = stop_pulse_us(settings, core->image);
+    fdvv_position_init(&core->position);
+    fdvv_velocity_init(&core->velocity, settings);
+    fdvv_machine_init(&core->machine, settings);
+}
+
+void fdvv_core_activate(fdvv_core *core, const uint8_t *image)
+{
+    core->image = image;
+    core->stop_us = stop_pulse_us(&core->settings, image);
+    fdvv_machine_stop(&core->machine);
+}
+
+void fdvv_core_event(fdvv_core *core, uint8_t event)
+{
+    core->events |= (uint32_t)1 << (event & 31);
+}
+
+void fdvv_core_announce(fdvv_core *core, uint16_t velocity_mm_s16)
+{
+    core->announced_mm_s16 = velocity_mm_s16;
+}
+
+/* Keycap force: the gain is split, so that (a * 2^9 + b) >> 14 needs no more than 32 bits. */
+static int16_t keycap_force_cN64(const fdvv_settings *settings, uint16_t counts)
+{
+    int32_t way = (int32_t)counts - settings->force_offset_counts, gain = settings->force_gain_q14;
+    int32_t coarse = way * (gain >> 9), fine = way * (gain & 511);
+    return (int16_t)fdvv_clamp((coarse + (fine >> 9)) >> 5, -INT16_MAX, INT16_MAX);
+}
+
+static fdvv_moment moment_of(const fdvv_core *core, uint16_t elapsed_ticks)
+{
+    const fdvv_velocity *velocity = &core->velocity;
+    int32_t signed_mm_s16 = velocity->continuous_mm_s16;
+    fdvv_moment moment;
+    moment.displacement_um16 = core->position.um16;
+    moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
+    moment.events = core->events;
+    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_ANNOUNCED] = core->announced_mm_s16;
+    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_DECIDED] =
+        velocity->decided ? velocity->decided_mm_s16 : core->announced_mm_s16;
+    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_CONTINUOUS] =
+        (uint16_t)(signed_mm_s16 < 0 ? -signed_mm_s16 : signed_mm_s16);
+    moment.signed_mm_s16 = velocity->continuous_mm_s16;
+    moment.command_cN64 = core->command_cN64;
+    moment.release = core->position.release;
+    moment.turned = core->position.turned;
+    return moment;
+}
+
+/* Limit, slew, limit: the slew never keeps a command above a limit that has fallen. */
+static uint8_t command(fdvv_core *core, int32_t wanted_cN64, int32_t limit_cN64)
+{
+    int32_t last_cN64 = core->command_cN64, slew_cN64 = core->settings.slew_cN64_tick;
+    int32_t limited_cN64 = fdvv_clamp(wanted_cN64, -limit_cN64, limit_cN64);
+    int32_t slewed_cN64 = fdvv_clamp(limited_cN64, last_cN64 - slew_cN64, last_cN64 + slew_cN64);
+    int32_t command_cN64 = fdvv_clamp(slewed_cN64, -limit_cN64, limit_cN64);
+    uint8_t flags = slewed_cN64 != limited_cN64 ? FDVV_TICK_FLAG_SLEWED : 0;
+    if (limited_cN64 != wanted_cN64 || command_cN64 != slewed_cN64)
+        flags |= limit_cN64 < core->settings.force_limit_cN64 ? FDVV_TICK_FLAG_DERATED : FDVV_TICK_FLAG_LIMITED;
+    core->command_cN64 = (int16_t)command_cN64;
+    return flags;
+}
+
+/* Force to duty at the supply of this tick, which counts no further than its own bounds. */
+static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q15)
+{
+    const fdvv_settings *settings = &core->settings;
+    int32_t most = settings->duty_limit_q15, duty;
+    uint32_t supply = (uint32_t)fdvv_clamp(supply_mV, settings->supply_low_mV, settings->supply_high_mV);
+    /* below 18 Q15 per cN64, whose shift is 11 at least: fdvv_scale has room */
+    duty = fdvv_scale(core->command_cN64,
+                      fdvv_ratio_product(core->drive, fdvv_ratio_inverse(fdvv_ratio_of(supply))));
+    *duty_q15 = (int16_t)fdvv_clamp(duty, -most, most);
+    return *duty_q15 != duty ? FDVV_TICK_FLAG_LIMITED : 0;
+}
+
+/* One tick of a program; gives the flags it sets. */
+static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elapsed_ticks, int32_t limit_cN64,
+                      fdvv_outputs *outputs)
+{
+    fdvv_moment moment = moment_of(core, elapsed_ticks);
+    fdvv_machine *machine = &core->machine;
+    const fdvv_state *state;
+    uint8_t flags;
+    fdvv_machine_tick(machine, core->image, &moment);
+    state = fdvv_image_state(core->image, machine->state);
+    flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment), limit_cN64);
+    flags |= drive(core, inputs->supply_mV, &outputs->duty_q15);
+    outputs->enable = 1;
+    outputs->slot = machine->slot;
+    outputs->key = state->key;
+    if (state->key)
+        flags |= FDVV_TICK_FLAG_KEY_DOWN;
+    if (machine->slot != FDVV_NONE)
+        flags |= FDVV_TICK_FLAG_VIBRATED;
+    if (state->velocity_source == FDVV_VELOCITY_SOURCE_DECIDED ? core->velocity.decided
+        : state->velocity_source == FDVV_VELOCITY_SOURCE_CONTINUOUS && core->velocity.continuous)
+        flags |= FDVV_TICK_FLAG_VELOCITY_KNOWN;
+    return flags;
+}
+
+/* Zero force at once. */
+static void rest(fdvv_core *core, fdvv_outputs *outputs)
+{
+    fdvv_machine_stop(&core->machine);
+    core->command_cN64 = 0;
+    outputs->duty_q15 = 0;
+    outputs->enable = 0;
+    outputs->slot = FDVV_NONE;
+    outputs->key = 0;
+}
+
+static void fill_record(const fdvv_core *core, uint8_t flags, int16_t force_cN64, fdvv_tick_record *record)
+{
+    record->displacement_um16 = core->position.um16;
+    record->velocity_mm_s16 = core->velocity.continuous_mm_s16;
+    record->commanded_cN64 = core->command_cN64;
+    record->force_cN64 = force_cN64;
+    record->state = core->machine.state;
+    record->flags = flags;
+}
+
+void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs)
+{
+    const fdvv_settings *settings = &core->settings;
+    fdvv_supervisor *supervisor = &core->supervisor;
+    uint16_t elapsed_ticks = inputs->elapsed_ticks ? inputs->elapsed_ticks : 1;
+    int16_t force_cN64 = keycap_force_cN64(settings, inputs->force_counts), limit_cN64;
+    uint8_t flags = 0;
+    fdvv_position_tick(&core->position, settings, inputs->sum);
+    fdvv_velocity_tick(&core->velocity, settings, &core->position, elapsed_ticks);
+    fdvv_supervisor_check(supervisor, settings, inputs, core->position.um16, force_cN64, core->command_cN64,
+                          core->machine.state);
+    limit_cN64 = fdvv_supervisor_limit_cN64(supervisor, settings);
+    if (core->image && (supervisor->mode == FDVV_MODE_ARMED || supervisor->mode == FDVV_MODE_DERATED))
+        flags = render(core, inputs, elapsed_ticks, limit_cN64, outputs);
+    else
+        rest(core, outputs);
+    core->events = 0;
+    fdvv_supervisor_heat(supervisor, settings, outputs->duty_q15, elapsed_ticks);
+    if (core->position.release)
+        flags |= FDVV_TICK_FLAG_RELEASE;
+    if (elapsed_ticks > 1)
+        flags |= FDVV_TICK_FLAG_LATE;
+    outputs->stop_us = core->stop_us;
+    outputs->mode = supervisor->mode;
+    fill_record(core, flags, force_cN64, &outputs->record);
+}

@@ -1,0 +1,77 @@
+#include "position.h"
+
+int32_t fdvv_displacement_um16(const fdvv_settings *settings, uint32_t sum)
+{
+    int32_t gain = settings->position_gain_q14;
+    uint32_t size = gain < 0 ? 0u - (uint32_t)gain : (uint32_t)gain;
+    int32_t way = (int32_t)((((size * sum) >> 13) + 1u) >> 1);
+    return settings->position_offset_um16 + (gain < 0 ? -way : way);
+}
+
+void fdvv_position_init(fdvv_position *position)
+{
+    position->um16 = position->extreme_um16 = position->sum_um16 = 0;
+    position->count = position->next = 0;
+    position->known = position->release = position->turned = 0;
+    position->at_top = 1;
+}
+
+/* Give sum / count to the nearest, halves up: the quotient is guessed twice by a reciprocal, then put right. */
+static int32_t mean_of(int32_t sum, int32_t count)
+{
+    fdvv_ratio each = fdvv_ratio_inverse(fdvv_ratio_of((uint32_t)count));
+    int32_t mean, left = sum + (count >> 1);
+    mean = fdvv_scale(left, each);
+    mean += fdvv_scale(left - mean * count, each);
+    left -= mean * count;
+    return left < 0 ? mean - 1 : left >= count ? mean + 1 : mean;
+}
+
+/* 32 * 662,144 stays far below 2^31. */
+static int32_t sliding_mean(fdvv_position *position, uint8_t ticks, int32_t um16)
+{
+    if (position->count == ticks)
+        position->sum_um16 -= position->recent_um16[position->next];
+    else
+        position->count++;
+    position->recent_um16[position->next] = um16;
+    position->sum_um16 += um16;
+    if (++position->next == ticks)
+        position->next = 0;
+    return mean_of(position->sum_um16, position->count);
+}
+
+/* Turn round once the cap has come back by reversal_um16 from its extreme; a press begins at the top. */
+static void find_direction(fdvv_position *position, const fdvv_settings *settings)
+{
+    int32_t x = position->um16, extreme = position->extreme_um16;
+    position->turned = 0;
+    if (!position->release) {
+        if (x < extreme - settings->reversal_um16)
+            position->turned = FDVV_TURNED_TO_RELEASE;
+        else if (x < extreme)
+            return;
+    } else {
+        if (x > extreme + settings->reversal_um16 || position->at_top)
+            position->turned = FDVV_TURNED_TO_PRESS;
+        else if (x > extreme)
+            return;
+    }
+    position->extreme_um16 = x;
+    if (position->turned)
+        position->release = position->turned == FDVV_TURNED_TO_RELEASE;
+}
+
+void fdvv_position_tick(fdvv_position *position, const fdvv_settings *settings, uint32_t sum)
+{
+    int32_t um16 = fdvv_displacement_um16(settings, sum);
+    if (settings->sliding_ticks > 1)
+        um16 = sliding_mean(position, settings->sliding_ticks, um16);
+    position->um16 = um16;
+    position->at_top = um16 < settings->rearm_um16;
+    if (!position->known) {
+        position->known = 1;
+        position->extreme_um16 = um16;
+    }
+    find_direction(position, settings);
+}

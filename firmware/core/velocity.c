@@ -1,0 +1,177 @@
+#include "velocity.h"
+
+/* Sums stay below 2^15 samples, times and places below 2^15 and 2^16 in the window, below 16 samples, 2^10 and
+ * 2^21 among the newest; so every product here is below 2^32 and count * tick_um16 below 2^62. */
+static void line_reset(fdvv_line *line)
+{
+    line->tick_tick = line->tick_um16 = 0;
+    line->ticks = line->um16 = line->count = 0;
+}
+
+static void line_add(fdvv_line *line, uint32_t tick, uint32_t um16)
+{
+    line->count++;
+    line->ticks += tick;
+    line->um16 += um16;
+    line->tick_tick += tick * tick;
+    line->tick_um16 += tick * um16;
+}
+
+/* count * sum for count below 2^15 and a sum below 2^47. */
+static uint64_t times(uint32_t count, uint64_t sum)
+{
+    return fdvv_wide_product(count, (uint32_t)sum) + ((uint64_t)(count * (uint32_t)(sum >> 32)) << 32);
+}
+
+/* Slope of the line times a ratio, to the nearest; 0 if it does not rise. */
+static uint16_t line_slope(const fdvv_line *line, fdvv_ratio scale)
+{
+    uint64_t up = times(line->count, line->tick_um16), down = fdvv_wide_product(line->ticks, line->um16);
+    uint64_t spread = times(line->count, line->tick_tick) - fdvv_wide_product(line->ticks, line->ticks);
+    fdvv_ratio slope;
+    if (up <= down || !spread)
+        return 0;
+    slope = fdvv_ratio_product(fdvv_ratio_of_wide(up - down), fdvv_ratio_inverse(fdvv_ratio_of_wide(spread)));
+    slope = fdvv_ratio_product(slope, scale);
+    if (slope.shift < 0)
+        return UINT16_MAX;
+    if (slope.shift > 16)
+        return 0;
+    return (uint16_t)((((uint32_t)slope.mantissa << 1 >> slope.shift) + 1u) >> 1);
+}
+
+/* -- once per press ------------------------------------------------------------------------------------- */
+
+static void forget_window(fdvv_velocity *velocity)
+{
+    line_reset(&velocity->inside);
+    velocity->first_tick = velocity->now_tick;
+}
+
+/* Fill a line with the newest few; places count from the highest of them. */
+static void line_of_newest(const fdvv_velocity *velocity, uint8_t few, fdvv_line *line)
+{
+    uint8_t first = (uint8_t)((velocity->next - few) & (FDVV_NEWEST - 1)), i;
+    int32_t highest = velocity->newest_um16[first];
+    line_reset(line);
+    for (i = 1; i < few; i++) {
+        int32_t um16 = velocity->newest_um16[(first + i) & (FDVV_NEWEST - 1)];
+        highest = um16 < highest ? um16 : highest;
+    }
+    for (i = 0; i < few; i++) {
+        uint8_t at = (uint8_t)((first + i) & (FDVV_NEWEST - 1));
+        line_add(line, velocity->newest_tick[at] - velocity->newest_tick[first],
+                 (uint32_t)(velocity->newest_um16[at] - highest));
+    }
+}
+
+static void decide(fdvv_velocity *velocity, const fdvv_settings *settings)
+{
+    fdvv_line newest;
+    const fdvv_line *line = &velocity->inside;
+    if (line->count < settings->fewest_samples) {
+        if (velocity->kept < settings->fewest_samples)
+            return;
+        line_of_newest(velocity, settings->fewest_samples, &newest);
+        line = &newest;
+    }
+    velocity->decided_mm_s16 = line_slope(line, velocity->decided_scale);
+    velocity->decided = 1;
+}
+
+/* Collect the samples of one uninterrupted press inside the window; decide at the first one beyond it. */
+static void watch_window(fdvv_velocity *velocity, const fdvv_settings *settings, const fdvv_position *position)
+{
+    int32_t um16 = position->um16;
+    if (position->at_top) {
+        velocity->decided = 0;
+        forget_window(velocity);
+        return;
+    }
+    if (position->release)
+        forget_window(velocity);
+    if (position->release || velocity->decided || um16 < settings->window_start_um16)
+        return;
+    if (um16 > settings->window_end_um16) {
+        decide(velocity, settings);
+        return;
+    }
+    if (!velocity->inside.count || velocity->now_tick - velocity->first_tick >= FDVV_WINDOW_TICKS)
+        forget_window(velocity);
+    line_add(&velocity->inside, velocity->now_tick - velocity->first_tick,
+             (uint32_t)(um16 - settings->window_start_um16));
+}
+
+/* -- every tick ----------------------------------------------------------------------------------------- */
+
+/* Keep the plain and the ramped sum of the newest samples that follow each other without a gap. */
+static void slide(fdvv_velocity *velocity, uint8_t samples, int32_t um16)
+{
+    if (velocity->even == samples) {
+        int32_t oldest = velocity->newest_um16[(velocity->next - samples) & (FDVV_NEWEST - 1)];
+        velocity->sum_um16 -= oldest;
+        velocity->ramp_um16 -= velocity->sum_um16;
+        velocity->even--;
+    }
+    velocity->ramp_um16 += velocity->even * um16;
+    velocity->sum_um16 += um16;
+    velocity->even++;
+}
+
+/* Least squares of n samples in even time: 6 / (n (n^2 - 1)) * sum of (2 i - (n - 1)) x_i per tick. The sum stays
+ * below 512 * 662,144 < 2^29, and below 2^24 where the scale's shift is below 17 (n < 6). */
+static void estimate(fdvv_velocity *velocity)
+{
+    uint32_t n = velocity->even;
+    if (n < 3)
+        return;
+    if (n != velocity->scaled_for) {
+        velocity->scaled_for = velocity->even;
+        velocity->slope_scale =
+            fdvv_ratio_product(velocity->tick_rate, fdvv_ratio_inverse(fdvv_ratio_of(n * (n * n - 1))));
+    }
+    velocity->continuous_mm_s16 = (int16_t)fdvv_clamp(
+        fdvv_scale(2 * velocity->ramp_um16 - (int32_t)(n - 1) * velocity->sum_um16, velocity->slope_scale), -INT16_MAX,
+        INT16_MAX);
+    velocity->continuous = 1;
+}
+
+static void take(fdvv_velocity *velocity, const fdvv_settings *settings, int32_t um16, uint16_t elapsed_ticks)
+{
+    velocity->now_tick += elapsed_ticks;
+    if (elapsed_ticks > FDVV_GAP_TICKS) {
+        velocity->kept = 0;
+        forget_window(velocity);
+    }
+    if (elapsed_ticks != 1)
+        velocity->even = 0, velocity->sum_um16 = velocity->ramp_um16 = 0;
+    slide(velocity, settings->continuous_samples, um16);
+    velocity->newest_um16[velocity->next] = um16;
+    velocity->newest_tick[velocity->next] = velocity->now_tick;
+    velocity->next = (uint8_t)((velocity->next + 1) & (FDVV_NEWEST - 1));
+    if (velocity->kept < FDVV_NEWEST)
+        velocity->kept++;
+}
+
+void fdvv_velocity_init(fdvv_velocity *velocity, const fdvv_settings *settings)
+{
+    fdvv_ratio tick = fdvv_ratio_inverse(fdvv_ratio_of(settings->tick_us));
+    velocity->tick_rate = fdvv_ratio_product(fdvv_ratio_of(6000), tick);
+    velocity->decided_scale = fdvv_ratio_product(fdvv_ratio_of(settings->velocity_scale_q12 * 1000u), tick);
+    velocity->decided_scale.shift = (int16_t)(velocity->decided_scale.shift + 12);
+    velocity->scaled_for = 0;
+    velocity->now_tick = 0;
+    velocity->sum_um16 = velocity->ramp_um16 = 0;
+    velocity->next = velocity->kept = velocity->even = velocity->decided = velocity->continuous = 0;
+    velocity->decided_mm_s16 = 0;
+    velocity->continuous_mm_s16 = 0;
+    forget_window(velocity);
+}
+
+void fdvv_velocity_tick(fdvv_velocity *velocity, const fdvv_settings *settings, const fdvv_position *position,
+                        uint16_t elapsed_ticks)
+{
+    take(velocity, settings, position->um16, elapsed_ticks);
+    estimate(velocity);
+    watch_window(velocity, settings, position);
+}

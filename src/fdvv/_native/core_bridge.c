@@ -1,0 +1,41 @@
+/* The firmware's core for Python: how large it is, many ticks in one call, what the supervisor knows. */
+#include "core.h"
+
+#include <stddef.h>
+
+/* Sizes and offsets that the Python side must agree with. */
+void fdvv_bridge_layout(int64_t layout[18]) {
+    const int64_t found[18] = {
+        sizeof(fdvv_core), sizeof(fdvv_inputs), sizeof(fdvv_outputs),
+        offsetof(fdvv_inputs, time_us), offsetof(fdvv_inputs, sum), offsetof(fdvv_inputs, lowest),
+        offsetof(fdvv_inputs, highest), offsetof(fdvv_inputs, elapsed_ticks), offsetof(fdvv_inputs, supply_mV),
+        offsetof(fdvv_inputs, force_counts), offsetof(fdvv_inputs, board),
+        offsetof(fdvv_outputs, duty_q15), offsetof(fdvv_outputs, enable), offsetof(fdvv_outputs, slot),
+        offsetof(fdvv_outputs, stop_us), offsetof(fdvv_outputs, key), offsetof(fdvv_outputs, mode),
+        offsetof(fdvv_outputs, record),
+    };
+    for (int i = 0; i < 18; i++) layout[i] = found[i];
+}
+
+uint8_t fdvv_bridge_ask(fdvv_core *core, uint8_t ask, uint8_t number) {
+    return fdvv_supervisor_ask(&core->supervisor, &core->settings, ask, number);
+}
+
+void fdvv_bridge_fault(fdvv_core *core, uint8_t fault, int32_t value, int32_t bound) {
+    fdvv_supervisor_fault(&core->supervisor, fault, value, bound);
+}
+
+uint8_t fdvv_bridge_mode(const fdvv_core *core) { return core->supervisor.mode; }
+
+uint8_t fdvv_bridge_latched(const fdvv_core *core) { return core->supervisor.fault; }
+
+const fdvv_evidence *fdvv_bridge_evidence(const fdvv_core *core) { return &core->supervisor.evidence; }
+
+/* Run count ticks; if host_heard, the host is heard right before each. */
+void fdvv_bridge_run(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs, int64_t count,
+                     int32_t host_heard) {
+    for (int64_t i = 0; i < count; i++) {
+        if (host_heard) fdvv_supervisor_host_seen(&core->supervisor, inputs[i].time_us);
+        fdvv_core_tick(core, inputs + i, outputs + i);
+    }
+}

@@ -1,0 +1,157 @@
+"""One device's core: its memory, its doors."""
+
+from __future__ import annotations
+
+import ctypes
+from enum import IntEnum
+from functools import cache
+
+import numpy as np
+
+from fdvv._native import address, library
+from fdvv.core._records import INPUTS, OUTPUTS, RecordArray
+from fdvv.errors import BuildError, DeviceError, ModelError
+from fdvv.protocol import Evidence, Fault, ImageHeader, Mode, Refusal, Settings
+
+
+class Ask(IntEnum):
+    """What may be asked of the supervisor (firmware/core/supervisor.h)."""
+
+    BOOTED = 0
+    TEST = 1
+    TESTED = 2
+    ARM = 3
+    DISARM = 4
+    CLEAR = 5
+
+
+@cache
+def doors() -> ctypes.CDLL:
+    """Give the library once its records are known to be laid out as ours; else raise BuildError."""
+    lib = library()
+    lib.fdvv_bridge_ask.restype = ctypes.c_uint8
+    lib.fdvv_bridge_mode.restype = lib.fdvv_bridge_latched.restype = ctypes.c_uint8
+    lib.fdvv_bridge_evidence.restype = ctypes.c_void_p
+    lib.fdvv_settings_check.restype = ctypes.c_uint8
+    found = layout(lib)[1:]
+    ours = [INPUTS.itemsize, OUTPUTS.itemsize]
+    ours += [field[1] for field in (INPUTS.fields or {}).values()]
+    ours += [field[1] for field in (OUTPUTS.fields or {}).values()][:7]
+    if found != ours:
+        raise BuildError(f"the compiled library lays out records as {found}, not as {ours}; rebuild fdvv")
+    return lib
+
+
+def layout(lib: ctypes.CDLL) -> list[int]:
+    """Ask for the size of the core, then sizes and offsets of its records."""
+    numbers = np.zeros(18, np.int64)
+    lib.fdvv_bridge_layout(address(numbers))
+    return [int(number) for number in numbers]
+
+
+def words(data: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
+    """Copy bytes to memory aligned for the core."""
+    return np.frombuffer(data + bytes(-len(data) % 4), np.uint32).copy()
+
+
+class Core:
+    """The controller of a board, run in this process.
+
+    Parameters
+    ----------
+    settings : calibration and limits of the rig; ModelError if the firmware would refuse them.
+    image : program to render (layout in protocol/fdvv.toml), or None.
+    """
+
+    def __init__(self, settings: Settings | None = None, image: bytes | None = None) -> None:
+        self._lib = doors()
+        self._memory = np.zeros(layout(self._lib)[0] // 8 + 1, np.uint64)
+        self._core = address(self._memory)
+        self.settings = Settings() if settings is None else settings
+        self._lib.fdvv_core_init(self._core, address(self._checked(self.settings)))
+        self.activate(image)
+
+    def set(self, settings: Settings) -> None:
+        """Use other settings; forgets position and velocity."""
+        self._lib.fdvv_core_set(self._core, address(self._checked(settings)))
+        self.settings = settings
+
+    def activate(self, image: bytes | None) -> None:
+        """Render this program from the next tick on; None: none."""
+        if image is None:
+            self._lib.fdvv_core_activate(self._core, None)
+            self._image = None
+            return
+        head = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
+        if head.size_bytes != len(image):
+            raise ModelError(f"the image says it has {head.size_bytes} bytes, got {len(image)}")
+        fresh = words(image)
+        self._lib.fdvv_core_activate(self._core, address(fresh))
+        self._image = fresh
+
+    def ask(self, ask: Ask, number: int = 0) -> Refusal:
+        """Ask the supervisor for a change of mode; number is the fault to clear."""
+        return Refusal(self._lib.fdvv_bridge_ask(self._core, ctypes.c_uint8(ask), ctypes.c_uint8(number)))
+
+    def arm(self) -> None:
+        """Go through boot to armed; DeviceError with the refusal if that is not possible."""
+        if self.mode is Mode.BOOT:
+            self.ask(Ask.BOOTED)
+        refusal = self.ask(Ask.ARM)
+        if refusal:
+            raise DeviceError(f"the core was not armed from mode {self.mode.name}: {refusal.name}")
+
+    def event(self, event: int) -> None:
+        """Tell the program of host event 0 to 31."""
+        self._lib.fdvv_core_event(self._core, ctypes.c_uint8(event))
+
+    def announce(self, velocity_mm_s16: int) -> None:
+        """Say how fast the next press is meant to be."""
+        self._lib.fdvv_core_announce(self._core, ctypes.c_uint16(velocity_mm_s16))
+
+    def fail(self, fault: Fault, value: int = 0, bound: int = 0) -> None:
+        """Latch a fault found outside the tick."""
+        self._lib.fdvv_bridge_fault(
+            self._core, ctypes.c_uint8(fault), ctypes.c_int32(value), ctypes.c_int32(bound)
+        )
+
+    @property
+    def mode(self) -> Mode:
+        """What the supervisor lets the device do."""
+        return Mode(self._lib.fdvv_bridge_mode(self._core))
+
+    @property
+    def fault(self) -> Fault:
+        """Why it is in fault, if it is."""
+        return Fault(self._lib.fdvv_bridge_latched(self._core))
+
+    @property
+    def evidence(self) -> Evidence:
+        """What was so when the fault was latched."""
+        at = self._lib.fdvv_bridge_evidence(self._core)
+        return Evidence.unpack(ctypes.string_at(at, Evidence.length_bytes()))
+
+    def tick(self, inputs: np.void, *, host_heard: bool = True) -> np.void:
+        """Run one tick on one record of INPUTS; give one of OUTPUTS."""
+        one: np.void = self.run(np.asarray(inputs, INPUTS).reshape(1), host_heard=host_heard)[0]
+        return one
+
+    def run(self, inputs: RecordArray, *, host_heard: bool = True) -> RecordArray:
+        """Run one tick per record of INPUTS; give as many of OUTPUTS. The host is heard before each or never."""
+        given = np.ascontiguousarray(inputs, INPUTS)
+        outputs = np.zeros(given.size, OUTPUTS)
+        self._lib.fdvv_bridge_run(
+            self._core,
+            address(given),
+            address(outputs),
+            ctypes.c_int64(given.size),
+            ctypes.c_int32(host_heard),
+        )
+        return outputs
+
+    def _checked(self, settings: Settings) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
+        packed = words(settings.pack())
+        wrong = self._lib.fdvv_settings_check(address(packed))
+        if wrong:
+            raise ModelError(f"the firmware refuses the settings: {list(Settings.LIMITS)[wrong - 1]}")
+        return packed
