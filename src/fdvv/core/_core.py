@@ -137,7 +137,7 @@ class Core:
         return one
 
     def run(self, inputs: RecordArray, *, host_heard: bool = True) -> RecordArray:
-        """Run one tick per record of INPUTS; give as many of OUTPUTS. The host is heard before each or never."""
+        """Run one tick per record of INPUTS; give as many of OUTPUTS. The host is heard always or never."""
         given = np.ascontiguousarray(inputs, INPUTS)
         outputs = np.zeros(given.size, OUTPUTS)
         self._lib.fdvv_bridge_run(
