@@ -5,7 +5,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-NATIVE := $(wildcard src/fdvv/_native/*.c src/fdvv/_native/*.h)
+NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch])
 
 .PHONY: help demo test check format bench setup clean
 

@@ -1,4 +1,7 @@
-"""Compile the C kernels into one shared library; run as a script to rebuild it in place."""
+"""Compile the C kernels and the firmware's portable core into one shared library.
+
+Run as a script to rebuild it in place.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 NATIVE = Path(__file__).parent / "src" / "fdvv" / "_native"
+CORE = Path(__file__).parent / "firmware" / "core"
 # -ffp-contract=off and no -march=native: the same bits on every x86-64 machine.
 FLAGS = ["-std=c99", "-O3", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror"]
 
@@ -21,8 +25,8 @@ def compile_library(folder: Path = NATIVE) -> Path:
     library = folder / "libfdvv.so"
     # a process may have the old library mapped: write beside it, then rename
     fresh = library.with_suffix(f".{os.getpid()}.tmp")
-    sources = [str(path) for path in sorted(folder.glob("*.c"))]
-    subprocess.run([compiler, *FLAGS, "-o", str(fresh), *sources, "-lm"], check=True)
+    sources = [str(path) for part in (folder, CORE) for path in sorted(part.glob("*.c"))]
+    subprocess.run([compiler, *FLAGS, f"-I{CORE}", "-o", str(fresh), *sources, "-lm"], check=True)
     fresh.replace(library)
     return library
 
