@@ -14,21 +14,6 @@ static uint8_t wave_fits(const fdvv_synth_slot *slot) {
            slot->wave_at <= FDVV_SYNTH_POOL_BYTES - slot->wave_samples;
 }
 
-uint8_t fdvv_synth_set(fdvv_synth_bank *bank, uint8_t index, const fdvv_synth_slot *slot) {
-    if (index >= FDVV_SYNTH_SLOTS || slot->waveform > FDVV_SYNTH_SAMPLED) return 0;
-    if (slot->amplitude_counts > FDVV_SYNTH_AMPLITUDE_MAX) return 0;
-    if (slot->waveform == FDVV_SYNTH_SAMPLED && !wave_fits(slot)) return 0;
-    bank->slots[index] = *slot;
-    return 1;
-}
-
-uint8_t fdvv_synth_load(fdvv_synth_bank *bank, uint16_t at, const uint8_t *samples, uint8_t count) {
-    if (count == 0 || at > FDVV_SYNTH_POOL_BYTES - count) return 0;
-    for (uint8_t i = 0; i < count; i++)
-        bank->pool[at + i] = (int8_t)(samples[i] < 128 ? samples[i] : samples[i] - 256);
-    return 1;
-}
-
 /* 2^32 / 256000 = 16777.216, the sixteenth-hertz of one turn; 0.216 = 14156 / 65536 */
 static uint32_t turn_increment(uint16_t frequency_Hz16) {
     return (uint32_t)frequency_Hz16 * 16777u + (((uint32_t)frequency_Hz16 * 14156u) >> 16);
@@ -37,6 +22,23 @@ static uint32_t turn_increment(uint16_t frequency_Hz16) {
 /* 2^16 / 256000, truncated: less than one sample of the wave late after the longest duration */
 static uint32_t wave_increment(uint16_t rate_Hz16) {
     return ((uint32_t)rate_Hz16 * 16777u) >> 16;
+}
+
+uint8_t fdvv_synth_set(fdvv_synth_bank *bank, uint8_t index, const fdvv_synth_slot *slot) {
+    if (index >= FDVV_SYNTH_SLOTS || slot->waveform > FDVV_SYNTH_SAMPLED) return 0;
+    if (slot->amplitude_counts > FDVV_SYNTH_AMPLITUDE_MAX) return 0;
+    if (slot->waveform == FDVV_SYNTH_SAMPLED && !wave_fits(slot)) return 0;
+    bank->slots[index] = *slot;
+    bank->increments[index] = slot->waveform == FDVV_SYNTH_SAMPLED ? wave_increment(slot->frequency_Hz16)
+                                                                   : turn_increment(slot->frequency_Hz16);
+    return 1;
+}
+
+uint8_t fdvv_synth_load(fdvv_synth_bank *bank, uint16_t at, const uint8_t *samples, uint8_t count) {
+    if (count == 0 || at > FDVV_SYNTH_POOL_BYTES - count) return 0;
+    for (uint8_t i = 0; i < count; i++)
+        bank->pool[at + i] = (int8_t)(samples[i] < 128 ? samples[i] : samples[i] - 256);
+    return 1;
 }
 
 static void begin_block(fdvv_synth_voice *voice) {
@@ -48,22 +50,26 @@ static void begin_block(fdvv_synth_voice *voice) {
     voice->step_q5 = (uint16_t)(start_q5 - voice->block_end_q5) >> 5;
 }
 
-uint8_t fdvv_synth_start(fdvv_synth_voice *voice, const fdvv_synth_bank *bank, uint8_t index, uint8_t strength) {
-    if (index >= FDVV_SYNTH_SLOTS || bank->slots[index].duration_samples == 0) return 0;
+void fdvv_synth_choose(fdvv_synth_voice *voice, const fdvv_synth_bank *bank, uint8_t index) {
+    fdvv_synth_stop(voice);
+    if (index >= FDVV_SYNTH_SLOTS || bank->slots[index].duration_samples == 0) return;
     const fdvv_synth_slot *slot = &bank->slots[index];
-    /* 255 becomes 256, a factor of exactly one */
-    const uint16_t strength_q8 = (uint16_t)(strength + (strength >> 7));
-    const uint8_t sampled = slot->waveform == FDVV_SYNTH_SAMPLED;
-    voice->increment = sampled ? wave_increment(slot->frequency_Hz16) : turn_increment(slot->frequency_Hz16);
+    voice->increment = bank->increments[index];
     voice->phase = voice->increment >> 1;
-    voice->wave = &bank->pool[sampled ? slot->wave_at : 0];
+    voice->wave = &bank->pool[slot->waveform == FDVV_SYNTH_SAMPLED ? slot->wave_at : 0];
     voice->wave_samples = slot->wave_samples;
     voice->remaining_samples = slot->duration_samples;
-    voice->amplitude_q5 = (uint16_t)(((uint32_t)slot->amplitude_counts * strength_q8) >> 3);
+    voice->amplitude_q5 = (uint16_t)(slot->amplitude_counts << 5);
     voice->decay_q16 = slot->decay_q16;
+    voice->waveform = slot->waveform;
+}
+
+void fdvv_synth_start(fdvv_synth_voice *voice, uint8_t strength) {
+    /* 255 becomes 256, a factor of exactly one */
+    const uint16_t strength_q8 = (uint16_t)(strength + (strength >> 7));
+    voice->amplitude_q5 = (uint16_t)(((uint32_t)voice->amplitude_q5 * strength_q8) >> 8);
     begin_block(voice);
-    voice->waveform = strength ? slot->waveform : (uint8_t)FDVV_SYNTH_SILENT;
-    return 1;
+    if (!strength) fdvv_synth_stop(voice);
 }
 
 void fdvv_synth_stop(fdvv_synth_voice *voice) {
@@ -99,10 +105,10 @@ static void advance(fdvv_synth_voice *voice) {
 }
 
 uint16_t fdvv_synth_sample(fdvv_synth_voice *voice) {
-    if (voice->waveform == FDVV_SYNTH_SILENT) return FDVV_SYNTH_SILENCE;
+    if (!fdvv_synth_playing(voice)) return FDVV_SYNTH_SILENCE;
     const int16_t shape_q12 = voice->waveform == FDVV_SYNTH_SINE ? sine_q12(voice->phase) : wave_q12(voice);
     const int32_t product_q17 = (int32_t)shape_q12 * voice->amplitude_q5; /* within 4096 * 65504 */
-    const uint16_t sample = (uint16_t)((uint32_t)(product_q17 + MIDDLE_AND_HALF) >> 17);
+    const uint16_t sample = (uint16_t)((uint16_t)((uint32_t)(product_q17 + MIDDLE_AND_HALF) >> 16) >> 1);
     advance(voice);
     return sample;
 }

@@ -33,6 +33,7 @@ typedef struct {
 /* All that can be played. */
 typedef struct {
     fdvv_synth_slot slots[FDVV_SYNTH_SLOTS];
+    uint32_t increments[FDVV_SYNTH_SLOTS]; /* of their voices, so that a start need not compute them */
     int8_t pool[FDVV_SYNTH_POOL_BYTES];
 } fdvv_synth_bank;
 
@@ -60,12 +61,19 @@ uint8_t fdvv_synth_set(fdvv_synth_bank *bank, uint8_t index, const fdvv_synth_sl
 /* Copy samples into the pool; return 1, or 0 and change nothing if they do not fit. */
 uint8_t fdvv_synth_load(fdvv_synth_bank *bank, uint16_t at, const uint8_t *samples, uint8_t count);
 
-/* Start a voice afresh, whatever it did before; strength 255 is the slot's own amplitude, 0 is silence.
- * Return 1, or 0 and leave the voice alone if the slot is empty or unknown. */
-uint8_t fdvv_synth_start(fdvv_synth_voice *voice, const fdvv_synth_bank *bank, uint8_t index, uint8_t strength);
+/* Start a voice afresh, whatever it did before, in two parts because a command brings them one after the other:
+ * which slot, silent if it is empty or unknown; then how strong, 255 being the slot's own amplitude and 0
+ * silence. */
+void fdvv_synth_choose(fdvv_synth_voice *voice, const fdvv_synth_bank *bank, uint8_t index);
+void fdvv_synth_start(fdvv_synth_voice *voice, uint8_t strength);
 
 /* End a voice at once. */
 void fdvv_synth_stop(fdvv_synth_voice *voice);
+
+/* Tell whether a voice is not over; one byte, so that an interrupt may end it meanwhile. */
+static inline uint8_t fdvv_synth_playing(const fdvv_synth_voice *voice) {
+    return voice->waveform != FDVV_SYNTH_SILENT;
+}
 
 /* Give the next sample, 0 to 4095 and 2048 once the voice is over. */
 uint16_t fdvv_synth_sample(fdvv_synth_voice *voice);

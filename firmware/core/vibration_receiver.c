@@ -2,6 +2,8 @@
 
 enum { IDLE, COLLECTING, OVER };
 
+#define PLAY_HEADER FDVV_VIBRATION_HEADER(FDVV_VIBRATION_PLAY, FDVV_VIBRATION_PLAY_BYTES)
+
 /* four bits at a time: 16 bytes of table, and the last byte of a PLAY is checked in a few microseconds */
 static const uint8_t nibbles[16] = {0x00, 0x07, 0x0E, 0x09, 0x1C, 0x1B, 0x12, 0x15,
                                     0x38, 0x3F, 0x36, 0x31, 0x24, 0x23, 0x2A, 0x2D};
@@ -18,7 +20,6 @@ void fdvv_vibration_init(fdvv_vibration_receiver *receiver, fdvv_synth_bank *ban
     receiver->state = IDLE;
     receiver->received = receiver->checksum = 0;
     receiver->accepted = receiver->errors = 0;
-    receiver->slot = receiver->strength = 0;
 }
 
 void fdvv_vibration_begin(fdvv_vibration_receiver *receiver) {
@@ -37,12 +38,6 @@ static uint16_t number(const uint8_t *bytes) {
     return (uint16_t)(bytes[0] | (uint16_t)((uint16_t)bytes[1] << 8));
 }
 
-static uint8_t carry_out_play(fdvv_vibration_receiver *receiver, const uint8_t *payload) {
-    if (payload[0] >= FDVV_SYNTH_SLOTS || !receiver->bank->slots[payload[0]].duration_samples) return 0;
-    receiver->slot = payload[0];
-    receiver->strength = payload[1];
-    return 1;
-}
 
 static uint8_t carry_out_set(fdvv_synth_bank *bank, const uint8_t *payload) {
     fdvv_synth_slot slot;
@@ -60,7 +55,7 @@ static uint8_t carry_out(fdvv_vibration_receiver *receiver) {
     const uint8_t *payload = receiver->message + 1;
     const uint8_t command = receiver->message[0] >> 5, bytes = receiver->message[0] & 31u;
     if (command == FDVV_VIBRATION_PLAY && bytes == FDVV_VIBRATION_PLAY_BYTES)
-        return carry_out_play(receiver, payload);
+        return payload[0] < FDVV_SYNTH_SLOTS && receiver->bank->slots[payload[0]].duration_samples;
     if (command == FDVV_VIBRATION_SET && bytes == FDVV_VIBRATION_SET_BYTES)
         return carry_out_set(receiver->bank, payload);
     if (command == FDVV_VIBRATION_LOAD && bytes > 2u && bytes <= 2u + FDVV_VIBRATION_LOAD_SAMPLES)
@@ -68,16 +63,21 @@ static uint8_t carry_out(fdvv_vibration_receiver *receiver) {
     return 0;
 }
 
-/* The whole message is there; return 1 if it is a good PLAY. */
-static uint8_t finish(fdvv_vibration_receiver *receiver) {
+static uint8_t finish(fdvv_vibration_receiver *receiver, uint8_t byte) {
     receiver->state = OVER;
-    /* a checksum continued over itself is 0 */
-    if (receiver->checksum || !carry_out(receiver)) {
+    if (byte != receiver->checksum || !carry_out(receiver)) {
         receiver->errors++;
-        return 0;
+        return FDVV_VIBRATION_NOTHING;
     }
     receiver->accepted++;
-    return receiver->message[0] >> 5 == FDVV_VIBRATION_PLAY;
+    return receiver->message[0] >> 5 == FDVV_VIBRATION_PLAY ? FDVV_VIBRATION_RIGHT : FDVV_VIBRATION_NOTHING;
+}
+
+static uint8_t collect(fdvv_vibration_receiver *receiver, uint8_t byte) {
+    receiver->message[receiver->received++] = byte;
+    receiver->checksum = fdvv_vibration_checksum(receiver->checksum, byte);
+    if (receiver->message[0] != PLAY_HEADER || receiver->received == 1) return FDVV_VIBRATION_NOTHING;
+    return receiver->received == 2 ? FDVV_VIBRATION_SLOT : FDVV_VIBRATION_STRENGTH;
 }
 
 uint8_t fdvv_vibration_byte(fdvv_vibration_receiver *receiver, uint8_t byte) {
@@ -85,11 +85,10 @@ uint8_t fdvv_vibration_byte(fdvv_vibration_receiver *receiver, uint8_t byte) {
         receiver->errors++;
         receiver->state = IDLE;
     }
-    if (receiver->state == IDLE) return 0;
-    receiver->message[receiver->received++] = byte;
-    receiver->checksum = fdvv_vibration_checksum(receiver->checksum, byte);
-    if (receiver->received < (receiver->message[0] & 31u) + 2u) return 0;
-    return finish(receiver);
+    if (receiver->state == IDLE) return FDVV_VIBRATION_NOTHING;
+    if (receiver->received && receiver->received == (receiver->message[0] & 31u) + 1u)
+        return finish(receiver, byte);
+    return collect(receiver, byte);
 }
 
 fdvv_vibration_status fdvv_vibration_report(const fdvv_vibration_receiver *receiver, uint8_t flags) {

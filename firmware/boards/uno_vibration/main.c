@@ -16,7 +16,7 @@
 #define LATCH 0x20u  /* D5: LDAC, its fall moves the converter's output */
 #define CONVERTER (SELECT | CLOCK | DATA | LATCH)
 
-#define COMMAND 0x3000u /* MCP4921, register 5-1: unbuffered reference, gain 1, output on */
+#define COMMAND 0x30u /* MCP4921, register 5-1, high byte: unbuffered reference, gain 1, output on */
 
 /* states of the bus as slave: ATmega328P data sheet, tables 22-4 and 22-5 */
 #define BUS_TROUBLE 0x00u
@@ -64,9 +64,8 @@ static inline __attribute__((always_inline)) void send_byte(uint8_t low, uint8_t
 
 static inline __attribute__((always_inline)) void convert(uint16_t sample_counts) {
     const uint8_t others = (uint8_t)(PORTD & ~CONVERTER);
-    const uint16_t word = COMMAND | sample_counts;
-    send_byte(others | LATCH, (uint8_t)(word >> 8));
-    send_byte(others | LATCH, (uint8_t)word);
+    send_byte(others | LATCH, (uint8_t)(COMMAND | (uint8_t)((sample_counts >> 8) & 0x0Fu)));
+    send_byte(others | LATCH, (uint8_t)sample_counts);
     PORTD = (uint8_t)(others | SELECT | LATCH);
     PORTD = (uint8_t)(others | SELECT);
     PORTD = (uint8_t)(others | SELECT | LATCH);
@@ -75,21 +74,27 @@ static inline __attribute__((always_inline)) void convert(uint16_t sample_counts
 ISR(TIMER1_COMPA_vect) {
     const uint8_t voice = sounding;
     convert(next_sample[voice]);
-    next_sample[voice] = fdvv_synth_sample(&voices[voice]);
+    /* the call alone would cost a silent board 60 cycles, in which a command waits */
+    next_sample[voice] = fdvv_synth_playing(&voices[voice]) ? fdvv_synth_sample(&voices[voice]) : FDVV_SYNTH_SILENCE;
     ticks++;
 }
 
-static void play(uint8_t slot, uint8_t strength) {
+/* The other voice is made ready byte by byte while the command still travels. */
+static void take(uint8_t byte) {
     const uint8_t other = sounding ^ 1u;
-    if (!fdvv_synth_start(&voices[other], &bank, slot, strength)) return;
-    next_sample[other] = fdvv_synth_sample(&voices[other]);
+    const uint8_t brought = fdvv_vibration_byte(&receiver, byte);
+    if (brought == FDVV_VIBRATION_SLOT) fdvv_synth_choose(&voices[other], &bank, byte);
+    if (brought == FDVV_VIBRATION_STRENGTH) {
+        fdvv_synth_start(&voices[other], byte);
+        next_sample[other] = fdvv_synth_sample(&voices[other]);
+    }
     IN_ORDER();
-    sounding = other;
+    if (brought == FDVV_VIBRATION_RIGHT) sounding = other;
 }
 
 static void prepare_status(void) {
     uint8_t flags = reset_flags;
-    if (voices[sounding].waveform != FDVV_SYNTH_SILENT) flags |= FDVV_VIBRATION_PLAYING;
+    if (fdvv_synth_playing(&voices[sounding])) flags |= FDVV_VIBRATION_PLAYING;
     status = fdvv_vibration_report(&receiver, flags);
     told = 0;
 }
@@ -113,8 +118,8 @@ static void listen(uint8_t state) {
         fdvv_vibration_begin(&receiver);
     else if (state != BYTE_CAME)
         fdvv_vibration_end(&receiver);
-    else if (fdvv_vibration_byte(&receiver, byte))
-        play(receiver.slot, receiver.strength);
+    else
+        take(byte);
 }
 
 static void serve_bus(void) {
@@ -152,7 +157,7 @@ static void start_bus(void) {
     PORTC &= (uint8_t)~(_BV(PC4) | _BV(PC5));
     TWBR = (F_CPU / FDVV_VIBRATION_BUS_HZ - 16u) / 2u;
     TWAR = FDVV_VIBRATION_ADDRESS << 1;
-    TWCR = RELEASE;
+    TWCR = _BV(TWEA) | _BV(TWEN);
 }
 
 int main(void) {
