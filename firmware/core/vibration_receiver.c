@@ -64,11 +64,13 @@ static uint8_t carry_out(fdvv_vibration_receiver *receiver) {
 }
 
 static uint8_t finish(fdvv_vibration_receiver *receiver, uint8_t byte) {
-    receiver->state = OVER;
+    /* what follows a refused message belongs to it and is not counted again */
+    receiver->state = IDLE;
     if (byte != receiver->checksum || !carry_out(receiver)) {
         receiver->errors++;
         return FDVV_VIBRATION_NOTHING;
     }
+    receiver->state = OVER;
     receiver->accepted++;
     return receiver->message[0] >> 5 == FDVV_VIBRATION_PLAY ? FDVV_VIBRATION_RIGHT : FDVV_VIBRATION_NOTHING;
 }

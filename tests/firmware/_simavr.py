@@ -6,6 +6,7 @@ import ctypes
 import os
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +38,11 @@ SIGNATURES = {
     "uno_interrupts": (ctypes.c_uint32, [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]),
     "uno_malformed": (ctypes.c_uint32, [ctypes.c_void_p]),
 }
+
+
+def say(figure: str) -> None:
+    """Show a figure to whoever runs pytest with -rP."""
+    sys.stdout.write(f"emulated: {figure}\n")
 
 
 def require_tools() -> None:
@@ -80,7 +86,7 @@ class Samples:
     @property
     def counts(self) -> npt.NDArray[np.uint16]:
         """Give the converter's 12 bits."""
-        return self.words & 0xFFF
+        return self.words & np.uint16(0xFFF)
 
     def after(self, cycle: int) -> Samples:
         """Leave out what was before a cycle."""

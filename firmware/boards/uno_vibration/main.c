@@ -12,7 +12,7 @@
 /* port D, the Wave Shield's wiring of the MCP4921 */
 #define SELECT 0x04u /* D2: chip select, active low */
 #define CLOCK 0x08u  /* D3: data are taken at its rise */
-#define DATA 0x10u   /* D4 */
+#define DATA 0x10u   /* D4: bit 4, which SEND knows */
 #define LATCH 0x20u  /* D5: LDAC, its fall moves the converter's output */
 #define CONVERTER (SELECT | CLOCK | DATA | LATCH)
 
@@ -43,23 +43,22 @@ static uint8_t reset_flags;
 /* the compiler may move no access to memory across this */
 #define IN_ORDER() __asm__ volatile("" ::: "memory")
 
-/* The bit that stands under DATA after a shift; every bit takes the same number of cycles in every sample. */
-#define SEND(shifted)                                    \
-    do {                                                 \
-        const uint8_t bit = (uint8_t)((shifted) & DATA); \
-        PORTD = (uint8_t)(low | bit);                    \
-        PORTD = (uint8_t)(low | bit | CLOCK);            \
-    } while (0)
+/* Four cycles whatever the bit: data with the clock low, then the clock high by a write to PIND, which toggles. */
+#define SEND(byte, bit)                                                                   \
+    __asm__ volatile("bst %1, " #bit "\n\tbld %0, 4\n\tout %2, %0\n\tout %3, %4"            \
+                     : "+r"(port)                                                         \
+                     : "r"(byte), "I"(_SFR_IO_ADDR(PORTD)), "I"(_SFR_IO_ADDR(PIND)), "r"(clock))
 
-static inline __attribute__((always_inline)) void send_byte(uint8_t low, uint8_t byte) {
-    SEND(byte >> 3);
-    SEND(byte >> 2);
-    SEND(byte >> 1);
-    SEND(byte);
-    SEND(byte << 1);
-    SEND(byte << 2);
-    SEND(byte << 3);
-    SEND(byte << 4);
+static inline __attribute__((always_inline)) void send_byte(uint8_t port, uint8_t byte) {
+    const uint8_t clock = CLOCK;
+    SEND(byte, 7);
+    SEND(byte, 6);
+    SEND(byte, 5);
+    SEND(byte, 4);
+    SEND(byte, 3);
+    SEND(byte, 2);
+    SEND(byte, 1);
+    SEND(byte, 0);
 }
 
 static inline __attribute__((always_inline)) void convert(uint16_t sample_counts) {

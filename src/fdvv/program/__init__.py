@@ -2,8 +2,8 @@
 
 from fdvv.program._synth import (
     RATE_HZ,
-    SILENCE_counts,
     SINE_Q12,
+    SILENCE_counts,
     Slot,
     Waveform,
     render,

@@ -75,16 +75,15 @@ class Slot:
 
 def check_range(name: str, value: int, low: int, high: int) -> None:
     """Raise ModelError unless value is a whole number from low to high."""
-    if value != int(value) or not low <= value <= high:
+    if not low <= value <= high or value != int(value):
         raise ModelError(f"{name} must be a whole number from {low} to {high}, got {value}")
 
 
 def render(slot: Slot, samples: int, strength: int = 255) -> npt.NDArray[np.uint16]:
     """Give the converter's counts from the start of a slot, shape (samples,), 0 to 4095.
 
-    strength scales the slot's amplitude: 255 plays it as it is, 0 is silence, below 128 it is 256ths, from 128
-    256ths of one more.
-    """
+    strength scales the amplitude by 1/256 of strength, or of strength + 1 from 128 on: 255 plays the slot as it
+    is, 0 is silence."""
     check_range("strength", strength, 0, 255)
     counts = np.full(samples, SILENCE_counts, dtype=np.uint16)
     length = min(samples, slot.duration_samples if strength else 0)
@@ -115,7 +114,8 @@ def _sine_q12(slot: Slot, length: int) -> IntArray:
     phase = _phase(increment, length)
     index, fraction_q8 = phase >> 24, phase >> 16 & 255
     here, after = SINE_Q12[index], SINE_Q12[(index + 1) & 255]
-    return here + ((after - here) * fraction_q8 >> 8)
+    risen: IntArray = here + ((after - here) * fraction_q8 >> 8)
+    return risen
 
 
 def _wave_q12(slot: Slot, length: int) -> IntArray:
@@ -124,4 +124,5 @@ def _wave_q12(slot: Slot, length: int) -> IntArray:
     wave = np.array([*slot.wave, 0], dtype=np.int64)
     index, fraction_q7 = phase >> 16, phase >> 9 & 127
     here, after = wave[index], wave[index + 1]
-    return (here * 128 + (after - here) * fraction_q7) >> 2
+    risen: IntArray = (here * 128 + (after - here) * fraction_q7) >> 2
+    return risen

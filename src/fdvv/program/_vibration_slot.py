@@ -11,9 +11,9 @@ from fdvv.model import Vibration
 from fdvv.program._synth import (
     BLOCK_SAMPLES,
     RATE_HZ,
-    SILENCE_counts,
     STEADY_Q16,
     WAVE_SAMPLES,
+    SILENCE_counts,
     Slot,
     Waveform,
     render,

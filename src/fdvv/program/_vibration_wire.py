@@ -95,5 +95,7 @@ def read_status(data: bytes) -> BoardStatus:
         raise DeviceError(f"the vibration board's status is damaged: {data.hex(' ')}")
     version, flags, accepted, errors = data[:4]
     if version != VERSION:
-        raise DeviceError(f"the vibration board speaks version {version}, this program {VERSION}; flash it anew")
+        raise DeviceError(
+            f"the vibration board speaks version {version}, this program {VERSION}; flash it anew"
+        )
     return BoardStatus(bool(flags & PLAYING), bool(flags & WATCHDOG), accepted, errors)
