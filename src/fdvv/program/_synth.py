@@ -82,7 +82,7 @@ def check_range(name: str, value: int, low: int, high: int) -> None:
 def render(slot: Slot, samples: int, strength: int = 255) -> npt.NDArray[np.uint16]:
     """Give the converter's counts from the start of a slot, shape (samples,), 0 to 4095.
 
-    strength scales the amplitude by 1/256 of strength, or of strength + 1 from 128 on: 255 plays the slot as it
+    strength scales the amplitude by 1/256 of strength, or of strength + 1 from 128 on: 255 plays the slot
     is, 0 is silence."""
     check_range("strength", strength, 0, 255)
     counts = np.full(samples, SILENCE_counts, dtype=np.uint16)
