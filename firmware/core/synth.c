@@ -19,7 +19,7 @@ static uint32_t turn_increment(uint16_t frequency_Hz16) {
     return (uint32_t)frequency_Hz16 * 16777u + (((uint32_t)frequency_Hz16 * 14156u) >> 16);
 }
 
-/* 2^16 / 256000, truncated: less than one sample of the wave late after the longest duration */
+/* 2^16 / 256000, truncated: at most 1.3 samples of the wave late after the longest duration */
 static uint32_t wave_increment(uint16_t rate_Hz16) {
     return ((uint32_t)rate_Hz16 * 16777u) >> 16;
 }
@@ -47,7 +47,7 @@ static void begin_block(fdvv_synth_voice *voice) {
     voice->block_end_q5 = start_q5;
     if (voice->decay_q16 != FDVV_SYNTH_STEADY_Q16)
         voice->block_end_q5 = (uint16_t)(((uint32_t)start_q5 * voice->decay_q16 + 32768u) >> 16);
-    voice->step_q5 = (uint16_t)(start_q5 - voice->block_end_q5) >> 5;
+    voice->step_q5 = (uint16_t)(start_q5 - voice->block_end_q5) / FDVV_SYNTH_BLOCK_SAMPLES;
 }
 
 void fdvv_synth_choose(fdvv_synth_voice *voice, const fdvv_synth_bank *bank, uint8_t index) {

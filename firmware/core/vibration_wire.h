@@ -23,8 +23,7 @@
 #define FDVV_VIBRATION_PLAY_BYTES 2u /* of payload */
 #define FDVV_VIBRATION_SET_BYTES 14u
 #define FDVV_VIBRATION_LOAD_SAMPLES 28u
-#define FDVV_VIBRATION_PAYLOAD_BYTES 31u
-#define FDVV_VIBRATION_MESSAGE_BYTES 33u
+#define FDVV_VIBRATION_MESSAGE_BYTES 33u /* header, 31 of payload, checksum */
 #define FDVV_VIBRATION_HEADER(command, bytes) ((uint8_t)((command) * 32u + (bytes)))
 
 /* From the board: five bytes, the last the checksum of the four before it. */

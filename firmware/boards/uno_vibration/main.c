@@ -22,7 +22,6 @@
 #define BUS_TROUBLE 0x00u
 #define ADDRESSED_TO_LISTEN 0x60u
 #define BYTE_CAME 0x80u
-#define STOPPED 0xA0u
 #define ADDRESSED_TO_SPEAK 0xA8u
 #define BYTE_WENT 0xB8u
 
@@ -73,8 +72,11 @@ static inline __attribute__((always_inline)) void convert(uint16_t sample_counts
 ISR(TIMER1_COMPA_vect) {
     const uint8_t voice = sounding;
     convert(next_sample[voice]);
-    /* the call alone would cost a silent board 60 cycles, in which a command waits */
-    next_sample[voice] = fdvv_synth_playing(&voices[voice]) ? fdvv_synth_sample(&voices[voice]) : FDVV_SYNTH_SILENCE;
+    /* a silent board is spared the call, during which a command would wait */
+    if (fdvv_synth_playing(&voices[voice]))
+        next_sample[voice] = fdvv_synth_sample(&voices[voice]);
+    else
+        next_sample[voice] = FDVV_SYNTH_SILENCE;
     ticks++;
 }
 
@@ -93,6 +95,7 @@ static void take(uint8_t byte) {
 
 static void prepare_status(void) {
     uint8_t flags = reset_flags;
+    IN_ORDER();
     if (fdvv_synth_playing(&voices[sounding])) flags |= FDVV_VIBRATION_PLAYING;
     status = fdvv_vibration_report(&receiver, flags);
     told = 0;
