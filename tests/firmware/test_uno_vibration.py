@@ -109,7 +109,8 @@ def test_strength_0_silences_a_board_that_sounds(uno: Uno) -> None:
 
 def sample_intervals(uno: Uno) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     """Cycles between the timer's samples; the very first sample is that of the boot."""
-    return np.diff(uno.samples().cycles[1:].astype(np.int64))
+    cycles = uno.samples().cycles[1:].astype(np.int64)
+    return cycles[1:] - cycles[:-1]
 
 
 def worst_deviation_us(intervals: np.ndarray[tuple[int], np.dtype[np.int64]]) -> float:
