@@ -11,7 +11,14 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[1] / "src" / "fdvv"
 
 GROUND = {"errors", "units", "files", "_native", "protocol", "core"}
-LEVELS = [GROUND, {"model"}, {"capture", "compensate", "twin"}, {"device", "plot"}, {"workflow"}, {"cli"}]
+LEVELS = [
+    GROUND,
+    {"model"},
+    {"capture", "compensate", "program", "twin"},
+    {"device", "plot"},
+    {"workflow"},
+    {"cli"},
+]
 # inside the ground and between rooms of one level, only these arrows
 SAME_LEVEL = {
     *((room, "errors") for room in ("_native", "core", "files", "protocol")),

@@ -33,6 +33,11 @@ def test_a_generated_reference_is_that_of_the_code(page: str, name: str) -> None
     assert text == tool(name).reference(), f"run python tools/{name}.py"
 
 
+def test_the_firmwares_sine_table_is_that_of_the_code() -> None:
+    sine = tool("make_sine")
+    assert sine.HEADER.read_text() == sine.reference(), "run python tools/make_sine.py"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(REPOSITORY)))
 def test_links_to_files_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", page.read_text()):

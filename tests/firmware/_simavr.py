@@ -1,0 +1,148 @@
+"""The Uno in simavr, seen from Python; _simavr.c is its other half. All figures from here are emulated."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+BOARD = REPOSITORY / "firmware" / "boards" / "uno_vibration"
+HEADERS = Path("/usr/include/simavr")
+CLOCK_HZ = 16_000_000
+ROOM = 200_000
+BOOT_CYCLES = 20_000
+
+SIGNATURES = {
+    "uno_open": (ctypes.c_void_p, [ctypes.c_char_p, ctypes.c_uint32]),
+    "uno_close": (None, [ctypes.c_void_p]),
+    "uno_cycle": (ctypes.c_uint64, [ctypes.c_void_p]),
+    "uno_run": (None, [ctypes.c_void_p, ctypes.c_uint64]),
+    "uno_poke": (None, [ctypes.c_void_p, ctypes.c_uint16, ctypes.c_uint8]),
+    "uno_peek": (ctypes.c_uint8, [ctypes.c_void_p, ctypes.c_uint16]),
+    "uno_write": (
+        ctypes.c_uint64,
+        [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_int],
+    ),
+    "uno_read": (ctypes.c_uint64, [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32, ctypes.c_uint64]),
+    "uno_disturb": (None, [ctypes.c_void_p]),
+    "uno_samples": (ctypes.c_uint32, [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]),
+    "uno_interrupts": (ctypes.c_uint32, [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]),
+    "uno_malformed": (ctypes.c_uint32, [ctypes.c_void_p]),
+}
+
+
+def say(figure: str) -> None:
+    """Show a figure to whoever runs pytest with -rP."""
+    sys.stdout.write(f"emulated: {figure}\n")
+
+
+def require_tools() -> None:
+    """Skip by name where a tool is absent; fail where CI is set."""
+    missing = [tool for tool in ("avr-gcc", "avr-size", "make", "cc") if not shutil.which(tool)]
+    if not (HEADERS / "sim_avr.h").is_file():
+        missing.append("libsimavr-dev")
+    if missing and os.environ.get("CI"):
+        pytest.fail(f"make firmware-tools has not installed {', '.join(missing)}")
+    if missing:
+        pytest.skip(f"make firmware-tools installs {', '.join(missing)}")
+
+
+def build_board(folder: Path) -> Path:
+    """Build the board's firmware; give the ELF file."""
+    subprocess.run(["make", "-C", str(BOARD), f"BUILD={folder}"], check=True, capture_output=True)
+    return folder / "uno_vibration.elf"
+
+
+def build_emulator(folder: Path) -> ctypes.CDLL:
+    """Compile the emulator's half in C and load it."""
+    library = folder / "libuno.so"
+    source = Path(__file__).with_name("_simavr.c")
+    # simavr's headers are not clean under -Wextra
+    flags = ["-std=gnu99", "-O2", "-Wall", "-fPIC", "-shared", f"-I{HEADERS}"]
+    subprocess.run(["cc", *flags, "-o", str(library), str(source), "-lsimavr"], check=True)
+    emulator = ctypes.CDLL(str(library))
+    for name, (result, arguments) in SIGNATURES.items():
+        function = getattr(emulator, name)
+        function.restype, function.argtypes = result, arguments
+    return emulator
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What the converter gave: cycles of its latch and words it latched, command bits included."""
+
+    cycles: npt.NDArray[np.uint64]
+    words: npt.NDArray[np.uint16]
+
+    @property
+    def counts(self) -> npt.NDArray[np.uint16]:
+        """Give the converter's 12 bits."""
+        return self.words & np.uint16(0xFFF)
+
+    def after(self, cycle: int) -> Samples:
+        """Leave out what was before a cycle."""
+        late = self.cycles >= cycle
+        return Samples(self.cycles[late], self.words[late])
+
+
+class Uno:
+    """One emulated board, booted."""
+
+    def __init__(self, emulator: ctypes.CDLL, elf: Path) -> None:
+        self._emulator = emulator
+        self._board = emulator.uno_open(str(elf).encode(), ROOM)
+        assert self._board, f"simavr cannot open {elf}"
+        self.run(BOOT_CYCLES)
+
+    def close(self) -> None:
+        self._emulator.uno_close(self._board)
+
+    @property
+    def cycle(self) -> int:
+        return int(self._emulator.uno_cycle(self._board))
+
+    def run(self, cycles: int) -> None:
+        self._emulator.uno_run(self._board, self.cycle + cycles)
+
+    def peek(self, address: int) -> int:
+        return int(self._emulator.uno_peek(self._board, address))
+
+    def poke(self, address: int, value: int) -> None:
+        self._emulator.uno_poke(self._board, address, value)
+
+    def write(self, data: bytes, start_cycle: int = 0, stop: bool = True) -> int:
+        """Send a message; give the cycle of its START."""
+        start = self._emulator.uno_write(self._board, data, len(data), start_cycle, int(stop))
+        assert start, "the board holds the clock for good"
+        return int(start)
+
+    def read(self, count: int) -> bytes:
+        buffer = (ctypes.c_uint8 * count)()
+        assert self._emulator.uno_read(self._board, buffer, count, 0), "the board holds the clock for good"
+        return bytes(buffer)
+
+    def disturb(self) -> None:
+        """Let the bus hardware see an illegal START or STOP."""
+        self._emulator.uno_disturb(self._board)
+
+    def samples(self) -> Samples:
+        cycles, words = np.empty(ROOM, np.uint64), np.empty(ROOM, np.uint16)
+        count = self._emulator.uno_samples(self._board, cycles.ctypes.data, words.ctypes.data)
+        assert count < ROOM, "the record is full"
+        assert self._emulator.uno_malformed(self._board) == 0
+        return Samples(cycles[:count], words[:count])
+
+    def interrupt_cycles(self) -> npt.NDArray[np.uint32]:
+        """Give the length of every timer interrupt."""
+        cycles, spent = np.empty(ROOM, np.uint64), np.empty(ROOM, np.uint32)
+        count = self._emulator.uno_interrupts(self._board, cycles.ctypes.data, spent.ctypes.data)
+        return spent[:count]

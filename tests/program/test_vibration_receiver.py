@@ -1,0 +1,140 @@
+"""The vibration board's receiver, byte by byte."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fdvv.program import Slot, Waveform, bank_messages, checksum, play_message, read_status, set_message
+
+from ._core import NOTHING, RIGHT, SLOT, STRENGTH, Board
+from .strategies import SLOTS
+
+SNAP = Slot(Waveform.SINE, 3824, 256, 1840, 50_461)
+BLIP = Slot(Waveform.SAMPLED, 65_535, 300, 2047, wave=tuple(range(-20, 20)))
+
+
+def counts(board: Board) -> tuple[int, int]:
+    status = read_status(board.status())
+    return status.accepted, status.errors
+
+
+def loaded() -> Board:
+    board = Board()
+    board.store(SNAP, BLIP)
+    return board
+
+
+ACCEPTED = len(bank_messages([SNAP, BLIP]))
+
+
+@given(st.lists(SLOTS, max_size=16).filter(lambda slots: sum(len(s.wave) for s in slots) <= 1024))
+def test_every_message_that_python_makes_is_accepted(slots: list[Slot]) -> None:
+    board = Board()
+    board.store(*slots)
+    assert counts(board) == (len(bank_messages(slots)) % 256, 0)
+    for c_slot, slot in zip(board.bank.slots, slots, strict=False):
+        assert (c_slot.frequency_Hz16, c_slot.duration_samples) == (
+            slot.frequency_Hz16,
+            slot.duration_samples,
+        )
+        assert (c_slot.amplitude_counts, c_slot.decay_q16) == (slot.amplitude_counts, slot.decay_q16)
+        assert tuple(board.bank.pool[c_slot.wave_at : c_slot.wave_at + len(slot.wave)]) == slot.wave
+
+
+def test_a_play_tells_slot_and_strength_as_they_come_and_then_that_they_were_right() -> None:
+    assert loaded().send(play_message(1, 77)) == [NOTHING, SLOT, STRENGTH, RIGHT]
+
+
+@given(st.sampled_from([play_message(0), *bank_messages([SNAP, BLIP])]), st.data())
+def test_a_message_with_a_flipped_bit_is_ignored_and_counted(message: bytes, data: st.DataObject) -> None:
+    board = loaded()
+    before = board.contents()
+    bit = data.draw(st.integers(0, 8 * len(message) - 1))
+    damaged = bytearray(message)
+    damaged[bit // 8] ^= 1 << bit % 8
+    brought = board.send(bytes(damaged))
+    assert RIGHT not in brought
+    assert board.contents() == before
+    assert counts(board) == (ACCEPTED, 1)
+
+
+@given(st.sampled_from([play_message(0), *bank_messages([SNAP, BLIP])]), st.data())
+def test_a_message_cut_off_is_ignored_and_counted(message: bytes, data: st.DataObject) -> None:
+    board = loaded()
+    before = board.contents()
+    keep = data.draw(st.integers(1, len(message) - 1))
+    # the next START ends it as well as a STOP
+    assert RIGHT not in board.send(message[:keep], stop=data.draw(st.booleans()))
+    assert board.send(play_message(0))[-1] == RIGHT
+    assert board.contents() == before
+    assert counts(board) == (ACCEPTED + 1, 1)
+
+
+@given(st.binary(min_size=1, max_size=40))
+def test_arbitrary_bytes_never_break_the_next_message(noise: bytes) -> None:
+    board = loaded()
+    board.send(noise)
+    assert board.send(set_message(0, SNAP))[-1] == NOTHING
+    assert board.send(play_message(0))[-1] == RIGHT
+
+
+def test_bytes_after_the_checksum_are_counted_once_and_the_message_stands() -> None:
+    board = loaded()
+    assert board.send(play_message(0) + b"\x00\x01\x02") == [NOTHING, SLOT, STRENGTH, RIGHT] + [NOTHING] * 3
+    assert counts(board) == (ACCEPTED + 1, 1)
+
+
+def test_an_address_without_a_byte_is_no_error() -> None:
+    board = loaded()
+    board.send(b"")
+    assert counts(board) == (ACCEPTED, 0)
+
+
+def sealed(*data: int) -> bytes:
+    return bytes([*data, checksum(bytes(data))])
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        sealed(0),
+        sealed(0x80),
+        sealed(1 << 5 | 1, 0),
+        sealed(1 << 5 | 3, 0, 255, 0),
+        sealed(2 << 5 | 13, *([0] * 13)),
+        sealed(3 << 5 | 2, 0, 0),
+        sealed(3 << 5 | 31, 0, 0, *([1] * 29)),
+        sealed(3 << 5 | 3, 0, 4, 1),
+        sealed(1 << 5 | 2, 2, 255),
+        sealed(1 << 5 | 2, 16, 255),
+        sealed(2 << 5 | 14, 16, *([0] * 13)),
+        sealed(2 << 5 | 14, 0, 0, 0, 0, 1, 0, 0, 8, 0, 0, 0, 0, 0, 0),
+    ],
+    ids=[
+        "command 0",
+        "command 4",
+        "short play",
+        "long play",
+        "short set",
+        "empty load",
+        "long load",
+        "load past the pool",
+        "play of an empty slot",
+        "play of slot 16",
+        "set of slot 16",
+        "amplitude of 2048",
+    ],
+)
+def test_an_intact_message_that_means_nothing_is_ignored_and_counted(message: bytes) -> None:
+    board = loaded()
+    before = board.contents()
+    assert RIGHT not in board.send(message)
+    assert board.contents() == before
+    assert counts(board) == (ACCEPTED, 1)
+
+
+def test_the_status_carries_its_flags_and_a_right_checksum() -> None:
+    status = read_status(loaded().status(flags=3))
+    assert (status.playing, status.watchdog) == (True, True)
