@@ -157,6 +157,9 @@ def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[st
     ranged = [f for f in fields if not f.count and not _full(f)]
     lines.append(f"#define FDVV_{name.upper()}_RANGES(X) \\")
     lines += [f"    X({f.name}, {f.low}, {f.high}) \\" for f in ranged]
+    if name in source["defaults"]:  # a refusal names the field by its number
+        members = (f"    FDVV_{name.upper()}_FIELD_{f.name}," for f in fields)
+        lines += ["", "enum {", *members, f"    FDVV_{name.upper()}_FIELDS,", "};"]
     return [*lines, ""]
 
 

@@ -22,6 +22,7 @@ void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings)
 void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings)
 {
     core->settings = *settings;
+    fdvv_supervisor_settings(&core->supervisor, &core->settings);
     core->announced_mm_s16 = settings->announced_mm_s16;
     core->command_cN64 = 0;
     /* duty per force at 1 mV of supply */

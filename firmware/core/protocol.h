@@ -232,6 +232,46 @@ typedef char fdvv_settings_has_80_bytes[sizeof(fdvv_settings) == 80 ? 1 : -1];
     X(fewest_samples, 3, 16) \
     X(continuous_samples, 3, 32) \
 
+enum {
+    FDVV_SETTINGS_FIELD_position_gain_q14,
+    FDVV_SETTINGS_FIELD_position_offset_um16,
+    FDVV_SETTINGS_FIELD_duty_gain_q16,
+    FDVV_SETTINGS_FIELD_force_gain_q14,
+    FDVV_SETTINGS_FIELD_force_offset_counts,
+    FDVV_SETTINGS_FIELD_heat_time_ms,
+    FDVV_SETTINGS_FIELD_tick_us,
+    FDVV_SETTINGS_FIELD_window_start_um16,
+    FDVV_SETTINGS_FIELD_window_end_um16,
+    FDVV_SETTINGS_FIELD_reversal_um16,
+    FDVV_SETTINGS_FIELD_rearm_um16,
+    FDVV_SETTINGS_FIELD_velocity_scale_q12,
+    FDVV_SETTINGS_FIELD_announced_mm_s16,
+    FDVV_SETTINGS_FIELD_force_limit_cN64,
+    FDVV_SETTINGS_FIELD_slew_cN64_tick,
+    FDVV_SETTINGS_FIELD_duty_limit_q15,
+    FDVV_SETTINGS_FIELD_nominal_supply_mV,
+    FDVV_SETTINGS_FIELD_supply_low_mV,
+    FDVV_SETTINGS_FIELD_supply_high_mV,
+    FDVV_SETTINGS_FIELD_reading_low,
+    FDVV_SETTINGS_FIELD_reading_high,
+    FDVV_SETTINGS_FIELD_jump_um16,
+    FDVV_SETTINGS_FIELD_stuck_ticks,
+    FDVV_SETTINGS_FIELD_late_ticks,
+    FDVV_SETTINGS_FIELD_over_force_cN64,
+    FDVV_SETTINGS_FIELD_full_duty_rise_K,
+    FDVV_SETTINGS_FIELD_derate_start_K,
+    FDVV_SETTINGS_FIELD_heat_limit_K,
+    FDVV_SETTINGS_FIELD_host_timeout_ms,
+    FDVV_SETTINGS_FIELD_vibration_latency_us,
+    FDVV_SETTINGS_FIELD_stop_us_mm,
+    FDVV_SETTINGS_FIELD_stop_zero_us,
+    FDVV_SETTINGS_FIELD_reads,
+    FDVV_SETTINGS_FIELD_sliding_ticks,
+    FDVV_SETTINGS_FIELD_fewest_samples,
+    FDVV_SETTINGS_FIELD_continuous_samples,
+    FDVV_SETTINGS_FIELDS,
+};
+
 
 /* first bytes of a program; the checksum covers everything after itself */
 typedef struct {
