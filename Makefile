@@ -5,7 +5,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch])
+NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/boards/host/*.[ch])
 
 .PHONY: help demo test check format bench setup clean
 
