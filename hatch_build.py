@@ -17,7 +17,16 @@ NATIVE = ROOT / "src" / "fdvv" / "_native"
 CORE = ROOT / "firmware" / "core"
 HOST = ROOT / "firmware" / "boards" / "host"
 # -ffp-contract=off and no -march=native: the same bits on every x86-64 machine.
-FLAGS = ["-std=c99", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-Wall", "-Wextra", "-Werror", f"-I{CORE}"]
+FLAGS = [
+    "-std=c99",
+    "-O3",
+    "-ffp-contract=off",
+    "-fno-strict-aliasing",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    f"-I{CORE}",
+]
 
 
 def compile_native(folder: Path = NATIVE) -> tuple[Path, Path]:

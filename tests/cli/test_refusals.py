@@ -105,7 +105,7 @@ REFUSED = {
     "two curves to assign": (("assign", "mx-blue", "mx-red", *ASSIGN), "add :press or :release"),
     "a segment that falls": (("assign", "mx-blue", "mx-red:press", *ASSIGN, "--segment", "2", "1"), "rise"),
     "a segment of nan": (("assign", "mx-blue", "mx-red:press", *ASSIGN, "--segment", "nan", "1"), "finite"),
-    "an unknown device": (("compensate", "mx-blue", "--device", "serial"), "use --device twin"),
+    "an unknown device": (("compensate", "mx-blue", "--device", "serial"), "use one of twin"),
     "a missing rig": (("compensate", "mx-blue", "--rig", "gone.toml"), "'gone.toml' does not exist"),
     "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "rig.toml: TOML"),
     "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),

@@ -110,6 +110,11 @@ uint16_t fdvv_host_transmit(fdvv_host *host, uint8_t *bytes, uint16_t room)
     return fdvv_link_transmit(&host->link, bytes, room);
 }
 
+const uint8_t *fdvv_host_program(const fdvv_host *host)
+{
+    return host->core.image;
+}
+
 void fdvv_host_unplug(fdvv_host *host)
 {
     current = host;

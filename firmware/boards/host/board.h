@@ -18,6 +18,9 @@ void fdvv_host_tick(fdvv_host *host, const fdvv_inputs *inputs, fdvv_outputs *ou
 uint16_t fdvv_host_receive(fdvv_host *host, const uint8_t *bytes, uint16_t count);
 uint16_t fdvv_host_transmit(fdvv_host *host, uint8_t *bytes, uint16_t room);
 
+/* The program that is rendered, 0 if none. */
+const uint8_t *fdvv_host_program(const fdvv_host *host);
+
 /* The cable was pulled. */
 void fdvv_host_unplug(fdvv_host *host);
 

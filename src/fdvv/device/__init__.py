@@ -1,6 +1,60 @@
-"""Anything that accepts a table of force and yields presses."""
+"""Anything that accepts a table of force or a program and yields presses."""
 
-from fdvv.device._contract import Device, DeviceInfo
+from fdvv.device._boards import HostBoard, LibraryBoard
+from fdvv.device._client import Client
+from fdvv.device._clocks import ClockRelation, Exchange, relate
+from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
+from fdvv.device._image import seal, surface_image
+from fdvv.device._linked import LinkedDevice
+from fdvv.device._lockstep import Board, LockstepPort
+from fdvv.device._open import KINDS, open_device
+from fdvv.device._plant import Inputs, Outputs, Person, Plant, PressedPlant, Truth
+from fdvv.device._port import Port
+from fdvv.device._pressed import PressedDevice
+from fdvv.device._recording import Recorder, read_session
+from fdvv.device._replay import ReplayDevice
+from fdvv.device._script import ScriptedPerson, ScriptedPlant
+from fdvv.device._serial import SerialPort, serial_ports
+from fdvv.device._telemetry import Telemetry, TickColumns
 from fdvv.device._twin import TwinDevice
+from fdvv.device._wire import RefusedError, Wire
 
-__all__ = ["Device", "DeviceInfo", "TwinDevice"]
+__all__ = [
+    "KINDS",
+    "Board",
+    "Client",
+    "ClockRelation",
+    "Device",
+    "DeviceInfo",
+    "Exchange",
+    "FaultReport",
+    "HostBoard",
+    "Inputs",
+    "LibraryBoard",
+    "LinkedDevice",
+    "LockstepPort",
+    "Outputs",
+    "Person",
+    "Plant",
+    "Port",
+    "PressedDevice",
+    "PressedPlant",
+    "ProgramDevice",
+    "Recorder",
+    "RefusedError",
+    "ReplayDevice",
+    "ScriptedPerson",
+    "ScriptedPlant",
+    "SerialPort",
+    "Telemetry",
+    "TickColumns",
+    "Truth",
+    "TwinDevice",
+    "Wire",
+    "open_device",
+    "read_session",
+    "relate",
+    "seal",
+    "serial_ports",
+    "surface_image",
+]

@@ -1,5 +1,15 @@
 """What host and firmware say to each other: messages, settings, images; defined in protocol/fdvv.toml."""
 
+from fdvv.protocol._frame import Frame, FrameDecoder, crc16, decode, encode, stuff, unstuff
+from fdvv.protocol._messages import (
+    REPLIES,
+    REPLY,
+    REQUESTS,
+    data_request,
+    read_notice,
+    read_reply,
+    request_frame,
+)
 from fdvv.protocol._record import Record
 from fdvv.protocol._tables import (
     DATA_BYTES,
@@ -70,7 +80,10 @@ __all__ = [
     "IMAGE_MAGIC",
     "IMAGE_VERSION",
     "NONE",
+    "REPLIES",
+    "REPLY",
     "REPLY_BYTES",
+    "REQUESTS",
     "REQUEST_BYTES",
     "SLOTS",
     "STATES",
@@ -92,6 +105,8 @@ __all__ = [
     "Evidence",
     "Fault",
     "FaultedRequest",
+    "Frame",
+    "FrameDecoder",
     "HelloReply",
     "HelloRequest",
     "ImageHeader",
@@ -122,4 +137,13 @@ __all__ = [
     "VibrateRequest",
     "Vibration",
     "Waveform",
+    "crc16",
+    "data_request",
+    "decode",
+    "encode",
+    "read_notice",
+    "read_reply",
+    "request_frame",
+    "stuff",
+    "unstuff",
 ]

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.device import Device, TwinDevice
-from fdvv.errors import InputError
+from fdvv import device
+from fdvv.device import Device
 from fdvv.twin import load_finger, load_rig
 
 
 def open_device(name: str, rig: Path | None = None, finger: Path | None = None, seed: int = 0) -> Device:
-    """Open a device by name; rig and finger are TOML files that change the twin, seed repeats it.
+    """Open a device by name (fdvv.device.KINDS); rig and finger are TOML files of simulated ones.
 
-    Raises InputError.
+    seed repeats what is random. Raises InputError or DeviceError.
     """
-    if name != "twin":
-        raise InputError("--device", name, "only the twin is there in this version", "use --device twin")
-    return TwinDevice(load_rig(rig) if rig else None, load_finger(finger) if finger else None, seed)
+    made = load_rig(rig) if rig else None, load_finger(finger) if finger else None
+    return device.open_device(name, *made, seed)

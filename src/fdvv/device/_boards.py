@@ -1,0 +1,182 @@
+"""The firmware without hardware: inside this process, or as a program at the end of a terminal line."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import struct
+import subprocess
+import tty
+from pathlib import Path
+
+from fdvv import _native
+from fdvv.device._plant import OUTPUTS_BYTES, Inputs, Outputs
+from fdvv.errors import BuildError, DeviceError
+from fdvv.protocol import ImageHeader
+
+TAIL = struct.Struct("<II")
+SENT = struct.Struct("<I")
+PATIENCE_s = 10.0
+"""Real time for one tick of the host program; it takes some 20 us."""
+
+
+class LibraryBoard:
+    """The firmware called as a library: the quickest board; one at a time and thread."""
+
+    name = "library"
+
+    def __init__(self) -> None:
+        self._library = _native.library()
+        self._library.fdvv_host_new.restype = ctypes.c_void_p
+        self._handle = ctypes.c_void_p(self._library.fdvv_host_new())
+        self._outputs = ctypes.create_string_buffer(OUTPUTS_BYTES)
+        self._room = ctypes.create_string_buffer(4096)
+        self._waiting = b""
+        self._plugged = True
+
+    def tick(self, inputs: Inputs) -> Outputs:
+        """Run one tick."""
+        self._hand_over()
+        self._library.fdvv_host_tick(self._handle, inputs.pack(), self._outputs)
+        return Outputs.unpack(self._outputs.raw)
+
+    def _hand_over(self) -> None:
+        """Give the firmware as much as it has room for."""
+        if self._waiting:
+            count = min(len(self._waiting), 4096)
+            taken = self._library.fdvv_host_receive(self._handle, self._waiting[:count], count)
+            self._waiting = self._waiting[taken:]
+
+    def write(self, data: bytes) -> None:
+        """Put bytes on the link."""
+        if self._plugged:
+            self._waiting += data
+
+    def read(self) -> bytes:
+        """Give what the board has put on the link."""
+        if not self._plugged:
+            return b""
+        count = self._library.fdvv_host_transmit(self._handle, self._room, len(self._room))
+        return self._room.raw[:count] if count else b""
+
+    def program(self) -> bytes | None:
+        """Give the image that is rendered, None if there is none."""
+        self._library.fdvv_host_program.restype = ctypes.c_void_p
+        found = self._library.fdvv_host_program(self._handle)
+        if not found:
+            return None
+        head = ImageHeader.unpack(ctypes.string_at(found, ImageHeader.length_bytes()))
+        return ctypes.string_at(found, head.size_bytes)
+
+    def unplug(self) -> None:
+        """Pull the cable."""
+        self._library.fdvv_host_unplug(self._handle)
+        self._waiting, self._plugged = b"", False
+
+    def plug(self) -> None:
+        """Plug it in again."""
+        self._plugged = True
+
+    def close(self) -> None:
+        """Free the board."""
+        self._library.fdvv_host_free(self._handle)
+        self._handle = ctypes.c_void_p()  # freeing it again does nothing
+
+
+class HostBoard:
+    """The firmware as a program of its own, its link a real pseudo-terminal."""
+
+    name = "host"
+
+    def __init__(self) -> None:
+        program = Path(_native.__file__).with_name("fdvv-host")
+        if not program.exists():
+            raise BuildError(f"the program {program.name} is missing; reinstall fdvv with a C compiler")
+        self._link, slave = os.openpty()
+        tty.setraw(slave)
+        os.set_blocking(self._link, False)
+        given, asked = os.pipe(), os.pipe()
+        command = [str(program), str(asked[0]), str(given[1]), os.ttyname(slave)]
+        self._process = subprocess.Popen(command, pass_fds=(asked[0], given[1]), stdin=subprocess.DEVNULL)
+        for file in (asked[0], given[1]):
+            os.close(file)
+        # held open, so that the line outlives the moment before the program has opened it
+        self._slave = slave
+        self._asked, self._given = asked[1], given[0]
+        self._written = self._heard = 0
+        self._waiting = self._arrived = b""
+        self._plugged, self._open = True, True
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def tick(self, inputs: Inputs) -> Outputs:
+        """Run one tick; DeviceError if the program has ended."""
+        self._flush()
+        question = inputs.pack() + TAIL.pack(self._written % 2**32, self._plugged)
+        try:
+            os.write(self._asked, question)
+            answer = self._take(OUTPUTS_BYTES + SENT.size)
+        except (BrokenPipeError, EOFError):
+            status = self._process.poll()
+            raise DeviceError(f"host: the program has ended (status {status}); open it again") from None
+        if self._plugged:
+            self._drain(SENT.unpack(answer[OUTPUTS_BYTES:])[0])
+        return Outputs.unpack(answer[:OUTPUTS_BYTES])
+
+    def _drain(self, sent: int) -> None:
+        """Read all that the board has put on the link, so that it never waits for room."""
+        while self._heard != sent:
+            if not select.select([self._link], [], [], PATIENCE_s)[0]:
+                raise DeviceError("host: bytes that were sent did not arrive")
+            piece = os.read(self._link, 4096)
+            self._heard = (self._heard + len(piece)) % 2**32
+            self._arrived += piece
+
+    def _take(self, count: int) -> bytes:
+        data = b""
+        while len(data) < count:
+            if not select.select([self._given], [], [], PATIENCE_s)[0]:
+                raise DeviceError(f"host: no tick in {PATIENCE_s:g} s; the program hangs")
+            piece = os.read(self._given, count - len(data))
+            if not piece:
+                raise EOFError
+            data += piece
+        return data
+
+    def _flush(self) -> None:
+        if self._waiting:
+            done = os.write(self._link, self._waiting[:1024])
+            self._written += done
+            self._waiting = self._waiting[done:]
+
+    def write(self, data: bytes) -> None:
+        """Put bytes on the link."""
+        if self._plugged:
+            self._waiting += data
+
+    def read(self) -> bytes:
+        """Give all that the board has put on the link in its ticks so far."""
+        data, self._arrived = self._arrived, b""
+        return data
+
+    def unplug(self) -> None:
+        """Pull the cable: what is on it is lost on both sides."""
+        self._plugged, self._waiting, self._arrived = False, b"", b""
+        self._written = self._heard = 0
+
+    def plug(self) -> None:
+        """Plug it in again."""
+        self._plugged = True
+
+    def close(self) -> None:
+        """End the program and wait for it."""
+        if self._open:
+            self._open = False
+            for file in (self._asked, self._given, self._link, self._slave):
+                os.close(file)
+            self._process.terminate()
+            self._process.wait()

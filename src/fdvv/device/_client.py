@@ -1,0 +1,200 @@
+"""The host's side of the link: every request as a function, telemetry and notices as they come."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TypeVar
+
+from fdvv.device._clocks import ClockRelation, Exchange, relate, unwrap_us
+from fdvv.device._port import Port
+from fdvv.device._telemetry import Telemetry
+from fdvv.device._wire import Notice, Wire
+from fdvv.errors import DeviceError
+from fdvv.protocol import (
+    DATA_BYTES,
+    HASH,
+    VERSION,
+    AnnounceRequest,
+    BeginRequest,
+    ClearFaultRequest,
+    EventRequest,
+    Fault,
+    FaultedRequest,
+    HelloReply,
+    HelloRequest,
+    ImageHeader,
+    KeyRequest,
+    Message,
+    PingReply,
+    PingRequest,
+    ReadCountersReply,
+    ReadFaultReply,
+    Record,
+    RecordsRequest,
+    SelftestReply,
+    Settings,
+    TelemetryRequest,
+    VibrateRequest,
+    data_request,
+)
+
+Kind = TypeVar("Kind", bound=Record)
+EXCHANGES = 64
+KEEP_ALIVE_s = 0.05
+"""Between pings while listening; the shortest host timeout that can be set is 20 ms, the default 250 ms."""
+
+
+class Client:
+    """A connection to a device.
+
+    Parameters
+    ----------
+    port : an open line.
+    on_key, on_fault : called with notices as they come.
+
+    Attributes
+    ----------
+    hello : what the device said of itself.
+    telemetry : records so far.
+    """
+
+    def __init__(
+        self,
+        port: Port,
+        on_key: Callable[[KeyRequest], None] | None = None,
+        on_fault: Callable[[FaultedRequest], None] | None = None,
+    ) -> None:
+        self.port = port
+        self.telemetry = Telemetry()
+        self._wire = Wire(port, self._notice)
+        self._on_key, self._on_fault = on_key, on_fault
+        self._exchanges: deque[Exchange] = deque(maxlen=EXCHANGES)
+        self._heard_s = port.now_s()
+        self.hello = self.connect()
+
+    def connect(self) -> HelloReply:
+        """Say hello; DeviceError if the device speaks another protocol."""
+        self.port.write(b"\0")
+        hello = self._ask(Message.HELLO, HelloReply, HelloRequest(version=VERSION, hash=HASH))
+        if hello.hash != HASH:
+            raise DeviceError(
+                f"{self.port.name}: its firmware speaks protocol {hello.hash:08x}, this fdvv {HASH:08x}; "
+                "update the firmware or fdvv, so that both are of one version"
+            )
+        self.hello = hello
+        return hello
+
+    def reconnect(self) -> HelloReply:
+        """Open the line again after it broke, and say hello. The device keeps its active program."""
+        self.port.reopen()
+        self._wire.reset()
+        self._exchanges.clear()
+        return self.connect()
+
+    # -- requests ------------------------------------------------------------------------------------------
+
+    def _ask(self, message: Message, kind: type[Kind], body: Record | None = None) -> Kind:
+        reply = self._wire.request(message, body)
+        assert isinstance(reply, kind)
+        self._heard_s = self.port.now_s()
+        return reply
+
+    def _tell(self, message: Message, body: Record | None = None) -> None:
+        self._wire.request(message, body)
+        self._heard_s = self.port.now_s()
+
+    def ping(self) -> PingReply:
+        """Show that the host is there, and compare the clocks."""
+        sent_us = self.port.now_s() * 1e6
+        reply = self._ask(Message.PING, PingReply, PingRequest(host_us=int(sent_us) % 2**32))
+        last_us = self._exchanges[-1] if self._exchanges else None
+        near_us = last_us.device_us + sent_us - last_us.sent_us if last_us else reply.device_us
+        if reply.host_us == int(sent_us) % 2**32:
+            device_us = unwrap_us(reply.device_us, near_us)
+            self._exchanges.append(Exchange(sent_us, self.port.now_s() * 1e6, device_us))
+        return reply
+
+    def clocks(self) -> ClockRelation:
+        """Relate the device's clock to the port's, from the last pings; DeviceError without one."""
+        return relate(tuple(self._exchanges))
+
+    def read_settings(self) -> Settings:
+        """Read calibration and limits."""
+        return self._ask(Message.READ_SETTINGS, Settings)
+
+    def write_settings(self, settings: Settings) -> None:
+        """Replace calibration and limits; while idle, and the device forgets its programs."""
+        self._tell(Message.WRITE_SETTINGS, settings)
+
+    def upload(self, image: bytes) -> None:
+        """Send a program and have it checked; it becomes the active one whole, or the old one stays."""
+        header = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
+        self._tell(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=header.crc32))
+        for offset in range(0, len(image), DATA_BYTES):
+            self._tell(Message.DATA, data_request(offset, image[offset : offset + DATA_BYTES]))
+        self._tell(Message.COMMIT)
+        self._tell(Message.ACTIVATE)
+
+    def arm(self) -> None:
+        """Render the active program."""
+        self._tell(Message.ARM)
+
+    def disarm(self) -> None:
+        """Fall to zero force."""
+        self._tell(Message.DISARM)
+
+    def stream(self, every: int) -> None:
+        """Have a record of every n-th tick sent; 0 for none."""
+        self._tell(Message.TELEMETRY, TelemetryRequest(every=every))
+
+    def announce(self, velocity_mm_s: float) -> None:
+        """Tell how fast the next press is meant to be."""
+        self._tell(Message.ANNOUNCE, AnnounceRequest(velocity_mm_s16=round(16 * velocity_mm_s)))
+
+    def event(self, number: int) -> None:
+        """Tell the program of a host event."""
+        self._tell(Message.EVENT, EventRequest(event=number))
+
+    def vibrate(self, slot: int) -> None:
+        """Play a waveform of the active program now."""
+        self._tell(Message.VIBRATE, VibrateRequest(slot=slot))
+
+    def read_fault(self) -> ReadFaultReply:
+        """Read the latched fault and its evidence."""
+        return self._ask(Message.READ_FAULT, ReadFaultReply)
+
+    def clear_fault(self, fault: Fault) -> None:
+        """Clear the latched fault."""
+        self._tell(Message.CLEAR_FAULT, ClearFaultRequest(fault=fault))
+
+    def selftest(self) -> SelftestReply:
+        """Have the device test its parts."""
+        return self._ask(Message.SELFTEST, SelftestReply)
+
+    def counters(self) -> ReadCountersReply:
+        """Read what went wrong so far."""
+        return self._ask(Message.READ_COUNTERS, ReadCountersReply)
+
+    # -- what comes unasked --------------------------------------------------------------------------------
+
+    def listen(self, until_s: float) -> None:
+        """Take telemetry and notices until the port's clock is there, and keep the device's watch fed."""
+        while (now_s := self.port.now_s()) < until_s:
+            if now_s >= self._heard_s + KEEP_ALIVE_s:
+                self.ping()
+            self._wire.listen(min(until_s, self._heard_s + KEEP_ALIVE_s))
+
+    def _notice(self, notice: Notice, records: bytes, sequence: int) -> None:
+        if isinstance(notice, RecordsRequest):
+            self.telemetry.add(notice, records, sequence)
+        else:
+            self.telemetry.heard(sequence)
+        if isinstance(notice, KeyRequest) and self._on_key:
+            self._on_key(notice)
+        if isinstance(notice, FaultedRequest) and self._on_fault:
+            self._on_fault(notice)
+
+    def close(self) -> None:
+        """Close the line."""
+        self.port.close()

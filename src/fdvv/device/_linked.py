@@ -1,0 +1,94 @@
+"""A board in lockstep with a simulated rig and person, as a device."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fdvv.device._client import Client
+from fdvv.device._lockstep import Board, LockstepPort
+from fdvv.device._plant import Person, Truth
+from fdvv.device._remote import Remote
+from fdvv.device._telemetry import IntArray, TickColumns
+from fdvv.errors import DeviceError
+from fdvv.model import Press
+from fdvv.protocol import Settings, TickFlag
+
+
+class LinkedDevice(Remote):
+    """A board in lockstep; someone on the plant presses when asked.
+
+    Parameters
+    ----------
+    board : with the firmware.
+    person : plants to press on.
+    """
+
+    def __init__(self, board: Board, person: Person) -> None:
+        self._person = person
+        self.port = LockstepPort(board, person.rest(Settings()), Settings().tick_us)
+        try:
+            super().__init__(Client(self.port))
+        except BaseException:
+            self.port.close()
+            raise
+
+    def write_settings(self, settings: Settings) -> None:
+        """Replace calibration and limits; the device forgets its program."""
+        self.client.write_settings(settings)
+        self.settings, self.travel_mm = settings, None
+        self.port.tick_us = settings.tick_us
+        self.port.connect(self._person.rest(settings))
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Have the simulated person press once; DeviceError if the device faults meanwhile."""
+        travel_mm = self._check_press(velocity_mm_s)
+        plant = self._person.press(travel_mm, velocity_mm_s, self.settings)
+        self.client.announce(velocity_mm_s)
+        self.client.telemetry.clear()
+        self.client.stream(1)
+        try:
+            self.client.arm()
+            self.port.connect(plant)
+            self._listen(plant.ticks * self.settings.tick_us * 1e-6)
+            ticks = np.array(self.port.ticks)
+        finally:
+            self.port.connect(self._person.rest(self.settings))
+            self.stop()
+        self._fail_on_fault()
+        return self._joined(plant.record(), ticks, velocity_mm_s)
+
+    def _listen(self, duration_s: float) -> None:
+        self.client.listen(self.port.now_s() + duration_s)
+
+    def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
+        """Put what the board told of its ticks beside what happened at them."""
+        told = self.client.telemetry.columns()
+        assert truth.tick is not None
+        rows = np.flatnonzero(truth.tick)[: ticks.size]
+        places = np.searchsorted(ticks, told.tick)
+        inside = (places < rows.size) & (told.tick >= ticks[0])
+        if not inside.any():
+            raise DeviceError(f"{self.client.port.name}: no telemetry arrived during the press")
+        return join(truth, rows[places[inside]], told.part(inside), velocity_mm_s)
+
+
+def join(truth: Truth, rows: IntArray, told: TickColumns, velocity_mm_s: float) -> Press:
+    """Make a press of what happened and of what was told of some of its rows.
+
+    Between them what was told holds; rows of ticks that nothing was told of are not marked as ticks.
+    """
+    held = np.maximum(np.searchsorted(rows, np.arange(truth.t_s.size), side="right") - 1, 0)
+    marked = np.zeros(truth.t_s.size, dtype=np.bool_)
+    marked[rows] = True
+    return Press(
+        truth.t_s,
+        truth.displacement_mm,
+        truth.force_cN,
+        velocity_mm_s,
+        told.displacement_mm[held],
+        told.force_cN[held],
+        told.commanded_cN[held],
+        (told.flags[held] & TickFlag.LIMITED) > 0,
+        marked,
+        simulated=True,
+    )

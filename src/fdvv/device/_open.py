@@ -1,0 +1,41 @@
+"""Devices by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fdvv.device._boards import HostBoard
+from fdvv.device._contract import Device
+from fdvv.device._linked import LinkedDevice
+from fdvv.device._pressed import PressedDevice
+from fdvv.device._replay import ReplayDevice
+from fdvv.device._script import ScriptedPerson
+from fdvv.device._serial import SerialPort
+from fdvv.device._twin import TwinDevice
+from fdvv.errors import InputError
+from fdvv.twin import Finger, Rig
+
+KINDS = {
+    "twin": "the simulated rig, whole presses at once",
+    "host": "the firmware as a program of this machine, in lockstep with a cap on a scripted path",
+    "serial:PORT": "a rig on a serial port, pressed by a person",
+    "replay:FILE": "a recorded session",
+}
+
+
+def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> Device:
+    """Open the device that spec names (KINDS).
+
+    rig, finger, seed : of simulated devices. Raises InputError on an unknown name, DeviceError if the device
+    cannot be opened.
+    """
+    kind, _, where = spec.partition(":")
+    if kind == "replay" and where:
+        return ReplayDevice(Path(where))
+    if kind == "serial" and where:
+        return PressedDevice(SerialPort(where))
+    if spec == "host":
+        return LinkedDevice(HostBoard(), ScriptedPerson(seed))
+    if spec == "twin":
+        return TwinDevice(rig, finger, seed)
+    raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")

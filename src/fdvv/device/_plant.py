@@ -1,0 +1,103 @@
+"""What a board in lockstep is connected to, tick by tick."""
+
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.protocol import NONE, Settings
+from fdvv.units import FloatArray
+
+
+class Inputs(NamedTuple):
+    """What a board reads in a tick, as in firmware/core/inputs.h."""
+
+    time_us: int
+    sum: int
+    lowest: int
+    highest: int
+    elapsed_ticks: int = 1
+    supply_mV: int = 12000
+    force_counts: int = 0
+    board: int = 0
+
+    def pack(self) -> bytes:
+        """Give the C structure's bytes."""
+        return _INPUTS.pack(*self)
+
+
+class Outputs(NamedTuple):
+    """What a board does in a tick."""
+
+    duty_q15: int = 0
+    enable: int = 0
+    slot: int = NONE
+    stop_us: int = 0
+    key: int = 0
+    mode: int = 0
+    commanded_cN64: int = 0
+
+    @classmethod
+    def unpack(cls, data: bytes) -> Outputs:
+        """Read the C structure's bytes; the rest of the tick's record goes over the link."""
+        return cls(*_OUTPUTS.unpack(data))
+
+
+_INPUTS = struct.Struct("<IIHHHHHBx")
+_OUTPUTS = struct.Struct("<hBBHBB6xh4x")
+INPUTS_BYTES, OUTPUTS_BYTES = _INPUTS.size, _OUTPUTS.size
+
+
+class Plant(Protocol):
+    """A rig in reality's place. `time_us` of what it gives is set by the clock of the line."""
+
+    def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
+        """Move on to the next tick with these outputs, and read the sensors there."""
+        ...
+
+
+class Truth(Protocol):
+    """What really happened, all on one clock; every column (n,)."""
+
+    @property
+    def t_s(self) -> FloatArray:
+        """From 0."""
+
+    @property
+    def displacement_mm(self) -> FloatArray:
+        """Of the cap."""
+
+    @property
+    def force_cN(self) -> FloatArray:
+        """Between finger and cap."""
+
+    @property
+    def tick(self) -> npt.NDArray[np.bool_] | None:
+        """Rows at which the board read its sensors."""
+
+
+class PressedPlant(Plant, Protocol):
+    """A plant on which someone presses once."""
+
+    @property
+    def ticks(self) -> int:
+        """How many steps the press and its release take."""
+
+    def record(self) -> Truth:
+        """Give what happened in all steps so far."""
+        ...
+
+
+class Person(Protocol):
+    """Someone who presses when asked."""
+
+    def press(self, travel_mm: float, velocity_mm_s: float, settings: Settings) -> PressedPlant:
+        """Come to the button at rest and press it once, at about this speed."""
+        ...
+
+    def rest(self, settings: Settings) -> Plant:
+        """Leave the button alone."""
+        ...

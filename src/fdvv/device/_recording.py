@@ -1,0 +1,183 @@
+"""Sessions on file: a line of JSON for everything that a device was told or gave.
+
+The first line is ``{"fdvv": "session", "format": 1, "info": {…}}``; then, in order, ``{"upload": {…}}``,
+``{"program": "base64"}``, ``{"press": {…}}`` and ``{"error": {…}}``. Columns are base64 of zlib of
+little-endian 64-bit floats, or of bytes for flags. Every line is on the disk before the next begins; a last
+line that was cut short is left out when the file is read.
+"""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import json
+import os
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TypeVar
+
+import numpy as np
+
+from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
+from fdvv.errors import DeviceError, InputError
+from fdvv.model import ForceSurface, Press
+
+FORMAT = 1
+T = TypeVar("T")
+
+
+def pack_column(column: np.ndarray[Any, Any]) -> str:
+    """Write a column as text."""
+    kind = "?" if column.dtype == np.bool_ else "<f8"
+    return kind + ":" + base64.b64encode(zlib.compress(column.astype(kind).tobytes())).decode()
+
+
+def unpack_column(text: str) -> Any:
+    """Read a column."""
+    kind, _, data = text.partition(":")
+    return np.frombuffer(zlib.decompress(base64.b64decode(data)), "?" if kind == "?" else "<f8")
+
+
+def pack_record(record: Press | ForceSurface) -> dict[str, Any]:
+    """Write a record of columns and numbers."""
+    found = {f.name: getattr(record, f.name) for f in dataclasses.fields(record)}
+    return {k: pack_column(np.asarray(v)) if isinstance(v, np.ndarray) else v for k, v in found.items()}
+
+
+def unpack_press(found: dict[str, Any]) -> Press:
+    """Read a press."""
+    fields: dict[str, Any] = {k: unpack_column(v) if isinstance(v, str) else v for k, v in found.items()}
+    return Press(**fields)
+
+
+def unpack_surface(found: dict[str, Any]) -> ForceSurface:
+    """Read a surface."""
+    columns: dict[str, Any] = {k: unpack_column(v) for k, v in found.items()}
+    shape = columns["velocity_mm_s"].size, columns["displacement_mm"].size
+    tables = {k: columns[k].reshape(shape) for k in ("press_cN", "release_cN")}
+    return ForceSurface(**{**columns, **tables})
+
+
+class Recorder:
+    """A device whose session is written down while it lasts; it is used like the device itself.
+
+    Parameters
+    ----------
+    device : what is recorded.
+    path : file to append to; a session begins with a line of its own.
+    """
+
+    def __init__(self, device: Device, path: Path) -> None:
+        self._device, self._path = device, Path(path)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = self._path.open("a", encoding="ascii")
+        if self._path.stat().st_size and not self._path.read_bytes().endswith(b"\n"):
+            self._file.write("\n")  # of a session that was cut short
+        self._write({"fdvv": "session", "format": FORMAT, "info": dataclasses.asdict(device.info())})
+
+    def _write(self, line: dict[str, Any]) -> None:
+        self._file.write(json.dumps(line) + "\n")
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def _kept(self, call: Callable[[], T], line: dict[str, Any]) -> T:
+        """Call, and write what was asked; a refusal or failure is part of the session."""
+        try:
+            found = call()
+        except DeviceError as error:
+            self._write({"error": {**line, "reason": str(error)}})
+            raise
+        if not isinstance(found, Press):
+            self._write(line)
+        return found
+
+    def info(self) -> DeviceInfo:
+        """Tell who this is."""
+        return self._device.info()
+
+    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+        """Upload and write down."""
+        line = {"upload": {"surface": pack_record(surface), "travel_mm": travel_mm}}
+        self._kept(lambda: self._device.upload(surface, travel_mm), line)
+
+    def upload_program(self, image: bytes) -> None:
+        """Upload and write down."""
+        line = {"program": base64.b64encode(image).decode()}
+        self._kept(lambda: self._programs().upload_program(image), line)
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Press and write down."""
+        press = self._kept(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
+        self._write({"press": pack_record(press)})
+        return press
+
+    def stop(self) -> None:
+        """Fall to zero force at once."""
+        self._programs().stop()
+
+    def fault(self) -> FaultReport:
+        """Tell the latched fault."""
+        return self._programs().fault()
+
+    def clear_fault(self) -> None:
+        """Clear the latched fault."""
+        self._programs().clear_fault()
+
+    def _programs(self) -> ProgramDevice:
+        if not hasattr(self._device, "upload_program"):
+            raise DeviceError(f"{self.info().name}: runs tables of force only, no programs")
+        return self._device  # type: ignore[return-value] # it has them all, or none
+
+    def close(self) -> None:
+        """End the session and let the device go."""
+        if hasattr(self._device, "close"):
+            self._device.close()
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def read_session(path: Path) -> list[dict[str, Any]]:
+    """Read the lines of the last session of a file; a cut last line is left out. InputError."""
+    try:
+        text = Path(path).read_text(encoding="ascii")
+    except UnicodeDecodeError:
+        raise InputError(path, "whole file", "is no text", "name a file that --record wrote") from None
+    lines: list[dict[str, Any]] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        found = _line(path, number, line) if line else None
+        if found is None:
+            continue
+        if found.get("fdvv") == "session":
+            lines = []
+        lines.append(found)
+    if not lines or lines[0].get("fdvv") != "session":
+        raise InputError(path, "line 1", "begins no session", "name a file that --record wrote")
+    if lines[0].get("format") != FORMAT:
+        raise InputError(path, "line 1", f"format {lines[0].get('format')} is unknown", "update fdvv")
+    return lines
+
+
+def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
+    """Read a line; None if it was cut short, as the last line of a killed session is."""
+    try:
+        found = json.loads(line)
+    except json.JSONDecodeError:
+        if not line.startswith("{"):
+            raise _no_record(path, number) from None
+        return None
+    if not isinstance(found, dict):
+        raise _no_record(path, number)
+    return found
+
+
+def _no_record(path: Path, number: int) -> InputError:
+    return InputError(path, f"line {number}", "is no record", "name a file that --record wrote")

@@ -1,0 +1,134 @@
+"""What every device behind the link has in common: limits, uploads, faults."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from fdvv.device._client import Client
+from fdvv.device._contract import DeviceInfo, FaultReport
+from fdvv.device._image import surface_image
+from fdvv.device._telemetry import UM16_PER_mm
+from fdvv.device._wire import RefusedError
+from fdvv.errors import DeviceError
+from fdvv.model import ForceSurface
+from fdvv.protocol import BoardFlag, Fault, Refusal, Settings
+
+SPEED_LIMITS_mm_s = (5.0, 500.0)
+
+
+class Remote:
+    """What every device behind the link has in common: limits, uploads, faults.
+
+    Attributes
+    ----------
+    client : the connection.
+    settings : the device's, as read on opening.
+    """
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self.settings: Settings = client.read_settings()
+        self.travel_mm: float | None = None
+        self._closed = False
+
+    def info(self) -> DeviceInfo:
+        """Tell who this is."""
+        hello, settings = self.client.hello, self.settings
+        return DeviceInfo(
+            hello.name.rstrip(b"\0").decode("ascii", "replace"),
+            bool(hello.board_flags & (BoardFlag.SIMULATED | BoardFlag.EMULATED)),
+            settings.force_limit_cN64 / 64,
+            hello.travel_um16_256 * 256 / UM16_PER_mm,
+            settings.tick_us * 1e-6,
+        )
+
+    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+        """Make surface the active command table and set the stop; DeviceError beyond the limits."""
+        check_table(self.info(), surface, travel_mm)
+        self.upload_program(surface_image(surface, travel_mm))
+
+    def upload_program(self, image: bytes) -> None:
+        """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
+        travel_mm = int.from_bytes(image[8:12], "little", signed=True) / UM16_PER_mm
+        self.client.upload(image)
+        self.travel_mm = travel_mm
+
+    def stop(self) -> None:
+        """Fall to zero force at once."""
+        try:
+            self.client.disarm()
+        except RefusedError as error:
+            if error.refusal is not Refusal.FAULT_LATCHED:
+                raise  # in a fault there is no force to end
+        self.client.stream(0)
+
+    def fault(self) -> FaultReport:
+        """Tell the latched fault."""
+        reply = self.client.read_fault()
+        return FaultReport(
+            Fault(reply.fault),
+            reply.value,
+            reply.bound,
+            reply.time_us * 1e-6,
+            reply.displacement_um16 / UM16_PER_mm,
+            reply.commanded_cN64 / 64,
+            reply.count,
+        )
+
+    def clear_fault(self) -> None:
+        """Clear the latched fault; DeviceError while its cause lasts."""
+        self.client.clear_fault(self.fault().fault)
+
+    def close(self) -> None:
+        """Stop, and let the device go; a second time does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            self.stop()
+        except DeviceError:
+            pass  # it is gone, or in fault, and then at zero force already
+        finally:
+            self.client.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _check_press(self, velocity_mm_s: float) -> float:
+        """Give the active program's travel; DeviceError without one, or at an absurd speed."""
+        name = self.client.port.name
+        if self.travel_mm is None:
+            raise DeviceError(f"{name}: press before upload; upload a surface or a program first")
+        low, high = SPEED_LIMITS_mm_s
+        if not low <= velocity_mm_s <= high:
+            raise DeviceError(f"{name}: speed {velocity_mm_s:g} mm/s is not within {low:g} to {high:g} mm/s")
+        return self.travel_mm
+
+    def _fail_on_fault(self) -> None:
+        """Raise DeviceError if the device fell to zero force."""
+        report = self.fault()
+        if report.fault is not Fault.NONE:
+            raise DeviceError(f"{self.client.port.name}: fell to zero force, {report}; clear the fault")
+
+
+def check_table(info: DeviceInfo, surface: ForceSurface, travel_mm: float) -> None:
+    """Refuse, before anything is sent, a table or travel beyond the limits. DeviceError."""
+    largest = max(float(np.abs(table).max()) for table in (surface.press_cN, surface.release_cN))
+    if largest > info.force_limit_cN:
+        raise DeviceError(
+            f"{info.name}: the table reaches {largest:.4g} cN, the limit is {info.force_limit_cN:g} cN; "
+            "clip the table before uploading it"
+        )
+    if not 0 < travel_mm <= info.travel_limit_mm:
+        raise DeviceError(
+            f"{info.name}: travel {travel_mm:g} mm is not within 0 to {info.travel_limit_mm:g} mm; "
+            "choose a travel that the stop can set"
+        )

@@ -1,0 +1,122 @@
+"""Messages as records: what a payload means, and which bytes a record is."""
+
+from __future__ import annotations
+
+from fdvv.errors import ModelError
+from fdvv.protocol._frame import Frame
+from fdvv.protocol._record import Record
+from fdvv.protocol._tables import (
+    DATA_BYTES,
+    AnnounceRequest,
+    BeginRequest,
+    ClearFaultRequest,
+    DataReply,
+    DataRequest,
+    EventRequest,
+    FaultedRequest,
+    HelloReply,
+    HelloRequest,
+    KeyRequest,
+    Message,
+    PingReply,
+    PingRequest,
+    ReadCountersReply,
+    ReadFaultReply,
+    RecordsRequest,
+    RefusedReply,
+    SelftestReply,
+    Settings,
+    TelemetryRequest,
+    TickRecord,
+    VibrateRequest,
+)
+
+REPLY = 0x80
+"""What a reply's number has more than its request's."""
+
+REQUESTS: dict[Message, type[Record]] = {
+    Message.HELLO: HelloRequest,
+    Message.PING: PingRequest,
+    Message.WRITE_SETTINGS: Settings,
+    Message.BEGIN: BeginRequest,
+    Message.DATA: DataRequest,
+    Message.EVENT: EventRequest,
+    Message.TELEMETRY: TelemetryRequest,
+    Message.CLEAR_FAULT: ClearFaultRequest,
+    Message.ANNOUNCE: AnnounceRequest,
+    Message.VIBRATE: VibrateRequest,
+    Message.RECORDS: RecordsRequest,
+    Message.FAULTED: FaultedRequest,
+    Message.KEY: KeyRequest,
+}
+"""Structure of a request, or of what the device sends unasked; absent: it has no payload."""
+
+REPLIES: dict[Message, type[Record]] = {
+    Message.HELLO: HelloReply,
+    Message.PING: PingReply,
+    Message.READ_SETTINGS: Settings,
+    Message.DATA: DataReply,
+    Message.READ_FAULT: ReadFaultReply,
+    Message.SELFTEST: SelftestReply,
+    Message.READ_COUNTERS: ReadCountersReply,
+    Message.REFUSED: RefusedReply,
+}
+"""Structure of a reply; absent: it has no payload."""
+
+
+def request_frame(message: Message, sequence: int, body: Record | None = None) -> Frame:
+    """Make the frame of a request. ModelError if the body is not the message's structure."""
+    expected = REQUESTS.get(message)
+    if type(body) is not (expected or type(None)):
+        named = expected.__name__ if expected else "no body"
+        raise ModelError(f"{message.name.lower()} takes {named}, got {type(body).__name__}")
+    return Frame(message, sequence, _payload(body))
+
+
+def _payload(body: Record | None) -> bytes:
+    if body is None:
+        return b""
+    packed = body.pack()
+    # of a data message only the bytes that are there are sent
+    return packed[: 4 + body.count] if isinstance(body, DataRequest) else packed
+
+
+def data_request(offset: int, piece: bytes) -> DataRequest:
+    """Give the message that carries a piece of an image."""
+    return DataRequest(offset=offset, count=len(piece), bytes=piece.ljust(DATA_BYTES, b"\0"))
+
+
+def read_reply(frame: Frame) -> tuple[Message, Record | None]:
+    """Give a reply's message and body. ModelError if it is no reply, or has another length."""
+    if not REPLY <= frame.message < Message.RECORDS and frame.message != Message.REFUSED + REPLY:
+        raise ModelError(f"message {frame.message:#04x} is no reply")
+    try:
+        message = Message(frame.message - REPLY)
+    except ValueError:
+        raise ModelError(f"message {frame.message:#04x} is unknown") from None
+    return message, _read(REPLIES.get(message), frame.payload)
+
+
+def _read(kind: type[Record] | None, payload: bytes) -> Record | None:
+    if kind is None:
+        if payload:
+            raise ModelError(f"a message without payload has {len(payload)} bytes")
+        return None
+    return kind.unpack(payload)
+
+
+def read_notice(frame: Frame) -> tuple[RecordsRequest | FaultedRequest | KeyRequest, bytes]:
+    """Read what a device sends unasked; of telemetry also the bytes of its records, else b"". ModelError."""
+    kind = REQUESTS.get(Message(frame.message)) if frame.message in _NOTICES else None
+    if kind is None:
+        raise ModelError(f"message {frame.message:#04x} is no notice")
+    size = kind.length_bytes()
+    body, rest = kind.unpack(frame.payload[:size]), frame.payload[size:]
+    assert isinstance(body, RecordsRequest | FaultedRequest | KeyRequest)
+    count = body.count if isinstance(body, RecordsRequest) else 0
+    if len(rest) != count * TickRecord.length_bytes():
+        raise ModelError(f"telemetry of {count} records has {len(rest)} bytes of them")
+    return body, rest
+
+
+_NOTICES = (Message.RECORDS, Message.FAULTED, Message.KEY)
