@@ -36,7 +36,7 @@ class ScriptedPlant:
         meddle: Meddle | None = None,
     ) -> None:
         self._path_mm, self._velocity_mm_s, self._settings = path_mm, velocity_mm_s, settings
-        self._meddle = meddle
+        self.meddle = meddle
         self._noise = random.integers(-noise_counts, noise_counts + 1, 1024)
         self._tick = 0
         self._felt_cN: list[float] = []
@@ -56,7 +56,7 @@ class ScriptedPlant:
         total += int(self._noise[self._tick % self._noise.size])
         mean = total // self._settings.reads
         inputs = Inputs(0, total, mean, mean + 1, supply_mV=self._settings.nominal_supply_mV)
-        inputs = self._meddle(self._tick, inputs) if self._meddle else inputs
+        inputs = self.meddle(self._tick, inputs) if self.meddle else inputs
         self._tick += 1
         return inputs
 

@@ -27,8 +27,8 @@ Notice = RecordsRequest | FaultedRequest | KeyRequest
 Listener = Callable[[Notice, bytes, int], None]
 """Told of what a device sends unasked: the notice, the bytes of its records, its sequence number."""
 
-TRIES = 4
-TIMEOUT_s = 0.15
+TRIES = 6
+TIMEOUT_s = 0.1
 SLOW_s = {Message.COMMIT: 1.0, Message.SELFTEST: 5.0}
 """Time for a reply; most come within a few ticks."""
 

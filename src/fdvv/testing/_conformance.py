@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
-from fdvv.device import Device
+from fdvv.device import Device, ProgramDevice, surface_image
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface, Press
+from fdvv.protocol import Fault
 
 
 def plain_surface(force_cN: float = 40.0, travel_mm: float = 4.0) -> ForceSurface:
@@ -92,6 +93,68 @@ class DeviceConformance:
         assert press.tick is not None
         assert np.allclose(np.diff(press.t_s[press.tick]), device.info().tick_s, rtol=1e-6)
         assert press.simulated == device.info().simulated
+
+
+class ProgramConformance(DeviceConformance):
+    """The contract of fdvv.device.ProgramDevice: what every device with the firmware in it honours."""
+
+    def make(self) -> ProgramDevice:
+        """Give a fresh device."""
+        raise NotImplementedError
+
+    def program(self, force_cN: float = 40.0) -> bytes:
+        """Give a program that follows the plain surface."""
+        return surface_image(plain_surface(force_cN, self.travel_mm), self.travel_mm)
+
+    def test_a_program_is_pressed_like_a_surface(self) -> None:
+        """Uploaded as an image, it renders the same commands."""
+        device = self.make()
+        device.upload_program(self.program())
+        press = device.press(self.speed_mm_s)
+        assert press.commanded_cN is not None
+        assert 35 < np.median(press.commanded_cN) < 65
+
+    def test_a_damaged_program_is_refused_and_the_old_one_stays(self) -> None:
+        """Whole or not at all."""
+        device = self.make()
+        device.upload_program(self.program())
+        damaged = bytearray(self.program(80.0))
+        damaged[-1] ^= 1
+        refused(partial(device.upload_program, bytes(damaged)))
+        press = device.press(self.speed_mm_s)
+        assert press.commanded_cN is not None
+        assert np.max(press.commanded_cN) < 65
+
+    def test_there_is_no_fault_after_a_press(self) -> None:
+        """And nothing to clear."""
+        device = self.make()
+        self.pressed(device)
+        assert device.fault().fault is Fault.NONE
+        assert str(device.fault()) == "no fault"
+        refused(device.clear_fault)
+
+    def test_stopping_is_always_allowed(self) -> None:
+        """Before an upload, after a press, and twice."""
+        device = self.make()
+        device.stop()
+        self.pressed(device)
+        device.stop()
+        device.stop()
+
+    def test_a_press_misses_no_tick(self) -> None:
+        """Every tick of the press was told."""
+        press = self.pressed(self.make())
+        assert press.tick is not None
+        ticks = np.flatnonzero(press.tick)
+        assert len(set(np.diff(ticks))) == 1
+
+    def test_closing_twice_does_nothing_more(self) -> None:
+        """The second close is silent; a press afterwards is refused."""
+        device = self.make()
+        self.pressed(device)
+        device.close()
+        device.close()
+        refused(lambda: device.press(self.speed_mm_s))
 
 
 def refused(call: Callable[[], object]) -> None:

@@ -1,0 +1,142 @@
+"""Boards in lockstep as devices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from tests.device.rigs import linked
+
+from fdvv.device import HostBoard, Inputs, LibraryBoard, LinkedDevice, ProgramDevice, ScriptedPerson
+from fdvv.errors import DeviceError
+from fdvv.protocol import Fault, Settings
+from fdvv.testing import ProgramConformance, plain_surface
+
+
+class TestLibraryBoard(ProgramConformance):
+    def make(self) -> ProgramDevice:
+        return linked()
+
+
+class TestHostBoard(ProgramConformance):
+    opened: list[LinkedDevice]
+
+    @pytest.fixture(autouse=True)
+    def _closed(self) -> Iterator[None]:
+        self.opened = []
+        yield
+        for device in self.opened:
+            device.close()
+
+    def make(self) -> ProgramDevice:
+        self.opened.append(LinkedDevice(HostBoard(), ScriptedPerson()))
+        return self.opened[-1]
+
+
+def test_the_host_program_and_the_library_do_the_same_in_every_tick() -> None:
+    presses = []
+    for board in (LibraryBoard(), HostBoard()):
+        with LinkedDevice(board, ScriptedPerson(3)) as device:
+            device.upload(plain_surface(), 4.0)
+            presses.append([device.press(v) for v in (50.0, 100.0, 300.0)])
+    for one, other in zip(*presses, strict=True):
+        assert one.sensed_mm is not None
+        assert other.sensed_mm is not None
+        assert one.force_cN.tobytes() == other.force_cN.tobytes()
+        assert one.sensed_mm.tobytes() == other.sensed_mm.tobytes()
+
+
+def low_supply(tick: int, inputs: Inputs) -> Inputs:
+    return inputs._replace(supply_mV=5000) if tick > 100 else inputs
+
+
+def broken_wire(tick: int, inputs: Inputs) -> Inputs:
+    return inputs._replace(lowest=0) if tick > 100 else inputs
+
+
+def missed(tick: int, inputs: Inputs) -> Inputs:
+    return inputs._replace(elapsed_ticks=9) if tick == 100 else inputs
+
+
+@pytest.mark.parametrize(
+    ("meddle", "fault"),
+    [(low_supply, Fault.SUPPLY_LOW), (broken_wire, Fault.POSITION_LOW), (missed, Fault.LATE)],
+)
+def test_what_goes_wrong_in_a_press_is_named_and_ends_force_at_once(meddle: object, fault: Fault) -> None:
+    person = ScriptedPerson(meddle=meddle)  # type: ignore[arg-type] # one of the three above
+    device = LinkedDevice(LibraryBoard(), person)
+    device.upload(plain_surface(), 4.0)
+    with pytest.raises(DeviceError, match=fault.name.lower()):
+        device.press(100.0)
+    assert device.port.outputs.duty_q15 == 0
+    person.meddle = None
+    with pytest.raises(DeviceError, match="a fault is latched"):
+        device.press(100.0)
+    device.clear_fault()
+    assert device.press(100.0).force_cN.max() > 30
+
+
+def test_a_missed_tick_is_marked_as_none() -> None:
+    skipped = ScriptedPerson(meddle=lambda t, i: i._replace(elapsed_ticks=2) if t == 200 else i)
+    device = LinkedDevice(LibraryBoard(), skipped)
+    device.upload(plain_surface(), 4.0)
+    press = device.press(100.0)
+    assert press.tick is not None
+    assert device.client.telemetry.missing_ticks() == 1
+    assert device.client.telemetry.late_ticks == 1
+
+
+def test_ctrl_c_in_a_press_disarms() -> None:
+    def interrupt(tick: int, inputs: Inputs) -> Inputs:
+        if tick == 150:
+            raise KeyboardInterrupt
+        return inputs
+
+    person = ScriptedPerson(meddle=interrupt)
+    device = LinkedDevice(LibraryBoard(), person)
+    device.upload(plain_surface(), 4.0)
+    with pytest.raises(KeyboardInterrupt):
+        device.press(100.0)
+    assert device.port.outputs.duty_q15 == 0
+    assert device.fault().fault is Fault.NONE
+    person.meddle = None
+    assert device.press(100.0).force_cN.max() > 30
+
+
+def test_other_settings_are_used_and_want_a_new_upload() -> None:
+    device = linked()
+    device.upload(plain_surface(), 4.0)
+    device.write_settings(Settings(tick_us=500, force_limit_cN64=50 * 64))
+    assert device.info().force_limit_cN == 50
+    assert device.info().tick_s == 0.0005
+    with pytest.raises(DeviceError, match="press before upload"):
+        device.press(100.0)
+    with pytest.raises(DeviceError, match="limit is 50 cN"):
+        device.upload(plain_surface(), 4.0)
+    device.upload(plain_surface(20.0), 4.0)
+    press = device.press(100.0)
+    assert press.tick is not None
+    assert np.diff(press.t_s[press.tick]) == pytest.approx(0.0005)
+
+
+def test_a_table_that_no_program_holds_is_refused_with_its_size() -> None:
+    from fdvv.model import ForceSurface
+
+    table = np.zeros((8, 255))
+    surface = ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 9.0), table, table)
+    with pytest.raises(DeviceError, match="needs 8252 bytes, a program holds 7168"):
+        linked().upload(surface, 4.0)
+
+
+def test_a_board_that_ends_is_told_in_one_line() -> None:
+    import os
+    import signal
+
+    board = HostBoard()
+    device = LinkedDevice(board, ScriptedPerson())
+    device.upload(plain_surface(), 4.0)
+    os.kill(board.pid, signal.SIGKILL)
+    with pytest.raises(DeviceError, match="host: the program has ended"):
+        device.press(100.0)
+    device.close()
