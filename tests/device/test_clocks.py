@@ -11,7 +11,6 @@ from fdvv.device import Exchange, relate
 from fdvv.device._clocks import unwrap_us
 from fdvv.errors import DeviceError
 
-
 Rng = np.random.Generator
 
 
