@@ -26,7 +26,12 @@ def tool(name: str) -> ModuleType:
 
 
 @pytest.mark.parametrize(
-    ("page", "name"), [("cli.md", "make_cli_reference"), ("rig.md", "make_rig_reference")]
+    ("page", "name"),
+    [
+        ("cli.md", "make_cli_reference"),
+        ("protocol.md", "make_protocol_reference"),
+        ("rig.md", "make_rig_reference"),
+    ],
 )
 def test_a_generated_reference_is_that_of_the_code(page: str, name: str) -> None:
     text = (REPOSITORY / "docs" / "reference" / page).read_text()

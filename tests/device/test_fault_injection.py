@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import random
 import struct
+import subprocess
 import zlib
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from tests.device.rigs import PROGRAMS
@@ -39,6 +41,7 @@ from fdvv.protocol import (
     request_frame,
 )
 
+ROOT = Path(__file__).resolve().parents[2]
 BASE = Settings()
 DUTY_q15 = min(BASE.duty_limit_q15, BASE.force_limit_cN64 * BASE.duty_gain_q16 // 65536 + 1)
 RENDERING = (Mode.ARMED, Mode.DERATED)
@@ -255,6 +258,17 @@ def test_hundreds_of_bad_frames_over_a_terminal_do_no_harm() -> None:
     attack(siege, 600, 2)
     siege.board.close()
     told("host program", siege.counts)
+    assert siege.counts["recovered"] >= 2
+
+
+def test_a_sanitised_build_finds_nothing_wrong_under_attack(tmp_path: Path) -> None:
+    flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
+    make = ["make", "-s", "-C", str(ROOT / "firmware" / "boards" / "host")]
+    subprocess.run([*make, f"BUILD={tmp_path}", f"CFLAGS={flags}"], check=True)
+    siege = Siege(lambda: HostBoard(tmp_path / "fdvv-host"), 5)
+    attack(siege, 600, 2)
+    siege.board.close()
+    told("sanitised", siege.counts)
     assert siege.counts["recovered"] >= 2
 
 

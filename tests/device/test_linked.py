@@ -83,7 +83,7 @@ def test_a_missed_tick_is_marked_as_none() -> None:
     device.upload(plain_surface(), 4.0)
     press = device.press(100.0)
     assert press.tick is not None
-    assert device.client.telemetry.missing_ticks() == 1
+    assert device.client.telemetry.missing_ticks == 1
     assert device.client.telemetry.late_ticks == 1
 
 

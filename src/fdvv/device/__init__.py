@@ -7,11 +7,13 @@ from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
 from fdvv.device._image import seal, surface_image
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._lockstep import Board, LockstepPort
+from fdvv.device._monitor import watch
 from fdvv.device._open import KINDS, open_device
 from fdvv.device._plant import Inputs, Outputs, Person, Plant, PressedPlant, Truth
 from fdvv.device._port import Port
 from fdvv.device._pressed import PressedDevice
 from fdvv.device._recording import Recorder, read_session
+from fdvv.device._remote import Remote
 from fdvv.device._replay import ReplayDevice
 from fdvv.device._script import ScriptedPerson, ScriptedPlant
 from fdvv.device._serial import SerialPort, serial_ports
@@ -42,6 +44,7 @@ __all__ = [
     "ProgramDevice",
     "Recorder",
     "RefusedError",
+    "Remote",
     "ReplayDevice",
     "ScriptedPerson",
     "ScriptedPlant",
@@ -57,4 +60,5 @@ __all__ = [
     "seal",
     "serial_ports",
     "surface_image",
+    "watch",
 ]

@@ -85,12 +85,15 @@ class LibraryBoard:
 
 
 class HostBoard:
-    """The firmware as a program of its own, its link a real pseudo-terminal."""
+    """The firmware as a program of its own, its link a real pseudo-terminal.
+
+    program : another build of firmware/boards/host than the one that came with fdvv.
+    """
 
     name = "host"
 
-    def __init__(self) -> None:
-        program = Path(_native.__file__).with_name("fdvv-host")
+    def __init__(self, program: Path | None = None) -> None:
+        program = program or Path(_native.__file__).with_name("fdvv-host")
         if not program.exists():
             raise BuildError(f"the program {program.name} is missing; reinstall fdvv with a C compiler")
         self._link, slave = os.openpty()

@@ -58,12 +58,14 @@ class Telemetry:
     missing_frames : frames from the device that the line lost or damaged, by their sequence numbers.
     lost_records : records for which the device had no room, by its own count.
     late_ticks : ticks that the device itself missed.
+    missing_ticks : ticks between records that should have been told and were not, for whatever reason.
     """
 
     def __init__(self) -> None:
         self.last: RecordsRequest | None = None
-        self.missing_frames = self.lost_records = self.late_ticks = 0
+        self.missing_frames = self.lost_records = self.late_ticks = self.missing_ticks = 0
         self._sequence: int | None = None
+        self._due: int | None = None
         self._pieces: list[tuple[RecordsRequest, bytes]] = []
 
     def heard(self, sequence: int) -> None:
@@ -78,13 +80,22 @@ class Telemetry:
         if self.last is not None:
             self.lost_records += max(0, head.lost - self.last.lost)
             self.late_ticks += max(0, head.late - self.last.late)
+        if self._due is not None:
+            self.missing_ticks += max(0, (head.first_tick - self._due) // head.every)
+        self._due = head.first_tick + head.every * head.count
         self.last = head
         self._pieces.append((head, records))
 
     def clear(self) -> None:
-        """Forget records and counts; the sequence is still followed."""
+        """Forget records and counts, as before telemetry is switched on; the sequence is still followed."""
+        self._pieces, self._due = [], None
+        self.missing_frames = self.lost_records = self.late_ticks = self.missing_ticks = 0
+
+    def take(self) -> TickColumns:
+        """Give what has arrived and forget it; counts and gaps go on."""
+        found = self.columns()
         self._pieces = []
-        self.missing_frames = self.lost_records = self.late_ticks = 0
+        return found
 
     def columns(self) -> TickColumns:
         """Give what has arrived as columns."""
@@ -92,14 +103,6 @@ class Telemetry:
         rows = np.frombuffer(b"".join(records for _, records in self._pieces), TICK_RECORD)
         ticks = [head.first_tick + head.every * np.arange(head.count, dtype=np.int64) for head in heads]
         return _columns(np.concatenate(ticks) if ticks else np.empty(0, np.int64), rows)
-
-    def missing_ticks(self) -> int:
-        """Count ticks between the first and last record that should have been told and were not."""
-        missing = 0
-        for (head, _), (following, _) in zip(self._pieces, self._pieces[1:], strict=False):
-            due = head.first_tick + head.every * head.count
-            missing += max(0, (following.first_tick - due) // head.every)
-        return missing
 
 
 def _columns(tick: IntArray, rows: npt.NDArray[np.void]) -> TickColumns:

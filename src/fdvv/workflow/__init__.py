@@ -17,6 +17,7 @@ from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folde
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
+from fdvv.workflow._programs import program_image
 
 __all__ = [
     "Comparison",
@@ -52,6 +53,7 @@ __all__ = [
     "open_models",
     "open_part",
     "probe",
+    "program_image",
     "save_actuation",
     "summarise",
     "uncompensated",

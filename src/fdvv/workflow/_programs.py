@@ -1,0 +1,31 @@
+"""Programs for a device, from whatever a person names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fdvv.device import surface_image
+from fdvv.errors import InputError
+from fdvv.model import ForceSurface
+from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC
+from fdvv.workflow._open import open_model
+
+MAGIC = IMAGE_MAGIC.to_bytes(4, "little")
+STEP_mm = 0.05
+
+
+def program_image(button: str, velocities_mm_s: Sequence[float]) -> bytes:
+    """Give the image of a program: that of a file, or one that follows a button's own force.
+
+    button : a program image (its first bytes are FDVP), else what `open_model` opens; its force is sampled
+    at these speeds and not compensated for any rig. Raises InputError.
+    """
+    path = Path(button)
+    if path.is_file() and path.stat().st_size <= IMAGE_BYTES and path.read_bytes()[:4] == MAGIC:
+        return path.read_bytes()
+    model = open_model(button)
+    if not model.of("press"):
+        raise InputError(button, "curves", "it has no press, there is nothing to render", "merge one into it")
+    surface = ForceSurface.of_model(model, sorted(velocities_mm_s), STEP_mm)
+    return surface_image(surface, model.travel_mm, model.name)

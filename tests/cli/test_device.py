@@ -1,0 +1,93 @@
+"""fdvv device, as a person runs it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.cli.conftest import Ran
+
+from fdvv.device import surface_image
+from fdvv.testing import plain_surface
+
+Run = Callable[..., Ran]
+
+
+def test_the_kinds_of_device_are_listed(fdvv: Run) -> None:
+    names = [row["device"] for row in json.loads(fdvv("device", "list", "--json").out)["devices"]]
+    assert names[:4] == ["twin", "host", "serial:PORT", "replay:FILE"]
+    assert "what it is" in fdvv("device", "list").out
+
+
+def test_info_tells_limits_firmware_and_counters(fdvv: Run) -> None:
+    told = json.loads(fdvv("device", "info", "--json").out)
+    assert (told["name"], told["simulated"], told["mode"]) == ("host", True, "idle")
+    assert told["counters"]["bad_frames"] == 0
+    assert "force_limit_cN" in fdvv("device", "info").out
+    assert json.loads(fdvv("device", "info", "--device", "twin", "--json").out)["name"] == "twin"
+
+
+def test_the_selftest_gives_a_verdict_for_every_part(fdvv: Run) -> None:
+    parts = json.loads(fdvv("device", "selftest", "--json").out)["parts"]
+    assert [p["part"] for p in parts][:2] == ["position_sensor", "supply"]
+    assert "failed" not in {p["verdict"] for p in parts}
+    assert "passed" in fdvv("device", "selftest").out
+
+
+def test_a_model_and_an_image_are_uploaded(fdvv: Run, tmp_path: Path) -> None:
+    image = tmp_path / "program.bin"
+    image.write_bytes(surface_image(plain_surface(), 4.0))
+    told = json.loads(fdvv("device", "upload", str(image), "--json").out)
+    assert told == {"device": "host", "bytes": len(image.read_bytes()), "states": 1, "travel_mm": 4.0}
+    assert "checked and active" in fdvv("device", "upload", "mx-brown").out
+
+
+def test_a_damaged_image_is_refused_with_the_device_s_reason(fdvv: Run, tmp_path: Path) -> None:
+    image = tmp_path / "program.bin"
+    image.write_bytes(surface_image(plain_surface(), 4.0)[:-4] + b"oops")
+    ran = fdvv("device", "upload", str(image))
+    assert ran.status == 1
+    assert ran.err == "fdvv: host: refused commit: the program arrived damaged; upload it again\n"
+
+
+def test_presses_are_made_recorded_and_replayed(fdvv: Run, tmp_path: Path) -> None:
+    path = tmp_path / "session"
+    first = json.loads(fdvv("device", "press", "mx-clear", "--record", str(path), "--json").out)
+    again = json.loads(fdvv("device", "press", "mx-clear", "--device", f"replay:{path}", "--json").out)
+    assert first == again
+    assert len(first["presses"]) == 3
+    assert "simulated" in fdvv("device", "press", "mx-clear", "--presses", "1").out
+    ended = fdvv("device", "press", "mx-clear", "--device", f"replay:{path}", "--presses", "4")
+    assert ended.status == 1
+    assert "the recording ends here" in ended.err
+
+
+def test_what_a_device_tells_is_written_as_lines(fdvv: Run, tmp_path: Path) -> None:
+    for ending in ("csv", "jsonl"):
+        path = tmp_path / f"told.{ending}"
+        told = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "-o", str(path), "--json").out)
+        lines = path.read_text().splitlines()
+        assert told["missing_ticks"] == 0
+        assert len(lines) == told["records"] + (ending == "csv")
+    assert list(json.loads(lines[0])) == [
+        "tick", "displacement_mm", "velocity_mm_s", "commanded_cN", "force_cN", "state", "flags"
+    ]  # fmt: skip
+
+
+def test_fewer_records_are_asked_for(fdvv: Run) -> None:
+    told = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "--every", "10", "--json").out)
+    assert 39 <= told["records"] <= 41
+
+
+def test_a_device_without_firmware_says_what_to_use(fdvv: Run) -> None:
+    for command in (["selftest"], ["monitor"], ["upload", "mx-clear"], ["press", "mx-clear"]):
+        ran = fdvv("device", *command, "--device", "twin")
+        assert ran.status == 2
+        assert "use host or serial:PORT" in ran.err
+
+
+def test_a_port_that_is_not_there_is_told_with_status_1(fdvv: Run) -> None:
+    ran = fdvv("device", "info", "--device", "serial:/dev/there-is-none")
+    assert ran.status == 1
+    assert ran.err.count("\n") == 1

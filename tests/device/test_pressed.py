@@ -1,0 +1,171 @@
+"""A device on a real terminal line, in real time, pressed by someone else's thread."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+import tty
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from fdvv.device import Inputs, LibraryBoard, LockstepPort, PressedDevice, ScriptedPerson, SerialPort
+from fdvv.device._pressed import find_press
+from fdvv.device._telemetry import TickColumns
+from fdvv.errors import DeviceError
+from fdvv.protocol import Fault, Settings
+from fdvv.testing import plain_surface
+
+SETTINGS = Settings(host_timeout_ms=5000)
+"""Patient, as this machine may be busy; otherwise the board's own."""
+
+
+def opened(rig: Rig, patience_s: float = 20.0) -> PressedDevice:
+    device = PressedDevice(SerialPort(rig.path), patience_s)
+    device.client.write_settings(SETTINGS)
+    return device
+
+
+class Rig(threading.Thread):
+    """A board that runs in real time behind a pseudo-terminal, and someone who presses while it is armed."""
+
+    def __init__(self, person: ScriptedPerson, presses: int) -> None:
+        super().__init__(daemon=True)
+        self.person, self.presses = person, presses
+        self.line, self.slave = os.openpty()
+        tty.setraw(self.slave)
+        os.set_blocking(self.line, False)
+        self.path = os.ttyname(self.slave)
+        self.board = LibraryBoard()
+        self.port = LockstepPort(self.board, person.rest(SETTINGS), SETTINGS.tick_us)
+        self.over = threading.Event()
+
+    def run(self) -> None:
+        last_s = time.monotonic()
+        while not self.over.wait(0.001):
+            self.hear()
+            # time that the machine had no time for is left out, so that the rig never runs ahead of its host
+            for _ in range(min(int((time.monotonic() - last_s) / 250e-6), 40)):
+                self.tick()
+            last_s = time.monotonic()
+
+    def hear(self) -> None:
+        try:
+            self.board.write(os.read(self.line, 4096))
+        except BlockingIOError:
+            return
+
+    def tick(self) -> None:
+        out = self.port.step()
+        try:
+            os.write(self.line, self.board.read())
+        except BlockingIOError:
+            return
+        if out.enable and self.presses and len(self.port.ticks) > 100:
+            self.presses -= 1
+            self.port.connect(self.person.press(4.0, 100.0, SETTINGS))
+
+    def end(self) -> None:
+        self.over.set()
+        self.join()
+        os.close(self.line)
+        os.close(self.slave)
+
+
+@pytest.fixture
+def rig() -> Iterator[Callable[..., Rig]]:
+    rigs: list[Rig] = []
+
+    def make(person: ScriptedPerson | None = None, presses: int = 1) -> Rig:
+        rigs.append(Rig(person or ScriptedPerson(), presses))
+        rigs[-1].start()
+        return rigs[-1]
+
+    yield make
+    for one in rigs:
+        one.end()
+
+
+def test_a_person_s_press_is_found_in_the_telemetry_of_a_serial_line(rig: Callable[..., Rig]) -> None:
+    with opened(rig()) as device:
+        device.upload(plain_surface(), 4.0)
+        press = device.press(100.0)
+    assert press.displacement_mm.max() == pytest.approx(4.0, abs=0.01)
+    assert press.displacement_mm[0] < 0.2 > press.displacement_mm[-1]
+    assert 0.09 < press.t_s[-1] < 0.13
+    assert press.commanded_cN is not None
+    assert np.median(press.commanded_cN) == pytest.approx(50, abs=10)
+
+
+def test_without_a_press_one_is_told_after_the_patience(rig: Callable[..., Rig]) -> None:
+    device = opened(rig(presses=0), 0.2)
+    device.upload(plain_surface(), 4.0)
+    with pytest.raises(DeviceError, match=r"nobody pressed within 0\.2 s"):
+        device.press(100.0)
+    assert device.fault().fault is Fault.NONE
+    device.close()
+
+
+def test_a_fault_ends_the_waiting(rig: Callable[..., Rig]) -> None:
+    def broken(tick: int, inputs: Inputs) -> Inputs:
+        return inputs._replace(lowest=0) if tick > 50 else inputs
+
+    device = opened(rig(ScriptedPerson(meddle=broken)))
+    device.upload(plain_surface(), 4.0)
+    with pytest.raises(DeviceError, match="position_low"):
+        device.press(100.0)
+    device.close()
+
+
+def test_a_line_that_was_closed_and_opened_again_goes_on(rig: Callable[..., Rig]) -> None:
+    device = opened(rig())
+    device.upload(plain_surface(), 4.0)
+    device.client.reconnect()
+    assert device.press(100.0).displacement_mm.max() > 3.9
+    device.close()
+
+
+def test_a_port_that_is_not_there_is_told_in_one_line() -> None:
+    with pytest.raises(DeviceError, match="cannot be opened") as caught:
+        SerialPort("/dev/there-is-none")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_line_without_a_device_is_told(rig: Callable[..., Rig]) -> None:
+    line, slave = os.openpty()
+    tty.setraw(slave)
+    with pytest.raises(DeviceError, match="no answer to hello"):
+        PressedDevice(SerialPort(os.ttyname(slave)))
+    os.close(line)
+    os.close(slave)
+
+
+def columns(displacement_mm: list[float]) -> TickColumns:
+    x = np.array(displacement_mm)
+    zero = np.zeros(x.size, np.int64)
+    return TickColumns(np.arange(x.size), x, 0.0 * x, 0.0 * x, 0.0 * x, zero, zero)
+
+
+@pytest.mark.parametrize(
+    ("path", "found"),
+    [
+        ([0.0] * 30 + [4.0] * 5 + [0.0] * 30, (10, 55)),
+        ([0.0] * 5 + [4.0] * 5 + [0.0] * 30, (0, 30)),
+        ([0.0] * 30 + [4.0] * 5 + [0.0] * 5, None),  # not back for long enough
+        ([0.0] * 30 + [2.0] * 5 + [0.0] * 30, None),  # a touch
+        ([0.0] * 30 + [2.0] * 5 + [0.0] * 30 + [3.9] * 2 + [0.0] * 20, (45, 87)),
+        ([4.0] * 5 + [0.0] * 30 + [4.0] * 5 + [0.0] * 30, (15, 60)),  # held as it began
+        ([0.0] * 30, None),
+        ([], None),
+    ],
+)
+def test_only_a_whole_press_counts(path: list[float], found: tuple[int, int] | None) -> None:
+    chosen = find_press(columns(path), 4.0)
+    if found is None:
+        assert chosen is None
+    else:
+        assert chosen is not None
+        rows = np.flatnonzero(chosen)
+        assert (rows[0], rows[-1] + 1) == found
