@@ -48,7 +48,7 @@ def test_a_damaged_image_is_refused_with_the_device_s_reason(fdvv: Run, tmp_path
     image.write_bytes(surface_image(plain_surface(), 4.0)[:-4] + b"oops")
     ran = fdvv("device", "upload", str(image))
     assert ran.status == 1
-    assert ran.err == "fdvv: host: refused commit: the program arrived damaged; upload it again\n"
+    assert ran.err.startswith("fdvv: host: refused commit: the program arrived damaged; upload it again")
 
 
 def test_presses_are_made_recorded_and_replayed(fdvv: Run, tmp_path: Path) -> None:

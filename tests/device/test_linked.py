@@ -88,19 +88,21 @@ def test_a_missed_tick_is_marked_as_none() -> None:
 
 
 def test_ctrl_c_in_a_press_disarms() -> None:
+    person = ScriptedPerson()
+
     def interrupt(tick: int, inputs: Inputs) -> Inputs:
-        if tick == 150:
+        if tick == 150 and person.meddle:
+            person.meddle = None
             raise KeyboardInterrupt
         return inputs
 
-    person = ScriptedPerson(meddle=interrupt)
+    person.meddle = interrupt
     device = LinkedDevice(LibraryBoard(), person)
     device.upload(plain_surface(), 4.0)
     with pytest.raises(KeyboardInterrupt):
         device.press(100.0)
     assert device.port.outputs.duty_q15 == 0
     assert device.fault().fault is Fault.NONE
-    person.meddle = None
     assert device.press(100.0).force_cN.max() > 30
 
 

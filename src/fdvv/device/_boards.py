@@ -17,6 +17,7 @@ from fdvv.protocol import ImageHeader
 
 TAIL = struct.Struct("<II")
 SENT = struct.Struct("<I")
+ANSWER_BYTES = OUTPUTS_BYTES + SENT.size
 PATIENCE_s = 10.0
 """Real time for one tick of the host program; it takes some 20 us."""
 
@@ -108,8 +109,8 @@ class HostBoard:
         self._slave = slave
         self._asked, self._given = asked[1], given[0]
         self._written = self._heard = 0
-        self._waiting = self._arrived = b""
-        self._plugged, self._open = True, True
+        self._waiting = self._arrived = self._answer = b""
+        self._plugged, self._open, self._owed = True, True, False
 
     @property
     def pid(self) -> int:
@@ -118,11 +119,13 @@ class HostBoard:
 
     def tick(self, inputs: Inputs) -> Outputs:
         """Run one tick; DeviceError if the program has ended."""
-        self._flush()
-        question = inputs.pack() + TAIL.pack(self._written % 2**32, self._plugged)
         try:
-            os.write(self._asked, question)
-            answer = self._take(OUTPUTS_BYTES + SENT.size)
+            if self._owed:
+                self._take()  # Ctrl-C came between question and answer
+            self._flush()
+            self._owed = True
+            os.write(self._asked, inputs.pack() + TAIL.pack(self._written % 2**32, self._plugged))
+            answer = self._take()
         except (BrokenPipeError, EOFError):
             status = self._process.poll()
             raise DeviceError(f"host: the program has ended (status {status}); open it again") from None
@@ -139,16 +142,17 @@ class HostBoard:
             self._heard = (self._heard + len(piece)) % 2**32
             self._arrived += piece
 
-    def _take(self, count: int) -> bytes:
-        data = b""
-        while len(data) < count:
+    def _take(self) -> bytes:
+        """Read the answer that is owed."""
+        while len(self._answer) < ANSWER_BYTES:
             if not select.select([self._given], [], [], PATIENCE_s)[0]:
                 raise DeviceError(f"host: no tick in {PATIENCE_s:g} s; the program hangs")
-            piece = os.read(self._given, count - len(data))
+            piece = os.read(self._given, ANSWER_BYTES - len(self._answer))
             if not piece:
                 raise EOFError
-            data += piece
-        return data
+            self._answer += piece
+        answer, self._answer, self._owed = self._answer, b"", False
+        return answer
 
     def _flush(self) -> None:
         if self._waiting:

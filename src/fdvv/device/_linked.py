@@ -52,8 +52,8 @@ class LinkedDevice(Remote):
             self._listen(plant.ticks * self.settings.tick_us * 1e-6)
             ticks = np.array(self.port.ticks)
         finally:
-            self.port.connect(self._person.rest(self.settings))
             self.stop()
+            self.port.connect(self._person.rest(self.settings))
         self._fail_on_fault()
         return self._joined(plant.record(), ticks, velocity_mm_s)
 
