@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import zipfile
@@ -22,6 +23,7 @@ def test_the_wheel_holds_all_it_needs_and_works_without_the_repository(tmp_path:
     names = zipfile.ZipFile(wheel).namelist()
     for needed in (
         "_native/libfdvv.so",
+        "_native/fdvv-host",
         "model/builtin/mx-clear.fdvv.json",
         "twin/rigs/default.toml",
         "py.typed",
@@ -29,6 +31,7 @@ def test_the_wheel_holds_all_it_needs_and_works_without_the_repository(tmp_path:
         assert f"fdvv/{needed}" in names
     place = tmp_path / "place"
     subprocess.run([*pip, "install", "--no-deps", "--target", str(place), str(wheel)], check=True)
+    assert os.access(place / "fdvv" / "_native" / "fdvv-host", os.X_OK)
     # the dependencies come from this environment, fdvv itself from the wheel alone
     code = (
         f"import sys; sys.path.insert(0, {str(place)!r}); import fdvv; from fdvv.cli import main; "

@@ -93,6 +93,7 @@ class Siege:
         if isinstance(self.board, LibraryBoard):
             program = self.board.program()
             assert program is None or program in self.programs
+            self.counts["looks at an accepted hostile program"] += program not in (None, *PROGRAMS)
 
     def request(self, message: Message, payload: bytes) -> bytes:
         """Give the bytes of a request with the next sequence number."""
@@ -251,6 +252,7 @@ def test_thirty_thousand_bad_frames_do_no_harm() -> None:
     told("in this process", siege.counts)
     assert siege.counts["attacking frames"] >= 30_000
     assert siege.counts["recovered"] > 10
+    assert siege.counts["looks at an accepted hostile program"] > 100
 
 
 def test_hundreds_of_bad_frames_over_a_terminal_do_no_harm() -> None:

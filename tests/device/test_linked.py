@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import struct
+import subprocess
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.device.rigs import linked
 
+from fdvv import _native
 from fdvv.device import HostBoard, Inputs, LibraryBoard, LinkedDevice, ProgramDevice, ScriptedPerson
 from fdvv.errors import DeviceError
-from fdvv.protocol import Fault, Settings
+from fdvv.model import ForceSurface
+from fdvv.protocol import (
+    HASH,
+    VERSION,
+    Fault,
+    Frame,
+    FrameDecoder,
+    HelloRequest,
+    Message,
+    Settings,
+    encode,
+    request_frame,
+)
 from fdvv.testing import ProgramConformance, plain_surface
+
+PROGRAM = Path(_native.__file__).with_name("fdvv-host")
 
 
 class TestLibraryBoard(ProgramConformance):
@@ -123,8 +143,6 @@ def test_other_settings_are_used_and_want_a_new_upload() -> None:
 
 
 def test_a_table_that_no_program_holds_is_refused_with_its_size() -> None:
-    from fdvv.model import ForceSurface
-
     table = np.zeros((8, 255))
     surface = ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 9.0), table, table)
     with pytest.raises(DeviceError, match="needs 8252 bytes, a program holds 7168"):
@@ -132,9 +150,6 @@ def test_a_table_that_no_program_holds_is_refused_with_its_size() -> None:
 
 
 def test_a_board_that_ends_is_told_in_one_line() -> None:
-    import os
-    import signal
-
     board = HostBoard()
     device = LinkedDevice(board, ScriptedPerson())
     device.upload(plain_surface(), 4.0)
@@ -142,3 +157,37 @@ def test_a_board_that_ends_is_told_in_one_line() -> None:
     with pytest.raises(DeviceError, match="host: the program has ended"):
         device.press(100.0)
     device.close()
+
+
+def test_the_host_program_also_speaks_on_standard_input_and_output() -> None:
+    given, asked = os.pipe(), os.pipe()
+    command = [str(PROGRAM), str(asked[0]), str(given[1])]
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=(asked[0], given[1])
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    hello = encode(request_frame(Message.HELLO, 1, HelloRequest(version=VERSION, hash=HASH)))
+    process.stdin.write(hello)
+    process.stdin.flush()
+    for file in (asked[0], given[1]):
+        os.close(file)
+    frames: list[Frame] = []
+    decoder = FrameDecoder()
+    for tick in range(10):
+        inputs = Inputs(250 * tick, 51200 + tick, 2048, 2049)
+        os.write(asked[1], inputs.pack() + struct.pack("<II", len(hello), 1))
+        (sent,) = struct.unpack("<I", os.read(given[0], 24)[20:])
+        if sent and not frames:
+            frames = decoder.feed(os.read(process.stdout.fileno(), 4096))
+    assert [frame.message for frame in frames] == [Message.HELLO + 0x80]
+    for file in (asked[1], given[0]):
+        os.close(file)
+    assert process.wait(10) == 0, "it ends when the plant's pipe is closed"
+    process.stdin.close()
+    process.stdout.close()
+
+
+def test_the_host_program_called_wrongly_tells_how() -> None:
+    ran = subprocess.run([str(PROGRAM)], capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stderr) == (2, "usage: fdvv-host PLANT_IN PLANT_OUT [TTY]\n")
