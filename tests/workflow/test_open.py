@@ -179,10 +179,11 @@ def test_the_part_of_unknown_velocity_is_named() -> None:
         merge_parts(["mx-red@50", "mx-blue"], "both", travel_mm=3.5, actuation_mm=2, reset_mm=1)
 
 
-def test_the_twin_is_the_device_there_is() -> None:
+def test_devices_are_opened_by_name() -> None:
     assert open_device("twin").info().simulated
-    with pytest.raises(InputError, match="use --device twin"):
-        open_device("serial:/dev/ttyACM0")
+    for name in ("robot", "serial", "serial:", "replay:", "host:1", ""):
+        with pytest.raises(InputError, match="use one of twin, host, serial:PORT, replay:FILE"):
+            open_device(name)
 
 
 def test_opening_a_folder_tells_how_far_it_is(tmp_path: Path) -> None:
