@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
 from fdvv.cli import cli
 
+WIDTH = 100
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "cli.md"
 
 INTRODUCTION = """# Commands
@@ -25,14 +27,18 @@ file, the place in it and what to do; 130 interrupted.
 def reference() -> str:
     """Give the page's text."""
     context = click.Context(cli, info_name="fdvv", **cli.context_settings)
-    parts = [INTRODUCTION]
-    for name in cli.list_commands(context):
-        command = cli.get_command(context, name)
+    return "\n".join([INTRODUCTION, *sections(cli, context, "##")])
+
+
+def sections(group: click.Group, context: click.Context, mark: str) -> Iterator[str]:
+    """Give the help of every command of a group, and of the groups in it."""
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
         assert command is not None
-        size = 100
-        child = click.Context(command, context, name, max_content_width=size, terminal_width=size)
-        parts.append(f"## fdvv {name}\n\n```\n{command.get_help(child)}\n```\n")
-    return "\n".join(parts)
+        child = click.Context(command, context, name, max_content_width=WIDTH, terminal_width=WIDTH)
+        yield f"{mark} {child.command_path}\n\n```\n{command.get_help(child)}\n```\n"
+        if isinstance(command, click.Group):
+            yield from sections(command, child, mark + "#")
 
 
 if __name__ == "__main__":

@@ -122,7 +122,7 @@ class Wire:
         except ModelError:
             return None
         if isinstance(body, RefusedReply):
-            if body.request != message:
+            if body.request != message or body.refusal not in REASONS:
                 return None
             raise RefusedError(self.port.name, message, Refusal(body.refusal), body.detail)
         return (body,) if replied == message else None
