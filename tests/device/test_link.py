@@ -354,6 +354,22 @@ def test_a_program_that_memory_corrupts_ends_force(known: Bench) -> None:
     assert refusal(known.ask(Message.ARM)) is Refusal.NO_IMAGE
 
 
+def test_memory_is_watched_although_nobody_reads_what_the_device_says(known: Bench) -> None:
+    upload(known)
+    known.ask(Message.ARM)
+    known.ask(Message.TELEMETRY, TelemetryRequest(every=1))
+    for number in range(8):
+        known.port.write(encode(request_frame(Message.READ_SETTINGS, number)))
+        for _ in range(20):
+            known.port.step()
+    assert known.port.outputs.duty_q15 > 0
+    found = _native.library().fdvv_host_program(known.board._handle)
+    ctypes.memset(found + 200, 0x55, 1)
+    for _ in range(8):
+        known.port.step()
+    assert known.port.outputs.mode == Mode.FAULT
+
+
 def test_silence_of_the_host_ends_rendering(known: Bench) -> None:
     upload(known)
     known.ask(Message.ARM)
