@@ -189,11 +189,17 @@ static uint8_t other_work(fdvv_link *link)
 
 void fdvv_link_work(fdvv_link *link)
 {
-    uint8_t has_room = fdvv_ring_room(&link->out) >= FDVV_REPLY_ROOM;
+    uint8_t has_room, may_answer;
     fdvv_link_send_notices(link);
+    has_room = fdvv_ring_room(&link->out) >= FDVV_REPLY_ROOM;
+    may_answer = link->waiting && has_room;
     link->turn ^= 1;
-    if (link->waiting && has_room && (link->turn || !other_work(link)))
+    if (may_answer && link->turn) {
         answer(link);
-    else if (!link->waiting && has_room)
-        (void)other_work(link);
+        return;
+    }
+    if (link->deferred && !has_room)
+        return; /* its last step would have to answer */
+    if (!other_work(link) && may_answer)
+        answer(link);
 }

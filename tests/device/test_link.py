@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import struct
 import zlib
 from itertools import pairwise
@@ -9,6 +10,7 @@ from itertools import pairwise
 import pytest
 from tests.device.rigs import LONG, PROGRAMS, Bench
 
+from fdvv import _native
 from fdvv.protocol import (
     DATA_BYTES,
     HASH,
@@ -334,6 +336,38 @@ def test_a_fault_is_told_at_once_with_its_evidence(known: Bench) -> None:
     known.run(20)
     assert known.ask(Message.CLEAR_FAULT, ClearFaultRequest(fault=reply.fault)).message == 0x8E
     assert PingReply.unpack(known.ask(Message.PING, PingRequest(host_us=0)).payload).mode == Mode.IDLE
+
+
+def test_a_program_that_memory_corrupts_ends_force(known: Bench) -> None:
+    upload(known, LONG)
+    known.ask(Message.ARM)
+    found = _native.library().fdvv_host_program(known.board._handle)
+    ctypes.memset(found + 3000, 0x55, 1)
+    # 64 bytes in every second piece of work, 8 pieces a tick, from anywhere in the program
+    frames = known.run(2 * len(LONG) // (4 * 64))
+    assert known.port.outputs.duty_q15 == 0
+    notice, _ = read_notice(frames[-1])
+    assert isinstance(notice, FaultedRequest)
+    assert notice.fault == Fault.IMAGE_CORRUPT
+    assert known.board.program() is None
+    known.ask(Message.CLEAR_FAULT, ClearFaultRequest(fault=notice.fault))
+    assert refusal(known.ask(Message.ARM)) is Refusal.NO_IMAGE
+
+
+def test_memory_is_watched_although_nobody_reads_what_the_device_says(known: Bench) -> None:
+    upload(known)
+    known.ask(Message.ARM)
+    known.ask(Message.TELEMETRY, TelemetryRequest(every=1))
+    for number in range(8):
+        known.port.write(encode(request_frame(Message.READ_SETTINGS, number)))
+        for _ in range(20):
+            known.port.step()
+    assert known.port.outputs.duty_q15 > 0
+    found = _native.library().fdvv_host_program(known.board._handle)
+    ctypes.memset(found + 200, 0x55, 1)
+    for _ in range(8):
+        known.port.step()
+    assert known.port.outputs.mode == Mode.FAULT
 
 
 def test_silence_of_the_host_ends_rendering(known: Bench) -> None:

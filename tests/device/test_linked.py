@@ -142,6 +142,18 @@ def test_other_settings_are_used_and_want_a_new_upload() -> None:
     assert np.diff(press.t_s[press.tick]) == pytest.approx(0.0005)
 
 
+def test_a_board_is_told_what_suits_the_rig() -> None:
+    settings = Settings(tick_us=1000, position_offset_um16=-90000, slew_cN64_tick=16000)
+    device = LinkedDevice(LibraryBoard(), ScriptedPerson(settings=settings))
+    assert device.client.read_settings() == settings
+    device.upload(plain_surface(), 4.0)
+    press = device.press(50.0)
+    assert press.sensed_mm is not None
+    assert press.sensed_mm.max() == pytest.approx(4.0, abs=0.01)
+    assert press.tick is not None
+    assert np.diff(press.t_s[press.tick]) == pytest.approx(0.001)
+
+
 def test_a_table_that_no_program_holds_is_refused_with_its_size() -> None:
     table = np.zeros((8, 255))
     surface = ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 9.0), table, table)

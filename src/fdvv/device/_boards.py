@@ -28,8 +28,9 @@ class LibraryBoard:
     name = "library"
 
     def __init__(self) -> None:
-        self._library = _native.library()
-        self._library.fdvv_host_new.restype = ctypes.c_void_p
+        self._library = library = _native.library()
+        library.fdvv_host_new.restype = library.fdvv_host_program.restype = ctypes.c_void_p
+        library.fdvv_host_receive.restype = library.fdvv_host_transmit.restype = ctypes.c_uint16
         self._handle = ctypes.c_void_p(self._library.fdvv_host_new())
         self._outputs = ctypes.create_string_buffer(OUTPUTS_BYTES)
         self._room = ctypes.create_string_buffer(4096)
@@ -37,7 +38,9 @@ class LibraryBoard:
         self._plugged = True
 
     def tick(self, inputs: Inputs) -> Outputs:
-        """Run one tick."""
+        """Run one tick; DeviceError once the board is closed."""
+        if not self._handle.value:
+            raise DeviceError(f"{self.name}: the board is switched off; open it again")
         self._hand_over()
         self._library.fdvv_host_tick(self._handle, inputs.pack(), self._outputs)
         return Outputs.unpack(self._outputs.raw)
@@ -63,7 +66,6 @@ class LibraryBoard:
 
     def program(self) -> bytes | None:
         """Give the image that is rendered, None if there is none."""
-        self._library.fdvv_host_program.restype = ctypes.c_void_p
         found = self._library.fdvv_host_program(self._handle)
         if not found:
             return None

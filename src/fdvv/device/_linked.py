@@ -20,14 +20,16 @@ class LinkedDevice(Remote):
     Parameters
     ----------
     board : with the firmware.
-    person : plants to press on.
+    person : plants to press on; the board is told the settings that suit them.
     """
 
     def __init__(self, board: Board, person: Person) -> None:
         self._person = person
-        self.port = LockstepPort(board, person.rest(Settings()), Settings().tick_us)
+        self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))
+            if self.settings != person.settings:
+                self.write_settings(person.settings)
         except BaseException:
             self.port.close()
             raise

@@ -92,7 +92,11 @@ class PressedPlant(Plant, Protocol):
 
 
 class Person(Protocol):
-    """Someone who presses when asked."""
+    """Someone who presses when asked, and the rig that is pressed."""
+
+    @property
+    def settings(self) -> Settings:
+        """Calibration and limits that suit the rig."""
 
     def press(self, travel_mm: float, velocity_mm_s: float, settings: Settings) -> PressedPlant:
         """Come to the button at rest and press it once, at about this speed."""

@@ -77,11 +77,13 @@ class ScriptedPerson:
     ----------
     seed : of the sensor's noise.
     meddle : what goes wrong during presses, by tick of the press.
+    settings : of the board.
     """
 
-    def __init__(self, seed: int = 0, meddle: Meddle | None = None) -> None:
+    def __init__(self, seed: int = 0, meddle: Meddle | None = None, settings: Settings | None = None) -> None:
         self._random = np.random.default_rng(seed)
         self.meddle = meddle
+        self.settings = settings or Settings()
 
     def press(self, travel_mm: float, velocity_mm_s: float, settings: Settings) -> ScriptedPlant:
         """Press once."""

@@ -1,0 +1,25 @@
+"""What passes between board and plant is laid out as the firmware's structures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fdvv.core import INPUTS, OUTPUTS
+from fdvv.device import Inputs, Outputs
+from fdvv.device._plant import INPUTS_BYTES, OUTPUTS_BYTES
+
+
+def test_inputs_are_those_of_the_core() -> None:
+    told = Inputs(7, 51200, 2000, 2100, 3, 12345, 99, 5)
+    assert (INPUTS_BYTES, Inputs._fields) == (INPUTS.itemsize, INPUTS.names)
+    assert np.frombuffer(told.pack(), INPUTS)[0].item() == tuple(told)
+
+
+def test_outputs_are_those_of_the_core() -> None:
+    record = np.zeros(1, OUTPUTS)
+    for number, name in enumerate(Outputs._fields, 1):
+        record[name] = number
+    assert OUTPUTS.itemsize == OUTPUTS_BYTES
+    assert Outputs.unpack(record.tobytes())._asdict() == {
+        name: number for number, name in enumerate(Outputs._fields, 1)
+    }
