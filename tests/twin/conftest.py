@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from fdvv.model import ForceSurface
-from fdvv.twin import Finger, Gesture, Rig, Trace, plan, silence
-from fdvv.twin._flatten import grid_of, inputs_of, plant_of
-from fdvv.twin._kernel import Grid, Inputs, Plant, run
+from fdvv.twin import Exciter, Finger, Gesture, Noise, Rig, Trace, image_of, plan, settings_of
+from fdvv.twin._flatten import grid_of, plant_of
+from fdvv.twin._kernel import Grid, Plant, run
+from fdvv.twin._noise import count_ticks
 from fdvv.units import FloatArray
 
 
@@ -37,7 +38,7 @@ def flat(force_cN: float) -> ForceSurface:
 
 @dataclass
 class Bench:
-    """The kernel with every number open: the default rig without noise or settling, then changed."""
+    """The kernel with every number open: the default rig without noise, settling or exciter, then changed."""
 
     surface: ForceSurface
     gesture: Gesture
@@ -45,26 +46,26 @@ class Bench:
     grid: Grid
 
     @classmethod
-    def of(cls, surface: ForceSurface, gesture: Gesture | None = None, **changes: Any) -> Bench:
-        rig, finger = Rig(), Finger()
-        gesture = gesture or replace(plan(finger, 0.004, 0.1), start_m=-0.02, end_m=-0.02)
-        plant = plant_of(rig, finger, gesture, surface, 4.0, 100.0)
-        grid = replace(grid_of(rig, gesture, surface), settle_ticks=0, audit=1)
-        return cls(surface, gesture, replace(plant, **changes), grid)
+    def of(
+        cls, surface: ForceSurface, gesture: Gesture | None = None, travel_m: float = 0.004, **changes: Any
+    ) -> Bench:
+        gesture = gesture or replace(plan(Finger(), 0.004, 0.1), start_m=-0.02, end_m=-0.02)
+        plant = plant_of(BARE, Finger())
+        # the pulse is always that of 4 mm: the stop's place is calibrated into the servo
+        zero_us = 1600.0 - travel_m / plant.servo_m_us
+        plant = replace(plant, **{"servo_zero_us": zero_us, **changes})
+        return cls(surface, gesture, plant, replace(grid_of(BARE), audit=1))
 
     def run(self) -> Trace:
-        noise = silence(Rig(), self.gesture)
-        n, inputs = self.grid.ticks, inputs_of(self.surface, noise)
-        cut = Inputs(
-            inputs.speeds_m_s,
-            inputs.table_N,
-            np.zeros((n, self.grid.reads)),
-            inputs.force_noise_N[:n],
-            inputs.effort_ratio[: n + 1],
-        )
-        return Trace.of_rows(run(self.plant, self.grid, cut), audit=True)
+        n = count_ticks(BARE, self.gesture)
+        quiet = Noise(np.zeros((n, self.grid.reads)), *(np.zeros(n) for _ in range(4)))
+        image = image_of(self.surface, 4.0).image
+        rows = run(self.plant, self.grid, settings_of(BARE), image, self.gesture, quiet, 0, 100.0)
+        return Trace.of_rows(rows, audit=True)
 
 
+BARE = Rig(exciter=Exciter(fitted="no"))
 FRICTIONLESS: dict[str, Any] = {"coulomb_N": 0.0, "viscous_N_s_m": 0.0}
 LOOSE_PULP: dict[str, Any] = {"pulp_scale_N": 1e-12, "strap_N": 0.0, "strap_m": 0.0}
-PERFECT_POSITION: dict[str, Any] = {"lvdt_lsb_m": 0.0, "lvdt_linearity_m": 0.0}
+PERFECT_POSITION: dict[str, Any] = {"lvdt_linearity_m": 0.0}
+STIFF_SUPPLY: dict[str, Any] = {"source_ohm": 0.0, "copper_1_K": 0.0, "reluctance_H_m": 0.0}

@@ -19,12 +19,12 @@ from .conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of
 
 def test_the_position_is_the_lagged_one_averaged_over_the_burst() -> None:
     bench = Bench.of(flat(0.0), **FRICTIONLESS, **PERFECT_POSITION, force_constant_N_A=0.0)
-    trace, lag = bench.run(), 1 / bench.plant.lvdt_rad_s
+    trace, lag = bench.run(), 1 / bench.plant.lvdt_rate
     ticks = np.flatnonzero(trace.tick & (trace.t_s > 0.001) & (trace.t_s < 0.025))
     reads = trace.t_s[ticks][:, None] - 1e-5 * np.arange(25)
     settled = lag**2 * (1 - np.exp(-reads / lag))
     lagged_mm = 1000 * 9.81 * (reads**2 / 2 - lag * reads + settled)
-    assert trace.sensed_mm[ticks] == pytest.approx(lagged_mm.mean(axis=1), abs=1e-7)
+    assert trace.sensed_mm[ticks] == pytest.approx(lagged_mm.mean(axis=1), abs=5e-4)
 
 
 def test_a_sliding_average_lags_by_half_its_window() -> None:
@@ -44,7 +44,7 @@ def test_sensed_values_lie_on_the_steps_of_their_converters(tactile: ForceSurfac
     noise = draw_noise(rig, Finger(), gesture, np.random.default_rng(0))
     trace = simulate(rig, Finger(), gesture, tactile, 4.0, noise, 100.0)
     force_steps = trace.sensed_cN / (981 / 1024)
-    place_steps = trace.sensed_mm / (12.7 / 4096 / 25)
+    place_steps = trace.sensed_mm * 16000
     assert force_steps == pytest.approx(np.round(force_steps), abs=1e-6)
     assert place_steps == pytest.approx(np.round(place_steps), abs=1e-6)
     assert np.unique(trace.sensed_cN).size > 10
@@ -59,7 +59,7 @@ def test_sensed_values_hold_between_ticks(tactile: ForceSurface) -> None:
 
 
 def test_a_command_beyond_the_limit_is_cut_and_flagged() -> None:
-    low, high = Bench.of(flat(439.0)).run(), Bench.of(flat(600.0)).run()
+    low, high = Bench.of(flat(439.0)).run(), Bench.of(flat(480.0)).run()
     assert not low.saturated.any()
     assert high.saturated.all()
     assert high.commanded_cN == pytest.approx(440.0)
@@ -71,7 +71,7 @@ def test_the_command_reads_the_table_at_the_sensed_place_stroke_and_speed(tactil
     press = np.interp(trace.sensed_mm, tactile.displacement_mm, tactile.press_cN[0])
     release = np.interp(trace.sensed_mm, tactile.displacement_mm, tactile.release_cN[0])
     assert trace.release.any()
-    assert trace.commanded_cN == pytest.approx(np.where(trace.release, release, press), abs=1e-9)
+    assert trace.commanded_cN == pytest.approx(np.where(trace.release, release, press), abs=1 / 64)
 
 
 def test_release_begins_once_the_cap_has_come_back_by_the_reversal(tactile: ForceSurface) -> None:
@@ -102,7 +102,7 @@ def test_the_speed_is_found_from_the_window_even_in_fast_presses(press_s: float)
     used = np.flatnonzero((x[:first] >= 0.5) & (x[:first] <= 1.0))
     used = used if used.size >= 3 else np.arange(first - 2, first + 1)
     slope = rig.controller.velocity_scale * np.polyfit(t[used], x[used], 1)[0]
-    assert found[first:] == pytest.approx(np.clip(slope, 20, 400), rel=1e-6)
+    assert found[first:] == pytest.approx(np.clip(slope, 20, 400), rel=1e-3)
 
 
 def test_threads_give_the_same_bits_as_one_after_the_other(tactile: ForceSurface) -> None:
@@ -118,15 +118,15 @@ def test_threads_give_the_same_bits_as_one_after_the_other(tactile: ForceSurface
 
 
 def test_a_duration_off_the_grid_of_steps_is_refused() -> None:
-    rig = Rig(controller=Controller(compute_s=3.03e-4))
-    with pytest.raises(ModelError, match="compute_s must be a multiple of the step 5e-06 s"):
-        grid_of(rig, plan(Finger(), 0.004, 0.1), flat(0.0))
+    rig = Rig(controller=Controller(compute_s=2.97e-4))
+    with pytest.raises(ModelError, match="compute_s must be a multiple of the step 1e-05 s"):
+        grid_of(rig)
 
 
 def test_noise_of_another_press_is_refused(tactile: ForceSurface) -> None:
     rig, finger = Rig(), Finger()
     long, short = plan(finger, 0.004, 0.2), plan(finger, 0.004, 0.1)
-    with pytest.raises(ModelError, match="position_noise_m must be"):
+    with pytest.raises(ModelError, match="noise must last"):
         simulate(rig, finger, long, tactile, 4.0, silence(rig, short), 100.0)
 
 
@@ -149,5 +149,5 @@ def test_a_bridge_that_cannot_pull_gives_no_negative_force() -> None:
 def test_a_plant_too_stiff_for_the_step_is_told_instead_of_giving_nonsense() -> None:
     finger = Finger(impedance=Impedance(mass_kg=5e-4, damping_N_s_m=100.0))
     rig, gesture = Rig(), plan(finger, 0.004, 0.1)
-    with pytest.raises(ModelError, match="too stiff or too light for steps of 5e-06 s"):
+    with pytest.raises(ModelError, match="too stiff or too light for steps of 1e-05 s"):
         simulate(rig, finger, gesture, flat(40.0), 4.0, silence(rig, gesture), 100.0)

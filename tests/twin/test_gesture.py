@@ -58,10 +58,10 @@ def test_the_pace_found_gives_the_speed_asked_for(tactile: ForceSurface, speed: 
 
 
 def test_a_cap_that_sinks_under_the_resting_finger_is_still_pressed_at_the_asked_pace() -> None:
-    # 20 cN hold neither the mover nor the finger's 10 cN: the cap rests against a spring of 80 cN/mm
+    # 20 cN hold neither the mover nor the finger's 10 cN: the cap rests against a spring of 60 cN/mm
     rig, finger = Rig(), replace(Finger(), habit=Finger().habit.still())
     x = np.linspace(0.0, 4.0, 81)
-    weak = np.minimum(20 + 80 * x, 60.0)[np.newaxis]
+    weak = np.minimum(20 + 60 * x, 60.0)[np.newaxis]
     surface = ForceSurface(x, np.array([100.0]), weak, weak)
     press_s = solve_pace(rig, finger, surface, 4.0, 100.0)
     gesture = plan(finger, 0.004, press_s)

@@ -1,4 +1,4 @@
-"""The doors of the compiled press: its structures mirrored, and the call."""
+"""The doors of the compiled rig: its structures mirrored, and the calls."""
 
 from __future__ import annotations
 
@@ -6,19 +6,24 @@ import ctypes
 import dataclasses
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from fdvv._native import address, library
+from fdvv.core import OUTPUTS, RecordArray
 from fdvv.errors import ModelError
+from fdvv.protocol import Settings
+from fdvv.twin._gesture import Gesture
+from fdvv.twin._noise import Noise
 from fdvv.units import FloatArray
 
-COLUMNS = 13
+COLUMNS, TICK_COLUMNS = 10, 3
 
 
 @dataclass(frozen=True)
 class Plant:
-    """The numbers of one press, in the order of fdvv_twin_model; see fdvv.h for their meaning."""
+    """The numbers of a rig and a finger, in the order of fdvv_rig_model; see rig.h for their meaning."""
 
     finger_mass_kg: float
     finger_stiffness_N_m: float
@@ -39,128 +44,197 @@ class Plant:
     droop_1_m2: float
     droop_centre_m: float
     resistance_ohm: float
+    bridge_ohm: float
+    source_ohm: float
     inductance_H: float
+    reluctance_H_m: float
+    copper_1_K: float
+    heat_K_W: float
+    heat_s: float
     supply_V: float
     current_loop_s: float
-    moving_mass_kg: float
+    drive_lsb: float
+    drive_low: float
+    mover_mass_kg: float
+    frame_mass_kg: float
     gravity_m_s2: float
     coulomb_N: float
-    coulomb_speed_m_s: float
+    presliding_m: float
     viscous_N_s_m: float
-    travel_m: float
     stop_stiffness_N_m: float
     stop_loss_s_m: float
     top_stiffness_N_m: float
     top_loss_s_m: float
-    lvdt_rad_s: float
+    servo_zero_us: float
+    servo_m_us: float
+    servo_frame_s: float
+    servo_deadband_m: float
+    servo_m_s: float
+    servo_lag_s: float
+    servo_play_m: float
+    magnet_kg: float
+    magnet_stiffness_N_m: float
+    magnet_damping_N_s_m: float
+    magnet_motor_N_A: float
+    magnet_ohm: float
+    magnet_H: float
+    amplifier_V_count: float
+    amplifier_clip_V: float
+    amplifier_rate: float
+    vibration_latency_s: float
+    vibration_jitter_s: float
+    lvdt_rate: float
     lvdt_linearity_m: float
     lvdt_range_m: float
-    lvdt_lsb_m: float
-    sensor_rc_s: float
+    lvdt_steps: float
+    sensor_rate: float
     sensor_gain: float
     sensor_hysteresis_N: float
     sensor_full_scale_N: float
     sensor_lsb_N: float
-    window_start_m: float
-    window_end_m: float
-    reversal_m: float
-    rearm_m: float
-    announced_m_s: float
-    velocity_scale: float
-    force_limit_N: float
-    drive_per_N: float
-    drive_lsb: float
-    drive_low: float
-    drive_high: float
-    start_m: float
-    end_m: float
-    onset_s: float
-    press_s: float
-    dwell_s: float
-    release_s: float
-    table_start_m: float
-    table_step_m: float
+    keycap_kind: float
+    keycap_full_scale: float
+    keycap_rate: float
+    keycap_steps: float
     step_s: float
 
 
 @dataclass(frozen=True)
 class Grid:
-    """The counts of one press, in the order of fdvv_twin_grid."""
+    """How a tick is cut, in the order of fdvv_rig_grid."""
 
-    settle_ticks: int
-    ticks: int
     steps_per_tick: int
     steps_per_row: int
     delay_steps: int
     reads: int
-    read_steps: int
-    average_ticks: int
-    fewest_samples: int
-    displacements: int
-    velocities: int
+    read_steps: float
     audit: int = 0
 
     @property
-    def rows(self) -> int:
-        """Count the rows of the record."""
-        return self.ticks * (self.steps_per_tick // self.steps_per_row)
+    def rows_per_tick(self) -> int:
+        """Count the rows of a tick."""
+        return self.steps_per_tick // self.steps_per_row
 
 
-class _Model(ctypes.Structure):
+class Rows(NamedTuple):
+    """What a press leaves: physics (rows, COLUMNS), each tick's sensors (ticks, 3), the core's outputs."""
+
+    physics: FloatArray
+    sensed: FloatArray
+    outputs: RecordArray
+
+
+class Model(ctypes.Structure):
+    """fdvv_rig_model."""
+
     _fields_ = [(f.name, ctypes.c_double) for f in dataclasses.fields(Plant)]
 
 
-class _Grid(ctypes.Structure):
-    _fields_ = [(f.name, ctypes.c_int64) for f in dataclasses.fields(Grid)]
+class GridCounts(ctypes.Structure):
+    """fdvv_rig_grid."""
+
+    _fields_ = [
+        (f.name, ctypes.c_double if f.name == "read_steps" else ctypes.c_int64)
+        for f in dataclasses.fields(Grid)
+    ]
 
 
-@dataclass(frozen=True, eq=False)
-class Inputs:
-    """The arrays of one press, as fdvv_twin_press takes them."""
+class GestureTimes(ctypes.Structure):
+    """fdvv_gesture."""
 
-    speeds_m_s: FloatArray
-    table_N: FloatArray
-    position_noise_m: FloatArray
-    force_noise_N: FloatArray
-    effort_ratio: FloatArray
+    NAMES = ("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s")
+    _fields_ = [(name, ctypes.c_double) for name in NAMES]
 
-    def check(self, grid: Grid) -> None:
-        """Raise ModelError unless every array has the shape that grid says."""
-        n = grid.settle_ticks + grid.ticks
-        wanted = {
-            "speeds_m_s": (grid.velocities,),
-            "table_N": (2, grid.velocities, grid.displacements),
-            "position_noise_m": (n, grid.reads),
-            "force_noise_N": (n,),
-            "effort_ratio": (n + 1,),
-        }
-        for name, shape in wanted.items():
-            if getattr(self, name).shape != shape:
-                raise ModelError(f"{name} must be {shape}, got {getattr(self, name).shape}")
+    @classmethod
+    def of(cls, gesture: Gesture) -> GestureTimes:
+        """Take where the referent goes."""
+        return cls(*(getattr(gesture, name) for name in cls.NAMES))
+
+
+class _Plan(ctypes.Structure):
+    _fields_ = [
+        ("gesture", GestureTimes),
+        ("stiffness_N_m", ctypes.c_double),
+        ("damping_N_s_m", ctypes.c_double),
+        ("settle_ticks", ctypes.c_int64),
+        ("ticks", ctypes.c_int64),
+        ("announced_mm_s16", ctypes.c_int64),
+    ]
+
+
+class _Noise(ctypes.Structure):
+    _fields_ = [
+        (name, ctypes.c_void_p) for name in ("position_m", "force_N", "keycap", "effort_ratio", "latency")
+    ]
 
 
 @cache
-def _library() -> ctypes.CDLL:
+def doors() -> ctypes.CDLL:
     """Load the library and refuse one built from other structures than these."""
     lib = library()
-    sizes = (ctypes.c_int64(), ctypes.c_int64())
-    lib.fdvv_twin_sizes(ctypes.byref(sizes[0]), ctypes.byref(sizes[1]))
-    ours = (ctypes.sizeof(_Model), ctypes.sizeof(_Grid))
-    if (sizes[0].value, sizes[1].value) != ours:
+    sizes = [ctypes.c_int64() for _ in range(6)]
+    lib.fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes[:3]))
+    lib.fdvv_twin_sizes(*(ctypes.byref(size) for size in sizes[3:]))
+    found = [size.value for size in sizes]
+    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, _Noise)] + [OUTPUTS.itemsize]
+    if found[:2] + found[3:] != ours:
         raise ModelError(
-            f"compiled twin has structures of {sizes} bytes, Python of {ours}; rebuild the library"
+            f"compiled twin has structures of {found} bytes, Python of {ours}; rebuild the library"
         )
+    lib.fdvv_rig_step.restype = ctypes.c_double
+    lib.fdvv_rig_load.restype = ctypes.c_uint8
     return lib
 
 
-def run(plant: Plant, grid: Grid, inputs: Inputs) -> FloatArray:
-    """Simulate one press in C: rows (grid.rows, COLUMNS), columns as fdvv.h lists them."""
-    inputs.check(grid)
-    arrays = [np.ascontiguousarray(getattr(inputs, f.name)) for f in dataclasses.fields(inputs)]
-    rows = np.empty((grid.rows, COLUMNS))
-    model = _Model(*dataclasses.astuple(plant))
-    counts = _Grid(*dataclasses.astuple(grid))
-    pointers = [address(array) for array in arrays]
-    if _library().fdvv_twin_press(ctypes.byref(model), ctypes.byref(counts), *pointers, address(rows)):
-        raise ModelError(f"the compiled twin cannot step this press: {grid}")
+def rig_bytes() -> int:
+    """Tell how much memory a running rig takes."""
+    sizes = [ctypes.c_int64() for _ in range(3)]
+    doors().fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes))
+    return sizes[2].value
+
+
+def words(data: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
+    """Copy bytes to memory aligned for the core."""
+    return np.frombuffer(data + bytes(-len(data) % 4), np.uint32).copy()
+
+
+def run(
+    plant: Plant,
+    grid: Grid,
+    settings: Settings,
+    image: bytes,
+    gesture: Gesture,
+    noise: Noise,
+    settle_ticks: int,
+    announced_mm_s: float,
+) -> Rows:
+    """Simulate one press in C; ModelError if the noise is that of another one, or the grid is impossible."""
+    noise.check(grid.reads)
+    ticks = noise.force_N.size - settle_ticks
+    plan = _Plan(
+        GestureTimes.of(gesture),
+        gesture.stiffness_N_m,
+        gesture.damping_N_s_m,
+        settle_ticks,
+        ticks,
+        round(16 * announced_mm_s),
+    )
+    rows = Rows(
+        np.empty((max(ticks, 0) * grid.rows_per_tick, COLUMNS)),
+        np.empty((max(ticks, 0), TICK_COLUMNS)),
+        np.zeros(max(ticks, 0), OUTPUTS),
+    )
+    arrays = noise.arrays()
+    told, held = words(settings.pack()), words(image)
+    failed = doors().fdvv_twin_press(
+        ctypes.byref(Model(*vars(plant).values())),
+        ctypes.byref(GridCounts(*vars(grid).values())),
+        ctypes.byref(plan),
+        address(told),
+        address(held),
+        ctypes.byref(_Noise(*(address(array) for array in arrays))),
+        *(address(array) for array in rows),
+    )
+    if failed:
+        raise ModelError(f"the compiled twin cannot run this press: {grid}, {ticks} ticks")
     return rows

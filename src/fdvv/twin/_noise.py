@@ -7,6 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from fdvv.errors import ModelError
 from fdvv.twin._finger import Finger, Habit
 from fdvv.twin._gesture import Gesture
 from fdvv.twin._rig import Rig
@@ -23,13 +24,31 @@ class Noise:
     Attributes
     ----------
     position_m : (n, reads) added to each converter read of the position.
-    force_N : (n,) added to each force sample.
-    effort_ratio : (n + 1,) modulation of the finger's own force, linear between ticks.
+    force_N : (n,) added to each sample of the finger's force sensor.
+    effort_ratio : (n,) modulation of the finger's own force at the end of a tick, linear between ticks.
+    keycap : (n,) added to each sample of the cap's sensor, in proportion to its range.
+    latency : (n,) of a vibration that starts in that tick, in standard deviations.
     """
 
     position_m: FloatArray
     force_N: FloatArray
     effort_ratio: FloatArray
+    keycap: FloatArray
+    latency: FloatArray
+
+    def check(self, reads: int) -> None:
+        """Raise ModelError unless every array is as long as the others."""
+        n = self.force_N.size
+        if self.position_m.shape != (n, reads):
+            raise ModelError(f"position_m must be {(n, reads)}, got {self.position_m.shape}")
+        for name in ("force_N", "effort_ratio", "keycap", "latency"):
+            if getattr(self, name).shape != (n,):
+                raise ModelError(f"{name} must be {(n,)}, got {getattr(self, name).shape}")
+
+    def arrays(self) -> list[FloatArray]:
+        """Give the arrays as the kernel takes them, in its order."""
+        parts = (self.position_m, self.force_N, self.keycap, self.effort_ratio, self.latency)
+        return [np.ascontiguousarray(part) for part in parts]
 
 
 def settle_ticks(rig: Rig) -> int:
@@ -45,27 +64,28 @@ def count_ticks(rig: Rig, gesture: Gesture) -> int:
 def silence(rig: Rig, gesture: Gesture) -> Noise:
     """Give no noise at all."""
     n = settle_ticks(rig) + count_ticks(rig, gesture)
-    return Noise(np.zeros((n, reads_of(rig))), np.zeros(n), np.zeros(n + 1))
-
-
-def reads_of(rig: Rig) -> int:
-    """Count the reads per tick: a burst, or one where the average slides over ticks."""
-    return rig.position_sensor.reads if rig.controller.averaging == "burst" else 1
+    return Noise(np.zeros((n, rig.position_sensor.reads)), *(np.zeros(n) for _ in range(4)))
 
 
 def draw_noise(rig: Rig, finger: Finger, gesture: Gesture, random: np.random.Generator) -> Noise:
-    """Draw the noise of sensors and muscle for one press.
+    """Draw the noise of sensors, muscle and vibration for one press."""
+    return draw_ticks(rig, finger, settle_ticks(rig) + count_ticks(rig, gesture), random)
+
+
+def draw_ticks(rig: Rig, finger: Finger, n: int, random: np.random.Generator) -> Noise:
+    """Draw the noise of n ticks.
 
     Noise of the demodulator is common to the reads of a burst (its band is far below their rate), noise
     of the converter is not.
     """
-    position, force = rig.position_sensor, rig.force_sensor
-    n = settle_ticks(rig) + count_ticks(rig, gesture)
+    position = rig.position_sensor
     common = position.noise_m * random.standard_normal((n, 1))
     lsb = lsb_of(position.range_m, position.converter_bits)
-    single = position.converter_noise_ratio * lsb * random.standard_normal((n, reads_of(rig)))
-    samples = force.noise_N * random.standard_normal(n)
-    return Noise(common + single, samples, _effort(finger.habit, n + 1, rig.controller.tick_s, random))
+    single = position.converter_noise_ratio * lsb * random.standard_normal((n, position.reads))
+    samples = rig.force_sensor.noise_N * random.standard_normal(n)
+    effort = _effort(finger.habit, n, rig.controller.tick_s, random)
+    keycap = rig.keycap_sensor.noise_ratio * random.standard_normal(n)
+    return Noise(common + single, samples, effort, keycap, random.standard_normal(n))
 
 
 def lsb_of(span: float, bits: int) -> float:

@@ -7,11 +7,13 @@ import math
 import numpy as np
 
 from fdvv.model import ForceSurface
+from fdvv.protocol import ImageHeader
 from fdvv.twin._finger import Finger
 from fdvv.twin._gesture import Gesture, plan
+from fdvv.twin._image import UM16_mm, image_of
 from fdvv.twin._noise import silence
 from fdvv.twin._rig import Rig
-from fdvv.twin._simulate import simulate
+from fdvv.twin._simulate import simulate_program
 from fdvv.units import FloatArray, m_from_mm
 
 PACE_START_mm = 0.1
@@ -58,11 +60,18 @@ def solve_pace(
     The person has adapted to this surface on this rig; nothing varies. Secant on the logarithms of
     duration and speed. Speeds that the finger cannot reach give the nearest that was found.
     """
-    travel_m = m_from_mm(travel_mm)
+    return solve_program_pace(rig, finger, image_of(surface, travel_mm).image, velocity_mm_s, guess_s)
+
+
+def solve_program_pace(
+    rig: Rig, finger: Finger, image: bytes, velocity_mm_s: float, guess_s: float | None = None
+) -> float:
+    """Find the same for a program (its image, protocol/fdvv.toml)."""
+    travel_mm = ImageHeader.unpack(image[: ImageHeader.length_bytes()]).travel_um16 / UM16_mm
 
     def miss(log_s: float) -> float:
-        gesture = plan(finger, travel_m, math.exp(log_s))
-        speed = _speed(rig, finger, gesture, surface, travel_mm, velocity_mm_s)
+        gesture = plan(finger, float(m_from_mm(travel_mm)), math.exp(log_s))
+        speed = _speed(rig, finger, gesture, image, travel_mm, velocity_mm_s)
         return math.log(speed / velocity_mm_s) if speed else -1.0
 
     a = math.log(guess_s or 2.0 * travel_mm / velocity_mm_s)
@@ -82,8 +91,7 @@ def solve_pace(
 
 
 def _speed(
-    rig: Rig, finger: Finger, gesture: Gesture, surface: ForceSurface, travel_mm: float, velocity_mm_s: float
+    rig: Rig, finger: Finger, gesture: Gesture, image: bytes, travel_mm: float, velocity_mm_s: float
 ) -> float:
-    noise = silence(rig, gesture)
-    trace = simulate(rig, finger, gesture, surface, travel_mm, noise, velocity_mm_s)
+    trace = simulate_program(rig, finger, gesture, image, silence(rig, gesture), velocity_mm_s)
     return mean_speed_mm_s(trace.t_s, trace.displacement_mm, travel_mm)

@@ -1,89 +1,22 @@
-"""From rig, finger, gesture and table to the record of one press."""
+"""From rig, finger, gesture and table or program to the record of one press."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, Press
+from fdvv.model import ForceSurface
 from fdvv.twin._finger import Finger
-from fdvv.twin._flatten import STEP_s, grid_of, inputs_of, plant_of
+from fdvv.twin._flatten import STEP_s, grid_of, plant_of
 from fdvv.twin._gesture import Gesture
+from fdvv.twin._image import image_of
 from fdvv.twin._kernel import run
-from fdvv.twin._noise import Noise
+from fdvv.twin._noise import Noise, count_ticks, settle_ticks
 from fdvv.twin._rig import Rig
-from fdvv.units import FloatArray, cN_from_N, mm_from_m
-
-BoolArray = npt.NDArray[np.bool_]
-
-
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """All that the twin knows of one press, simulated; every column (n,) on one 10 kHz clock.
-
-    Attributes
-    ----------
-    t_s : from 0.
-    displacement_mm, cap_velocity_mm_s : of the cap, true.
-    force_cN : between cap and sensor cone, true.
-    sensed_mm, sensed_cN, commanded_cN, saturated, release : as the controller has them, held between ticks.
-    tick : rows at which the controller ran.
-    current_A : in the coil.
-    finger_mm : of the finger.
-    energy_J : energy that the balance cannot account for, 0 if integration were exact; None if not asked.
-    """
-
-    t_s: FloatArray
-    displacement_mm: FloatArray
-    cap_velocity_mm_s: FloatArray
-    force_cN: FloatArray
-    sensed_mm: FloatArray
-    sensed_cN: FloatArray
-    commanded_cN: FloatArray
-    saturated: BoolArray
-    release: BoolArray
-    tick: BoolArray
-    current_A: FloatArray
-    finger_mm: FloatArray
-    energy_J: FloatArray | None
-
-    @classmethod
-    def of_rows(cls, rows: FloatArray, audit: bool = False) -> Trace:
-        """Convert the kernel's rows to record units."""
-        t, x, v, force, sensed, felt, command, saturated, release, tick, amps, finger, energy = rows.T.copy()
-        return cls(
-            t,
-            mm_from_m(x),
-            mm_from_m(v),
-            cN_from_N(force),
-            mm_from_m(sensed),
-            cN_from_N(felt),
-            cN_from_N(command),
-            saturated > 0.5,
-            release > 0.5,
-            tick > 0.5,
-            amps,
-            mm_from_m(finger),
-            energy if audit else None,
-        )
-
-    def press(self, velocity_mm_s: float) -> Press:
-        """Give the record that devices share, asked for at velocity_mm_s."""
-        return Press(
-            self.t_s,
-            self.displacement_mm,
-            self.force_cN,
-            velocity_mm_s,
-            self.sensed_mm,
-            self.sensed_cN,
-            self.commanded_cN,
-            self.saturated,
-            self.tick,
-            simulated=True,
-        )
+from fdvv.twin._settings import settings_of
+from fdvv.twin._trace import Trace
 
 
 def simulate(
@@ -97,22 +30,50 @@ def simulate(
     step_s: float = STEP_s,
     audit: bool = False,
 ) -> Trace:
-    """Simulate one press in compiled C.
+    """Simulate one press on a table of force in compiled C.
 
     surface : the command table (cN), which the controller reads at the displacement it senses.
     travel_mm : where the bottom stop is set.
     announced_mm_s : the speed that the controller takes for granted until it has found its own.
     audit : also account for the energy of the press.
 
-    Raises ModelError if durations of the rig are no multiples of the step, or if rig or finger are too
-    stiff for it. Safe to call from threads.
+    The controller is the firmware's own core; the table is rounded to what it holds. Raises ModelError if
+    durations of the rig are no multiples of the step, if the firmware cannot hold table or settings, or if
+    rig or finger are too stiff for the step. Safe to call from threads.
     """
-    plant = plant_of(rig, finger, gesture, surface, travel_mm, announced_mm_s)
-    grid = replace(grid_of(rig, gesture, surface, step_s), audit=int(audit))
-    rows = run(replace(plant, step_s=step_s), grid, inputs_of(surface, noise))
-    if not np.isfinite(rows[-1]).all():
+    image = image_of(surface, travel_mm).image
+    return simulate_program(rig, finger, gesture, image, noise, announced_mm_s, step_s, audit)
+
+
+def simulate_program(
+    rig: Rig,
+    finger: Finger,
+    gesture: Gesture,
+    image: bytes,
+    noise: Noise,
+    announced_mm_s: float,
+    step_s: float = STEP_s,
+    audit: bool = False,
+) -> Trace:
+    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it), as simulate() does."""
+    n = settle_ticks(rig) + count_ticks(rig, gesture)
+    if noise.force_N.size != n:
+        raise ModelError(f"noise must last {n} ticks, got {noise.force_N.size}")
+    grid = replace(grid_of(rig, step_s), audit=int(audit))
+    plant = plant_of(rig, finger, step_s)
+    rows = run(
+        plant,
+        grid,
+        settings_of(rig),
+        image,
+        gesture,
+        noise,
+        settle_ticks(rig),
+        announced_mm_s,
+    )
+    if not np.isfinite(rows.physics[-1]).all():
         raise ModelError(
             f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "
             "raise the lightest mass or lower the largest stiffness, damping or loss"
         )
-    return Trace.of_rows(rows, audit)
+    return Trace.of_rows(rows, audit, plant.drive_low)

@@ -1,0 +1,285 @@
+/* One tick of the rig: drive in, motion, readings out. */
+#include "rig_motion.h"
+
+static double rounded(double value) { return floor(value + 0.5); }
+
+/* -- what the board sets -- */
+
+/* The bridge at this duty. A voltage that jumps makes the current's slope jump: the slopes remembered of it jump
+ * along, so that the solver needs no fresh start. */
+static void set_drive(fdvv_rig *r, int duty_q15, int enable) {
+    const fdvv_rig_model *m = &r->model;
+    double ratio = (double)duty_q15 / 32768.0, was = r->drive, ohm = r->ohm;
+    if (m->drive_lsb > 0.0) ratio = m->drive_lsb * rounded(ratio / m->drive_lsb);
+    if (ratio < m->drive_low) ratio = m->drive_low;
+    double copper = m->resistance_ohm * (1.0 + m->copper_1_K * r->warm_K);
+    r->ohm = copper + m->bridge_ohm + m->source_ohm * ratio * ratio;
+    r->drive = ratio * (m->current_loop_s > 0.0 ? m->supply_V / m->resistance_ohm : m->supply_V);
+    if (!enable) r->y[AMPS] = 0.0;
+    if (!enable != !r->enable || ((m->current_loop_s > 0.0 || r->grid.audit) && r->drive != was)) r->fresh = 0;
+    r->enable = (uint8_t)(enable != 0);
+    double henry = m->inductance_H + m->reluctance_H_m * (r->y[XC] - m->droop_centre_m);
+    double jump = (r->drive - was - (r->ohm - ohm) * r->y[AMPS]) / henry;
+    r->past[0][AMPS] += jump, r->past[1][AMPS] += jump;
+}
+
+/* The servo looks at its pulse once a frame, ignores small changes, moves at its speed and creeps in at the end;
+ * its play lies above the stop after a move upward. */
+static void move_servo(fdvv_rig *r, int stop_us, double span_s) {
+    const fdvv_rig_model *m = &r->model;
+    if (stop_us > 0 && r->time_s >= r->servo_next_s) {
+        double wanted = m->servo_m_us * ((double)stop_us - m->servo_zero_us);
+        if (fabs(wanted - r->servo_heard_m) > m->servo_deadband_m) r->servo_heard_m = wanted;
+        r->servo_next_s += m->servo_frame_s;
+    }
+    double way = r->servo_heard_m - r->servo_m, most = m->servo_m_s * span_s;
+    if (way == 0.0) return;
+    r->servo_m += clamp(way * (span_s < m->servo_lag_s ? span_s / m->servo_lag_s : 1.0), -most, most);
+    r->stop_m = clamp(r->stop_m, r->servo_m, r->servo_m + m->servo_play_m);
+}
+
+static void warm(fdvv_rig *r, double span_s) {
+    const fdvv_rig_model *m = &r->model;
+    double copper = m->resistance_ohm * (1.0 + m->copper_1_K * r->warm_K);
+    r->warm_K += span_s / m->heat_s * (copper * m->heat_K_W * r->y[AMPS] * r->y[AMPS] - r->warm_K);
+}
+
+/* -- the vibration -- */
+
+static void start_voice(fdvv_rig *r, uint8_t slot, double latency) {
+    const fdvv_rig_model *m = &r->model;
+    if (slot == FDVV_NONE || m->magnet_kg <= 0.0) return;
+    double wait = m->vibration_latency_s + m->vibration_jitter_s * clamp(latency, -3.0, 3.0);
+    r->slot = slot, r->waiting = 1;
+    r->vibration_s = r->time_s + (wait > 0.0 ? wait : 0.0);
+}
+
+/* The converter's sample of this moment. */
+static void sample_voice(fdvv_rig *r, double t) {
+    if (r->waiting && t >= r->vibration_s) {
+        fdvv_synth_choose(&r->voice, &r->bank, r->slot);
+        fdvv_synth_start(&r->voice, 255);
+        r->waiting = 0, r->sample_s = t;
+    }
+    while (fdvv_synth_playing(&r->voice) && t >= r->sample_s) {
+        r->count = fdvv_synth_sample(&r->voice);
+        r->sample_s += 1.0 / FDVV_SYNTH_RATE_HZ;
+    }
+    if (!fdvv_synth_playing(&r->voice) && t >= r->sample_s) r->count = FDVV_SYNTH_SILENCE;
+}
+
+/* Low pass and clipping amplifier; then the exciter's current at the end of this step. Its time constant is of
+ * the order of a step: exact for an input that goes on as a line. */
+static double drive_magnet(fdvv_rig *r, double t) {
+    const fdvv_rig_model *m = &r->model;
+    if (r->waiting || fdvv_synth_playing(&r->voice) || r->count != FDVV_SYNTH_SILENCE) sample_voice(r, t);
+    double volts = clamp(r->amplifier_V, -m->amplifier_clip_V, m->amplifier_clip_V);
+    double wanted = m->amplifier_V_count * ((double)r->count - FDVV_SYNTH_SILENCE);
+    double goal = (volts - m->magnet_motor_N_A * (r->y[VM] - r->y[VC])) * r->magnet_1_ohm, was = r->magnet_goal_A;
+    r->amplifier_V = wanted + r->amplifier_keep * (r->amplifier_V - wanted);
+    r->magnet_goal_A = goal;
+    return r->magnet_keep * r->magnet_A + r->magnet_mean * goal + r->magnet_slope * (goal - was);
+}
+
+/* -- what the board reads -- */
+
+/* The scale bends as u - u^3 over half the range, by lvdt_linearity_m where it bends most; mid scale is x = 0. */
+static inline uint32_t read_position(const fdvv_rig_model *m, double lvdt_m, double noise_m) {
+    double u = 2.0 * lvdt_m / m->lvdt_range_m, most = 2.598076211353316; /* 1 / max(u - u^3) */
+    double place = lvdt_m + m->lvdt_linearity_m * most * u * (1.0 - u * u) + noise_m;
+    double count = (place / m->lvdt_range_m + 0.5) * m->lvdt_steps + 0.5;
+    return (uint32_t)clamp(count, 0.0, m->lvdt_steps - 0.5);
+}
+
+/* The play of the finger's sensor, then gain, range and converter. */
+static double read_finger(fdvv_rig *r, double noise_N) {
+    const fdvv_rig_model *m = &r->model;
+    double half = 0.5 * m->sensor_hysteresis_N;
+    r->held_N = clamp(r->held_N, r->y[SENSED] - half, r->y[SENSED] + half);
+    double value = clamp(m->sensor_gain * r->held_N + noise_N, -m->sensor_full_scale_N, m->sensor_full_scale_N);
+    return m->sensor_lsb_N > 0.0 ? m->sensor_lsb_N * rounded(value / m->sensor_lsb_N) : value;
+}
+
+static uint16_t read_keycap(const fdvv_rig *r, double noise) {
+    const fdvv_rig_model *m = &r->model;
+    if (m->keycap_kind <= 0.0) return 0;
+    double count = (0.5 + 0.5 * (r->keycap / m->keycap_full_scale + noise)) * m->keycap_steps + 0.5;
+    return (uint16_t)clamp(count, 0.0, m->keycap_steps - 0.5);
+}
+
+static uint16_t read_supply_mV(const fdvv_rig *r) {
+    const fdvv_rig_model *m = &r->model;
+    double ratio = m->current_loop_s > 0.0 ? 0.0 : r->drive / m->supply_V;
+    double volts = m->supply_V - m->source_ohm * ratio * (r->enable ? r->y[AMPS] : 0.0);
+    return (uint16_t)clamp(1000.0 * volts + 0.5, 0.0, 65535.0);
+}
+
+static void read_sensors(fdvv_rig *r, const fdvv_rig_noise *noise, fdvv_inputs *inputs) {
+    r->felt_N = read_finger(r, noise->force_N);
+    inputs->time_us += (uint32_t)(1e6 * r->model.step_s * (double)r->grid.steps_per_tick + 0.5);
+    inputs->elapsed_ticks = 1;
+    inputs->supply_mV = read_supply_mV(r);
+    inputs->force_counts = read_keycap(r, noise->keycap);
+    inputs->board = 0;
+}
+
+static inline void add_read(fdvv_inputs *inputs, uint32_t count) {
+    inputs->sum += count;
+    if (count < inputs->lowest) inputs->lowest = (uint16_t)count;
+    if (count > inputs->highest) inputs->highest = (uint16_t)count;
+}
+
+/* -- a tick -- */
+
+static void write_row(const fdvv_rig *r, double t, const double *dy, double *row) {
+    const double *y = r->y;
+    row[FDVV_RIG_TIME] = t;
+    row[FDVV_RIG_CAP] = y[XC], row[FDVV_RIG_SPEED] = y[VC], row[FDVV_RIG_ACCELERATION] = dy[VC];
+    row[FDVV_RIG_FORCE] = touching(r, y), row[FDVV_RIG_FELT] = r->felt_N;
+    row[FDVV_RIG_CURRENT] = y[AMPS], row[FDVV_RIG_FINGER] = y[XF], row[FDVV_RIG_MAGNET] = y[XM];
+    row[FDVV_RIG_ENERGY] = r->grid.audit ? stored(r, y) - r->energy_J - y[WORK] + y[LOSS] : 0.0;
+}
+
+static ALWAYS_INLINE void run(fdvv_rig *r, const fdvv_outputs *out, const fdvv_rig_noise *noise, double *rows,
+                              fdvv_inputs *inputs, int magnet, int audit) {
+    const fdvv_rig_grid *g = &r->grid;
+    const double *noise_m = noise->position_m, h = r->model.step_s;
+    double now[FDVV_RIG_STATES] = {0}, next_read = (double)g->steps_per_tick - (double)(g->reads - 1) * g->read_steps;
+    int64_t next_row = rows ? 0 : g->steps_per_tick;
+    for (int64_t s = 0; s < g->steps_per_tick; s++) {
+        double t = r->tick_s + h * (double)s, before = r->y[LVDT];
+        if (s == g->delay_steps) set_drive(r, out->duty_q15, out->enable);
+        double next_A = magnet ? drive_magnet(r, t) : 0.0;
+        if (s == next_row) {
+            double slope[FDVV_RIG_STATES] = {0};
+            rates(r, t, r->y, slope, magnet, audit);
+            write_row(r, t, slope, rows);
+            rows += FDVV_RIG_COLUMNS, next_row += g->steps_per_row;
+        }
+        advance(r, t, now, magnet, audit);
+        r->magnet_A = next_A;
+        if (r->model.keycap_kind > 0.0) {
+            double felt = r->model.keycap_kind > 1.0 ? now[VC] : touching(r, r->y);
+            r->keycap = felt + r->keycap_keep * (r->keycap - felt);
+        }
+        for (double end = (double)(s + 1) + 1e-9; next_read <= end; next_read += g->read_steps) {
+            double part = next_read - (double)s, line = h * now[LVDT] * part; /* parabola through both ends */
+            double bend = (r->y[LVDT] - before - h * now[LVDT]) * part * part;
+            add_read(inputs, read_position(&r->model, before + line + bend, *noise_m++));
+            if (noise_m == noise->position_m + g->reads) next_read = 1e18;
+        }
+    }
+}
+
+void fdvv_rig_tick(fdvv_rig *r, const fdvv_outputs *out, const fdvv_rig_noise *noise, double *rows,
+                   fdvv_inputs *inputs) {
+    double span_s = r->model.step_s * (double)r->grid.steps_per_tick;
+    r->tick_s = r->time_s;
+    r->effort_per_s = (noise->effort_ratio - r->effort) / span_s;
+    start_voice(r, out->slot, noise->latency);
+    move_servo(r, out->stop_us, span_s);
+    inputs->sum = 0, inputs->lowest = 65535, inputs->highest = 0;
+    if (r->grid.audit) run(r, out, noise, rows, inputs, 1, 1);
+    else if (r->model.magnet_kg > 0.0) run(r, out, noise, rows, inputs, 1, 0);
+    else run(r, out, noise, rows, inputs, 0, 0);
+    r->effort = noise->effort_ratio;
+    r->time_s = r->tick_s + span_s;
+    warm(r, span_s);
+    read_sensors(r, noise, inputs);
+}
+
+void fdvv_rig_tell(const fdvv_rig *rig, double *told) {
+    told[0] = rig->felt_N, told[1] = rig->warm_K, told[2] = rig->stop_m;
+}
+
+void fdvv_rig_step(fdvv_rig *rig, int duty_q15, int enable, int stop_us, int slot, const double *position_noise_m,
+                   const double *noise, double *rows, double *told, fdvv_inputs *inputs) {
+    fdvv_outputs out;
+    fdvv_rig_noise random = {position_noise_m, noise[0], noise[1], noise[2], noise[3]};
+    memset(&out, 0, sizeof out);
+    out.duty_q15 = (int16_t)duty_q15, out.enable = (uint8_t)enable;
+    out.stop_us = (uint16_t)stop_us, out.slot = (uint8_t)slot;
+    fdvv_rig_tell(rig, told);
+    fdvv_rig_tick(rig, &out, &random, rows, inputs);
+}
+
+/* -- before the first tick -- */
+
+static int usable(const fdvv_rig_grid *g) {
+    return g->steps_per_row > 0 && g->steps_per_tick > 0 && g->steps_per_tick % g->steps_per_row == 0 &&
+           g->delay_steps >= 0 && g->delay_steps < g->steps_per_tick && g->reads > 0 && g->read_steps > 0.0 &&
+           (double)(g->reads - 1) * g->read_steps < (double)g->steps_per_tick;
+}
+
+int fdvv_rig_start(fdvv_rig *r, const fdvv_rig_model *m, const fdvv_rig_grid *grid, double stop_us) {
+    if (!usable(grid)) return 1;
+    memset(r, 0, sizeof *r);
+    r->model = *m, r->grid = *grid, r->finger = m->finger;
+    r->finger_1_kg = 1.0 / m->finger.finger_mass_kg, r->sensor_1_kg = 1.0 / m->sensor_mass_kg;
+    r->frame_1_kg = 1.0 / m->frame_mass_kg, r->magnet_1_kg = m->magnet_kg > 0.0 ? 1.0 / m->magnet_kg : 0.0;
+    r->fast_rate = 1.0 / m->finger.pulp_fast_s, r->slow_rate = 1.0 / m->finger.pulp_slow_s;
+    r->bristle_N_m = m->coulomb_N / m->presliding_m;
+    r->ohm = m->resistance_ohm + m->bridge_ohm;
+    r->servo_m = r->servo_heard_m = m->servo_m_us * (stop_us - m->servo_zero_us);
+    r->stop_m = r->servo_m;
+    r->magnet_1_ohm = 1.0 / m->magnet_ohm;
+    double x = m->step_s * m->magnet_ohm / m->magnet_H; /* exact for inputs that go on as a line */
+    r->magnet_keep = exp(-x), r->magnet_mean = -expm1(-x), r->magnet_slope = 1.0 + expm1(-x) / x;
+    r->amplifier_keep = exp(-m->amplifier_rate * m->step_s);
+    r->keycap_keep = exp(-m->keycap_rate * m->step_s);
+    r->count = FDVV_SYNTH_SILENCE;
+    fdvv_synth_init(&r->bank);
+    fdvv_synth_stop(&r->voice);
+    r->energy_J = stored(r, r->y);
+    return 0;
+}
+
+void fdvv_rig_press(fdvv_rig *r, const fdvv_gesture *gesture, double stiffness_N_m, double damping_N_s_m, double ago_s) {
+    int first = r->time_s == 0.0 && r->fresh == 0 && r->gesture.press_s == 0.0;
+    r->gesture = *gesture;
+    r->finger.finger_stiffness_N_m = stiffness_N_m, r->finger.finger_damping_N_s_m = damping_N_s_m;
+    r->servo_next_s += ago_s - r->time_s, r->vibration_s += ago_s - r->time_s, r->sample_s += ago_s - r->time_s;
+    r->time_s = ago_s;
+    r->fresh = 0;
+    if (!first) return;
+    r->y[XF] = r->y[XT] = gesture->start_m < 0.0 ? gesture->start_m : 0.0;
+    r->energy_J = stored(r, r->y);
+}
+
+void fdvv_rig_look(fdvv_rig *r, fdvv_inputs *inputs) {
+    uint32_t count = read_position(&r->model, r->y[LVDT], 0.0);
+    memset(inputs, 0, sizeof *inputs);
+    inputs->sum = count * (uint32_t)r->grid.reads;
+    inputs->lowest = inputs->highest = (uint16_t)count;
+    inputs->elapsed_ticks = 1;
+    inputs->supply_mV = read_supply_mV(r);
+    inputs->force_counts = read_keycap(r, 0.0);
+}
+
+static uint8_t load_wave(fdvv_synth_bank *bank, uint16_t at, const uint8_t *samples, uint16_t count) {
+    enum { PIECE = 128 };
+    for (uint16_t done = 0; done < count; done = (uint16_t)(done + PIECE)) {
+        uint8_t some = (uint8_t)(count - done < PIECE ? count - done : PIECE);
+        if (!fdvv_synth_load(bank, (uint16_t)(at + done), samples + done, some)) return 0;
+    }
+    return 1;
+}
+
+uint8_t fdvv_rig_load(fdvv_rig *r, const uint8_t *image) {
+    uint16_t at = 0;
+    for (uint8_t i = 0; i < fdvv_image_head(image)->slots; i++) {
+        const fdvv_slot *s = fdvv_image_slot(image, i);
+        fdvv_synth_slot slot = {s->frequency_Hz16, s->duration_samples, s->amplitude_counts, s->decay_q16,
+                                at, s->wave_samples, s->waveform};
+        if (!load_wave(&r->bank, at, image + s->wave_at, s->wave_samples) || !fdvv_synth_set(&r->bank, i, &slot))
+            return 0;
+        at = (uint16_t)(at + s->wave_samples);
+    }
+    return 1;
+}
+
+void fdvv_rig_sizes(int64_t *model_bytes, int64_t *grid_bytes, int64_t *rig_bytes) {
+    *model_bytes = (int64_t)sizeof(fdvv_rig_model);
+    *grid_bytes = (int64_t)sizeof(fdvv_rig_grid);
+    *rig_bytes = (int64_t)sizeof(fdvv_rig);
+}

@@ -1,0 +1,142 @@
+/* Equations of motion of the rig and one step of their solution; docs/explanation/twin.md tells them.
+ *
+ * Third-order Adams-Bashforth, started by two Runge-Kutta steps, so that one evaluation per step is enough. */
+#ifndef FDVV_RIG_MOTION_H
+#define FDVV_RIG_MOTION_H
+
+#include "finger.h"
+#include "rig.h"
+
+#include <string.h>
+
+#if defined(__GNUC__)
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE inline
+#endif
+
+static inline double clamp(double value, double low, double high) {
+    value = value < low ? low : value;
+    return value > high ? high : value;
+}
+
+static inline double touching(const fdvv_rig *r, const double *y) {
+    const fdvv_rig_model *m = &r->model;
+    return contact(m->contact_stiffness_N_m, m->contact_loss_s_m, y[XT] - y[XC], y[VT] - y[VC]);
+}
+
+/* Stretch of the bristle once the cap has gone on to x: it follows until it slips. */
+static inline double stretched(const fdvv_rig *r, double x) {
+    return clamp(r->slip_m + (x - r->slip_at_m), -r->model.presliding_m, r->model.presliding_m);
+}
+
+static inline double volts_of(const fdvv_rig *r, double henry, double kt, double amps, double v) {
+    const fdvv_rig_model *m = &r->model;
+    if (m->current_loop_s <= 0.0) return r->drive;
+    double wanted = (r->ohm + m->reluctance_H_m * v) * amps - kt * v + henry * (r->drive - amps) / m->current_loop_s;
+    return clamp(wanted, -m->supply_V, m->supply_V);
+}
+
+static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, double *dy, int magnet, int audit) {
+    const fdvv_rig_model *m = &r->model;
+    double effort = 1.0 + r->effort + r->effort_per_s * (t - r->tick_s);
+    double pull = effort * muscle(&r->finger, &r->gesture, t, y[XF], y[VF]);
+    double squeeze_rate = y[VF] - y[VT], arms = y[H1] + y[H2], growth;
+    double pulp = squeeze(&r->finger, y[XF] - y[XT], squeeze_rate, arms, &growth);
+    double v = y[VC], amps = y[AMPS];
+
+    double touch = touching(r, y), deep = y[XC] - r->stop_m;
+    double stop = contact(m->stop_stiffness_N_m, m->stop_loss_s_m, deep, v);
+    double top = contact(m->top_stiffness_N_m, m->top_loss_s_m, -y[XC], -v);
+    double bristle = stretched(r, y[XC]);
+    double rub = r->bristle_N_m * bristle + m->viscous_N_s_m * v;
+    double off = y[XC] - m->droop_centre_m;
+    double kt = m->force_constant_N_A * (1.0 - m->droop_1_m2 * off * off);
+    double henry = m->inductance_H + m->reluctance_H_m * off;
+    double volts = volts_of(r, henry, kt, amps, v), coil = kt * amps - 0.5 * m->reluctance_H_m * amps * amps;
+    double shake = 0.0;
+
+    if (magnet) {
+        double damped = m->magnet_damping_N_s_m * (y[VM] - v);
+        shake = m->magnet_stiffness_N_m * y[XM] + damped - m->magnet_motor_N_A * r->magnet_A;
+        dy[XM] = y[VM] - v;
+        dy[VM] = -shake * r->magnet_1_kg;
+    }
+    dy[XF] = y[VF];
+    dy[VF] = (pull - pulp) * r->finger_1_kg;
+    dy[H1] = r->finger.pulp_fast_ratio * growth - y[H1] * r->fast_rate;
+    dy[H2] = r->finger.pulp_slow_ratio * growth - y[H2] * r->slow_rate;
+    dy[XT] = y[VT];
+    dy[VT] = (pulp - touch) * r->sensor_1_kg;
+    dy[XC] = v;
+    dy[VC] = (touch - coil - rub - stop + top + shake + m->mover_mass_kg * m->gravity_m_s2) * r->frame_1_kg;
+    dy[AMPS] = r->enable ? (volts - (r->ohm + m->reluctance_H_m * v) * amps + kt * v) / henry : 0.0;
+    dy[LVDT] = m->lvdt_rate * (y[XC] - y[LVDT]);
+    dy[SENSED] = m->sensor_rate * (pulp - y[SENSED]);
+    if (!audit) return;
+    dy[WORK] = pull * y[VF] + (r->enable ? volts * amps : 0.0);
+    dy[LOSS] = (r->enable ? r->ohm * amps * amps : 0.0) + m->viscous_N_s_m * v * v + arms * squeeze_rate +
+               (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
+               (stop - elastic(m->stop_stiffness_N_m, deep)) * v - (top - elastic(m->top_stiffness_N_m, -y[XC])) * v;
+    if (!magnet) return;
+    dy[WORK] += m->magnet_motor_N_A * r->magnet_A * (y[VM] - v);
+    dy[LOSS] += m->magnet_damping_N_s_m * (y[VM] - v) * (y[VM] - v);
+}
+
+/* Kinetic, elastic, magnetic and gravitational energy. */
+static inline double stored(const fdvv_rig *r, const double *y) {
+    const fdvv_rig_model *m = &r->model;
+    const fdvv_finger *f = &r->finger;
+    double squeezed = y[XF] - y[XT], henry = m->inductance_H + m->reluctance_H_m * (y[XC] - m->droop_centre_m);
+    double depth = fmax(y[XT] - y[XC], 0.0), deep = fmax(y[XC] - r->stop_m, 0.0), high = fmax(-y[XC], 0.0);
+    double bristle = stretched(r, y[XC]);
+    double moving = f->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
+                    m->frame_mass_kg * y[VC] * y[VC] + m->magnet_kg * y[VM] * y[VM] + henry * y[AMPS] * y[AMPS];
+    double springs = m->contact_stiffness_N_m * depth * depth + m->stop_stiffness_N_m * deep * deep +
+                     m->top_stiffness_N_m * high * high + r->bristle_N_m * bristle * bristle +
+                     m->magnet_stiffness_N_m * y[XM] * y[XM];
+    return 0.5 * (moving + springs) + f->pulp_relaxed_ratio * swollen(f, squeezed) -
+           f->strap_N * (squeezed + f->strap_m) - m->mover_mass_kg * m->gravity_m_s2 * y[XC];
+}
+
+static inline int used_states(int magnet, int audit) { return audit ? FDVV_RIG_STATES : magnet ? WORK : XM; }
+
+static ALWAYS_INLINE void runge_kutta(fdvv_rig *r, double t, const double *now, int magnet, int audit) {
+    static const double reach[3] = {0.5, 0.5, 1.0}, weight[3] = {2.0, 2.0, 1.0};
+    double h = r->model.step_s, slope[FDVV_RIG_STATES] = {0}, sum[FDVV_RIG_STATES], stage[FDVV_RIG_STATES];
+    int states = used_states(magnet, audit);
+    memcpy(slope, now, sizeof slope);
+    memcpy(sum, now, sizeof sum);
+    memcpy(stage, r->y, sizeof stage);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < states; j++) stage[j] = r->y[j] + reach[i] * h * slope[j];
+        rates(r, t + reach[i] * h, stage, slope, magnet, audit);
+        for (int j = 0; j < states; j++) sum[j] += weight[i] * slope[j];
+    }
+    for (int j = 0; j < states; j++) r->y[j] += h / 6.0 * sum[j];
+}
+
+/* Advance one step; give the rates at its start. */
+static ALWAYS_INLINE void advance(fdvv_rig *r, double t, double *now, int magnet, int audit) {
+    double h = r->model.step_s / 12.0;
+    rates(r, t, r->y, now, magnet, audit);
+    if (r->fresh < 2) {
+        runge_kutta(r, t, now, magnet, audit);
+        r->fresh++;
+        memcpy(r->past[1], r->past[0], sizeof r->past[0]);
+        memcpy(r->past[0], now, sizeof r->past[0]);
+    } else {
+        int states = used_states(magnet, audit);
+        for (int j = 0; j < states; j++) {
+            r->y[j] += h * (23.0 * now[j] - 16.0 * r->past[0][j] + 5.0 * r->past[1][j]);
+            r->past[1][j] = r->past[0][j];
+            r->past[0][j] = now[j];
+        }
+    }
+    double stretch = stretched(r, r->y[XC]);
+    if (audit) r->y[LOSS] += r->model.coulomb_N * fabs(r->y[XC] - r->slip_at_m - (stretch - r->slip_m));
+    r->slip_m = stretch;
+    r->slip_at_m = r->y[XC];
+}
+
+#endif

@@ -1,0 +1,162 @@
+"""A table of force as the smallest program that renders it: one state, one surface per stroke."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface
+from fdvv.protocol import (
+    IMAGE_BYTES,
+    IMAGE_MAGIC,
+    IMAGE_VERSION,
+    NONE,
+    SURFACE_DISPLACEMENTS,
+    SURFACE_VELOCITIES,
+    ImageHeader,
+    State,
+    Surface,
+    VelocitySource,
+)
+from fdvv.units import FloatArray
+
+UM16_mm, CN64_cN, MM_S16 = 16000, 64, 16
+LARGEST_ERROR_cN = 0.1
+"""A table that would change by more on its way into an image is refused."""
+
+
+@dataclass(frozen=True)
+class TableImage:
+    """A table as the firmware holds it.
+
+    Attributes
+    ----------
+    image : the program, checksum and all.
+    error_cN : by how much it differs from the table at most, anywhere between the table's ends.
+    """
+
+    image: bytes
+    error_cN: float
+
+
+def image_of(surface: ForceSurface, travel_mm: float) -> TableImage:
+    """Make the program that renders a table as it is.
+
+    Columns stay where they are if their step is a whole number of 1/16 um and all fit; else the table is
+    sampled anew, as finely as fits. ModelError if that changes it by more than 0.1 cN, or if its numbers are
+    beyond what the firmware holds.
+    """
+    if surface.velocity_mm_s.size > SURFACE_VELOCITIES:
+        raise ModelError(
+            f"a device holds {SURFACE_VELOCITIES} velocities at most, got {surface.velocity_mm_s.size}"
+        )
+    start, step, columns = _grid(surface)
+    x = (start + step * np.arange(columns)) / UM16_mm
+    old = surface.displacement_mm
+    tables = [
+        np.array([np.interp(x, old, row) for row in rows]) for rows in (surface.press_cN, surface.release_cN)
+    ]
+    held = [np.round(CN64_cN * table) for table in tables]
+    if max(float(np.abs(table).max()) for table in held) > 32000:
+        raise ModelError("a device holds forces up to 500 cN")
+    error = _error(surface, x, held)
+    if error > LARGEST_ERROR_cN:
+        raise ModelError(
+            f"the table would change by {error:.3g} cN to fit a device; {columns} places at most fit"
+            f" {surface.velocity_mm_s.size} velocities"
+        )
+    return TableImage(_pack(surface, travel_mm, (start, step, columns), held), error)
+
+
+def _grid(surface: ForceSurface) -> tuple[int, int, int]:
+    """Choose first column, step (both 1/16 um) and count."""
+    first, last = (UM16_mm * float(surface.displacement_mm[i]) for i in (0, -1))
+    start, count = round(first), surface.displacement_mm.size
+    fits = min(SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 96) // (4 * surface.velocity_mm_s.size) - 2)
+    low, high = Surface.LIMITS["step_um16"]
+    exact = (last - first) / (count - 1)
+    if count <= fits and low <= exact <= high and abs(exact - round(exact)) * (count - 1) < 1:
+        return start, round(exact), count
+    # a step too long for the firmware is cut into equal ones
+    parts = int(np.ceil(exact / high)) if count <= fits else 1
+    if parts > 1 and (count - 1) * parts < fits:
+        return start, round(exact / parts), (count - 1) * parts + 1
+    step = min(high, max(low, int(np.ceil((last - first) / (fits - 1)))))
+    return start, step, max(2, int(np.ceil((last - first) / step)) + 1)
+
+
+def _error(surface: ForceSurface, x: FloatArray, held: list[FloatArray]) -> float:
+    """Compare at the places of both grids, where the difference of two broken lines is largest."""
+    inside = x[(x >= surface.displacement_mm[0]) & (x <= surface.displacement_mm[-1])]
+    places = np.concatenate([inside, surface.displacement_mm])
+    pairs = [(surface.press_cN, held[0]), (surface.release_cN, held[1])]
+    return max(
+        float(np.abs(np.interp(places, surface.displacement_mm, a) - np.interp(places, x, b) / CN64_cN).max())
+        for table, coarse in pairs
+        for a, b in zip(table, coarse, strict=True)
+    )
+
+
+def _pack(
+    surface: ForceSurface, travel_mm: float, grid: tuple[int, int, int], held: list[FloatArray]
+) -> bytes:
+    start, step, columns = grid
+    rows = surface.velocity_mm_s.size
+    fixed = ImageHeader.length_bytes() + State.length_bytes() + 2 * Surface.length_bytes()
+    speeds = np.round(MM_S16 * surface.velocity_mm_s).astype("<u2").tobytes()
+    forces = [table.astype("<i2").tobytes() for table in held]
+    places = [fixed + len(speeds) + i * len(forces[0]) for i in (0, 1)]
+    parts = [_state().pack()]
+    parts += [
+        Surface(
+            start_um16=start, step_um16=step, columns=columns, rows=rows, velocities_at=fixed, forces_at=at
+        ).pack()
+        for at in places
+    ]
+    body = b"".join([*parts, speeds, *forces])
+    body += bytes(-len(body) % 4)
+    return _seal(body, round(UM16_mm * travel_mm))
+
+
+def _state() -> State:
+    return State(
+        press_surface=0,
+        release_surface=1,
+        velocity_source=VelocitySource.DECIDED,
+        key=0,
+        first_transition=0,
+        transitions=0,
+        enter_slot=NONE,
+        repeat_slot=NONE,
+        repeat_ms=0,
+        fade_ms=0,
+        bias_cN64=0,
+        bias_end_cN64=0,
+        bias_ms=0,
+        spare=0,
+    )
+
+
+def _seal(body: bytes, travel_um16: int) -> bytes:
+    """Put the header with its checksum before the parts."""
+    head = ImageHeader(
+        magic=IMAGE_MAGIC,
+        crc32=0,
+        travel_um16=travel_um16,
+        size_bytes=ImageHeader.length_bytes() + len(body),
+        version=IMAGE_VERSION,
+        start_state=0,
+        states=1,
+        transitions=0,
+        surfaces=2,
+        vibrations=0,
+        slots=0,
+        spare=0,
+        name=b"table",
+    )
+    checked = 8  # the checksum covers what follows it
+    crc = zlib.crc32(head.pack()[checked:] + body)
+    return replace(head, crc32=crc).pack() + body

@@ -1,0 +1,169 @@
+"""A rig under a finger that any board may drive, tick by tick."""
+
+from __future__ import annotations
+
+import ctypes
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv._native import address
+from fdvv.core import INPUTS, OUTPUTS, RecordArray
+from fdvv.errors import ModelError
+from fdvv.protocol import NONE
+from fdvv.twin._finger import Finger
+from fdvv.twin._flatten import grid_of, plant_of
+from fdvv.twin._gesture import Gesture, plan
+from fdvv.twin._kernel import (
+    COLUMNS,
+    TICK_COLUMNS,
+    GestureTimes,
+    GridCounts,
+    Model,
+    Rows,
+    doors,
+    rig_bytes,
+    words,
+)
+from fdvv.twin._noise import Noise, draw_ticks
+from fdvv.twin._rig import Rig
+from fdvv.twin._settings import settings_of
+from fdvv.twin._trace import Trace
+from fdvv.units import FloatArray, mm_from_m
+
+BLOCK_TICKS = 256
+"""Noise is drawn for so many ticks at once."""
+KEPT_s = 60.0
+
+
+class RigPlant:
+    """Hardware without a controller: duty in, readings out, one tick at a time. Simulated.
+
+    Parameters
+    ----------
+    rig, finger : the default ones if None.
+    seed : of all noise; None: no noise at all.
+    stop_us : servo pulse at which the bottom stop stands calibrated at the start; None: the deepest stop.
+
+    The finger rests (or hovers, as its habit says) until press() is called. A tick takes what step() is
+    given compute_s (rig.controller) after it began and gives the readings of the tick that follows; inputs
+    holds those of the coming tick at any time. Time runs as fast as step() is called.
+    """
+
+    def __init__(
+        self,
+        rig: Rig | None = None,
+        finger: Finger | None = None,
+        seed: int | None = 0,
+        stop_us: float | None = None,
+    ) -> None:
+        self.rig, self.finger = rig or Rig(), finger or Finger()
+        self._random = None if seed is None else np.random.default_rng(seed)
+        self._grid, self._settings = grid_of(self.rig), settings_of(self.rig)
+        self._memory = np.zeros(rig_bytes() // 8 + 1, np.uint64)
+        self._held = address(self._memory)
+        self._told, self._inputs = np.zeros(TICK_COLUMNS), np.zeros(1, INPUTS)
+        self._ticks = 0
+        self._kept: deque[tuple[FloatArray, FloatArray, tuple[int, ...]]] = deque(
+            maxlen=round(KEPT_s / self.rig.controller.tick_s)
+        )
+        self._start(self._deepest_us() if stop_us is None else stop_us)
+
+    @property
+    def inputs(self) -> np.void:
+        """What the board reads at the tick that now begins: one record of fdvv.core.INPUTS."""
+        one: np.void = self._inputs[0].copy()
+        return one
+
+    @property
+    def time_s(self) -> float:
+        """Time since the start."""
+        return self._ticks * self.rig.controller.tick_s
+
+    def step(self, duty_q15: int, enable: bool, stop_us: int, slot: int = NONE) -> np.void:
+        """Let one tick pass under these outputs of a board; give the readings at its end.
+
+        duty_q15 : -32768 to 32767, of the supply. enable : of the bridge. stop_us : servo pulse, 0 for none.
+        slot : waveform to start, loaded before, or NONE.
+        """
+        rows = np.empty((self._grid.rows_per_tick, COLUMNS))
+        i = self._ticks % BLOCK_TICKS
+        if i == 0:
+            self._noise = self._draw()
+        noise = self._noise
+        few = np.array([noise.force_N[i], noise.keycap[i], noise.effort_ratio[i], noise.latency[i]])
+        seen = int(self._inputs["sum"][0])
+        given = (int(duty_q15), int(enable), int(stop_us), int(slot))
+        doors().fdvv_rig_step(
+            self._held,
+            *given,
+            address(noise.position_m[i]),
+            address(few),
+            address(rows),
+            address(self._told),
+            address(self._inputs),
+        )
+        self._ticks += 1
+        self._kept.append((rows, self._told.copy(), (seen, *given)))
+        return self.inputs
+
+    def press(self, gesture: Gesture) -> None:
+        """Let the finger follow a gesture (plan(), vary()) from now on; it rests again after it."""
+        doors().fdvv_rig_press(
+            self._held,
+            ctypes.byref(GestureTimes.of(gesture)),
+            ctypes.c_double(gesture.stiffness_N_m),
+            ctypes.c_double(gesture.damping_N_s_m),
+            ctypes.c_double(0.0),
+        )
+
+    def load(self, image: bytes) -> None:
+        """Give the vibration board the waveforms of a program; ModelError if it cannot hold them."""
+        if not doors().fdvv_rig_load(self._held, address(words(image))):
+            raise ModelError("the vibration board has no room for the waveforms of this program")
+
+    def record(self) -> Trace:
+        """Give what happened since the last call (60 s at most), from time 0, and forget it.
+
+        What the board decided is not known here: sensed_mm is what the readings amount to, commanded_cN what
+        the duty amounts to; release, state, key and flags are 0. ModelError if no tick has passed.
+        """
+        if not self._kept:
+            raise ModelError("no tick has passed since the last record")
+        physics, told, given = zip(*self._kept, strict=True)
+        self._kept.clear()
+        rows = Rows(np.concatenate(physics), np.array(told), self._outputs(np.array(given)))
+        rows.physics[:, 0] = (
+            np.arange(len(rows.physics)) * self.rig.controller.tick_s / self._grid.rows_per_tick
+        )
+        return Trace.of_rows(rows)
+
+    def _start(self, stop_us: float) -> None:
+        model = Model(*vars(plant_of(self.rig, self.finger)).values())
+        counts = GridCounts(*vars(self._grid).values())
+        lib = doors()
+        lib.fdvv_rig_start(self._held, ctypes.byref(model), ctypes.byref(counts), ctypes.c_double(stop_us))
+        start = plan(self.finger, self.rig.stops.travel_limit_m, 1.0)
+        # a gesture that goes nowhere: the finger rests where one would begin
+        self.press(replace(start, end_m=start.start_m))
+        lib.fdvv_rig_look(self._held, address(self._inputs))
+
+    def _deepest_us(self) -> float:
+        servo = self.rig.servo
+        return servo.pulse_zero_us + servo.pulse_us_mm * float(mm_from_m(self.rig.stops.travel_limit_m))
+
+    def _draw(self) -> Noise:
+        if self._random is not None:
+            return draw_ticks(self.rig, self.finger, BLOCK_TICKS, self._random)
+        return Noise(np.zeros((BLOCK_TICKS, self._grid.reads)), *(np.zeros(BLOCK_TICKS) for _ in range(4)))
+
+    def _outputs(self, given: npt.NDArray[np.int64]) -> RecordArray:
+        """Put sums of readings and a board's outputs, (n, 5), into records of OUTPUTS."""
+        told, out = self._settings, np.zeros(len(given), OUTPUTS)
+        sums, out["duty_q15"], out["enable"], out["stop_us"], out["slot"] = given.T
+        out["displacement_um16"] = (sums * told.position_gain_q14 + 8192 >> 14) + told.position_offset_um16
+        force = np.round(given[:, 1] * (65536 / told.duty_gain_q16))
+        out["commanded_cN64"] = np.clip(force, -32767, 32767)
+        return out

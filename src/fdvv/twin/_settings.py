@@ -1,0 +1,102 @@
+"""What the firmware is told of a rig: its parameters as the protocol's settings."""
+
+from __future__ import annotations
+
+from fdvv.errors import ModelError
+from fdvv.protocol import Settings
+from fdvv.twin._rig import Rig
+
+UM16_m = 1.6e7
+"""Sixteenths of a micrometre in a metre."""
+CN64_N = 6400.0
+"""Sixty-fourths of a centinewton in a newton."""
+FASTEST_m_s = 4.0
+"""No cap moves faster; beyond it a reading is a fault."""
+STUCK_s = 10.0
+"""Equal readings for so long are a dead sensor; without noise a resting cap gives equal readings for long."""
+
+
+def settings_of(rig: Rig) -> Settings:
+    """Give the calibration and limits of a rig; ModelError names what its firmware cannot hold.
+
+    A held force equals the table where the coil is at its best: the duty gain counts coil and bridge when
+    cold, at the nominal supply.
+    """
+    try:
+        return Settings(**_position(rig), **_loop(rig), **_output(rig), **_limits(rig), **_extras(rig))
+    except ModelError as error:
+        raise ModelError(f"this rig is beyond what its firmware can be told: {error}") from error
+
+
+def ticks(rig: Rig, duration_s: float) -> int:
+    """Count ticks, as many as a setting holds at most."""
+    return min(65535, max(1, round(duration_s / rig.controller.tick_s)))
+
+
+def _position(rig: Rig) -> dict[str, int]:
+    sensor = rig.position_sensor
+    steps, reads = 2**sensor.converter_bits, sensor.reads
+    range_um16 = UM16_m * sensor.range_m
+    return {
+        "position_gain_q14": round(range_um16 * 2**14 / (steps * reads)),
+        "position_offset_um16": round(-range_um16 / 2),
+        "reads": reads,
+        "reading_low": steps // 200,
+        "reading_high": steps - 1 - steps // 200,
+        "jump_um16": min(65535, round(UM16_m * FASTEST_m_s * rig.controller.tick_s)),
+        "stuck_ticks": ticks(rig, STUCK_s),
+    }
+
+
+def _loop(rig: Rig) -> dict[str, int]:
+    loop = rig.controller
+    return {
+        "tick_us": round(1e6 * loop.tick_s),
+        "window_start_um16": round(UM16_m * loop.window_start_m),
+        "window_end_um16": round(UM16_m * loop.window_end_m),
+        "reversal_um16": round(UM16_m * loop.reversal_m),
+        "rearm_um16": round(UM16_m * loop.rearm_m),
+        "velocity_scale_q12": round(4096 * loop.velocity_scale),
+        "sliding_ticks": loop.average_ticks if loop.averaging == "sliding" else 1,
+        "fewest_samples": loop.fewest_samples,
+        "late_ticks": 4,
+    }
+
+
+def _output(rig: Rig) -> dict[str, int]:
+    coil, loop = rig.coil, rig.controller
+    # a current loop's full scale is what the coil alone would draw
+    ohm = coil.resistance_ohm + (coil.bridge_ohm if coil.drive == "voltage" else 0.0)
+    duty_N = ohm / (coil.force_constant_N_A * coil.supply_V) * (1 + loop.gain_error_ratio)
+    return {
+        "duty_gain_q16": round(duty_N / CN64_N * 2**31),
+        "duty_limit_q15": 32767,
+        "force_limit_cN64": round(CN64_N * loop.force_limit_N),
+        "slew_cN64_tick": round(CN64_N * loop.slew_N),
+        "nominal_supply_mV": round(1000 * coil.supply_V),
+        "supply_low_mV": round(750 * coil.supply_V),
+        "supply_high_mV": min(40000, round(1167 * coil.supply_V)),
+    }
+
+
+def _limits(rig: Rig) -> dict[str, int]:
+    coil = rig.coil
+    full_A = coil.supply_V / coil.resistance_ohm
+    return {
+        "heat_time_ms": min(600000, max(100, round(1000 * coil.heat_s))),
+        "full_duty_rise_K": min(20000, round(coil.heat_K_W * coil.resistance_ohm * full_A**2)),
+        "over_force_cN64": 32000,
+    }
+
+
+def _extras(rig: Rig) -> dict[str, int]:
+    cap, servo, exciter = rig.keycap_sensor, rig.servo, rig.exciter
+    steps, force = 2**cap.converter_bits, cap.kind == "force"
+    return {
+        # the firmware knows a force; an acceleration is for the host alone
+        "force_gain_q14": round(CN64_N * 2 * cap.full_scale_N / steps * 2**14) if force else 0,
+        "force_offset_counts": steps // 2,
+        "vibration_latency_us": round(1e6 * exciter.latency_s),
+        "stop_us_mm": round(servo.pulse_us_mm),
+        "stop_zero_us": round(servo.pulse_zero_us),
+    }
