@@ -81,7 +81,7 @@ def test_fewer_records_are_asked_for(fdvv: Run) -> None:
 
 
 def test_a_device_without_firmware_says_what_to_use(fdvv: Run) -> None:
-    for command in (["selftest"], ["monitor"], ["upload", "mx-clear"], ["press", "mx-clear"]):
+    for command in (["selftest"], ["monitor"]):
         ran = fdvv("device", *command, "--device", "twin")
         assert ran.status == 2
         assert "use host or serial:PORT" in ran.err
