@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.core import INPUTS, Core, RecordArray
+from fdvv.core import Core, RecordArray
 from fdvv.protocol import Settings
 from fdvv.testing import random_image, random_inputs, random_settings
 
@@ -149,7 +149,7 @@ def main(cases: int = 12, ticks: int = 150) -> None:
                 found += took
             print(
                 f"core, emulated, {optimise}: {len(code)} bytes, {len(found)} random ticks: "
-                f"median {np.median(found):.0f}, worst {max(found)} cycles, {INPUTS.itemsize} bytes in"
+                f"median {np.median(found):.0f}, worst {max(found)} cycles"
             )
 
 
