@@ -3,15 +3,17 @@
 fdvv_ratio fdvv_ratio_of(uint32_t value)
 {
     fdvv_ratio ratio;
-    int16_t shift = -16;
     uint32_t bits;
-    for (bits = 16; bits; bits >>= 1)
-        if (value < (uint32_t)1 << (32 - bits)) {
-            value <<= bits;
-            shift = (int16_t)(shift + (int16_t)bits);
-        }
-    ratio.mantissa = (uint16_t)(value >> 16);
-    ratio.shift = shift;
+    if (value >> 16) {
+        bits = 16 - fdvv_headroom(value >> 16);
+        value >>= bits;
+        ratio.shift = (int16_t)-(int16_t)bits;
+    } else {
+        bits = fdvv_headroom(value);
+        value <<= bits;
+        ratio.shift = (int16_t)bits;
+    }
+    ratio.mantissa = (uint16_t)value;
     return ratio;
 }
 
@@ -31,17 +33,12 @@ fdvv_ratio fdvv_ratio_of_wide(uint64_t value)
 fdvv_ratio fdvv_ratio_inverse(fdvv_ratio ratio)
 {
     fdvv_ratio inverse;
-    uint32_t m = ratio.mantissa, guess;
-    if (m == FDVV_ONE_Q15) {
+    if (ratio.mantissa == FDVV_ONE_Q15) {
         inverse.mantissa = FDVV_ONE_Q15;
         inverse.shift = (int16_t)(30 - ratio.shift);
         return inverse;
     }
-    /* the line that is nearest to 2^31 / m after two steps; products stay below 2^32 for every mantissa */
-    guess = 95990u - m;
-    guess = (guess * (65536u - ((m * guess) >> 16))) >> 15;
-    guess = (guess * (65536u - ((m * guess) >> 16))) >> 15;
-    inverse.mantissa = (uint16_t)guess;
+    inverse.mantissa = (uint16_t)fdvv_reciprocal(ratio.mantissa);
     inverse.shift = (int16_t)(31 - ratio.shift);
     return inverse;
 }
@@ -72,10 +69,35 @@ int32_t fdvv_scale(int32_t value, fdvv_ratio ratio)
     return value < 0 ? -(int32_t)top : (int32_t)top;
 }
 
+int32_t fdvv_scale_short(int32_t value, fdvv_ratio ratio)
+{
+    uint32_t size = value < 0 ? 0u - (uint32_t)value : (uint32_t)value;
+    size = ((size * ratio.mantissa >> (ratio.shift - 1)) + 1u) >> 1;
+    return value < 0 ? -(int32_t)size : (int32_t)size;
+}
+
+int32_t fdvv_part_q15(uint32_t way, uint32_t whole)
+{
+    uint32_t bits;
+    if (whole >> 16) {
+        bits = whole >> 21 ? 10 : 5;
+        way >>= bits;
+        whole >>= bits;
+    }
+    bits = fdvv_headroom(whole);
+    way <<= bits;
+    whole <<= bits;
+    if (whole == FDVV_ONE_Q15)
+        return (int32_t)way;
+    return (int32_t)(way * fdvv_reciprocal(whole) >> 16);
+}
+
 uint64_t fdvv_wide_product(uint32_t one, uint32_t other)
 {
     uint32_t a = one >> 16, b = one & 0xffffu, c = other >> 16, d = other & 0xffffu;
     uint32_t low = b * d, middle = b * c, high = a * c, carry;
+    if (!(a | c))
+        return low;
     carry = (low >> 16) + (middle & 0xffffu) + ((a * d) & 0xffffu);
     high += (middle >> 16) + ((a * d) >> 16) + (carry >> 16);
     return (uint64_t)high << 32 | (carry << 16 | (low & 0xffffu));

@@ -60,26 +60,6 @@ static int16_t keycap_force_cN64(const fdvv_settings *settings, uint16_t counts)
     return (int16_t)fdvv_clamp((coarse + (fine >> 9)) >> 5, -INT16_MAX, INT16_MAX);
 }
 
-static fdvv_moment moment_of(const fdvv_core *core, uint16_t elapsed_ticks)
-{
-    const fdvv_velocity *velocity = &core->velocity;
-    int32_t signed_mm_s16 = velocity->continuous_mm_s16;
-    fdvv_moment moment;
-    moment.displacement_um16 = core->position.um16;
-    moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
-    moment.events = core->events;
-    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_ANNOUNCED] = core->announced_mm_s16;
-    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_DECIDED] =
-        velocity->decided ? velocity->decided_mm_s16 : core->announced_mm_s16;
-    moment.velocity_mm_s16[FDVV_VELOCITY_SOURCE_CONTINUOUS] =
-        (uint16_t)(signed_mm_s16 < 0 ? -signed_mm_s16 : signed_mm_s16);
-    moment.signed_mm_s16 = velocity->continuous_mm_s16;
-    moment.command_cN64 = core->command_cN64;
-    moment.release = core->position.release;
-    moment.turned = core->position.turned;
-    return moment;
-}
-
 /* Limit, slew, limit: the slew never keeps a command above a limit that has fallen. */
 static uint8_t command(fdvv_core *core, int32_t wanted_cN64, int32_t limit_cN64)
 {
@@ -100,9 +80,9 @@ static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q1
     const fdvv_settings *settings = &core->settings;
     int32_t most = settings->duty_limit_q15, duty;
     uint32_t supply = (uint32_t)fdvv_clamp(supply_mV, settings->supply_low_mV, settings->supply_high_mV);
-    /* below 18 Q15 per cN64, whose shift is 11 at least: fdvv_scale has room */
-    duty = fdvv_scale(core->command_cN64,
-                      fdvv_ratio_product(core->drive, fdvv_ratio_inverse(fdvv_ratio_of(supply))));
+    /* 64 / 65536 * 3000 / 40000 to 18 Q15 per cN64, whose shifts are 29 to 11 */
+    duty = fdvv_scale_short(core->command_cN64,
+                            fdvv_ratio_product(core->drive, fdvv_ratio_inverse(fdvv_ratio_of(supply))));
     *duty_q15 = (int16_t)fdvv_clamp(duty, -most, most);
     return *duty_q15 != duty ? FDVV_TICK_FLAG_LIMITED : 0;
 }
@@ -111,12 +91,18 @@ static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q1
 static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elapsed_ticks, int32_t limit_cN64,
                       fdvv_outputs *outputs)
 {
-    fdvv_moment moment = moment_of(core, elapsed_ticks);
     fdvv_machine *machine = &core->machine;
     const fdvv_state *state;
+    fdvv_moment moment;
     uint8_t flags;
+    moment.position = &core->position;
+    moment.velocity = &core->velocity;
+    moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
+    moment.events = core->events;
+    moment.announced_mm_s16 = core->announced_mm_s16;
+    moment.command_cN64 = core->command_cN64;
     fdvv_machine_tick(machine, core->image, &moment);
-    state = fdvv_image_state(core->image, machine->state);
+    state = machine->now;
     flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment), limit_cN64);
     flags |= drive(core, inputs->supply_mV, &outputs->duty_q15);
     outputs->enable = 1;

@@ -9,17 +9,17 @@
 #include "velocity.h"
 
 typedef struct {
-    fdvv_settings settings;
-    fdvv_supervisor supervisor;
-    fdvv_position position;
-    fdvv_velocity velocity;
-    fdvv_machine machine;
-    const uint8_t *image;    /* active and checked, or 0 */
-    uint32_t events;         /* host events not yet seen by the program, a bit each */
     int16_t command_cN64;    /* of the last tick */
     uint16_t announced_mm_s16;
     uint16_t stop_us;        /* servo pulse for the program's travel */
     fdvv_ratio drive;        /* duty per force, times the supply in mV */
+    const uint8_t *image;    /* active and checked, or 0 */
+    uint32_t events;         /* host events not yet seen by the program, a bit each */
+    fdvv_settings settings;
+    fdvv_machine machine;
+    fdvv_supervisor supervisor;
+    fdvv_position position;
+    fdvv_velocity velocity;
 } fdvv_core;
 
 /* Start with checked settings (fdvv_settings_check), no program, mode boot. */

@@ -10,6 +10,7 @@ void fdvv_machine_init(fdvv_machine *machine, const fdvv_settings *settings)
     machine->state = 0;
     machine->ms = machine->us = machine->repeat_due_ms = 0;
     machine->deepest_um16 = machine->highest_um16 = 0;
+    machine->reached_um16 = machine->next_um16 = 0;
     machine->from_cN64 = 0;
     fdvv_machine_stop(machine);
 }
@@ -17,31 +18,46 @@ void fdvv_machine_init(fdvv_machine *machine, const fdvv_settings *settings)
 void fdvv_machine_stop(fdvv_machine *machine)
 {
     machine->running = 0;
-    machine->events = machine->coming = machine->passed = 0;
+    machine->now = 0;
+    machine->events = 0;
     machine->turned = 0;
     machine->slot = FDVV_NONE;
+}
+
+/* The velocity that chooses a row in the current state, never negative. */
+static uint16_t chosen_velocity_mm_s16(const fdvv_machine *machine, const fdvv_moment *moment)
+{
+    const fdvv_velocity *velocity = moment->velocity;
+    uint8_t source = machine->now->velocity_source;
+    if (source == FDVV_VELOCITY_SOURCE_CONTINUOUS)
+        return (uint16_t)(velocity->continuous_mm_s16 < 0 ? -velocity->continuous_mm_s16
+                                                          : velocity->continuous_mm_s16);
+    if (source == FDVV_VELOCITY_SOURCE_DECIDED && velocity->decided)
+        return velocity->decided_mm_s16;
+    return moment->announced_mm_s16;
 }
 
 static void enter(fdvv_machine *machine, const uint8_t *image, uint8_t state, const fdvv_moment *moment)
 {
     machine->state = state;
+    machine->now = fdvv_image_state(image, state);
     machine->ms = machine->us = 0;
-    machine->repeat_due_ms = fdvv_image_state(image, state)->repeat_ms;
-    machine->deepest_um16 = machine->highest_um16 = moment->displacement_um16;
+    machine->repeat_due_ms = machine->now->repeat_ms;
+    machine->deepest_um16 = machine->highest_um16 = moment->position->um16;
     machine->from_cN64 = moment->command_cN64;
 }
 
-/* Whole milliseconds move from us to ms, by halving steps so that missed ticks cost no more than sixteen. */
+/* Whole milliseconds move from us to ms; after missed ticks by halving steps, so that they cost no more than 17. */
 static void pass_time(fdvv_machine *machine, uint32_t elapsed_us)
 {
-    uint32_t step = elapsed_us > 1000 ? 16 : 0, ms = machine->ms;
-    machine->us += elapsed_us;
-    do {
-        if (machine->us >= 1000u << step) {
-            machine->us -= 1000u << step;
+    uint32_t us = machine->us + elapsed_us, ms = machine->ms;
+    int32_t step = us >= 2000 ? 16 : 0;
+    for (; us >= 1000; step--)
+        if (us >= 1000u << step) {
+            us -= 1000u << step;
             ms += 1u << step;
         }
-    } while (step--);
+    machine->us = us;
     machine->ms = ms > INT32_MAX ? INT32_MAX : ms;
 }
 
@@ -53,12 +69,19 @@ static void keep_extremes(fdvv_machine *machine, int32_t displacement_um16)
         machine->highest_um16 = displacement_um16;
 }
 
+/* A slot is played unless another one is in this tick. */
+static void play(fdvv_machine *machine, uint8_t slot)
+{
+    if (machine->slot == FDVV_NONE)
+        machine->slot = slot;
+}
+
 /* -- transitions ---------------------------------------------------------------------------------------- */
 
 static uint8_t holds(const fdvv_machine *machine, const fdvv_moment *moment, int32_t velocity_mm_s16,
                      uint8_t condition, int32_t value)
 {
-    int32_t displacement_um16 = moment->displacement_um16;
+    int32_t displacement_um16 = moment->position->um16;
     switch (condition) {
     case FDVV_CONDITION_ALWAYS:
         return 1;
@@ -102,11 +125,13 @@ static void use_up(fdvv_machine *machine, uint8_t condition, int32_t value)
 static const fdvv_transition *find_transition(const fdvv_machine *machine, const uint8_t *image,
                                               const fdvv_moment *moment)
 {
-    const fdvv_state *state = fdvv_image_state(image, machine->state);
-    const fdvv_transition *transition = fdvv_image_transition(image, state->first_transition);
-    int32_t velocity_mm_s16 = moment->velocity_mm_s16[state->velocity_source];
-    uint8_t left;
-    for (left = state->transitions; left; left--, transition++)
+    const fdvv_transition *transition;
+    int32_t velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
+    uint8_t left = machine->now->transitions;
+    if (!left)
+        return 0;
+    transition = fdvv_image_transition(image, machine->now->first_transition);
+    for (; left; left--, transition++)
         if (holds(machine, moment, velocity_mm_s16, transition->condition, transition->value) &&
             holds(machine, moment, velocity_mm_s16, transition->guard, transition->guard_value))
             return transition;
@@ -126,54 +151,63 @@ static void change_state(fdvv_machine *machine, const uint8_t *image, const fdvv
     use_up(machine, transition->condition, transition->value);
     use_up(machine, transition->guard, transition->guard_value);
     enter(machine, image, transition->target, moment);
-    machine->slot = transition->slot;
-    if (machine->slot == FDVV_NONE)
-        machine->slot = fdvv_image_state(image, transition->target)->enter_slot;
+    play(machine, transition->slot);
+    play(machine, machine->now->enter_slot);
 }
 
 /* -- vibrations ----------------------------------------------------------------------------------------- */
 
-/* A slot is played unless another one is in this tick. */
-static void play(fdvv_machine *machine, uint8_t slot)
+static uint8_t plays(const fdvv_machine *machine, const fdvv_moment *moment, const fdvv_vibration *vibration)
 {
-    if (machine->slot == FDVV_NONE)
-        machine->slot = slot;
+    uint32_t velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
+    return vibration->stroke != (moment->position->release ? FDVV_STROKE_PRESS : FDVV_STROKE_RELEASE) &&
+           (vibration->states >> machine->state & 1u) && velocity_mm_s16 >= vibration->slowest_mm_s16 &&
+           velocity_mm_s16 < vibration->fastest_mm_s16;
 }
 
-static void fire(fdvv_machine *machine, const uint8_t *image, const fdvv_moment *moment,
-                 const fdvv_vibration *vibration)
+/* Where the cap will be once a vibration started now is felt, growing in the stroke's direction. */
+static int32_t look_ahead_um16(const fdvv_machine *machine, const fdvv_moment *moment)
 {
-    uint32_t velocity_mm_s16 =
-        moment->velocity_mm_s16[fdvv_image_state(image, machine->state)->velocity_source];
-    if ((vibration->states >> machine->state & 1u) && velocity_mm_s16 >= vibration->slowest_mm_s16 &&
-        velocity_mm_s16 < vibration->fastest_mm_s16)
-        play(machine, vibration->slot);
+    int32_t ahead_um16 =
+        moment->position->um16 + fdvv_scale_short(moment->velocity->continuous_mm_s16, machine->lead);
+    return moment->position->release ? -ahead_um16 : ahead_um16;
 }
 
-/* Fire every vibration whose point will be crossed once a vibration started now is felt: once per stroke, and
- * only if the point lay ahead in the same stroke. */
+/* A stroke begins where the cap turned, or where rendering began. */
+static void begin_stroke(fdvv_machine *machine, const fdvv_moment *moment)
+{
+    machine->reached_um16 = look_ahead_um16(machine, moment);
+    machine->next_um16 = INT32_MIN;
+}
+
+/* Fire the vibrations that lie between the furthest place reached in this stroke and the one ahead. A stroke
+ * reaches every place once, so none fires twice, and none fires that lies behind the turn. */
 static void vibrate(fdvv_machine *machine, const uint8_t *image, const fdvv_moment *moment)
 {
-    const fdvv_image_header *head = fdvv_image_head(image);
-    const fdvv_vibration *vibration = fdvv_image_vibration(image, 0);
-    int32_t ahead_um16 = moment->displacement_um16 + fdvv_scale(moment->signed_mm_s16, machine->lead);
-    uint8_t other = moment->release ? FDVV_STROKE_PRESS : FDVV_STROKE_RELEASE, left;
-    uint32_t bit = 1;
-    for (left = head->vibrations; left; left--, bit <<= 1, vibration++) {
-        if (vibration->stroke == other || machine->passed & bit)
-            continue;
-        if (moment->release ? ahead_um16 > vibration->at_um16 : ahead_um16 < vibration->at_um16) {
-            machine->coming |= bit;
-        } else if (machine->coming & bit) {
-            machine->passed |= bit;
-            fire(machine, image, moment, vibration);
-        }
+    int32_t ahead_um16 = look_ahead_um16(machine, moment), reached_um16 = machine->reached_um16;
+    int32_t next_um16 = INT32_MAX;
+    const fdvv_vibration *vibration;
+    uint8_t left;
+    if (ahead_um16 <= reached_um16)
+        return;
+    machine->reached_um16 = ahead_um16;
+    if (ahead_um16 < machine->next_um16)
+        return;
+    left = fdvv_image_head(image)->vibrations;
+    vibration = fdvv_image_vibration(image, 0);
+    for (; left; left--, vibration++) {
+        int32_t at_um16 = moment->position->release ? -vibration->at_um16 : vibration->at_um16;
+        if (at_um16 > ahead_um16)
+            next_um16 = at_um16 < next_um16 ? at_um16 : next_um16;
+        else if (at_um16 > reached_um16 && plays(machine, moment, vibration))
+            play(machine, vibration->slot);
     }
+    machine->next_um16 = next_um16;
 }
 
-static void repeat(fdvv_machine *machine, const uint8_t *image)
+static void repeat(fdvv_machine *machine)
 {
-    const fdvv_state *state = fdvv_image_state(image, machine->state);
+    const fdvv_state *state = machine->now;
     if (state->repeat_slot == FDVV_NONE || !state->repeat_ms || machine->ms < machine->repeat_due_ms)
         return;
     play(machine, state->repeat_slot);
@@ -187,19 +221,20 @@ void fdvv_machine_tick(fdvv_machine *machine, const uint8_t *image, const fdvv_m
     machine->slot = FDVV_NONE;
     if (!machine->running) {
         enter(machine, image, fdvv_image_head(image)->start_state, moment);
-        machine->slot = fdvv_image_state(image, machine->state)->enter_slot;
+        play(machine, machine->now->enter_slot);
         machine->running = 1;
+        begin_stroke(machine, moment);
     } else {
         pass_time(machine, moment->elapsed_us);
-        keep_extremes(machine, moment->displacement_um16);
+        keep_extremes(machine, moment->position->um16);
+        if (moment->position->turned)
+            begin_stroke(machine, moment);
     }
-    if (moment->turned)
-        machine->coming = machine->passed = 0;
-    machine->turned |= moment->turned;
+    machine->turned |= moment->position->turned;
     machine->events |= moment->events;
     change_state(machine, image, moment);
     vibrate(machine, image, moment);
-    repeat(machine, image);
+    repeat(machine);
 }
 
 /* -- force ---------------------------------------------------------------------------------------------- */
@@ -207,22 +242,18 @@ void fdvv_machine_tick(fdvv_machine *machine, const uint8_t *image, const fdvv_m
 /* How much of a time since the state was entered has passed, in Q15. */
 static int32_t progress_q15(const fdvv_machine *machine, uint16_t whole_ms)
 {
-    fdvv_ratio each;
     if (machine->ms >= whole_ms)
         return FDVV_ONE_Q15;
-    each = fdvv_ratio_inverse(fdvv_ratio_of(whole_ms * 1000u));
-    each.shift = (int16_t)(each.shift - 15);
-    /* less time has passed than the whole, which keeps fdvv_scale within its range */
-    return fdvv_clamp(fdvv_scale((int32_t)(machine->ms * 1000u + machine->us), each), 0, FDVV_ONE_Q15);
+    return fdvv_part_q15(machine->ms * 1000u + machine->us, whole_ms * 1000u);
 }
 
 int16_t fdvv_machine_force_cN64(const fdvv_machine *machine, const uint8_t *image, const fdvv_moment *moment)
 {
-    const fdvv_state *state = fdvv_image_state(image, machine->state);
+    const fdvv_state *state = machine->now;
     const fdvv_surface *surface =
-        fdvv_image_surface(image, moment->release ? state->release_surface : state->press_surface);
-    int32_t force_cN64 = fdvv_surface_force_cN64(surface, image, moment->displacement_um16,
-                                                 moment->velocity_mm_s16[state->velocity_source]);
+        fdvv_image_surface(image, moment->position->release ? state->release_surface : state->press_surface);
+    int32_t force_cN64 = fdvv_surface_force_cN64(surface, image, moment->position->um16,
+                                                 chosen_velocity_mm_s16(machine, moment));
     int32_t bias_cN64 = state->bias_cN64;
     if (state->bias_ms)
         bias_cN64 = fdvv_blend(bias_cN64, state->bias_end_cN64, progress_q15(machine, state->bias_ms));

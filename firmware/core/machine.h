@@ -3,34 +3,33 @@
 #define FDVV_MACHINE_H
 
 #include "image.h"
-#include "position.h"
+#include "velocity.h"
 
 /* what one tick tells the program */
 typedef struct {
-    int32_t displacement_um16;
+    const fdvv_position *position;
+    const fdvv_velocity *velocity;
     uint32_t elapsed_us;
-    uint32_t events;                                 /* host events since the last tick, a bit each */
-    uint16_t velocity_mm_s16[FDVV_VELOCITY_SOURCES]; /* by source, never negative */
-    int16_t signed_mm_s16;                           /* continuous, positive downward */
-    int16_t command_cN64;                            /* of the last tick */
-    uint8_t release;
-    uint8_t turned;                                  /* FDVV_TURNED_… */
+    uint32_t events;           /* host events since the last tick, a bit each */
+    uint16_t announced_mm_s16;
+    int16_t command_cN64;      /* of the last tick */
 } fdvv_moment;
 
 typedef struct {
+    uint8_t state;
+    uint8_t running;
+    uint8_t turned;         /* turns on offer */
+    uint8_t slot;           /* to be played in this tick, or FDVV_NONE */
+    int16_t from_cN64;      /* command on entering the state */
+    fdvv_ratio lead;        /* ms from now to the first motion of a vibration started now */
+    const fdvv_state *now;  /* the state in the image, while running */
     uint32_t ms;            /* since the state was entered, exact over any number of ticks; stops at INT32_MAX */
     uint32_t us;            /* and the rest below 1000 */
     uint32_t repeat_due_ms;
     int32_t deepest_um16, highest_um16; /* since the state was entered */
     uint32_t events;        /* host events on offer */
-    uint32_t coming;        /* vibrations whose point lies ahead in this stroke, a bit each */
-    uint32_t passed;        /* vibrations whose point was crossed in this stroke */
-    fdvv_ratio lead;        /* ms from now to the first motion of a vibration started now */
-    int16_t from_cN64;      /* command on entering the state */
-    uint8_t state;
-    uint8_t running;
-    uint8_t turned;         /* turns on offer */
-    uint8_t slot;           /* to be played in this tick, or FDVV_NONE */
+    int32_t reached_um16;   /* furthest in this stroke that a vibration started in time would be felt at */
+    int32_t next_um16;      /* no vibration lies before it; both grow in the stroke's direction */
 } fdvv_machine;
 
 void fdvv_machine_init(fdvv_machine *machine, const fdvv_settings *settings);

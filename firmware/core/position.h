@@ -16,13 +16,13 @@ enum {
 typedef struct {
     int32_t um16;
     int32_t extreme_um16;  /* deepest of this press, highest of this release */
-    int32_t recent_um16[FDVV_SLIDING_TICKS];
     int32_t sum_um16;      /* of the newest `count` */
     uint8_t count, next;
     uint8_t known;         /* a reading has been seen */
     uint8_t release;       /* the stroke: 0 press, 1 release */
     uint8_t turned;        /* FDVV_TURNED_… in this tick */
     uint8_t at_top;        /* above rearm_um16: the next press begins here */
+    int32_t recent_um16[FDVV_SLIDING_TICKS];
 } fdvv_position;
 
 /* Forget every reading. */

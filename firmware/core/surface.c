@@ -1,19 +1,11 @@
 #include "surface.h"
 
-/* way / whole for way below whole, in Q15; whole is below 2^16. */
-static int32_t part_of(uint32_t way, uint32_t whole)
-{
-    fdvv_ratio each = fdvv_ratio_inverse(fdvv_ratio_of(whole));
-    each.shift = (int16_t)(each.shift - 15);
-    /* way < whole keeps fdvv_scale within its range, whatever the shift */
-    return fdvv_clamp(fdvv_scale((int32_t)way, each), 0, FDVV_ONE_Q15);
-}
-
 /* Give the last column at or before a displacement, and how far towards the next one it lies. */
 static uint32_t column_at(const fdvv_surface *surface, int32_t displacement_um16, int32_t *part_q15)
 {
     int32_t way = displacement_um16 - surface->start_um16, step = surface->step_um16, column;
     int32_t last = surface->columns - 1;
+    uint32_t bits, filled, reciprocal;
     *part_q15 = 0;
     if (way <= 0)
         return 0;
@@ -21,11 +13,17 @@ static uint32_t column_at(const fdvv_surface *surface, int32_t displacement_um16
         *part_q15 = FDVV_ONE_Q15;
         return (uint32_t)(last - 1);
     }
-    /* the reciprocal is good to 5e-5, so that of 254 columns it misses one at most, rounding included */
-    column = fdvv_scale(way, fdvv_ratio_inverse(fdvv_ratio_of((uint32_t)step)));
-    if (column * step > way)
-        column--;
-    *part_q15 = part_of((uint32_t)(way - column * step), (uint32_t)step);
+    bits = fdvv_headroom((uint32_t)step);
+    filled = (uint32_t)step << bits;
+    reciprocal = filled == FDVV_ONE_Q15 ? UINT16_MAX : fdvv_reciprocal(filled);
+    /* way << bits is below 254 * 2^16; cut to 16 bits it misses the column by one at most */
+    column = (int32_t)((((uint32_t)way << bits) >> 8) * reciprocal >> 23);
+    way -= column * step;
+    if (way < 0)
+        way += step, column--;
+    else if (way >= step)
+        way -= step, column++;
+    *part_q15 = (int32_t)(((uint32_t)way << bits) * reciprocal >> 16);
     return (uint32_t)column;
 }
 
@@ -39,8 +37,8 @@ static uint32_t row_at(const uint16_t *velocities_mm_s16, uint32_t rows, uint32_
     while (row + 1 < rows && velocities_mm_s16[row + 1] <= velocity_mm_s16)
         row++;
     if (row + 1 < rows)
-        *part_q15 = part_of(velocity_mm_s16 - velocities_mm_s16[row],
-                            (uint32_t)velocities_mm_s16[row + 1] - velocities_mm_s16[row]);
+        *part_q15 = fdvv_part_q15(velocity_mm_s16 - velocities_mm_s16[row],
+                                  (uint32_t)velocities_mm_s16[row + 1] - velocities_mm_s16[row]);
     return row;
 }
 

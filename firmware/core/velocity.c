@@ -1,7 +1,8 @@
 #include "velocity.h"
 
-/* Sums stay below 2^15 samples, times and places below 2^15 and 2^16 in the window, below 16 samples, 2^10 and
- * 2^21 among the newest; so every product here is below 2^32 and count * tick_um16 below 2^62. */
+/* In the window: below 2^15 samples, times below 2^15, places below 2^16. Among the newest: up to 16 samples,
+ * times up to 960, places below 2^16. So every product of a sample is below 2^32, and every product in
+ * line_slope below 2^62. */
 static void line_reset(fdvv_line *line)
 {
     line->tick_tick = line->tick_um16 = 0;
@@ -48,21 +49,28 @@ static void forget_window(fdvv_velocity *velocity)
     velocity->first_tick = velocity->now_tick;
 }
 
-/* Fill a line with the newest few; places count from the highest of them. */
+/* Fill a line with the newest few. Places count from 65535 um16 above the newest one, and those that lie further
+ * off (a button's whole travel) count as the nearest that does not; so the sums fit 32 bits until the end. */
 static void line_of_newest(const fdvv_velocity *velocity, uint8_t few, fdvv_line *line)
 {
-    uint8_t first = (uint8_t)((velocity->next - few) & (FDVV_NEWEST - 1)), i;
-    int32_t highest = velocity->newest_um16[first];
-    line_reset(line);
-    for (i = 1; i < few; i++) {
-        int32_t um16 = velocity->newest_um16[(first + i) & (FDVV_NEWEST - 1)];
-        highest = um16 < highest ? um16 : highest;
+    uint32_t at = (uint32_t)(velocity->next - few), first_tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)];
+    int32_t from_um16 = velocity->newest_um16[(velocity->next - 1) & (FDVV_NEWEST - 1)] - UINT16_MAX;
+    uint32_t ticks = 0, um16 = 0, tick_tick = 0, tick_um16 = 0, left;
+    for (left = few; left; left--, at++) {
+        uint32_t tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)] - first_tick;
+        int32_t place = velocity->newest_um16[at & (FDVV_NEWEST - 1)] - from_um16;
+        if ((uint32_t)place > UINT16_MAX)
+            place = place < 0 ? 0 : UINT16_MAX;
+        ticks += tick;
+        um16 += (uint32_t)place;
+        tick_tick += tick * tick;
+        tick_um16 += tick * (uint32_t)place;
     }
-    for (i = 0; i < few; i++) {
-        uint8_t at = (uint8_t)((first + i) & (FDVV_NEWEST - 1));
-        line_add(line, velocity->newest_tick[at] - velocity->newest_tick[first],
-                 (uint32_t)(velocity->newest_um16[at] - highest));
-    }
+    line->count = few;
+    line->ticks = ticks;
+    line->um16 = um16;
+    line->tick_tick = tick_tick;
+    line->tick_um16 = tick_um16;
 }
 
 static void decide(fdvv_velocity *velocity, const fdvv_settings *settings)

@@ -16,22 +16,22 @@ typedef struct {
 } fdvv_line;
 
 typedef struct {
-    uint32_t now_tick;
-    uint32_t first_tick;                /* of the samples in the window */
-    int32_t newest_um16[FDVV_NEWEST];
-    uint32_t newest_tick[FDVV_NEWEST];
-    fdvv_line inside;                   /* samples of this press in the window */
-    fdvv_ratio decided_scale;           /* um16 per tick to mm_s16, mean over the stroke */
-    fdvv_ratio tick_rate;               /* 6000 / tick_us */
-    fdvv_ratio slope_scale;             /* weighted sum of the newest to mm_s16 */
-    int32_t sum_um16, ramp_um16;        /* of the newest `even`: plain, and times 0, 1, 2, … from the oldest */
+    int16_t continuous_mm_s16;          /* positive downward */
+    uint16_t decided_mm_s16;
+    uint8_t decided;                    /* this press has its velocity */
+    uint8_t continuous;                 /* continuous_mm_s16 has been estimated */
     uint8_t next, kept;                 /* in the ring */
     uint8_t even;                       /* newest samples without a gap between them */
     uint8_t scaled_for;                 /* how many samples slope_scale holds for */
-    uint8_t decided;                    /* this press has its velocity */
-    uint8_t continuous;                 /* continuous_mm_s16 has been estimated */
-    uint16_t decided_mm_s16;
-    int16_t continuous_mm_s16;          /* positive downward */
+    fdvv_ratio slope_scale;             /* weighted sum of the newest to mm_s16 */
+    int32_t sum_um16, ramp_um16;        /* of the newest `even`: plain, and times 0, 1, 2, … from the oldest */
+    uint32_t now_tick;
+    uint32_t first_tick;                /* of the samples in the window */
+    fdvv_ratio decided_scale;           /* um16 per tick to mm_s16, mean over the stroke */
+    fdvv_ratio tick_rate;               /* 6000 / tick_us */
+    fdvv_line inside;                   /* samples of this press in the window */
+    int32_t newest_um16[FDVV_NEWEST];
+    uint32_t newest_tick[FDVV_NEWEST];
 } fdvv_velocity;
 
 void fdvv_velocity_init(fdvv_velocity *velocity, const fdvv_settings *settings);

@@ -17,8 +17,24 @@ void fdvv_bridge_layout(int64_t layout[18]) {
     for (int i = 0; i < 18; i++) layout[i] = found[i];
 }
 
+/* Check a whole image as the link does piece by piece; detail is the offset where it failed. */
+uint8_t fdvv_bridge_check_image(const fdvv_core *core, const uint8_t *image, uint16_t size_bytes, uint32_t crc32,
+                                uint16_t *detail) {
+    fdvv_image_check check;
+    uint8_t refusal;
+    fdvv_image_check_begin(&check, image, size_bytes, crc32);
+    do refusal = fdvv_image_check_step(&check, &core->settings, 256);
+    while (refusal == FDVV_REFUSAL_BUSY);
+    *detail = check.detail;
+    return refusal;
+}
+
 uint8_t fdvv_bridge_ask(fdvv_core *core, uint8_t ask, uint8_t number) {
     return fdvv_supervisor_ask(&core->supervisor, &core->settings, ask, number);
+}
+
+void fdvv_bridge_hear(fdvv_core *core, uint32_t time_us) {
+    fdvv_supervisor_host_seen(&core->supervisor, time_us);
 }
 
 void fdvv_bridge_fault(fdvv_core *core, uint8_t fault, int32_t value, int32_t bound) {

@@ -11,7 +11,7 @@ import numpy as np
 from fdvv._native import address, library
 from fdvv.core._records import INPUTS, OUTPUTS, RecordArray
 from fdvv.errors import BuildError, DeviceError, ModelError
-from fdvv.protocol import Evidence, Fault, ImageHeader, Mode, Refusal, Settings
+from fdvv.protocol import IMAGE_BYTES, Evidence, Fault, Mode, Refusal, Settings
 
 
 class Ask(IntEnum):
@@ -29,7 +29,7 @@ class Ask(IntEnum):
 def doors() -> ctypes.CDLL:
     """Give the library once its records are known to be laid out as ours; else raise BuildError."""
     lib = library()
-    lib.fdvv_bridge_ask.restype = ctypes.c_uint8
+    lib.fdvv_bridge_ask.restype = lib.fdvv_bridge_check_image.restype = ctypes.c_uint8
     lib.fdvv_bridge_mode.restype = lib.fdvv_bridge_latched.restype = ctypes.c_uint8
     lib.fdvv_bridge_evidence.restype = ctypes.c_void_p
     lib.fdvv_settings_check.restype = ctypes.c_uint8
@@ -60,7 +60,7 @@ class Core:
     Parameters
     ----------
     settings : calibration and limits of the rig; ModelError if the firmware would refuse them.
-    image : program to render (layout in protocol/fdvv.toml), or None.
+    image : program to render (layout in protocol/fdvv.toml), or None; ModelError if it would be refused.
     """
 
     def __init__(self, settings: Settings | None = None, image: bytes | None = None) -> None:
@@ -77,17 +77,10 @@ class Core:
         self.settings = settings
 
     def activate(self, image: bytes | None) -> None:
-        """Render this program from the next tick on; None: none."""
-        if image is None:
-            self._lib.fdvv_core_activate(self._core, None)
-            self._image = None
-            return
-        head = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-        if head.size_bytes != len(image):
-            raise ModelError(f"the image says it has {head.size_bytes} bytes, got {len(image)}")
-        fresh = words(image)
-        self._lib.fdvv_core_activate(self._core, address(fresh))
-        self._image = fresh
+        """Render this program from the next tick on (None: none); ModelError if it would be refused."""
+        fresh = None if image is None else self._checked_image(image)
+        self._lib.fdvv_core_activate(self._core, None if fresh is None else address(fresh))
+        self._image = fresh  # the core goes on reading it
 
     def ask(self, ask: Ask, number: int = 0) -> Refusal:
         """Ask the supervisor for a change of mode; number is the fault to clear."""
@@ -95,11 +88,21 @@ class Core:
 
     def arm(self) -> None:
         """Go through boot to armed; DeviceError with the refusal if that is not possible."""
+        if self.mode in (Mode.ARMED, Mode.DERATED):
+            return
         if self.mode is Mode.BOOT:
             self.ask(Ask.BOOTED)
         refusal = self.ask(Ask.ARM)
         if refusal:
             raise DeviceError(f"the core was not armed from mode {self.mode.name}: {refusal.name}")
+
+    def disarm(self) -> None:
+        """Ask for zero force."""
+        self.ask(Ask.DISARM)
+
+    def hear(self, time_us: int) -> None:
+        """Let the host be heard at a time of the device clock."""
+        self._lib.fdvv_bridge_hear(self._core, ctypes.c_uint32(time_us))
 
     def event(self, event: int) -> None:
         """Tell the program of host event 0 to 31."""
@@ -155,3 +158,20 @@ class Core:
         if wrong:
             raise ModelError(f"the firmware refuses the settings: {list(Settings.LIMITS)[wrong - 1]}")
         return packed
+
+    def _checked_image(self, image: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
+        if len(image) > IMAGE_BYTES:
+            raise ModelError(f"an image has at most {IMAGE_BYTES} bytes, got {len(image)}")
+        fresh, detail = words(image), np.zeros(1, np.uint16)
+        refusal = Refusal(
+            self._lib.fdvv_bridge_check_image(
+                self._core,
+                address(fresh),
+                ctypes.c_uint16(len(image)),
+                ctypes.c_uint32(int.from_bytes(image[4:8], "little")),
+                address(detail),
+            )
+        )
+        if refusal:
+            raise ModelError(f"the firmware refuses the image: {refusal.name.lower()} at byte {detail[0]}")
+        return fresh

@@ -1,6 +1,15 @@
-"""Helpers for tests, shipped: devices without physics, and what every device must honour."""
+"""Helpers for tests, shipped: devices without physics, what every device must honour, random programs."""
 
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
+from fdvv.testing._random_programs import random_image, random_inputs, random_settings
 from fdvv.testing._scripted import ScriptedDevice
 
-__all__ = ["DeviceConformance", "ProgramConformance", "ScriptedDevice", "plain_surface"]
+__all__ = [
+    "DeviceConformance",
+    "ProgramConformance",
+    "ScriptedDevice",
+    "plain_surface",
+    "random_image",
+    "random_inputs",
+    "random_settings",
+]

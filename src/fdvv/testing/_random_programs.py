@@ -1,0 +1,284 @@
+"""Random settings, programs and presses for comparing one implementation of the tick with another.
+
+Everything is drawn from the generator that is passed in, so that a seed names a case.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.core import RecordArray, inputs_at
+from fdvv.protocol import (
+    IMAGE_BYTES,
+    IMAGE_MAGIC,
+    NONE,
+    Condition,
+    ImageHeader,
+    Settings,
+    Slot,
+    State,
+    Surface,
+    Transition,
+    Vibration,
+)
+
+Generator = np.random.Generator
+
+
+def integer(rng: Generator, low: int, high: int) -> int:
+    """Draw an integer from low to high, both included."""
+    return int(rng.integers(low, high, endpoint=True))
+
+
+def sometimes(rng: Generator, chance: float, value: int, otherwise: int) -> int:
+    """Give value with a chance, else the other one."""
+    return value if rng.random() < chance else otherwise
+
+
+def random_settings(rng: Generator) -> Settings:
+    """Draw a rig of 1 to 64 readings of 12 bits over some 2 to 12 mm, either way round, never hot."""
+    reads, span_um16 = integer(rng, 1, 64), integer(rng, 40000, 195000)
+    gain_q14 = span_um16 * 2**14 // (4095 * reads)
+    gain_q14 = min(gain_q14, 65535, (2**32 - 1) // (4095 * reads))
+    start = integer(rng, 800, 20000)
+    top = integer(rng, -2000, 20000) + gain_q14 * 4095 * reads // 2**14
+    turned = rng.random() < 0.3
+    return Settings(
+        position_gain_q14=-gain_q14 if turned else gain_q14,
+        position_offset_um16=top if turned else -integer(rng, 2000, 20000),
+        duty_gain_q16=integer(rng, 64, 65535),
+        force_gain_q14=sometimes(rng, 0.7, integer(rng, -65536, 65536), 0),
+        force_offset_counts=integer(rng, 0, 4095),
+        tick_us=sometimes(rng, 0.5, 250, integer(rng, 100, 1000)),
+        window_start_um16=start,
+        window_end_um16=start + integer(rng, 800, 40000),
+        reversal_um16=integer(rng, 80, 6000),
+        rearm_um16=integer(rng, 80, 4000),
+        velocity_scale_q12=integer(rng, 1024, 16384),
+        announced_mm_s16=integer(rng, 8, 16000),
+        slew_cN64_tick=integer(rng, 16, 32000),
+        duty_limit_q15=integer(rng, 1024, 32767),
+        nominal_supply_mV=integer(rng, 9000, 14000),
+        reading_low=0,
+        reading_high=4095,
+        jump_um16=65535,
+        stuck_ticks=65535,
+        late_ticks=1000,
+        full_duty_rise_K=1,
+        host_timeout_ms=5000,
+        vibration_latency_us=integer(rng, 0, 30000),
+        stop_us_mm=integer(rng, -1000, 1000),
+        stop_zero_us=integer(rng, 400, 2600),
+        reads=reads,
+        sliding_ticks=sometimes(rng, 0.6, 1, integer(rng, 2, 32)),
+        fewest_samples=integer(rng, 3, 16),
+        continuous_samples=integer(rng, 3, 32),
+    )
+
+
+def random_slot(rng: Generator, slots: int) -> int:
+    """Draw a slot or none."""
+    return sometimes(rng, 0.5, integer(rng, 0, slots - 1), NONE) if slots else NONE
+
+
+def random_state(rng: Generator, surfaces: int, slots: int, most_cN64: int, first: int, count: int) -> State:
+    """Draw a state that owns a run of transitions."""
+    repeat = random_slot(rng, slots)
+    return State(
+        press_surface=integer(rng, 0, surfaces - 1),
+        release_surface=integer(rng, 0, surfaces - 1),
+        velocity_source=integer(rng, 0, 2),
+        key=sometimes(rng, 0.5, 0, integer(rng, 1, 255)),
+        first_transition=first,
+        transitions=count,
+        enter_slot=random_slot(rng, slots),
+        repeat_slot=repeat,
+        repeat_ms=0 if repeat == NONE else integer(rng, 1, 60),
+        fade_ms=sometimes(rng, 0.5, 0, integer(rng, 1, 100)),
+        bias_cN64=integer(rng, -most_cN64, most_cN64),
+        bias_end_cN64=integer(rng, -most_cN64, most_cN64),
+        bias_ms=sometimes(rng, 0.5, 0, integer(rng, 1, 300)),
+    )
+
+
+def random_value(rng: Generator, condition: int) -> int:
+    """Draw a value that the condition will meet now and then."""
+    if condition == Condition.AFTER_MS:
+        return integer(rng, 0, 80)
+    if condition == Condition.HOST_EVENT:
+        return integer(rng, 0, 31)
+    if condition in (Condition.FASTER_THAN, Condition.SLOWER_THAN):
+        return integer(rng, 0, 4000)
+    if condition in (Condition.RISEN_BY, Condition.FALLEN_BY):
+        return integer(rng, 1, 20000)
+    return integer(rng, -1000, 60000)
+
+
+def random_transition(rng: Generator, states: int, slots: int) -> Transition:
+    """Draw a transition, guarded every third time."""
+    condition, guard = integer(rng, 0, 10), sometimes(rng, 0.67, 0, integer(rng, 0, 10))
+    if condition == Condition.ALWAYS and guard == Condition.ALWAYS:
+        condition = Condition.AFTER_MS
+    return Transition(
+        condition=condition,
+        guard=guard,
+        target=integer(rng, 0, states - 1),
+        slot=random_slot(rng, slots),
+        value=random_value(rng, condition),
+        guard_value=random_value(rng, guard),
+    )
+
+
+def random_vibration(rng: Generator, states: int, slots: int) -> Vibration:
+    """Draw a vibration event somewhere in the travel."""
+    slowest = sometimes(rng, 0.5, 0, integer(rng, 0, 3000))
+    return Vibration(
+        at_um16=integer(rng, -1000, 60000),
+        slowest_mm_s16=slowest,
+        fastest_mm_s16=sometimes(rng, 0.5, 65535, slowest + integer(rng, 1, 6000)),
+        states=integer(rng, 0, 2**states - 1),
+        stroke=integer(rng, 0, 2),
+        slot=integer(rng, 0, slots - 1),
+    )
+
+
+def random_waveform(rng: Generator) -> Slot:
+    """Draw a decaying sine."""
+    return Slot(
+        waveform=0,
+        frequency_Hz16=integer(rng, 800, 8000),
+        duration_samples=integer(rng, 100, 2000),
+        amplitude_counts=integer(rng, 0, 2047),
+        decay_q16=integer(rng, 30000, 65535),
+        wave_at=0,
+        wave_samples=0,
+    )
+
+
+def random_sizes(rng: Generator, surfaces: int, room_bytes: int) -> list[tuple[int, int]]:
+    """Draw rows and columns of the surfaces so that their numbers fit the room."""
+    sizes = []
+    for left in range(surfaces, 0, -1):
+        rows = min(integer(rng, 1, 16), room_bytes // (left * 8))
+        columns = min(integer(rng, 2, 255), (room_bytes // left - 2 * rows) // (2 * rows))
+        room_bytes -= 2 * rows * (1 + columns)
+        sizes.append((rows, columns))
+    return sizes
+
+
+def random_runs(rng: Generator, states: int, most: int) -> list[int]:
+    """Draw how many transitions each state has, at most so many together."""
+    runs = []
+    for _ in range(states):
+        runs.append(integer(rng, 0, min(6, most)))
+        most -= runs[-1]
+    return runs
+
+
+def random_image(rng: Generator, settings: Settings | None = None) -> bytes:
+    """Draw a program that the firmware accepts with these settings (or the default ones)."""
+    most_cN64 = (settings or Settings()).force_limit_cN64 // 2
+    states, surfaces, slots = integer(rng, 1, 16), integer(rng, 1, 16), integer(rng, 0, 16)
+    runs = random_runs(rng, states, 48)
+    vibrations = integer(rng, 0, 32) if slots else 0
+    firsts = np.cumsum([0, *runs])
+    parts: list[State | Transition | Vibration | Slot] = [
+        random_state(rng, surfaces, slots, most_cN64, int(first), run)
+        for first, run in zip(firsts, runs, strict=False)
+    ]
+    parts += [random_transition(rng, states, slots) for _ in range(sum(runs))]
+    behind: list[State | Transition | Vibration | Slot] = [
+        random_vibration(rng, states, slots) for _ in range(vibrations)
+    ]
+    behind += [random_waveform(rng) for _ in range(slots)]
+    return assemble(rng, parts, behind, (states, sum(runs), surfaces, vibrations, slots), most_cN64)
+
+
+def assemble(
+    rng: Generator,
+    before: list[State | Transition | Vibration | Slot],
+    behind: list[State | Transition | Vibration | Slot],
+    counts: tuple[int, int, int, int, int],
+    most_cN64: int,
+) -> bytes:
+    """Put the surfaces between the parts before and behind, their numbers at the end, a header in front."""
+    states, transitions, surfaces, vibrations, slots = counts
+    head, tail = b"".join(p.pack() for p in before), b"".join(p.pack() for p in behind)
+    pool_at = ImageHeader.length_bytes() + len(head) + surfaces * Surface.length_bytes() + len(tail)
+    sizes = random_sizes(rng, surfaces, IMAGE_BYTES - 4 - pool_at)
+    records, pool = random_surfaces(rng, sizes, pool_at, most_cN64)
+    body = head + records + tail + pool
+    body += bytes(-len(body) % 4)
+    header = ImageHeader(
+        magic=IMAGE_MAGIC,
+        crc32=0,
+        travel_um16=integer(rng, 1600, 102400),
+        size_bytes=ImageHeader.length_bytes() + len(body),
+        version=1,
+        start_state=integer(rng, 0, states - 1),
+        states=states,
+        transitions=transitions,
+        surfaces=surfaces,
+        vibrations=vibrations,
+        slots=slots,
+        name=b"random",
+    )
+    return replace(header, crc32=zlib.crc32((header.pack() + body)[8:])).pack() + body
+
+
+def random_surfaces(
+    rng: Generator, sizes: list[tuple[int, int]], pool_at: int, most_cN64: int
+) -> tuple[bytes, bytes]:
+    """Draw surfaces of these rows and columns: their records, and their numbers from an offset on."""
+    records, pool = b"", b""
+    for rows, columns in sizes:
+        at = pool_at + len(pool)
+        top = 65535 if rng.random() < 0.1 else 12000
+        velocities = np.sort(rng.choice(top, rows, replace=False)).astype("<u2")
+        forces = rng.integers(-most_cN64, most_cN64, (rows, columns), endpoint=True).astype("<i2")
+        pool += velocities.tobytes() + forces.tobytes()
+        record = Surface(
+            start_um16=integer(rng, -3000, 8000),
+            step_um16=sometimes(rng, 0.8, min(max(16, 60000 // columns), 16000), integer(rng, 16, 16000)),
+            columns=columns,
+            rows=rows,
+            velocities_at=at,
+            forces_at=at + 2 * rows,
+        )
+        records += record.pack()
+    return records, pool
+
+
+def random_path_mm(rng: Generator, ticks: int, tick_us: int) -> npt.NDArray[np.float64]:
+    """Draw displacements: strokes of 0.5 to 700 mm/s between random depths of 0 to 3.9 mm, and rests."""
+    path = np.empty(0)
+    place_mm = 0.0
+    while path.size < ticks:
+        goal_mm = float(rng.choice([0.0, rng.uniform(0, 3.9), place_mm]))
+        speed_mm_s = float(np.exp(rng.uniform(np.log(0.5), np.log(700.0))))
+        steps = max(int(abs(goal_mm - place_mm) / (speed_mm_s * tick_us * 1e-6)), integer(rng, 1, 40))
+        path = np.append(path, np.linspace(place_mm, goal_mm, min(steps, ticks)))
+        place_mm = goal_mm
+    return path[:ticks]
+
+
+def random_inputs(rng: Generator, ticks: int, settings: Settings | None = None) -> RecordArray:
+    """Draw the inputs of a noisy finger: now and then late, the supply and the keycap sensor moving."""
+    settings = settings or Settings()
+    path_mm = random_path_mm(rng, ticks, settings.tick_us) + rng.normal(0, rng.choice([0, 3e-4, 5e-3]), ticks)
+    inputs = inputs_at(settings, path_mm)
+    inputs["sum"] = np.minimum(inputs["sum"], 4095 * settings.reads)
+    inputs["lowest"] = inputs["highest"] = inputs["sum"] // settings.reads
+    late = rng.random(ticks) < rng.choice([0, 0.003, 0.05])
+    longest = rng.choice([3, min(90, settings.late_ticks)]) + 1
+    inputs["elapsed_ticks"] = np.where(late, rng.integers(2, longest, ticks, endpoint=True), 1)
+    elapsed = np.cumsum(inputs["elapsed_ticks"].astype(np.uint64)) * settings.tick_us
+    inputs["time_us"] = (elapsed + integer(rng, 0, 2**32 - 1)).astype(np.uint32)
+    low, high = settings.supply_low_mV, settings.supply_high_mV
+    inputs["supply_mV"] = np.clip(settings.nominal_supply_mV + rng.integers(-900, 900, ticks), low, high)
+    inputs["force_counts"] = rng.integers(0, 4095, ticks, endpoint=True)
+    return inputs

@@ -1,0 +1,403 @@
+"""The tick in plain Python: slow, obvious, whole numbers only; the oracle of firmware/core.
+
+Written from protocol/fdvv.toml and docs/explanation/controller.md. What the supervisor decides is told to it:
+the mode of each tick, of which only the armed one renders, at the full force limit.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections import deque
+from dataclasses import dataclass, field
+
+from fdvv.protocol import (
+    NONE,
+    Condition,
+    ImageHeader,
+    Mode,
+    Record,
+    Settings,
+    State,
+    Stroke,
+    Surface,
+    TickFlag,
+    Transition,
+    VelocitySource,
+    Vibration,
+)
+
+from ._arithmetic import ONE, Ratio, blend, clamp, inverse, part, product, ratio_of, reciprocal, scale, slope
+
+PRESS, RELEASE = "press", "release"
+
+
+@dataclass
+class Program:
+    """An image taken apart."""
+
+    image: bytes
+    head: ImageHeader = field(init=False)
+    parts: dict[type[Record], list[Record]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.head = ImageHeader.unpack(self.image[:32])
+        at, self.parts = 32, {}
+        counts = (self.head.states, self.head.transitions, self.head.surfaces, self.head.vibrations)
+        kinds: tuple[type[Record], ...] = (State, Transition, Surface, Vibration)
+        for kind, count in zip(kinds, counts, strict=True):
+            size = kind.length_bytes()
+            self.parts[kind] = [kind.unpack(self.image[at + size * k :][:size]) for k in range(count)]
+            at += size * count
+
+    def state(self, index: int) -> State:
+        found = self.parts[State][index]
+        assert isinstance(found, State)
+        return found
+
+    def transitions(self, state: State) -> list[Transition]:
+        run = slice(state.first_transition, state.first_transition + state.transitions)
+        return [t for t in self.parts[Transition][run] if isinstance(t, Transition)]
+
+    def vibrations(self) -> list[Vibration]:
+        return [v for v in self.parts[Vibration] if isinstance(v, Vibration)]
+
+    def force_cN64(self, index: int, x: int, velocity: int) -> int:
+        """Look up a surface: first along the displacements, then between the rows."""
+        s = self.parts[Surface][index]
+        assert isinstance(s, Surface)
+        speeds = struct.unpack_from(f"<{s.rows}H", self.image, s.velocities_at)
+        forces = struct.unpack_from(f"<{s.rows * s.columns}h", self.image, s.forces_at)
+        column, across = place_in_columns(x - s.start_um16, s.step_um16, s.columns)
+        rows = [
+            blend(forces[r * s.columns + column], forces[r * s.columns + column + 1], across)
+            for r in range(s.rows)
+        ]
+        below = [r for r in range(s.rows) if speeds[r] <= velocity]
+        row = below[-1] if below else 0
+        if not below or row == s.rows - 1:
+            return rows[row]
+        return blend(rows[row], rows[row + 1], part(velocity - speeds[row], speeds[row + 1] - speeds[row]))
+
+
+def place_in_columns(way: int, step: int, columns: int) -> tuple[int, int]:
+    """Give the column and, in Q15, how far towards the next; ends hold."""
+    if way <= 0:
+        return 0, 0
+    if way >= (columns - 1) * step:
+        return columns - 2, ONE
+    fill = 16 - step.bit_length()
+    r = 65535 if step << fill == ONE else reciprocal(step << fill)
+    return way // step, (way % step << fill) * r >> 16
+
+
+@dataclass
+class Position:
+    """Where the cap is and which way it goes."""
+
+    settings: Settings
+    recent: deque[int] = field(default_factory=deque)
+    um16: int = 0
+    extreme: int | None = None
+    stroke: str = PRESS
+    turned: str | None = None
+
+    def tick(self, sum_counts: int) -> None:
+        s = self.settings
+        way = (abs(s.position_gain_q14) * sum_counts % 2**32 + 2**13) >> 14
+        raw = s.position_offset_um16 + (way if s.position_gain_q14 >= 0 else -way)
+        self.recent.append(raw)
+        while len(self.recent) > s.sliding_ticks:
+            self.recent.popleft()
+        n = len(self.recent)
+        self.um16 = (sum(self.recent) + n // 2) // n
+        self.find_direction()
+
+    def find_direction(self) -> None:
+        s, x = self.settings, self.um16
+        self.turned = None
+        if self.extreme is None:
+            self.extreme = x
+        if self.stroke == PRESS:
+            self.extreme = max(self.extreme, x)
+            if x < self.extreme - s.reversal_um16:
+                self.stroke = self.turned = RELEASE
+        else:
+            self.extreme = min(self.extreme, x)
+            if x > self.extreme + s.reversal_um16 or x < s.rearm_um16:
+                self.stroke = self.turned = PRESS
+        if self.turned:
+            self.extreme = x
+
+
+@dataclass
+class Velocity:
+    """How fast: once per press, and every tick."""
+
+    settings: Settings
+    tick_count: int = 0
+    all: list[tuple[int, int]] = field(default_factory=list)
+    even: list[int] = field(default_factory=list)
+    inside: list[tuple[int, int]] = field(default_factory=list)
+    decided: int | None = None
+    continuous: int | None = None
+
+    def tick(self, position: Position, elapsed: int) -> None:
+        self.tick_count += elapsed
+        if elapsed > 64:
+            self.all, self.inside = [], []
+        if elapsed != 1:
+            self.even = []
+        self.all = [*self.all, (self.tick_count, position.um16)][-32:]
+        self.even = [*self.even, position.um16][-self.settings.continuous_samples :]
+        if len(self.even) >= 3:
+            self.continuous = self.estimate()
+        self.watch(position)
+
+    def estimate(self) -> int:
+        n = len(self.even)
+        weighted = sum((2 * i - (n - 1)) * x for i, x in enumerate(self.even))
+        rate = product(ratio_of(6000), inverse(ratio_of(self.settings.tick_us)))
+        return clamp(scale(weighted, product(rate, inverse(ratio_of(n * (n * n - 1))))), -32767, 32767)
+
+    def watch(self, position: Position) -> None:
+        s, x = self.settings, position.um16
+        if x < s.rearm_um16:
+            self.decided, self.inside = None, []
+            return
+        if position.stroke == RELEASE:
+            self.inside = []
+            return
+        if self.decided is not None or x < s.window_start_um16:
+            return
+        if x <= s.window_end_um16:
+            if self.inside and self.tick_count - self.inside[0][0] >= 32768:
+                self.inside = []
+            self.inside.append((self.tick_count, x))
+        else:
+            self.decide()
+
+    def decide(self) -> None:
+        s, used = self.settings, self.inside
+        if len(used) < s.fewest_samples:
+            used = self.all[-s.fewest_samples :]
+            if len(used) < s.fewest_samples:
+                return
+            floor = used[-1][1] - 65535
+            used = [(t, floor + clamp(x - floor, 0, 65535)) for t, x in used]
+        up, spread = slope([(t - used[0][0], x - used[0][1]) for t, x in used])
+        self.decided = self.scaled(up, spread) if up > 0 else 0
+
+    def scaled(self, up: int, spread: int) -> int:
+        s = self.settings
+        found = product(ratio_of(up), inverse(ratio_of(spread)))
+        to_mm_s16 = product(ratio_of(1000 * s.velocity_scale_q12), inverse(ratio_of(s.tick_us)))
+        found = product(found, Ratio(to_mm_s16.mantissa, to_mm_s16.shift + 12))
+        return min(scale(1, found), 65535)
+
+
+@dataclass
+class Machine:
+    """The program: its state, what it remembers, what it plays."""
+
+    settings: Settings
+    program: Program
+    running: bool = False
+    state: int = 0
+    time_us: int = 0
+    repeated: int = 0
+    seen: list[int] = field(default_factory=list)
+    offers: set[tuple[int, int]] = field(default_factory=set)
+    reached: int = 0
+    from_cN64: int = 0
+
+    def now(self) -> State:
+        return self.program.state(self.state)
+
+    def enter(self, state: int, x: int, command: int) -> None:
+        self.state, self.time_us, self.seen, self.from_cN64 = state, 0, [x], command
+        self.due_ms = self.now().repeat_ms
+
+    def tick(self, position: Position, velocity: Velocity, announced: int, tick: Tick) -> int:
+        """Give the slot to play."""
+        x, slots = position.um16, []
+        lead_us = self.settings.vibration_latency_us + self.settings.tick_us // 2
+        lead = product(ratio_of(lead_us), inverse(ratio_of(1000)))
+        ahead = x + scale(velocity.continuous or 0, lead)
+        if not self.running:
+            self.enter(self.program.head.start_state, x, tick.command)
+            slots.append(self.now().enter_slot)
+            self.running, self.reached = True, ahead
+        else:
+            self.time_us += tick.elapsed * self.settings.tick_us
+            self.seen.append(x)
+            if position.turned:
+                self.reached = ahead
+        self.offers |= {(Condition.HOST_EVENT, event) for event in tick.events}
+        if position.turned:
+            turn = {PRESS: Condition.TURNED_TO_PRESS, RELEASE: Condition.TURNED_TO_RELEASE}[position.turned]
+            self.offers.add((turn, 0))
+        slots += self.change(x, self.chosen(velocity, announced), tick.command)
+        slots += self.vibrate(position.stroke, ahead, self.chosen(velocity, announced))
+        slots += self.repeat()
+        return next((slot for slot in slots if slot != NONE), NONE)
+
+    def chosen(self, velocity: Velocity, announced: int) -> int:
+        """Give the velocity that chooses a row in this state."""
+        source = self.now().velocity_source
+        if source == VelocitySource.CONTINUOUS:
+            return abs(velocity.continuous or 0)
+        if source == VelocitySource.DECIDED and velocity.decided is not None:
+            return velocity.decided
+        return announced
+
+    def change(self, x: int, velocity: int, command: int) -> list[int]:
+        for t in self.program.transitions(self.now()):
+            if self.holds(t.condition, t.value, x, velocity) and self.holds(
+                t.guard, t.guard_value, x, velocity
+            ):
+                self.offers -= {offer(t.condition, t.value), offer(t.guard, t.guard_value)}
+                self.enter(t.target, x, command)
+                return [t.slot, self.now().enter_slot]
+        self.offers = set()
+        return []
+
+    def holds(self, condition: int, value: int, x: int, velocity: int) -> bool:
+        return {
+            Condition.ALWAYS: True,
+            Condition.DEEPER_THAN: x > value,
+            Condition.SHALLOWER_THAN: x < value,
+            Condition.FASTER_THAN: velocity > value,
+            Condition.SLOWER_THAN: velocity < value,
+            Condition.AFTER_MS: min(self.time_us // 1000, 2**31 - 1) >= value,
+            Condition.RISEN_BY: max(self.seen) - x >= value,
+            Condition.FALLEN_BY: x - min(self.seen) >= value,
+        }.get(Condition(condition), offer(condition, value) in self.offers)
+
+    def vibrate(self, stroke: str, ahead: int, velocity: int) -> list[int]:
+        before, self.reached = (
+            self.reached,
+            max(self.reached, ahead) if stroke == PRESS else min(self.reached, ahead),
+        )
+        wrong = Stroke.RELEASE if stroke == PRESS else Stroke.PRESS
+        return [
+            v.slot
+            for v in self.program.vibrations()
+            if (before < v.at_um16 <= ahead if stroke == PRESS else ahead <= v.at_um16 < before)
+            and v.stroke != wrong
+            and v.states >> self.state & 1
+            and v.slowest_mm_s16 <= velocity < v.fastest_mm_s16
+        ]
+
+    def repeat(self) -> list[int]:
+        s, ms = self.now(), self.time_us // 1000
+        if s.repeat_slot == NONE or not s.repeat_ms or ms < self.due_ms:
+            return []
+        self.due_ms += s.repeat_ms
+        if self.due_ms <= ms:
+            self.due_ms = ms + s.repeat_ms
+        return [s.repeat_slot]
+
+    def progress(self, whole_ms: int) -> int:
+        if self.time_us >= whole_ms * 1000:
+            return ONE
+        return part(self.time_us, whole_ms * 1000)
+
+    def force_cN64(self, position: Position, velocity: int) -> int:
+        s = self.now()
+        surface = s.press_surface if position.stroke == PRESS else s.release_surface
+        bias = s.bias_cN64
+        if s.bias_ms:
+            bias = blend(s.bias_cN64, s.bias_end_cN64, self.progress(s.bias_ms))
+        wanted = self.program.force_cN64(surface, position.um16, velocity) + bias
+        wanted = clamp(wanted, -32767, 32767)
+        return blend(self.from_cN64, wanted, self.progress(s.fade_ms)) if s.fade_ms else wanted
+
+
+def offer(condition: int, value: int) -> tuple[int, int]:
+    """Name what a transition waits for; only host events are told apart by their value."""
+    return condition, value if condition == Condition.HOST_EVENT else 0
+
+
+@dataclass
+class Tick:
+    """What a tick brings besides readings."""
+
+    elapsed: int
+    events: set[int]
+    command: int
+
+
+@dataclass
+class Reference:
+    """The whole core but its supervisor."""
+
+    settings: Settings
+    program: Program
+    announced: int = 0
+    command: int = 0
+    events: set[int] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.position, self.velocity = Position(self.settings), Velocity(self.settings)
+        self.machine = Machine(self.settings, self.program)
+        self.announced = self.settings.announced_mm_s16
+
+    def tick(self, inputs: dict[str, int], mode: int) -> dict[str, int]:
+        """Give what fdvv.core.OUTPUTS holds."""
+        s, elapsed = self.settings, max(inputs["elapsed_ticks"], 1)
+        self.position.tick(inputs["sum"])
+        self.velocity.tick(self.position, elapsed)
+        out = {"duty_q15": 0, "enable": 0, "slot": NONE, "key": 0}
+        flags = 0
+        if mode == Mode.ARMED:
+            out, flags = self.render(inputs, elapsed)
+        else:
+            self.machine.running, self.command, self.machine.offers = False, 0, set()
+        self.events = set()
+        flags |= TickFlag.RELEASE * (self.position.stroke == RELEASE) | TickFlag.LATE * (elapsed > 1)
+        pulse = abs(s.stop_us_mm * self.program.head.travel_um16) + 8000
+        pulse = pulse // 16000 if s.stop_us_mm >= 0 else -(pulse // 16000)
+        felt = (inputs["force_counts"] - s.force_offset_counts) * s.force_gain_q14 >> 14
+        return {
+            **out,
+            "stop_us": clamp(s.stop_zero_us + pulse, 400, 2600),
+            "mode": mode,
+            "displacement_um16": self.position.um16,
+            "velocity_mm_s16": self.velocity.continuous or 0,
+            "commanded_cN64": self.command,
+            "force_cN64": clamp(felt, -32767, 32767),
+            "state": self.machine.state,
+            "flags": int(flags),
+        }
+
+    def render(self, inputs: dict[str, int], elapsed: int) -> tuple[dict[str, int], int]:
+        m = self.machine
+        slot = m.tick(self.position, self.velocity, self.announced, Tick(elapsed, self.events, self.command))
+        wanted = m.force_cN64(self.position, m.chosen(self.velocity, self.announced))
+        flags = self.limit(wanted)
+        duty = self.duty(inputs["supply_mV"])
+        cut = clamp(duty, -self.settings.duty_limit_q15, self.settings.duty_limit_q15)
+        state = m.now()
+        known = {
+            VelocitySource.ANNOUNCED: False,
+            VelocitySource.DECIDED: self.velocity.decided is not None,
+            VelocitySource.CONTINUOUS: self.velocity.continuous is not None,
+        }[VelocitySource(state.velocity_source)]
+        flags |= TickFlag.LIMITED * (cut != duty) | TickFlag.KEY_DOWN * (state.key != 0)
+        flags |= TickFlag.VIBRATED * (slot != NONE) | TickFlag.VELOCITY_KNOWN * known
+        return {"duty_q15": cut, "enable": 1, "slot": slot, "key": state.key}, flags
+
+    def limit(self, wanted: int) -> int:
+        """Limit, then slew; the limit does not fall here."""
+        s = self.settings
+        limited = clamp(wanted, -s.force_limit_cN64, s.force_limit_cN64)
+        slewed = clamp(limited, self.command - s.slew_cN64_tick, self.command + s.slew_cN64_tick)
+        self.command = slewed
+        return TickFlag.LIMITED * (limited != wanted) | TickFlag.SLEWED * (slewed != limited)
+
+    def duty(self, supply_mV: int) -> int:
+        s = self.settings
+        gain = product(ratio_of(s.duty_gain_q16), ratio_of(s.nominal_supply_mV))
+        supply = inverse(ratio_of(clamp(supply_mV, s.supply_low_mV, s.supply_high_mV)))
+        found = product(gain, supply)
+        return scale(self.command, Ratio(found.mantissa, found.shift + 16))

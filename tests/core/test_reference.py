@@ -1,0 +1,54 @@
+"""The compiled tick against the readable one: equal bit by bit over random rigs, programs and presses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fdvv.core import OUTPUTS, Core
+from fdvv.testing import random_image, random_inputs, random_settings
+
+from ._reference import Program, Reference
+
+TICKS = 500
+
+
+def compare(seed: int, ticks: int = TICKS) -> None:
+    """Run both on the same case; events, announcements, a disarming and a new program included."""
+    rng = np.random.default_rng(seed)
+    settings = random_settings(rng)
+    image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
+    core, reference = Core(settings, image), Reference(settings, Program(image))
+    core.arm()
+    events = rng.integers(0, 32, ticks)
+    happens = rng.random(ticks) < 0.05
+    names = OUTPUTS.names or ()
+    for k, given in enumerate(inputs):
+        if happens[k]:
+            core.event(int(events[k]))
+            reference.events.add(int(events[k]))
+        if rng.random() < 0.005:
+            core.announce(8 + int(events[k]) * 300)
+            reference.announced = 8 + int(events[k]) * 300
+        if rng.random() < 0.003:
+            core.disarm()
+        elif rng.random() < 0.05:
+            core.arm()
+        outputs = core.tick(given)
+        got = {name: int(outputs[name]) for name in names}
+        wanted = reference.tick({name: int(given[name]) for name in given.dtype.names or ()}, got["mode"])
+        assert got == wanted, f"seed {seed}, tick {k}"
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_the_compiled_tick_equals_the_readable_one(block: int) -> None:
+    for seed in range(11):
+        compare(100 * block + seed)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize("block", range(20))
+def test_the_compiled_tick_equals_the_readable_one_over_a_million_ticks(block: int) -> None:
+    for seed in range(50):
+        compare(10_000 + 100 * block + seed, 1000)
