@@ -1,11 +1,12 @@
-/* Frames on a byte stream: id, sequence, payload, CRC-16, stuffed (COBS) and ended by a zero byte. */
+/* Frames on a byte stream: id, sequence, payload, CRC-16 (CCITT: polynomial 0x1021, start 0xffff, not
+ * reflected), stuffed (COBS) and ended by a zero byte. */
 #ifndef FDVV_FRAME_H
 #define FDVV_FRAME_H
 
 #include "protocol.h"
 
 #define FDVV_FRAME_PAYLOAD_BYTES (FDVV_FRAME_BYTES - 4)
-#define FDVV_RING_BYTES 512 /* a power of two: two full telemetry frames and room for replies */
+#define FDVV_RING_BYTES 512 /* a power of two: some telemetry frames and room for replies */
 
 /* what a byte completed */
 enum { FDVV_FRAME_NOTHING, FDVV_FRAME_WHOLE, FDVV_FRAME_BAD };
@@ -26,9 +27,6 @@ typedef struct {
     uint8_t bytes[FDVV_RING_BYTES];
     uint16_t head, tail; /* free running */
 } fdvv_ring;
-
-/* Continue a CRC-16 (CCITT: polynomial 0x1021, start 0xffff, not reflected). */
-uint16_t fdvv_crc16(uint16_t crc, const uint8_t *bytes, uint16_t count);
 
 void fdvv_frame_reader_reset(fdvv_frame_reader *reader);
 

@@ -190,6 +190,8 @@ static uint8_t other_work(fdvv_link *link)
 void fdvv_link_work(fdvv_link *link)
 {
     uint8_t has_room, may_answer;
+    if (fdvv_link_send_batch(link))
+        return;
     fdvv_link_send_notices(link);
     has_room = fdvv_ring_room(&link->out) >= FDVV_REPLY_ROOM;
     may_answer = link->waiting && has_room;
