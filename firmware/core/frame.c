@@ -25,17 +25,11 @@ static const uint16_t crc_table[256] = {
     0x2e93, 0x3eb2, 0x0ed1, 0x1ef0,
 };
 
-static uint16_t crc_step(uint16_t crc, uint8_t byte)
-{
-    return (uint16_t)((uint16_t)(crc << 8) ^ crc_table[(uint8_t)(crc >> 8) ^ byte]);
-}
-
 /* -- in ----------------------------------------------------------------------------------------------- */
 
 void fdvv_frame_reader_reset(fdvv_frame_reader *reader)
 {
     reader->length = 0;
-    reader->crc = 0xffff;
     reader->left = 0;
     reader->begun = 0;
     reader->broken = 0;
@@ -47,17 +41,44 @@ const uint8_t *fdvv_frame_bytes(const fdvv_frame_reader *reader)
     return (const uint8_t *)reader->words + 2;
 }
 
-static void store(fdvv_frame_reader *reader, uint8_t byte)
+static uint16_t crc_of(const uint8_t *bytes, uint16_t count)
 {
-    uint8_t *bytes = (uint8_t *)reader->words + 2;
-    if (reader->length >= FDVV_FRAME_BYTES) {
+    const uint8_t *end = bytes + count;
+    uint32_t crc = 0xffff;
+    while (bytes != end)
+        crc = (crc << 8 & 0xffff) ^ crc_table[crc >> 8 ^ *bytes++];
+    return (uint16_t)crc;
+}
+
+/* Store the bytes of a block, up to a zero, which ends the frame too early; tell how many there were. */
+static uint16_t store(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count)
+{
+    uint8_t *to = (uint8_t *)reader->words + 2 + reader->length;
+    uint16_t i;
+    if (count > FDVV_FRAME_BYTES - reader->length) {
         reader->broken = 1;
-        return;
+        to = (uint8_t *)reader->words; /* somewhere: it will not be read */
+        count = 1;
     }
-    bytes[reader->length++] = byte;
-    /* two bytes behind, so that the checksum itself stays out */
-    if (reader->length > 2)
-        reader->crc = crc_step(reader->crc, bytes[reader->length - 3]);
+    for (i = 0; i < count && bytes[i]; i++)
+        to[i] = bytes[i];
+    reader->left = (uint8_t)(reader->left - i);
+    if (!reader->broken)
+        reader->length = (uint16_t)(reader->length + i);
+    return i;
+}
+
+/* A code byte: the block before it ended in a zero; blocks of 254 without one exceed a frame. */
+static void open_block(fdvv_frame_reader *reader, uint8_t code)
+{
+    if (reader->begun && !reader->broken) {
+        if (reader->length < FDVV_FRAME_BYTES)
+            ((uint8_t *)reader->words)[2 + reader->length++] = 0;
+        else
+            reader->broken = 1;
+    }
+    reader->begun = 1;
+    reader->left = (uint8_t)(code - 1);
 }
 
 static uint8_t finish(fdvv_frame_reader *reader)
@@ -70,26 +91,30 @@ static uint8_t finish(fdvv_frame_reader *reader)
     if (reader->broken || reader->left || reader->length < 4)
         return FDVV_FRAME_BAD;
     told = (uint16_t)(bytes[reader->length - 2] | (uint16_t)(bytes[reader->length - 1] << 8));
-    return told == reader->crc ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
+    return told == crc_of(bytes, (uint16_t)(reader->length - 2)) ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
 }
 
-uint8_t fdvv_frame_take(fdvv_frame_reader *reader, uint8_t byte)
+static uint16_t take_some(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
 {
     if (reader->ended)
         fdvv_frame_reader_reset(reader);
-    if (byte == 0)
-        return finish(reader);
-    if (reader->left) {
-        reader->left--;
-        store(reader, byte);
-        return FDVV_FRAME_NOTHING;
+    if (bytes[0] == 0) {
+        *found = finish(reader);
+        return 1;
     }
-    /* a code byte: the block before it ended in a zero; blocks of 254 without one exceed a frame */
-    if (reader->begun)
-        store(reader, 0);
-    reader->begun = 1;
-    reader->left = (uint8_t)(byte - 1);
-    return FDVV_FRAME_NOTHING;
+    if (reader->left)
+        return store(reader, bytes, count < reader->left ? count : reader->left);
+    open_block(reader, bytes[0]);
+    return 1;
+}
+
+uint16_t fdvv_frame_take(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
+{
+    uint16_t taken = 0;
+    *found = FDVV_FRAME_NOTHING;
+    while (taken < count && *found == FDVV_FRAME_NOTHING)
+        taken = (uint16_t)(taken + take_some(reader, bytes + taken, (uint16_t)(count - taken), found));
+    return taken;
 }
 
 const void *fdvv_frame_payload(const fdvv_frame_reader *reader, uint16_t *count)
@@ -126,7 +151,7 @@ typedef struct {
     uint32_t crc;
 } stuffing;
 
-/* One pass over the bytes with everything in registers: some 20 cycles a byte on a Cortex-M0+. */
+/* One pass over the bytes with everything in registers: it must fit between two ticks of a Cortex-M0+. */
 static void stuff(stuffing *open, const uint8_t *bytes, uint16_t count)
 {
     uint8_t *ring = open->ring;

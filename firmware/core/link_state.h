@@ -14,7 +14,7 @@ enum { FDVV_UPLOAD_NONE, FDVV_UPLOAD_OPEN, FDVV_UPLOAD_READY };
 /* what the check in progress is for */
 enum { FDVV_CHECK_NONE, FDVV_CHECK_COMMIT, FDVV_CHECK_ACTIVE };
 
-/* fewer than a frame may hold: stuffing one takes 40 us on a Cortex-M0+, and ticks are 250 us apart */
+/* fewer than a frame may hold: stuffing must fit between two ticks of a Cortex-M0+ */
 #define FDVV_BATCH_RECORDS 4
 #define FDVV_REPLY_BYTES 80      /* largest reply: settings */
 #define FDVV_REPLY_ROOM (FDVV_REPLY_BYTES + 6)
@@ -39,8 +39,8 @@ struct fdvv_link {
     uint8_t sequence;            /* of the next unasked frame */
 
     /* the last request answered, so that its repetition gets the same reply */
-    uint8_t last_request[FDVV_FRAME_BYTES];
-    uint16_t last_request_bytes; /* 0: none */
+    uint32_t last_request[FDVV_FRAME_WORDS]; /* as in the reader, two bytes in */
+    uint16_t last_request_bytes;             /* 0: none */
     uint8_t last_reply_id;
     uint8_t last_reply_bytes;
     uint32_t reply[FDVV_REPLY_BYTES / 4];
