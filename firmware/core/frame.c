@@ -25,25 +25,11 @@ static const uint16_t crc_table[256] = {
     0x2e93, 0x3eb2, 0x0ed1, 0x1ef0,
 };
 
-static uint16_t crc_step(uint16_t crc, uint8_t byte)
-{
-    return (uint16_t)((uint16_t)(crc << 8) ^ crc_table[(uint8_t)(crc >> 8) ^ byte]);
-}
-
-uint16_t fdvv_crc16(uint16_t crc, const uint8_t *bytes, uint16_t count)
-{
-    uint16_t i;
-    for (i = 0; i < count; i++)
-        crc = crc_step(crc, bytes[i]);
-    return crc;
-}
-
 /* -- in ----------------------------------------------------------------------------------------------- */
 
 void fdvv_frame_reader_reset(fdvv_frame_reader *reader)
 {
     reader->length = 0;
-    reader->crc = 0xffff;
     reader->left = 0;
     reader->begun = 0;
     reader->broken = 0;
@@ -55,17 +41,44 @@ const uint8_t *fdvv_frame_bytes(const fdvv_frame_reader *reader)
     return (const uint8_t *)reader->words + 2;
 }
 
-static void store(fdvv_frame_reader *reader, uint8_t byte)
+static uint16_t crc_of(const uint8_t *bytes, uint16_t count)
 {
-    uint8_t *bytes = (uint8_t *)reader->words + 2;
-    if (reader->length >= FDVV_FRAME_BYTES) {
+    const uint8_t *end = bytes + count;
+    uint32_t crc = 0xffff;
+    while (bytes != end)
+        crc = (crc << 8 & 0xffff) ^ crc_table[crc >> 8 ^ *bytes++];
+    return (uint16_t)crc;
+}
+
+/* Store the bytes of a block, up to a zero, which ends the frame too early; tell how many there were. */
+static uint16_t store(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count)
+{
+    uint8_t *to = (uint8_t *)reader->words + 2 + reader->length;
+    uint16_t i;
+    if (count > FDVV_FRAME_BYTES - reader->length) {
         reader->broken = 1;
-        return;
+        to = (uint8_t *)reader->words; /* somewhere: it will not be read */
+        count = 1;
     }
-    bytes[reader->length++] = byte;
-    /* two bytes behind, so that the checksum itself stays out */
-    if (reader->length > 2)
-        reader->crc = crc_step(reader->crc, bytes[reader->length - 3]);
+    for (i = 0; i < count && bytes[i]; i++)
+        to[i] = bytes[i];
+    reader->left = (uint8_t)(reader->left - i);
+    if (!reader->broken)
+        reader->length = (uint16_t)(reader->length + i);
+    return i;
+}
+
+/* A code byte: the block before it ended in a zero; blocks of 254 without one exceed a frame. */
+static void open_block(fdvv_frame_reader *reader, uint8_t code)
+{
+    if (reader->begun && !reader->broken) {
+        if (reader->length < FDVV_FRAME_BYTES)
+            ((uint8_t *)reader->words)[2 + reader->length++] = 0;
+        else
+            reader->broken = 1;
+    }
+    reader->begun = 1;
+    reader->left = (uint8_t)(code - 1);
 }
 
 static uint8_t finish(fdvv_frame_reader *reader)
@@ -78,26 +91,30 @@ static uint8_t finish(fdvv_frame_reader *reader)
     if (reader->broken || reader->left || reader->length < 4)
         return FDVV_FRAME_BAD;
     told = (uint16_t)(bytes[reader->length - 2] | (uint16_t)(bytes[reader->length - 1] << 8));
-    return told == reader->crc ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
+    return told == crc_of(bytes, (uint16_t)(reader->length - 2)) ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
 }
 
-uint8_t fdvv_frame_take(fdvv_frame_reader *reader, uint8_t byte)
+static uint16_t take_some(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
 {
     if (reader->ended)
         fdvv_frame_reader_reset(reader);
-    if (byte == 0)
-        return finish(reader);
-    if (reader->left) {
-        reader->left--;
-        store(reader, byte);
-        return FDVV_FRAME_NOTHING;
+    if (bytes[0] == 0) {
+        *found = finish(reader);
+        return 1;
     }
-    /* a code byte: the block before it ended in a zero; blocks of 254 without one exceed a frame */
-    if (reader->begun)
-        store(reader, 0);
-    reader->begun = 1;
-    reader->left = (uint8_t)(byte - 1);
-    return FDVV_FRAME_NOTHING;
+    if (reader->left)
+        return store(reader, bytes, count < reader->left ? count : reader->left);
+    open_block(reader, bytes[0]);
+    return 1;
+}
+
+uint16_t fdvv_frame_take(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
+{
+    uint16_t taken = 0;
+    *found = FDVV_FRAME_NOTHING;
+    while (taken < count && *found == FDVV_FRAME_NOTHING)
+        taken = (uint16_t)(taken + take_some(reader, bytes + taken, (uint16_t)(count - taken), found));
+    return taken;
 }
 
 const void *fdvv_frame_payload(const fdvv_frame_reader *reader, uint16_t *count)
@@ -126,59 +143,51 @@ uint16_t fdvv_ring_take(fdvv_ring *ring, uint8_t *bytes, uint16_t room)
     return count;
 }
 
-/* a frame being stuffed: where the open block's code byte belongs, and how long the block is */
+/* a frame being stuffed */
 typedef struct {
-    fdvv_ring *ring;
-    uint16_t code_at;
-    uint8_t code;
+    uint8_t *ring;
+    uint32_t head;    /* where the next byte goes */
+    uint32_t code_at; /* where the last zero was: it becomes the way to the next */
+    uint32_t crc;
 } stuffing;
 
-static void append(fdvv_ring *ring, uint8_t byte)
-{
-    ring->bytes[ring->head++ % FDVV_RING_BYTES] = byte;
-}
-
-static void open_block(stuffing *open)
-{
-    open->code_at = open->ring->head;
-    open->code = 1;
-    append(open->ring, 0);
-}
-
-static void close_block(stuffing *open)
-{
-    open->ring->bytes[open->code_at % FDVV_RING_BYTES] = open->code;
-}
-
+/* One pass over the bytes with everything in registers: it must fit between two ticks of a Cortex-M0+. */
 static void stuff(stuffing *open, const uint8_t *bytes, uint16_t count)
 {
-    uint16_t i;
-    for (i = 0; i < count; i++) {
-        if (bytes[i]) {
-            append(open->ring, bytes[i]);
-            open->code++;
+    uint8_t *ring = open->ring;
+    uint32_t head = open->head, code_at = open->code_at, crc = open->crc;
+    const uint8_t *end = bytes + count;
+    for (; bytes != end; head++) {
+        uint32_t byte = *bytes++;
+        crc = (crc << 8 & 0xffff) ^ crc_table[crc >> 8 ^ byte];
+        if (byte) {
+            ring[head % FDVV_RING_BYTES] = (uint8_t)byte;
         } else {
-            close_block(open);
-            open_block(open);
+            ring[code_at % FDVV_RING_BYTES] = (uint8_t)(head - code_at);
+            code_at = head;
         }
     }
+    open->head = head;
+    open->code_at = code_at;
+    open->crc = crc;
 }
 
 void fdvv_frame_put(fdvv_ring *ring, uint8_t id, uint8_t sequence, const void *payload, uint16_t count)
 {
     stuffing open;
     uint8_t ends[2];
-    uint16_t crc;
+    open.ring = ring->bytes;
+    open.code_at = ring->head;
+    open.head = open.code_at + 1;
+    open.crc = 0xffff;
     ends[0] = id;
     ends[1] = sequence;
-    crc = fdvv_crc16(fdvv_crc16(0xffff, ends, 2), (const uint8_t *)payload, count);
-    open.ring = ring;
-    open_block(&open);
     stuff(&open, ends, 2);
     stuff(&open, (const uint8_t *)payload, count);
-    ends[0] = (uint8_t)crc;
-    ends[1] = (uint8_t)(crc >> 8);
+    ends[0] = (uint8_t)open.crc;
+    ends[1] = (uint8_t)(open.crc >> 8);
     stuff(&open, ends, 2);
-    close_block(&open);
-    append(ring, 0);
+    ring->bytes[open.code_at % FDVV_RING_BYTES] = (uint8_t)(open.head - open.code_at);
+    ring->bytes[open.head % FDVV_RING_BYTES] = 0;
+    ring->head = (uint16_t)(open.head + 1);
 }

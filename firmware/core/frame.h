@@ -1,20 +1,22 @@
-/* Frames on a byte stream: id, sequence, payload, CRC-16, stuffed (COBS) and ended by a zero byte. */
+/* Frames on a byte stream: id, sequence, payload, CRC-16 (CCITT: polynomial 0x1021, start 0xffff, not
+ * reflected), stuffed (COBS) and ended by a zero byte. */
 #ifndef FDVV_FRAME_H
 #define FDVV_FRAME_H
 
 #include "protocol.h"
 
 #define FDVV_FRAME_PAYLOAD_BYTES (FDVV_FRAME_BYTES - 4)
-#define FDVV_RING_BYTES 512 /* a power of two: two full telemetry frames and room for replies */
+#define FDVV_RING_BYTES 512 /* a power of two: some telemetry frames and room for replies */
 
-/* what a byte completed */
+/* what bytes completed */
 enum { FDVV_FRAME_NOTHING, FDVV_FRAME_WHOLE, FDVV_FRAME_BAD };
+
+#define FDVV_FRAME_WORDS ((FDVV_FRAME_BYTES + 2 + 3) / 4)
 
 /* A frame as it arrives. It starts two bytes into `words`, so that the payload may be read in place. */
 typedef struct {
-    uint32_t words[(FDVV_FRAME_BYTES + 2 + 3) / 4];
+    uint32_t words[FDVV_FRAME_WORDS];
     uint16_t length;  /* bytes so far */
-    uint16_t crc;     /* of all but the last two of them */
     uint8_t left;     /* bytes until the next code byte */
     uint8_t begun;    /* a code byte was seen */
     uint8_t broken;   /* too long */
@@ -27,13 +29,11 @@ typedef struct {
     uint16_t head, tail; /* free running */
 } fdvv_ring;
 
-/* Continue a CRC-16 (CCITT: polynomial 0x1021, start 0xffff, not reflected). */
-uint16_t fdvv_crc16(uint16_t crc, const uint8_t *bytes, uint16_t count);
-
 void fdvv_frame_reader_reset(fdvv_frame_reader *reader);
 
-/* Take one byte. After FDVV_FRAME_WHOLE the frame stays readable until the next byte. */
-uint8_t fdvv_frame_take(fdvv_frame_reader *reader, uint8_t byte);
+/* Take bytes up to the end of a frame, tell how many and what they completed. After FDVV_FRAME_WHOLE the frame
+ * stays readable until the next call. */
+uint16_t fdvv_frame_take(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found);
 
 const uint8_t *fdvv_frame_bytes(const fdvv_frame_reader *reader);
 

@@ -1,12 +1,5 @@
 #include "link_state.h"
 
-static void copy(uint8_t *to, const uint8_t *from, uint16_t count)
-{
-    uint16_t i;
-    for (i = 0; i < count; i++)
-        to[i] = from[i];
-}
-
 static uint8_t equal(const uint8_t *one, const uint8_t *other, uint16_t count)
 {
     uint16_t i;
@@ -53,7 +46,8 @@ uint16_t fdvv_link_receive(fdvv_link *link, const uint8_t *bytes, uint16_t count
 {
     uint16_t taken = 0;
     while (taken < count && !link->waiting) {
-        uint8_t found = fdvv_frame_take(&link->reader, bytes[taken++]);
+        uint8_t found;
+        taken = (uint16_t)(taken + fdvv_frame_take(&link->reader, bytes + taken, (uint16_t)(count - taken), &found));
         if (found == FDVV_FRAME_BAD)
             link->board->counters->bad_frames++;
         if (found != FDVV_FRAME_WHOLE)
@@ -93,13 +87,27 @@ static void set_reply(fdvv_link *link, uint8_t id, uint8_t refusal, uint8_t byte
     refused->detail = link->detail;
 }
 
+static uint8_t *last_request(fdvv_link *link)
+{
+    return (uint8_t *)link->last_request + 2;
+}
+
+/* Word by word, to be quick. */
+static void keep_request(fdvv_link *link)
+{
+    uint8_t i;
+    link->last_request_bytes = (uint16_t)(link->reader.length - 2);
+    for (i = 0; 4 * i < link->reader.length + 2; i++)
+        link->last_request[i] = link->reader.words[i];
+}
+
 void fdvv_link_answer_deferred(fdvv_link *link, uint8_t refusal)
 {
     const fdvv_command *command = fdvv_link_command(link->deferred);
     set_reply(link, command->id, refusal, command->reply_bytes);
     /* what was kept is the request last heard: keep this one, which has no payload, instead */
-    link->last_request[0] = link->deferred;
-    link->last_request[1] = link->deferred_sequence;
+    last_request(link)[0] = link->deferred;
+    last_request(link)[1] = link->deferred_sequence;
     link->last_request_bytes = 2;
     link->deferred = 0;
     send_reply(link, link->deferred_sequence);
@@ -143,10 +151,10 @@ static uint8_t carry_out(fdvv_link *link, uint8_t id, const void *payload, uint1
 }
 
 /* The bytes that tell one request from another: all but the checksum. */
-static uint8_t is_repeated(const fdvv_link *link)
+static uint8_t is_repeated(fdvv_link *link)
 {
     return link->last_request_bytes == link->reader.length - 2 &&
-           equal(link->last_request, fdvv_frame_bytes(&link->reader), link->last_request_bytes);
+           equal(last_request(link), fdvv_frame_bytes(&link->reader), link->last_request_bytes);
 }
 
 static void answer(fdvv_link *link)
@@ -170,8 +178,7 @@ static void answer(fdvv_link *link)
     }
     command = fdvv_link_command(frame[0]);
     set_reply(link, frame[0], refusal, command ? command->reply_bytes : 0);
-    link->last_request_bytes = (uint16_t)(link->reader.length - 2);
-    copy(link->last_request, frame, link->last_request_bytes);
+    keep_request(link);
     send_reply(link, frame[1]);
 }
 
@@ -190,6 +197,8 @@ static uint8_t other_work(fdvv_link *link)
 void fdvv_link_work(fdvv_link *link)
 {
     uint8_t has_room, may_answer;
+    if (fdvv_link_send_batch(link))
+        return;
     fdvv_link_send_notices(link);
     has_room = fdvv_ring_room(&link->out) >= FDVV_REPLY_ROOM;
     may_answer = link->waiting && has_room;

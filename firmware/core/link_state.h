@@ -14,6 +14,8 @@ enum { FDVV_UPLOAD_NONE, FDVV_UPLOAD_OPEN, FDVV_UPLOAD_READY };
 /* what the check in progress is for */
 enum { FDVV_CHECK_NONE, FDVV_CHECK_COMMIT, FDVV_CHECK_ACTIVE };
 
+/* fewer than a frame may hold: stuffing must fit between two ticks of a Cortex-M0+ */
+#define FDVV_BATCH_RECORDS 4
 #define FDVV_REPLY_BYTES 80      /* largest reply: settings */
 #define FDVV_REPLY_ROOM (FDVV_REPLY_BYTES + 6)
 #define FDVV_KEPT_ROOM (FDVV_REPLY_ROOM + 32) /* telemetry leaves it free for a reply and two notices */
@@ -37,8 +39,8 @@ struct fdvv_link {
     uint8_t sequence;            /* of the next unasked frame */
 
     /* the last request answered, so that its repetition gets the same reply */
-    uint8_t last_request[FDVV_FRAME_BYTES];
-    uint16_t last_request_bytes; /* 0: none */
+    uint32_t last_request[FDVV_FRAME_WORDS]; /* as in the reader, two bytes in */
+    uint16_t last_request_bytes;             /* 0: none */
     uint8_t last_reply_id;
     uint8_t last_reply_bytes;
     uint32_t reply[FDVV_REPLY_BYTES / 4];
@@ -66,7 +68,7 @@ struct fdvv_link {
     fdvv_key_request key_notice;
     fdvv_faulted_request fault_notice;
     fdvv_records_request batch;  /* followed by the records */
-    fdvv_tick_record records[FDVV_TELEMETRY_RECORDS];
+    fdvv_tick_record records[FDVV_BATCH_RECORDS];
 
     uint32_t banks[2][FDVV_IMAGE_BYTES / 4];
 };
@@ -97,5 +99,6 @@ void fdvv_link_check(fdvv_link *link);
 /* link_telemetry.c */
 void fdvv_link_set_telemetry(fdvv_link *link, uint8_t every);
 void fdvv_link_send_notices(fdvv_link *link);
+uint8_t fdvv_link_send_batch(fdvv_link *link);
 
 #endif

@@ -8,10 +8,10 @@ static void send(fdvv_link *link, uint8_t id, const void *payload, uint16_t coun
     fdvv_frame_put(&link->out, id, link->sequence++, payload, count);
 }
 
-/* Records are about FDVV_TELEMETRY_RECORDS ticks old when they leave, whatever their distance. */
-static uint8_t batch_records(uint8_t every)
+/* A frame spans about FDVV_BATCH_RECORDS ticks, whatever the distance of its records. */
+static uint8_t is_full(const fdvv_link *link)
 {
-    return every >= FDVV_TELEMETRY_RECORDS ? 1 : (uint8_t)(FDVV_TELEMETRY_RECORDS / every);
+    return link->batch.count && (uint32_t)link->batch.count * link->every >= FDVV_BATCH_RECORDS;
 }
 
 static void send_batch(fdvv_link *link)
@@ -30,6 +30,15 @@ static void send_batch(fdvv_link *link)
     link->batch.count = 0;
 }
 
+/* Stuffing waits for the time between ticks; only if there was none the next tick has to do it. */
+uint8_t fdvv_link_send_batch(fdvv_link *link)
+{
+    if (!is_full(link))
+        return 0;
+    send_batch(link);
+    return 1;
+}
+
 void fdvv_link_set_telemetry(fdvv_link *link, uint8_t every)
 {
     send_batch(link);
@@ -41,7 +50,7 @@ static void add_record(fdvv_link *link, const fdvv_inputs *inputs, const fdvv_ou
 {
     fdvv_records_request *batch = &link->batch;
     /* a missed tick leaves a gap: what follows it begins a new frame */
-    if (batch->count && batch->first_tick + (uint32_t)batch->count * link->every != link->tick)
+    if (is_full(link) || batch->first_tick + (uint32_t)batch->count * link->every != link->tick)
         send_batch(link);
     if (!batch->count) {
         batch->first_tick = link->tick;
@@ -52,8 +61,6 @@ static void add_record(fdvv_link *link, const fdvv_inputs *inputs, const fdvv_ou
     batch->mode = outputs->mode;
     batch->key = outputs->key;
     link->due_tick = link->tick + link->every;
-    if (batch->count >= batch_records(link->every))
-        send_batch(link);
 }
 
 static void note_key(fdvv_link *link, const fdvv_inputs *inputs, const fdvv_outputs *outputs)

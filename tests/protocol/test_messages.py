@@ -79,7 +79,6 @@ class Reader(ctypes.Structure):
     _fields_ = (
         ("words", ctypes.c_uint32 * 59),
         ("length", ctypes.c_uint16),
-        ("crc", ctypes.c_uint16),
         ("left", ctypes.c_uint8),
         ("begun", ctypes.c_uint8),
         ("broken", ctypes.c_uint8),
@@ -94,8 +93,12 @@ class Ring(ctypes.Structure):
 
 
 def taken(reader: Reader, data: bytes | bytearray) -> list[int]:
-    take = library().fdvv_frame_take
-    return [take(ctypes.byref(reader), byte) & 0xFF for byte in data]
+    take, found, results = library().fdvv_frame_take, ctypes.c_uint8(), []
+    while data:
+        count = take(ctypes.byref(reader), bytes(data), min(len(data), 7), ctypes.byref(found)) & 0xFFFF
+        results.append(found.value)
+        data = data[count:]
+    return results
 
 
 @pytest.mark.parametrize("example", GOLDEN, ids=NAMES)

@@ -52,12 +52,12 @@ class LinkedDevice(Remote):
             self.client.arm()
             self.port.connect(plant)
             self._listen(plant.ticks * self.settings.tick_us * 1e-6)
-            ticks = np.array(self.port.ticks)
+            ticks, truth = np.array(self.port.ticks), plant.record()
         finally:
             self.stop()
             self.port.connect(self._person.rest(self.settings))
         self._fail_on_fault()
-        return self._joined(plant.record(), ticks, velocity_mm_s)
+        return self._joined(truth, ticks, velocity_mm_s)
 
     def _listen(self, duration_s: float) -> None:
         self.client.listen(self.port.now_s() + duration_s)
