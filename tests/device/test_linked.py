@@ -14,7 +14,15 @@ import pytest
 from tests.device.rigs import linked
 
 from fdvv import _native
-from fdvv.device import HostBoard, Inputs, LibraryBoard, LinkedDevice, ProgramDevice, ScriptedPerson
+from fdvv.device import (
+    HostBoard,
+    Inputs,
+    LibraryBoard,
+    LinkedDevice,
+    ProgramDevice,
+    ScriptedPerson,
+    SimulatedPerson,
+)
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface
 from fdvv.protocol import (
@@ -52,6 +60,11 @@ class TestHostBoard(ProgramConformance):
     def make(self) -> ProgramDevice:
         self.opened.append(LinkedDevice(HostBoard(), ScriptedPerson()))
         return self.opened[-1]
+
+
+class TestSimulatedRig(ProgramConformance):
+    def make(self) -> ProgramDevice:
+        return LinkedDevice(LibraryBoard(), SimulatedPerson(seed=2))
 
 
 def test_the_host_program_and_the_library_do_the_same_in_every_tick() -> None:

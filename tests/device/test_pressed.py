@@ -11,7 +11,15 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from fdvv.device import Inputs, LibraryBoard, LockstepPort, PressedDevice, ScriptedPerson, SerialPort
+from fdvv.device import (
+    Inputs,
+    LibraryBoard,
+    LockstepPort,
+    PressedDevice,
+    ScriptedPerson,
+    SerialPort,
+    surface_image,
+)
 from fdvv.device._pressed import find_press
 from fdvv.device._telemetry import TickColumns
 from fdvv.errors import DeviceError
@@ -65,7 +73,7 @@ class Rig(threading.Thread):
             return
         if out.enable and self.presses and len(self.port.ticks) > 100:
             self.presses -= 1
-            self.port.connect(self.person.press(4.0, 100.0, SETTINGS))
+            self.port.connect(self.person.press(surface_image(plain_surface(), 4.0), 100.0, SETTINGS))
 
     def end(self) -> None:
         self.over.set()

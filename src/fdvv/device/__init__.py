@@ -17,6 +17,7 @@ from fdvv.device._remote import Remote
 from fdvv.device._replay import ReplayDevice
 from fdvv.device._script import ScriptedPerson, ScriptedPlant
 from fdvv.device._serial import SerialPort, serial_ports
+from fdvv.device._simulated import SimulatedPerson
 from fdvv.device._telemetry import Telemetry, TickColumns
 from fdvv.device._twin import TwinDevice
 from fdvv.device._wire import RefusedError, Wire
@@ -49,6 +50,7 @@ __all__ = [
     "ScriptedPerson",
     "ScriptedPlant",
     "SerialPort",
+    "SimulatedPerson",
     "Telemetry",
     "TickColumns",
     "Truth",

@@ -43,13 +43,14 @@ class LinkedDevice(Remote):
 
     def press(self, velocity_mm_s: float) -> Press:
         """Have the simulated person press once; DeviceError if the device faults meanwhile."""
-        travel_mm = self._check_press(velocity_mm_s)
-        plant = self._person.press(travel_mm, velocity_mm_s, self.settings)
+        self._check_press(velocity_mm_s)
         self.client.announce(velocity_mm_s)
         self.client.telemetry.clear()
         self.client.stream(1)
         try:
             self.client.arm()
+            self._listen(self._person.settle_s)
+            plant = self._person.press(self.image, velocity_mm_s, self.settings)
             self.port.connect(plant)
             self._listen(plant.ticks * self.settings.tick_us * 1e-6)
             ticks, truth = np.array(self.port.ticks), plant.record()

@@ -9,15 +9,15 @@ from fdvv.device._contract import Device
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._pressed import PressedDevice
 from fdvv.device._replay import ReplayDevice
-from fdvv.device._script import ScriptedPerson
 from fdvv.device._serial import SerialPort
+from fdvv.device._simulated import SimulatedPerson
 from fdvv.device._twin import TwinDevice
 from fdvv.errors import InputError
 from fdvv.twin import Finger, Rig
 
 KINDS = {
     "twin": "the simulated rig, whole presses at once",
-    "host": "the firmware as a program of this machine, in lockstep with a cap on a scripted path",
+    "host": "the firmware as a program of this machine, in lockstep with the simulated rig",
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
 }
@@ -35,7 +35,7 @@ def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None,
     if kind == "serial" and where:
         return PressedDevice(SerialPort(where))
     if spec == "host":
-        return LinkedDevice(HostBoard(), ScriptedPerson(seed))
+        return LinkedDevice(HostBoard(), SimulatedPerson(rig, finger, seed))
     if spec == "twin":
         return TwinDevice(rig, finger, seed)
     raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")

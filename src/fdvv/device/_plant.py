@@ -98,8 +98,12 @@ class Person(Protocol):
     def settings(self) -> Settings:
         """Calibration and limits that suit the rig."""
 
-    def press(self, travel_mm: float, velocity_mm_s: float, settings: Settings) -> PressedPlant:
-        """Come to the button at rest and press it once, at about this speed."""
+    @property
+    def settle_s(self) -> float:
+        """Time that the cap takes to come up, and the stop to move, once there is force."""
+
+    def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> PressedPlant:
+        """Come to the button at rest and press it once, at about this speed, on this program."""
         ...
 
     def rest(self, settings: Settings) -> Plant:

@@ -26,12 +26,14 @@ class Remote:
     ----------
     client : the connection.
     settings : the device's, as read on opening.
+    travel_mm, image : of the active program as uploaded here; None and empty before.
     """
 
     def __init__(self, client: Client) -> None:
         self.client = client
         self.settings: Settings = client.read_settings()
         self.travel_mm: float | None = None
+        self.image = b""
         self._closed = False
 
     def info(self) -> DeviceInfo:
@@ -54,7 +56,7 @@ class Remote:
         """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
         travel_mm = int.from_bytes(image[8:12], "little", signed=True) / UM16_PER_mm
         self.client.upload(image)
-        self.travel_mm = travel_mm
+        self.travel_mm, self.image = travel_mm, image
 
     def stop(self) -> None:
         """Fall to zero force at once."""

@@ -84,9 +84,11 @@ class ScriptedPerson:
         self._random = np.random.default_rng(seed)
         self.meddle = meddle
         self.settings = settings or Settings()
+        self.settle_s = 0.0
 
-    def press(self, travel_mm: float, velocity_mm_s: float, settings: Settings) -> ScriptedPlant:
-        """Press once."""
+    def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> ScriptedPlant:
+        """Press once, to the program's travel."""
+        travel_mm = int.from_bytes(image[8:12], "little") / 16000
         down_s = travel_mm / velocity_mm_s
         corners_s = np.cumsum([0.0, 0.01, down_s, 0.02, down_s, 0.04])
         t_s = np.arange(round(corners_s[-1] / (settings.tick_us * 1e-6))) * settings.tick_us * 1e-6
