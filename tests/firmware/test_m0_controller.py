@@ -65,14 +65,13 @@ def test_no_tick_is_late_while_a_long_program_is_uploaded_and_pressed(emulated: 
     counters = emulated.client.counters()
     latencies_us = sorted(cost.latency_us for cost in costs if cost.latency_us is not None)
     longest_us = max(cost.longest_pass_us for cost in costs)
-    say(
-        f"{len(costs)} ticks, all told: tick to duty {latencies_us[len(latencies_us) // 2]:.0f} us in the middle"
-    )
+    median_us = latencies_us[len(latencies_us) // 2]
+    say(f"{len(costs)} ticks, all told: tick to duty {median_us:.0f} us in the middle")
     say(f"at most {counters.worst_tick_us} us by the board's own clock")
     say(f"longest time between two looks for readings {longest_us:.0f} us")
     assert counters.late == 0
     assert counters.lost_records == 0
-    assert counters.worst_tick_us < 350
+    assert counters.worst_tick_us < 250
 
 
 def test_the_bridge_is_off_unless_armed(emulated: LinkedDevice) -> None:
