@@ -7,10 +7,10 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/boards/host/*.[ch])
 
-.PHONY: help demo test check format bench setup clean
+.PHONY: help demo test check format bench setup firmware firmware-tools clean
 
 help: ## Show this list
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 setup: $(VENV)/.ready src/fdvv/_native/libfdvv.so ## Make the virtual environment and build the C kernels
 
@@ -41,6 +41,12 @@ format: setup ## Format the code in place
 
 bench: setup ## Time fits, scans and the twin beside plain SciPy
 	$(BIN)/python -m benchmarks
+
+firmware-tools: ## Install the cross compilers and the emulator of the boards
+	bash tools/firmware_tools.sh build
+
+firmware: firmware-tools ## Build the boards' programs into build/firmware
+	$(MAKE) --no-print-directory -C firmware BUILD="$(CURDIR)/build/firmware"
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/*.so

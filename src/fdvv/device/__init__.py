@@ -4,6 +4,7 @@ from fdvv.device._boards import HostBoard, LibraryBoard
 from fdvv.device._client import Client
 from fdvv.device._clocks import ClockRelation, Exchange, relate
 from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
+from fdvv.device._emulated import EmulatedBoard
 from fdvv.device._image import seal, surface_image
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._lockstep import Board, LockstepPort
@@ -29,6 +30,7 @@ __all__ = [
     "ClockRelation",
     "Device",
     "DeviceInfo",
+    "EmulatedBoard",
     "Exchange",
     "FaultReport",
     "HostBoard",

@@ -26,6 +26,7 @@ class LibraryBoard:
     """The firmware called as a library: the quickest board; one at a time and thread."""
 
     name = "library"
+    ticks = 0
 
     def __init__(self) -> None:
         self._library = library = _native.library()
@@ -94,6 +95,7 @@ class HostBoard:
     """
 
     name = "host"
+    ticks = 0
 
     def __init__(self, program: Path | None = None) -> None:
         program = program or Path(_native.__file__).with_name("fdvv-host")

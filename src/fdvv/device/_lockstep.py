@@ -15,6 +15,10 @@ class Board(Protocol):
     def name(self) -> str:
         """Kind of board."""
 
+    @property
+    def ticks(self) -> int:
+        """How many it had counted before its first plant was connected."""
+
     def tick(self, inputs: Inputs) -> Outputs:
         """Run one tick; DeviceError if the board is gone."""
         ...
@@ -54,7 +58,7 @@ class LockstepPort:
         self.board, self.tick_us = board, tick_us
         self.outputs = Outputs()
         self.ticks: list[int] = []
-        self._tick = 0
+        self._tick = board.ticks
         self._plant = plant
         self._time_us = 0
         self._plugged = True

@@ -1,0 +1,188 @@
+/* The rig's controller: a tick as soon as its readings are there, and USB, link and vibration board between. */
+#include "board.h"
+#include "link_state.h"
+#include "vibration.h"
+
+enum { TRAVEL_LIMIT_UM16 = 99200 /* 6.2 mm, the coil's */, PIECE_BYTES = 16 /* of the wire at a time: a frame's bytes cost up to 4 us each */ };
+
+static fdvv_core core;
+static fdvv_link link;
+static fdvv_board board;
+static fdvv_read_counters_reply counters;
+static fdvv_inputs inputs;       /* of the last tick */
+static uint8_t reset_bits;       /* FDVV_BOARD_… of the reset, until told once */
+static uint8_t is_testing;
+static uint16_t tick_us;
+static uint8_t reads;
+
+static void tell(fdvv_selftest_reply *reply, uint8_t part, uint8_t verdict, uint16_t value)
+{
+    reply->verdicts[part] = verdict;
+    reply->values[2 * part] = (uint8_t)value;
+    reply->values[2 * part + 1] = (uint8_t)(value >> 8);
+}
+
+static uint8_t verdict_of(uint8_t is_right)
+{
+    return is_right ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED;
+}
+
+/* The vibration board is asked to be silent, and whether it acknowledges is seen when the queue is empty. Nothing
+ * moves: whether coil and force sensor work only a press can show. */
+static uint8_t selftest(fdvv_selftest_reply *reply)
+{
+    const fdvv_settings *settings = &core.settings;
+    if (!is_testing) vibration_silence();
+    is_testing = board_wire_room() < BOARD_MESSAGES;
+    if (is_testing) return 0;
+    uint8_t is_heard = inputs.lowest >= settings->reading_low && inputs.highest <= settings->reading_high;
+    uint8_t is_fed = inputs.supply_mV >= settings->supply_low_mV && inputs.supply_mV <= settings->supply_high_mV;
+    tell(reply, FDVV_PART_POSITION_SENSOR, verdict_of(is_heard), inputs.lowest);
+    tell(reply, FDVV_PART_SUPPLY, verdict_of(is_fed), inputs.supply_mV);
+    tell(reply, FDVV_PART_FORCE_SENSOR, settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT,
+         inputs.force_counts);
+    tell(reply, FDVV_PART_VIBRATION_BOARD, verdict_of(board_wire_answers()), (uint16_t)board_wire_errors());
+    tell(reply, FDVV_PART_CLOCK, verdict_of(inputs.time_us != 0), tick_us);
+    return 1;
+}
+
+static void describe(void)
+{
+    static const char name[] = "itsybitsy-m0";
+    board.serial = board_serial();
+    board.flags = FDVV_BOARD_FLAG_FORCE_SENSOR | FDVV_BOARD_FLAG_VIBRATION | FDVV_BOARD_FLAG_SERVO;
+    board.travel_limit_um16_256 = (TRAVEL_LIMIT_UM16 + 255) / 256;
+    for (unsigned i = 0; i < sizeof name; i++) board.name[i] = name[i];
+    board.selftest = selftest;
+    board.load_slots = vibration_load;
+    board.play = vibration_play;
+    board.now_us = board_now_us;
+    board.counters = &counters;
+}
+
+static uint8_t trouble(void)
+{
+    uint8_t bits = reset_bits;
+    reset_bits = 0;
+    if (board_drive_fault()) bits |= FDVV_BOARD_OUTPUT;
+    if (!board_wire_answers()) bits |= FDVV_BOARD_VIBRATION;
+    return bits;
+}
+
+static void take(const board_readings *readings)
+{
+    inputs.time_us = readings->time_us;
+    inputs.sum = readings->sum;
+    inputs.lowest = readings->lowest;
+    inputs.highest = readings->highest;
+    inputs.elapsed_ticks = readings->elapsed_ticks;
+    inputs.supply_mV = readings->supply_mV;
+    inputs.force_counts = readings->force_counts;
+    inputs.board = trouble();
+}
+
+static void count(const board_readings *readings)
+{
+    uint32_t served_us = board_now_us() - readings->time_us;
+    if (served_us > counters.worst_tick_us) counters.worst_tick_us = served_us;
+    counters.ticks += readings->elapsed_ticks;
+    counters.late += (uint32_t)(readings->elapsed_ticks - 1);
+    counters.vibration_errors = board_wire_errors();
+}
+
+/* 1 if there was one. */
+static uint8_t serve_tick(void)
+{
+    board_readings readings;
+    fdvv_outputs outputs;
+    if (!board_acquire(&readings)) return 0;
+    take(&readings);
+    fdvv_core_tick(&core, &inputs, &outputs);
+    board_drive(outputs.duty_q15, outputs.enable);
+    board_watchdog_clear();
+    count(&readings);
+    board_stop(outputs.stop_us);
+    if (outputs.slot != FDVV_NONE) vibration_play(outputs.slot);
+    fdvv_link_tick(&link, &inputs, &outputs);
+    return 1;
+}
+
+/* New settings may mean another tick; the link takes them only while idle. */
+static void follow_settings(void)
+{
+    if (tick_us == core.settings.tick_us && reads == core.settings.reads) return;
+    tick_us = core.settings.tick_us;
+    reads = core.settings.reads;
+    board_acquire_start(tick_us, reads);
+}
+
+static void receive(void)
+{
+    static uint8_t bytes[PIECE_BYTES];
+    static uint16_t at, end;
+    static uint8_t was_open;
+    uint8_t is_open = board_usb_open();
+    if (was_open && !is_open) {
+        fdvv_link_reset(&link);
+        at = end = 0;
+    }
+    was_open = is_open;
+    if (at == end) {
+        at = 0;
+        end = board_usb_read(bytes, sizeof bytes);
+    }
+    at = (uint16_t)(at + fdvv_link_receive(&link, bytes + at, (uint16_t)(end - at)));
+}
+
+static void transmit(void)
+{
+    uint8_t bytes[PIECE_BYTES];
+    uint16_t room = board_usb_room();
+    if (!board_usb_open()) return;
+    uint16_t filled = fdvv_link_transmit(&link, bytes, room < sizeof bytes ? room : sizeof bytes);
+    if (filled) board_usb_write(bytes, filled);
+}
+
+static void work(void)
+{
+    fdvv_link_work(&link);
+    follow_settings();
+}
+
+static void drive_vibration(void)
+{
+    vibration_step();
+    board_wire_step(board_now_us());
+}
+
+static void start(void)
+{
+    static const fdvv_settings defaults = FDVV_SETTINGS_DEFAULTS;
+    uint8_t cause = board_reset_cause();
+    reset_bits = cause == BOARD_RESET_WATCHDOG ? FDVV_BOARD_WATCHDOG : cause == BOARD_RESET_BROWN_OUT ? FDVV_BOARD_BROWN_OUT : 0;
+    board_clocks_start();
+    board_brown_out_start();
+    board_drive_start();
+    board_wire_start();
+    board_usb_start();
+    describe();
+    fdvv_core_init(&core, &defaults);
+    fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
+    fdvv_link_init(&link, &core, &board);
+    vibration_silence();
+    follow_settings();
+    board_watchdog_start();
+}
+
+int main(void)
+{
+    static void (*const chores[])(void) = {board_usb_step, receive, work, transmit, drive_vibration};
+    start();
+    for (;;) {
+        for (unsigned i = 0; i < sizeof chores / sizeof *chores; i++) {
+            while (serve_tick()) {
+            }
+            chores[i]();
+        }
+    }
+}

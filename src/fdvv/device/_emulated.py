@@ -1,0 +1,84 @@
+"""The rig's controller, emulated, as a board in lockstep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fdvv.device._m0 import M0Emulator, TickInputs, TickOutputs
+from fdvv.device._plant import Inputs, Outputs
+from fdvv.errors import DeviceError
+from fdvv.protocol import NONE, Settings
+
+BOOT_TICKS = 400
+SHARE_OF_TICK = 0.95  # after which what a tick brought is on the pins
+SUPPLY_mV_counts = 3300 * 122 / 22 / 4096
+PLAY_HEADER = 0x22
+
+
+class EmulatedBoard:
+    """The program that is flashed onto the ItsyBitsy M0, run instruction by instruction.
+
+    elf : build/firmware/itsybitsy_m0.elf of `make firmware`. Of the outputs, the pins show duty, enable,
+    stop pulse and slot; mode, key and command go over the link alone. Raises DeviceError if the port does
+    not open.
+    """
+
+    name = "emulated"
+
+    def __init__(self, elf: Path) -> None:
+        middle = (Settings().reading_low + Settings().reading_high) // 2
+        self._inputs = TickInputs(middle)
+        self.emulator = M0Emulator(elf, self._answer)
+        while not self.emulator.usb.is_open:
+            self.emulator.run_ticks(1)
+            if self.emulator.tick > BOOT_TICKS:
+                raise DeviceError("emulated: the USB port does not open; build the firmware again")
+        self.ticks = self.emulator.tick
+
+    def _answer(self, _outputs: TickOutputs) -> TickInputs:
+        return self._inputs
+
+    def tick(self, inputs: Inputs) -> Outputs:
+        """Run from one tick nearly to the next."""
+        supply_counts = round(inputs.supply_mV / SUPPLY_mV_counts)
+        self._inputs = TickInputs.of_burst(
+            inputs.sum,
+            inputs.lowest,
+            inputs.highest,
+            self.emulator.reads,
+            supply_counts=min(supply_counts, 4095),
+            force_counts=inputs.force_counts,
+        )
+        told = len(self.emulator.wire_log)
+        self.emulator.run_ticks(inputs.elapsed_ticks)
+        self.emulator.run_us(SHARE_OF_TICK * self.emulator.tick_us)
+        now = self.emulator.outputs()
+        return Outputs(now.duty_q15, int(now.enable), self._slot(told), round(now.stop_us))
+
+    def _slot(self, told: int) -> int:
+        for message in self.emulator.wire_log[told:]:
+            if message.data[:1] == bytes([PLAY_HEADER]) and message.data[2]:
+                return message.data[1]
+        return NONE
+
+    def write(self, data: bytes) -> None:
+        """Put bytes on the link."""
+        self.emulator.write(data)
+
+    def read(self) -> bytes:
+        """Give what the board has put on the link."""
+        return self.emulator.read()
+
+    def unplug(self) -> None:
+        """Pull the cable."""
+        self.emulator.unplug()
+
+    def plug(self) -> None:
+        """Plug it in again, and wait until the port is open."""
+        self.emulator.plug()
+        start = self.emulator.tick
+        while not self.emulator.usb.is_open and self.emulator.tick < start + BOOT_TICKS:
+            self.emulator.run_ticks(1)
+
+    def close(self) -> None:
+        """Nothing outlives the board."""

@@ -1,0 +1,204 @@
+"""The registers of the emulated chip: plain memory in C, with a Python callback only where one is needed."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from heapq import heappop, heappush
+
+from fdvv._native import library
+
+CALL_WRITE, CALL_READ, WRITE_ONE_CLEARS, COUNTER, POLLED = 1, 2, 4, 8, 16
+NEVER = 2**64 - 1
+WINDOWS = {0x40000000: 0x2000, 0x41000000: 0x6000, 0x42000000: 0x5000, 0xE0000000: 0xF000}
+BASE_BITS = 0xFFFF0000  # of an address, which name its window
+GATED = 0x42000000  # the bridge whose peripherals all start without a clock
+FLASH_BYTES, RAM_START, RAM_BYTES = 0x40000, 0x20000000, 0x8000
+
+EVENT = ctypes.CFUNCTYPE(None)
+READ = ctypes.CFUNCTYPE(ctypes.c_uint64, ctypes.c_uint32, ctypes.c_uint32)
+WRITE = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32, ctypes.c_uint32)
+
+
+def address_of(memory: bytearray) -> int:
+    """Give where a memory lies; it must not be resized and must be kept."""
+    return ctypes.addressof((ctypes.c_char * len(memory)).from_buffer(memory))
+
+
+class Clockwork(ctypes.Structure):
+    """Mirror of fdvv_m0 in m0_cycles.c."""
+
+    _fields_ = (
+        ("cycles", ctypes.c_uint64),
+        ("next_event", ctypes.c_uint64),
+        ("event", EVENT),
+        ("read", READ),
+        ("write", WRITE),
+        ("flash", ctypes.c_void_p),
+        ("code", ctypes.c_void_p),
+        ("counter_start", ctypes.c_uint64),
+        ("counter_period", ctypes.c_uint64),
+        ("polled_at", ctypes.c_uint64),
+        ("longest_pass", ctypes.c_uint64),
+        ("shortest_pass", ctypes.c_uint64),
+        ("passes", ctypes.c_uint64),
+        ("touches", ctypes.c_uint64),
+        ("line_used", ctypes.c_uint64 * 8),
+        ("line", ctypes.c_uint32 * 8),
+        ("flash_bytes", ctypes.c_uint32),
+        ("bus_wait", ctypes.c_uint32),
+        ("waited", ctypes.c_uint32),
+        ("start", ctypes.c_uint32),
+        ("after", ctypes.c_uint32),
+        ("is_stopped", ctypes.c_uint32),
+        ("is_conditional", ctypes.c_uint32),
+        ("is_cached", ctypes.c_uint32),
+        ("unclocked", ctypes.c_uint32),
+        ("clocks", ctypes.c_uint32),
+    )
+
+
+class Window(ctypes.Structure):
+    """Mirror of fdvv_m0_window: one run of registers."""
+
+    _fields_ = (
+        ("m0", ctypes.c_void_p),
+        ("memory", ctypes.c_void_p),
+        ("kind", ctypes.c_void_p),
+        ("base", ctypes.c_uint32),
+        ("gated", ctypes.c_uint32),
+    )
+
+
+class Bus:
+    """Registers, memory, cycles and the queue of what happens when.
+
+    Peripherals claim their registers with on_write and on_read, keep their state in the registers themselves
+    where they can, and put what happens later in the queue with `after`.
+    """
+
+    def __init__(self, is_cached: bool, bus_wait_cycles: int) -> None:
+        self.flash = bytearray(b"\xff" * FLASH_BYTES)
+        self.ram = bytearray(RAM_BYTES)
+        self.clockwork = Clockwork(
+            is_cached=is_cached, bus_wait=bus_wait_cycles, next_event=NEVER, shortest_pass=NEVER
+        )
+        self._code = bytearray(library().fdvv_m0_bytes(2) * (FLASH_BYTES // 2))
+        self.clockwork.flash = address_of(self.flash)
+        self.clockwork.code = address_of(self._code)
+        self.clockwork.flash_bytes = FLASH_BYTES
+        self.memories = {base: bytearray(size) for base, size in WINDOWS.items()}
+        self.kinds = {base: bytearray(size) for base, size in WINDOWS.items()}
+        self.windows = {base: self._window(base) for base in WINDOWS}
+        self._writes: dict[int, Callable[[int, int], None]] = {}
+        self._reads: dict[int, Callable[[int], int]] = {}
+        self._queue: list[tuple[int, int, Callable[[], None]]] = []
+        self._order = 0
+        self.failure: BaseException | None = None
+        self.stop: Callable[[], None] = lambda: None
+        # kept here so that they outlive the calls
+        self.clockwork.event = self._event = EVENT(self._run_events)
+        self.clockwork.read = self._read = READ(self._called_read)
+        self.clockwork.write = self._write = WRITE(self._called_write)
+
+    def _window(self, base: int) -> Window:
+        return Window(
+            ctypes.addressof(self.clockwork),
+            address_of(self.memories[base]),
+            address_of(self.kinds[base]),
+            base,
+            base == GATED,
+        )
+
+    # -- registers -------------------------------------------------------------------------------------------
+
+    def get(self, address: int, size: int) -> int:
+        """Give what a register holds."""
+        base = address & BASE_BITS
+        at = address - base
+        return int.from_bytes(self.memories[base][at : at + size], "little")
+
+    def put(self, address: int, size: int, value: int) -> None:
+        """Let a register hold a value, without its effects."""
+        base = address & BASE_BITS
+        at = address - base
+        self.memories[base][at : at + size] = value.to_bytes(size, "little")
+
+    def mark(self, address: int, kind: int) -> None:
+        """Say how C treats a register, beyond memory."""
+        base = address & BASE_BITS
+        self.kinds[base][address - base] |= kind
+
+    def on_write(self, address: int, call: Callable[[int, int], None]) -> None:
+        """Have call(size, value) instead of the write to a register."""
+        self.mark(address, CALL_WRITE)
+        self._writes[address] = call
+
+    def on_read(self, address: int, call: Callable[[int], int]) -> None:
+        """Have call(size) give what a register reads."""
+        self.mark(address, CALL_READ)
+        self._reads[address] = call
+
+    # -- memory ----------------------------------------------------------------------------------------------
+
+    def ram_read(self, address: int, count: int) -> bytes:
+        """Give bytes of RAM."""
+        at = address - RAM_START
+        return bytes(self.ram[at : at + count])
+
+    def ram_write(self, address: int, data: bytes) -> None:
+        """Put bytes into RAM, as DMA and USB do."""
+        at = address - RAM_START
+        if not 0 <= at <= RAM_BYTES - len(data):
+            raise ValueError(f"a peripheral writes {len(data)} bytes to {address:#x}, which is not RAM")
+        self.ram[at : at + len(data)] = data
+
+    # -- time ------------------------------------------------------------------------------------------------
+
+    @property
+    def cycles(self) -> int:
+        """Cycles of the processor since the emulator was made."""
+        return int(self.clockwork.cycles)
+
+    def at(self, cycle: int, call: Callable[[], None]) -> None:
+        """Have call() at a cycle."""
+        self._order += 1
+        heappush(self._queue, (cycle, self._order, call))
+        self.clockwork.next_event = self._queue[0][0]
+
+    def after(self, cycles: int, call: Callable[[], None]) -> None:
+        """Have call() in so many cycles."""
+        self.at(self.cycles + cycles, call)
+
+    def forget_events(self) -> None:
+        """Empty the queue: reset."""
+        self._queue.clear()
+        self.clockwork.next_event = NEVER
+
+    # -- called from C: nothing may be raised through it -----------------------------------------------------
+
+    def _guard(self, error: BaseException) -> None:
+        self.failure = self.failure or error
+        self.forget_events()
+        self.stop()
+
+    def _run_events(self) -> None:
+        try:
+            _cycle, _order, call = heappop(self._queue)
+            self.clockwork.next_event = self._queue[0][0] if self._queue else NEVER
+            call()
+        except BaseException as error:
+            self._guard(error)
+
+    def _called_read(self, address: int, size: int) -> int:
+        try:
+            return self._reads[address](size)
+        except BaseException as error:
+            self._guard(error)
+            return 0
+
+    def _called_write(self, address: int, size: int, value: int) -> None:
+        try:
+            self._writes[address](size, value)
+        except BaseException as error:
+            self._guard(error)

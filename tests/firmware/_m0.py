@@ -1,0 +1,84 @@
+"""Build the ItsyBitsy M0's programs, read what its check program tells. All figures here are emulated."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import struct
+import subprocess
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+BOARD = REPOSITORY / "firmware" / "boards" / "itsybitsy_m0"
+BUILD = REPOSITORY / "build" / "firmware"
+TINYUSB = REPOSITORY / "build" / "tinyusb" / ".ready"
+CHECK, CONTROLLER = BUILD / "itsybitsy_m0_check.elf", BUILD / "itsybitsy_m0.elf"
+
+
+def require_tools() -> None:
+    """Skip by name where a tool is absent; fail where CI is set."""
+    missing = [tool for tool in ("arm-none-eabi-gcc", "arm-none-eabi-size", "make") if not shutil.which(tool)]
+    missing += [] if find_spec("unicorn") else ["unicorn (extra dev)"]
+    missing += [] if TINYUSB.is_file() else ["tinyusb-source"]
+    if missing and os.environ.get("CI"):
+        pytest.fail(f"make firmware-tools has not installed {', '.join(missing)}")
+    if missing:
+        pytest.skip(f"make firmware-tools installs {', '.join(missing)}")
+
+
+def build(program: Path) -> Path:
+    """Bring a program up to date, one process at a time, and give it."""
+    require_tools()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    with (BUILD / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        command = ["make", "-s", "-C", str(BOARD), f"BUILD={BUILD}", str(program)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return program
+
+
+def sizes_bytes(elf: Path) -> tuple[int, int]:
+    """Give flash and static RAM."""
+    done = subprocess.run(["arm-none-eabi-size", str(elf)], capture_output=True, text=True, check=True)
+    text, data, bss = (int(word) for word in done.stdout.splitlines()[1].split()[:3])
+    return text + data, data + bss
+
+
+@dataclass(frozen=True)
+class TickFrame:
+    """What the check program tells of a tick."""
+
+    reset_cause: int
+    elapsed_ticks: int
+    time_us: int
+    sum: int
+    lowest: int
+    highest: int
+    supply_mV: int
+    force_counts: int
+    duty_q15: int
+    served_us: int
+
+
+TICK = struct.Struct("<BBIIHHHHhH")
+
+
+def frames(data: bytes) -> tuple[list[TickFrame], bytes]:
+    """Split what the check program says into ticks and what it echoes."""
+    ticks, echoed, at = [], b"", 0
+    while at < len(data):
+        kind, size = data[at], data[at + 1]
+        body = data[at + 2 : at + size]
+        if kind == ord("T"):
+            ticks.append(TickFrame(*TICK.unpack(body)))
+        else:
+            assert kind == ord("E"), f"a frame of kind {kind} at byte {at}"
+            echoed += body
+        at += size
+    return ticks, echoed

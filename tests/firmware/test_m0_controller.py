@@ -1,0 +1,135 @@
+"""The rig's controller on the emulated ItsyBitsy M0, spoken to by the real client: figures are emulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.device import EmulatedBoard, LibraryBoard, LinkedDevice, ScriptedPerson, surface_image
+from fdvv.device._m0 import TickInputs
+from fdvv.model import ForceSurface
+from fdvv.protocol import Settings
+from fdvv.testing import plain_surface
+
+from ._m0 import CONTROLLER, build, sizes_bytes
+from ._simavr import say
+
+pytestmark = pytest.mark.firmware
+
+PLAIN = surface_image(plain_surface(20.0, 3.0), 3.0)
+FORCES = np.full((6, 255), 30.0)
+LONG = surface_image(ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 7.0), FORCES, FORCES - 5), 4.0)
+
+
+@pytest.fixture(scope="module")
+def elf() -> Path:
+    return build(CONTROLLER)
+
+
+@pytest.fixture
+def emulated(elf: Path) -> LinkedDevice:
+    return LinkedDevice(EmulatedBoard(elf), ScriptedPerson(3))
+
+
+def board_of(device: LinkedDevice) -> EmulatedBoard:
+    board = device.port.board
+    assert isinstance(board, EmulatedBoard)
+    return board
+
+
+def test_a_press_on_the_board_is_the_press_of_the_same_code_on_this_machine(emulated: LinkedDevice) -> None:
+    here = LinkedDevice(LibraryBoard(), ScriptedPerson(3))
+    for device in (emulated, here):
+        device.upload_program(PLAIN)
+    for velocity_mm_s in (50.0, 200.0):
+        there, then = emulated.press(velocity_mm_s), here.press(velocity_mm_s)
+        count = min(there.t_s.size, then.t_s.size) - 32  # two frames are still on their way
+        assert there.sensed_mm is not None
+        assert then.sensed_mm is not None
+        assert there.commanded_cN is not None
+        assert then.commanded_cN is not None
+        apart = np.abs(there.commanded_cN[:count] - then.commanded_cN[:count])
+        assert np.abs(there.sensed_mm[:count] - then.sensed_mm[:count]).max() < 1e-9
+        assert apart.max() < 1e-9
+        assert then.commanded_cN.max() > 15.0
+
+
+def test_no_tick_is_late_while_a_long_program_is_uploaded_and_pressed(emulated: LinkedDevice) -> None:
+    board = board_of(emulated)
+    before = len(board.emulator.costs)
+    emulated.upload_program(LONG)
+    emulated.press(150.0)
+    costs = board.emulator.costs[before:]
+    counters = emulated.client.counters()
+    latencies_us = sorted(cost.latency_us for cost in costs if cost.latency_us is not None)
+    longest_us = max(cost.longest_pass_us for cost in costs)
+    median_us = latencies_us[len(latencies_us) // 2]
+    say(f"{len(costs)} ticks, all told: tick to duty {median_us:.0f} us in the middle")
+    say(f"at most {counters.worst_tick_us} us by the board's own clock")
+    say(f"longest time between two looks for readings {longest_us:.0f} us")
+    assert counters.late == 0
+    assert counters.lost_records == 0
+    assert counters.worst_tick_us < 250
+
+
+def test_the_bridge_is_off_unless_armed(emulated: LinkedDevice) -> None:
+    emulated.upload_program(PLAIN)
+    emulator = board_of(emulated).emulator
+    assert not emulator.outputs().enable
+    emulated.press(100.0)
+    assert any(change.enable for change in emulator.pwm_log)
+    assert emulator.pwm.inputs() == (0.0, 0.0)
+    assert not emulator.outputs().enable
+
+
+def test_a_pulled_cable_ends_the_force_within_the_host_timeout(emulated: LinkedDevice) -> None:
+    emulated.upload_program(PLAIN)
+    emulated.client.arm()
+    board = board_of(emulated)
+    board.emulator.run_ticks(20)
+    assert board.emulator.outputs().enable
+    pulled_us = board.emulator.time_us
+    board.unplug()
+    board.emulator.run_us(Settings().host_timeout_ms * 1000 + 2000)
+    off = next(c for c in board.emulator.pwm_log if c.written_us > pulled_us and not c.enable)
+    assert off.written_us - pulled_us <= Settings().host_timeout_ms * 1000 + 500
+
+
+def test_a_hanging_controller_is_reset_with_the_bridge_off_and_says_why(emulated: LinkedDevice) -> None:
+    emulated.upload_program(PLAIN)
+    emulated.client.arm()
+    emulator = board_of(emulated).emulator
+    emulator.run_ticks(20)
+    emulator.stall(5000)
+    emulator.run_us(3000)
+    assert emulator.reset_cause == "watchdog"
+    assert not emulator.outputs().enable
+
+
+@pytest.mark.parametrize(("tick_us", "reads"), [(500, 25), (1000, 25), (250, 10)])
+def test_the_tick_follows_the_settings(emulated: LinkedDevice, tick_us: int, reads: int) -> None:
+    emulated.write_settings(Settings(tick_us=tick_us, reads=reads, position_gain_q14=20000))
+    emulator = board_of(emulated).emulator
+    emulator.run_ticks(4)
+    assert (emulator.tick_us, emulator.reads) == (tick_us, reads)
+    start = emulator.time_us
+    emulator.run_ticks(10)
+    assert emulator.time_us - start == pytest.approx(10 * tick_us, abs=1)
+
+
+def test_the_whole_controller_fits(elf: Path) -> None:
+    flash, ram = sizes_bytes(elf)
+    say(f"controller: {flash} bytes of flash, {ram} of RAM and 2048 of stack")
+    assert flash <= 32 * 1024
+    assert ram + 2048 <= 24 * 1024
+
+
+def test_readings_are_made_up_to_a_sum_and_extremes() -> None:
+    made = TickInputs.of_burst(25 * 100 + 3, 90, 130, 25).readings
+    assert isinstance(made, tuple)
+    assert (len(made), sum(made), min(made), max(made)) == (25, 2503, 90, 130)
+    flat = TickInputs.of_burst(2500, 100, 101, 25).readings
+    assert isinstance(flat, tuple)
+    assert (len(flat), sum(flat)) == (25, 2500)
