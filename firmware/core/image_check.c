@@ -257,7 +257,7 @@ void fdvv_image_check_begin(fdvv_image_check *check, const uint8_t *image, uint1
     check->announced_crc32 = crc32;
     check->crc32 = 0;
     check->travel_limit_um16 = INT32_MAX;
-    check->detail = (uint16_t)offsetof(fdvv_image_header, size_bytes);
+    check->detail = usable ? 0 : (uint16_t)offsetof(fdvv_image_header, size_bytes);
     check->result = usable ? FDVV_REFUSAL_BUSY : FDVV_REFUSAL_IMAGE_LAYOUT;
     enter(check, HEAD);
 }

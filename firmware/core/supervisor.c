@@ -61,7 +61,7 @@ typedef struct {
     X(HOST_LOST, RENDERING, GONE, STOP, us,                                                                     \
       !me->host_heard, found->silent_us, found->timeout_us)                                                     \
     X(IMAGE_CORRUPT, ELSEWHERE, ANY, STOP, offset,                                                              \
-      0, 0, 0)                                                                                                  \
+      0, me->now.value, me->now.bound)                                                                          \
     X(WATCHDOG, ALWAYS, ANY, STOP, none,                                                                        \
       in->board & FDVV_BOARD_WATCHDOG, 0, 0)                                                                    \
     X(BROWN_OUT, ALWAYS, ANY, STOP, mV,                                                                         \
@@ -78,22 +78,17 @@ typedef struct {
       me->mode >= FDVV_MODES, me->mode, FDVV_MODES - 1)
 
 #define BIT(fault) ((uint32_t)1 << (fault))
-#define COLUMN_ALWAYS 0
-#define COLUMN_RENDERING 1
-#define COLUMN_ELSEWHERE 2
-#define COLUMN_GONE 3
-#define COLUMN_ANY 4
-#define COLUMN_NEVER 5
-#define COLUMN_STOP 6
-#define COLUMN_WARN 7
-#define HAS(is, which, fault) (COLUMN_##is == COLUMN_##which ? BIT(FDVV_FAULT_##fault) : 0)
-#define WHILE_RENDERING(fault, when, clear, effect, ...) | HAS(when, RENDERING, fault)
-#define CLEAR_ANY(fault, when, clear, effect, ...) | HAS(clear, ANY, fault)
-#define CLEAR_NEVER(fault, when, clear, effect, ...) | HAS(clear, NEVER, fault)
-#define STOPS(fault, when, clear, effect, ...) | HAS(effect, STOP, fault)
 
-static const uint32_t while_rendering = 0 FAULT_TABLE(WHILE_RENDERING), cleared_any = 0 FAULT_TABLE(CLEAR_ANY),
-                      cleared_never = 0 FAULT_TABLE(CLEAR_NEVER), stops = 0 FAULT_TABLE(STOPS);
+/* The columns as masks of faults. */
+enum { IS_ALWAYS, IS_RENDERING, IS_ELSEWHERE, IS_GONE, IS_ANY, IS_NEVER, IS_STOP, IS_WARN };
+#define HAS(fault, is, wanted) | BIT(FDVV_FAULT_##fault) * (IS_##is == IS_##wanted)
+#define RENDERING_BIT(fault, when, clear, effect, ...) HAS(fault, when, RENDERING)
+#define ANY_BIT(fault, when, clear, effect, ...) HAS(fault, clear, ANY)
+#define NEVER_BIT(fault, when, clear, effect, ...) HAS(fault, clear, NEVER)
+#define STOP_BIT(fault, when, clear, effect, ...) HAS(fault, effect, STOP)
+#define MASK(COLUMN_BIT) (0 FAULT_TABLE(COLUMN_BIT))
+static const uint32_t while_rendering = MASK(RENDERING_BIT), cleared_any = MASK(ANY_BIT),
+                      cleared_never = MASK(NEVER_BIT), stops = MASK(STOP_BIT);
 
 static uint8_t renders(uint8_t mode)
 {
@@ -155,7 +150,7 @@ static void latch(fdvv_supervisor *me, uint8_t fault)
 
 static uint8_t lowest(uint32_t faults)
 {
-    uint8_t fault = 0;
+    uint8_t fault = FDVV_FAULT_NONE;
     while (!(faults & BIT(fault)))
         fault++;
     return fault;
@@ -165,11 +160,10 @@ static uint8_t lowest(uint32_t faults)
  * before it was cleared, unless it tells of the past. */
 static void judge(fdvv_supervisor *me, const findings *found)
 {
-    uint32_t present = holding(me, found), fresh = present & ~me->present, fault;
+    uint32_t present = holding(me, found), fresh = present & ~me->present;
     uint32_t candidates = reasons(me, present & (fresh | ~cleared_any));
-    for (fault = 0; fresh >> fault; fault++)
-        if (fresh & BIT(fault))
-            count(me);
+    for (; fresh; fresh &= fresh - 1) /* a bit at a time */
+        count(me);
     me->present = present;
     if (candidates) {
         evidence_of(me, found, lowest(candidates), &me->now);
@@ -213,12 +207,13 @@ static void watch_host(fdvv_supervisor *me, findings *found)
 
 static void watch_position(fdvv_supervisor *me, findings *found, int32_t displacement_um16, uint16_t elapsed_ticks)
 {
+    if (!me->position_known)
+        me->now.displacement_um16 = displacement_um16;
     found->jump_um16 = capped((uint32_t)found->set->jump_um16 * elapsed_ticks);
-    found->moved_um16 = me->position_known ? distance(displacement_um16, me->now.displacement_um16) : 0;
+    found->moved_um16 = distance(displacement_um16, me->now.displacement_um16);
+    me->equal_sums++; /* may wrap while nothing is rendered: arming starts anew */
     if (found->in->sum != me->last_sum)
         me->equal_sums = 0;
-    else if (me->equal_sums < UINT16_MAX)
-        me->equal_sums++;
     me->last_sum = found->in->sum;
     me->position_known = 1;
 }
@@ -231,7 +226,7 @@ void fdvv_supervisor_check(fdvv_supervisor *supervisor, const fdvv_settings *set
     findings found;
     found.set = settings;
     found.in = inputs;
-    found.force_cN64 = force_cN64 < 0 ? -force_cN64 : force_cN64;
+    found.force_cN64 = distance(force_cN64, 0);
     found.checksum = checksum(settings);
     watch_host(supervisor, &found);
     watch_position(supervisor, &found, displacement_um16, elapsed_ticks);

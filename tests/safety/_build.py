@@ -11,7 +11,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 CORE = REPOSITORY / "firmware" / "core"
-DRIVER = Path(__file__).with_name("_driver.c")
+DRIVERS = tuple(Path(__file__).with_name(name) for name in ("_driver.c", "_replay.c"))
 SOURCES = tuple(CORE / f"{name}.c" for name in ("crc32", "image", "image_check", "settings", "supervisor"))
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Werror")
 SANITISED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -19,7 +19,7 @@ LIBRARY = "FDVV_SAFETY_LIBRARY"
 """Environment variable: a library, built otherwise, that the same tests shall run on."""
 
 
-def compile_c(target: Path, *flags: str, sources: tuple[Path, ...] = (DRIVER, *SOURCES)) -> Path:
+def compile_c(target: Path, *flags: str, sources: tuple[Path, ...] = (*DRIVERS, *SOURCES)) -> Path:
     """Compile and link; the compiler's words on failure."""
     out = subprocess.run(
         ["cc", *WARNINGS, f"-I{CORE}", *flags, "-o", str(target), *map(str, sources)],

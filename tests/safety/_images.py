@@ -37,18 +37,11 @@ class Parts:
 
     def image(self, **header: int | bytes) -> bytes:
         """Put the image together; header fields may be given otherwise than they ought to be."""
-        tables: list[list[Record]] = [
-            [*self.states],
-            [*self.transitions],
-            [*self.surfaces],
-            [*self.vibrations],
-            [*self.slots],
-        ]
+        tables: list[list[Record]] = [getattr(self, name) for name in TABLES]
         body = b"".join(record.pack() for table in tables for record in table) + self.pool
         body += bytes(-len(body) % 4)
-        names = ("states", "transitions", "surfaces", "vibrations", "slots")
         fields: dict[str, int | bytes] = dict(
-            zip(names, map(len, tables), strict=True),
+            zip(TABLES, map(len, tables), strict=True),
             magic=IMAGE_MAGIC,
             crc32=0,
             travel_um16=64000,
@@ -65,17 +58,27 @@ def sealed(image: bytes) -> bytes:
     return image[:4] + struct.pack("<I", zlib.crc32(image[8:])) + image[8:]
 
 
-def random_parts(rng: random.Random) -> Parts:
-    """Draw the parts of a program that is right in every way."""
-    counts = {
+TABLES: dict[str, type[Record]] = {
+    "states": State,
+    "transitions": Transition,
+    "surfaces": Surface,
+    "vibrations": Vibration,
+    "slots": Slot,
+}
+"""The tables of an image in their order."""
+
+
+def random_parts(rng: random.Random, counts: dict[str, int] | None = None) -> Parts:
+    """Draw the parts of a program that is right in every way, with so many records in its tables."""
+    counts = counts or {
         "states": rng.randint(1, 16),
         "transitions": rng.choice([0, 1, rng.randint(2, 48)]),
         "surfaces": rng.randint(1, 16),
         "vibrations": rng.choice([0, 1, rng.randint(2, 32)]),
         "slots": rng.randint(1, 16),
     }
-    sizes = {"states": 20, "transitions": 12, "surfaces": 12, "vibrations": 12, "slots": 16}
-    at = 32 + sum(sizes[name] * count for name, count in counts.items())
+    at = ImageHeader.length_bytes()
+    at += sum(TABLES[name].length_bytes() * count for name, count in counts.items())
     parts = Parts()
     for _ in range(counts["surfaces"]):
         parts.surfaces.append(_surface(rng, parts, at))

@@ -1,0 +1,26 @@
+"""Mutants of supervisor.c that behave as the original, each with the reason."""
+
+EQUIVALENT = {
+    "return value < INT32_MAX ? (int32_t)value : INT32_MAX;: < -> <= at 18": "at the bound both sides are it",
+    "return capped(a > b ? (uint32_t)a - (uint32_t)b : (uint32_t)b - (uint32_t)a);: > -> >= at 21": (
+        "of equal numbers both differences are zero"
+    ),
+    "return heat < end ? (int16_t)(supervisor->derate_cN64_K_q8 * ((end - heat) >> 8) >> 16) : 0;"
+    ": < -> <= at 17": "at the end the product is zero as well",
+    "if (rate_q32 > UINT32_MAX): > -> >= at 18": "at the bound it is set to what it is",
+    "#define BIT(fault) ((uint32_t)1 << (fault)): 1 -> 2 at 31": "all faults move one bit up alike",
+    "#define MASK(COLUMN_BIT) (0 FAULT_TABLE(COLUMN_BIT)): 0 -> 1 at 27": "bit 0 is that of no fault",
+    "for (; fresh; fresh &= fresh - 1) /* a bit at a time */: 1 -> 2 at 36": (
+        "takes the lowest bit as well, as bit 0 is that of no fault"
+    ),
+    "me->position_known = 1;: 1 -> 2 at 26": "only ever compared with zero",
+    "supervisor->host_heard = 1;: 1 -> 2 at 30": "only ever compared with zero",
+    "uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;: 0 -> 1 at 88": (
+        "32 shifts leave nothing of the first value"
+    ),
+    "uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;"
+    ": 0 -> (-1) at 88": ("32 shifts leave nothing of the first value"),
+    "X(IMAGE_CORRUPT, ELSEWHERE, ANY, STOP, offset,: ANY -> GONE at 33": (
+        "its condition never holds, so that it has always gone"
+    ),
+}

@@ -1,0 +1,374 @@
+"""The supervisor again, slow and plain: what it must do, in exact Python numbers.
+
+Written from protocol/fdvv.toml and docs/explanation/safety.md, not from the C code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+from fdvv.core import Ask
+from fdvv.protocol import Evidence, Fault, Mode, Refusal, Settings
+
+WATCHDOG, BROWN_OUT, OUTPUT, VIBRATION = 1, 2, 4, 8
+BOUNDLESS = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a board gives in a tick (firmware/core/inputs.h), and what the core found from it."""
+
+    time_us: int = 0
+    sum: int = 50_000
+    lowest: int = 2000
+    highest: int = 2000
+    elapsed_ticks: int = 1
+    supply_mV: int = 12_000
+    force_counts: int = 0
+    board: int = 0
+    displacement_um16: int = 0
+    force_cN64: int = 0
+    commanded_cN64: int = 0
+    state: int = 0
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that a condition may look at."""
+
+    settings: Settings
+    inputs: Inputs
+    moved_um16: int
+    jump_um16: int
+    equal_sums: int
+    heat_K: int
+    silent_us: int
+    host_heard: bool
+    settings_right: bool
+    checksums: tuple[int, int]
+    mode: int
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One fault: when it is looked for and cleared, whether it stops, its condition and evidence."""
+
+    fault: Fault
+    armed_only: bool
+    clear: str
+    stops: bool
+    holds: Callable[[Scene], bool]
+    evidence: Callable[[Scene], tuple[int, int]]
+
+
+NOTHING_SEEN = Inputs()
+NOTHING_LATCHED = Evidence(
+    time_us=0, tick=0, value=0, bound=0, displacement_um16=0, commanded_cN64=0, state=0, mode=0
+)
+
+
+def board_bit(bit: int) -> Callable[[Scene], bool]:
+    """Give the condition that the board reports this."""
+    return lambda scene: bool(scene.inputs.board & bit)
+
+
+RULES = (
+    Rule(
+        Fault.POSITION_LOW,
+        False,
+        "gone",
+        True,
+        lambda s: s.inputs.lowest < s.settings.reading_low,
+        lambda s: (s.inputs.lowest, s.settings.reading_low),
+    ),
+    Rule(
+        Fault.POSITION_HIGH,
+        False,
+        "gone",
+        True,
+        lambda s: s.inputs.highest > s.settings.reading_high,
+        lambda s: (s.inputs.highest, s.settings.reading_high),
+    ),
+    Rule(
+        Fault.POSITION_STUCK,
+        True,
+        "gone",
+        True,
+        lambda s: s.equal_sums >= s.settings.stuck_ticks,
+        lambda s: (s.equal_sums, s.settings.stuck_ticks),
+    ),
+    Rule(
+        Fault.POSITION_JUMP,
+        True,
+        "gone",
+        True,
+        lambda s: s.moved_um16 > s.jump_um16,
+        lambda s: (s.moved_um16, s.jump_um16),
+    ),
+    Rule(
+        Fault.OVER_FORCE,
+        True,
+        "gone",
+        True,
+        lambda s: s.settings.force_gain_q14 != 0 and abs(s.inputs.force_cN64) > s.settings.over_force_cN64,
+        lambda s: (abs(s.inputs.force_cN64), s.settings.over_force_cN64),
+    ),
+    Rule(
+        Fault.OVER_HEAT,
+        False,
+        "gone",
+        True,
+        lambda s: s.heat_K >= s.settings.heat_limit_K,
+        lambda s: (s.heat_K, s.settings.heat_limit_K),
+    ),
+    Rule(
+        Fault.SUPPLY_LOW,
+        False,
+        "gone",
+        True,
+        lambda s: s.inputs.supply_mV < s.settings.supply_low_mV,
+        lambda s: (s.inputs.supply_mV, s.settings.supply_low_mV),
+    ),
+    Rule(
+        Fault.SUPPLY_HIGH,
+        False,
+        "gone",
+        True,
+        lambda s: s.inputs.supply_mV > s.settings.supply_high_mV,
+        lambda s: (s.inputs.supply_mV, s.settings.supply_high_mV),
+    ),
+    Rule(
+        Fault.HOST_LOST,
+        True,
+        "gone",
+        True,
+        lambda s: not s.host_heard,
+        lambda s: (s.silent_us, 1000 * s.settings.host_timeout_ms),
+    ),
+    Rule(Fault.IMAGE_CORRUPT, False, "any", True, lambda s: False, lambda s: (0, 0)),
+    Rule(Fault.WATCHDOG, False, "any", True, board_bit(WATCHDOG), lambda s: (0, 0)),
+    Rule(
+        Fault.BROWN_OUT,
+        False,
+        "any",
+        True,
+        board_bit(BROWN_OUT),
+        lambda s: (s.inputs.supply_mV, s.settings.supply_low_mV),
+    ),
+    Rule(
+        Fault.LATE,
+        True,
+        "gone",
+        True,
+        lambda s: s.inputs.elapsed_ticks > s.settings.late_ticks,
+        lambda s: (s.inputs.elapsed_ticks, s.settings.late_ticks),
+    ),
+    Rule(Fault.OUTPUT, False, "gone", True, board_bit(OUTPUT), lambda s: (0, 0)),
+    Rule(
+        Fault.SETTINGS_CORRUPT,
+        False,
+        "gone",
+        True,
+        lambda s: not s.settings_right,
+        lambda s: s.checksums,
+    ),
+    Rule(Fault.VIBRATION_BOARD, False, "gone", False, board_bit(VIBRATION), lambda s: (0, 0)),
+    Rule(
+        Fault.INTERNAL,
+        False,
+        "never",
+        True,
+        lambda s: s.mode > Mode.FAULT,
+        lambda s: (s.mode, Mode.FAULT),
+    ),
+)
+RULE_OF = {rule.fault: rule for rule in RULES}
+
+ALLOWED = {
+    (Mode.BOOT, Ask.BOOTED): Mode.IDLE,
+    (Mode.IDLE, Ask.TEST): Mode.SELFTEST,
+    (Mode.SELFTEST, Ask.TESTED): Mode.IDLE,
+    (Mode.IDLE, Ask.ARM): Mode.ARMED,
+    (Mode.ARMED, Ask.DISARM): Mode.IDLE,
+    (Mode.DERATED, Ask.DISARM): Mode.IDLE,
+    (Mode.FAULT, Ask.CLEAR): Mode.IDLE,
+}
+
+
+def signed(word: int) -> int:
+    """Read a 32-bit word as a signed number."""
+    return (word + 2**31) % 2**32 - 2**31
+
+
+@lru_cache(maxsize=8)
+def checksum(settings: Settings) -> int:
+    """Rotate right by one and add, word after word."""
+    packed, total = settings.pack(), 0
+    for at in range(0, len(packed), 4):
+        rotated = total // 2 + (total % 2) * 2**31
+        total = (rotated + int.from_bytes(packed[at : at + 4], "little")) % 2**32
+    return total
+
+
+@dataclass
+class Supervisor:
+    """The state, and the questions and ticks that change it. usable: whether settings may be armed with."""
+
+    usable: Callable[[Settings], bool]
+    mode: int = Mode.BOOT
+    fault: Fault = Fault.NONE
+    faults: int = 0
+    evidence: Evidence = field(default_factory=lambda: NOTHING_LATCHED)
+    tick: int = 0
+    now: Inputs = field(default_factory=lambda: NOTHING_SEEN)
+    present: frozenset[Fault] = frozenset()
+    meant: int = 0
+    heat_K_q48: int = 0
+    host_seen_us: int = 0
+    host_heard: bool = False
+    last_sum: int = 0
+    equal_sums: int = 0
+    last_um16: int | None = None
+    rate_q32: int = 0
+    slope_q8: int = 0
+
+    @property
+    def rendering(self) -> bool:
+        """Whether force may be given."""
+        return self.mode in (Mode.ARMED, Mode.DERATED)
+
+    def settings(self, settings: Settings) -> None:
+        """Mean these settings."""
+        self.meant = checksum(settings)
+        self.last_um16 = None
+        self.rate_q32 = settings.tick_us * 2**32 // (1000 * settings.heat_time_ms)
+        self.slope_q8 = 256 * settings.force_limit_cN64 // (settings.heat_limit_K - settings.derate_start_K)
+
+    def ask(self, settings: Settings, ask: int, number: int) -> Refusal:
+        """Change the mode or refuse."""
+        if ask >= len(Ask):
+            return Refusal.BAD_VALUE
+        if self.mode > Mode.FAULT:
+            self.found(Fault.INTERNAL, self.mode, Mode.FAULT)
+        if ask == Ask.DISARM and not self.rendering:
+            return Refusal.NONE
+        if ask == Ask.CLEAR:
+            return self._clear(number)
+        target = ALLOWED.get((Mode(self.mode), Ask(ask)))
+        if target is None:
+            return {Mode.FAULT: Refusal.FAULT_LATCHED, Mode.SELFTEST: Refusal.BUSY}.get(
+                Mode(self.mode), Refusal.WRONG_MODE
+            )
+        if ask == Ask.ARM:
+            self.equal_sums = 0
+            if not self.usable(settings):
+                return Refusal.BAD_VALUE
+        self.mode = target
+        return Refusal.NONE
+
+    def _clear(self, number: int) -> Refusal:
+        if self.fault is Fault.NONE or number != self.fault:
+            return Refusal.BAD_VALUE
+        rule = RULE_OF[self.fault]
+        if rule.clear == "never" or (rule.clear == "gone" and self.fault in self.present):
+            return Refusal.FAULT_LATCHED
+        self.fault = Fault.NONE
+        self.mode = ALLOWED.get((Mode(self.mode), Ask.CLEAR), self.mode)
+        return Refusal.NONE
+
+    def host(self, time_us: int) -> None:
+        """Hear the host."""
+        self.host_seen_us, self.host_heard = time_us, True
+
+    def check(self, settings: Settings, inputs: Inputs) -> None:
+        """Look at one tick."""
+        scene = self._scene(settings, inputs)
+        held = frozenset(
+            rule.fault for rule in RULES if rule.holds(scene) and (self.rendering or not rule.armed_only)
+        )
+        fresh = held - self.present
+        self.present = held
+        self.faults = min(65535, self.faults + len(fresh))
+        open_again = {f for f in held if f in fresh or RULE_OF[f].clear != "any"}
+        reasons = sorted(f for f in open_again if self._becomes_reason(f))
+        stops = [f for f in reasons if RULE_OF[f].stops]
+        if reasons:
+            first = (stops or reasons)[0]
+            value, bound = RULE_OF[first].evidence(scene)
+            self._latch(first, value, bound)
+
+    def _scene(self, settings: Settings, inputs: Inputs) -> Scene:
+        ticks = max(1, inputs.elapsed_ticks)
+        moved = 0 if self.last_um16 is None else abs(inputs.displacement_um16 - self.last_um16)
+        self.equal_sums = (self.equal_sums + 1) % 65536 if inputs.sum == self.last_sum else 0
+        self.last_sum, self.last_um16 = inputs.sum, inputs.displacement_um16
+        silent = signed(inputs.time_us - self.host_seen_us)
+        self.host_heard &= silent <= 1000 * settings.host_timeout_ms
+        self.tick, self.now = (self.tick + ticks) % 2**32, inputs
+        sums = checksum(settings), self.meant
+        return Scene(
+            settings=settings,
+            inputs=inputs,
+            moved_um16=min(moved, BOUNDLESS),
+            jump_um16=min(settings.jump_um16 * ticks, BOUNDLESS),
+            equal_sums=self.equal_sums,
+            heat_K=self.heat_K_q48 >> 48,
+            silent_us=silent,
+            host_heard=self.host_heard,
+            settings_right=sums[0] == sums[1],
+            checksums=(signed(sums[0]), signed(sums[1])),
+            mode=self.mode,
+        )
+
+    def _becomes_reason(self, fault: Fault) -> bool:
+        if self.mode == Mode.FAULT:
+            return False
+        return RULE_OF[fault].stops or self.fault is Fault.NONE
+
+    def _latch(self, fault: Fault, value: int, bound: int) -> None:
+        self.evidence = Evidence(
+            time_us=self.now.time_us,
+            tick=self.tick,
+            value=value,
+            bound=bound,
+            displacement_um16=self.now.displacement_um16,
+            commanded_cN64=self.now.commanded_cN64,
+            state=self.now.state,
+            mode=min(self.mode, Mode.FAULT),
+        )
+        self.fault = fault
+        if RULE_OF[fault].stops:
+            self.mode = Mode.FAULT
+
+    def found(self, number: int, value: int, bound: int) -> None:
+        """Take a fault found elsewhere."""
+        known = 0 < number < len(Fault)
+        fault = Fault(number) if known else Fault.INTERNAL
+        self.faults = min(65535, self.faults + 1)
+        if self._becomes_reason(fault):
+            self._latch(fault, value if known else number, bound)
+
+    def limit_cN64(self, settings: Settings) -> int:
+        """Give the largest force allowed."""
+        if not self.rendering:
+            return 0
+        heat, start, end = (
+            self.heat_K_q48 >> 32,
+            settings.derate_start_K * 2**16,
+            settings.heat_limit_K * 2**16,
+        )
+        if heat >= start:
+            self.mode = Mode.DERATED
+        elif 16 * heat < 15 * start:
+            self.mode = Mode.ARMED
+        if heat <= start:
+            return settings.force_limit_cN64
+        return max(0, (end - heat) // 256 * self.slope_q8 // 65536)
+
+    def heat(self, settings: Settings, duty_q15: int, elapsed_ticks: int) -> None:
+        """Warm or cool for so many ticks at that duty."""
+        duty_q16 = -(-duty_q15 * duty_q15 // 2**14)
+        way_K_q16 = settings.full_duty_rise_K * duty_q16 - (self.heat_K_q48 >> 32)
+        self.heat_K_q48 += way_K_q16 * min(self.rate_q32 * elapsed_ticks, 2**32 - 1)
