@@ -47,7 +47,7 @@ static void enter(fdvv_machine *machine, const uint8_t *image, uint8_t state, co
     machine->from_cN64 = moment->command_cN64;
 }
 
-/* Whole milliseconds move from us to ms; after missed ticks by halving steps, so that they cost no more than 17. */
+/* Move whole milliseconds from us to ms; after missed ticks in seventeen halving steps at most. */
 static void pass_time(fdvv_machine *machine, uint32_t elapsed_us)
 {
     uint32_t us = machine->us + elapsed_us, ms = machine->ms;

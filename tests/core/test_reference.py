@@ -8,7 +8,8 @@ import pytest
 from fdvv.core import OUTPUTS, Core
 from fdvv.testing import random_image, random_inputs, random_settings
 
-from ._reference import Program, Reference
+from ._program import Program
+from ._reference import Reference
 
 TICKS = 500
 
