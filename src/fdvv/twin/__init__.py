@@ -1,57 +1,96 @@
-"""Physics of finger and rig: constants apart from state, a compiled press and a slow reference. Simulated."""
+"""Physics of finger, rig and real button: constants apart from state; compiled presses. Simulated."""
 
+from fdvv.twin._button import ButtonPhysics, Curve, Dome, Housing, Leaf, Slider
+from fdvv.twin._button_file import button_names, button_to_toml, load_button
+from fdvv.twin._button_model import button_of_model
+from fdvv.twin._button_noise import ButtonNoise, draw_button_noise, no_button_noise
+from fdvv.twin._cam import Cam, identify
+from fdvv.twin._capture_rig import CaptureRig, RawCapture, capture
 from fdvv.twin._draw import draw_finger, draw_rig
+from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, plan, vary
 from fdvv.twin._image import TableImage, image_of
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
+from fdvv.twin._pace_button import solve_button_pace
 from fdvv.twin._plant import RigPlant
+from fdvv.twin._probe_button import ProbedCurve, probe_button
 from fdvv.twin._reference import ReferenceTrace, reference_simulate
+from fdvv.twin._reference_button import ButtonReference, reference_button
 from fdvv.twin._rig import Controller, Rig
 from fdvv.twin._rig_moves import Coil, Exciter, Mover, Servo, Stops
 from fdvv.twin._rig_senses import ForceSensor, KeycapSensor, PositionSensor
 from fdvv.twin._settings import settings_of
 from fdvv.twin._simulate import simulate, simulate_program
+from fdvv.twin._simulate_button import ButtonTrace, PressPlan, simulate_batch, simulate_button
 from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._trace import Trace
 
 __all__ = [
+    "ButtonNoise",
+    "ButtonPhysics",
+    "ButtonReference",
+    "ButtonTrace",
+    "Cam",
+    "CaptureRig",
     "Coil",
     "Controller",
+    "Curve",
+    "Dome",
     "Exciter",
     "Finger",
     "ForceSensor",
     "Gesture",
     "Habit",
+    "Housing",
     "Impedance",
     "KeycapSensor",
+    "Leaf",
     "Mover",
     "Noise",
     "PositionSensor",
+    "PressPlan",
+    "ProbedCurve",
     "Pulp",
+    "RawCapture",
     "ReferenceTrace",
     "Rig",
     "RigPlant",
     "Servo",
+    "Slider",
     "Stops",
     "TableImage",
     "Trace",
+    "button_names",
+    "button_of_model",
+    "button_to_toml",
+    "capture",
+    "draw_button",
+    "draw_button_noise",
     "draw_finger",
     "draw_noise",
     "draw_rig",
     "finger_to_toml",
+    "identify",
     "image_of",
+    "load_button",
     "load_finger",
     "load_rig",
     "mean_speed_mm_s",
+    "no_button_noise",
     "plan",
+    "probe_button",
+    "reference_button",
     "reference_simulate",
     "rig_to_toml",
     "settings_of",
     "silence",
     "simulate",
+    "simulate_batch",
+    "simulate_button",
     "simulate_program",
+    "solve_button_pace",
     "solve_pace",
     "solve_program_pace",
     "vary",

@@ -1,0 +1,180 @@
+"""The real button under the finger: slider, leaf on its cam or dome, stops and plate, in SI units.
+
+Sources: "curves" is what the button's own slow curves say, or were drawn to say; "assumed" has no source
+and must be swept; "literature" is cited in docs/explanation/real-buttons.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.twin._quantity import check, choice, quantity
+from fdvv.units import FloatArray
+
+FEWEST_FORCES = 8
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What the slow press and release curves belong to; identified, so never drawn at random."""
+
+    kind: str = choice("leaf", "what the force comes from", ("leaf", "dome"), "curves")
+    step_m: float = quantity(
+        2e-5, "spacing of press_N and release_N", "m", (5e-6, 5e-5), (1e-6, 5e-4), "curves"
+    )
+    speed_m_s: float = quantity(
+        5e-4, "speed they were measured at", "m/s", (1e-4, 1e-3), (1e-6, 0.05), "curves"
+    )
+    travel_m: float = quantity(0.004, "bottom stop", "m", (0.0015, 0.0042), (5e-4, 0.01), "curves")
+    close_m: float = quantity(
+        0.002, "where the circuit closes on a slow press", "m", (5e-4, 0.0026), (1e-4, 0.01), "curves"
+    )
+    open_m: float = quantity(
+        0.002, "where a dome's circuit opens again", "m", (5e-4, 0.0026), (0.0, 0.01), "curves"
+    )
+    seat_m: float = quantity(
+        1e-4, "depth up to which the top stop shapes the curve", "m", (5e-5, 4e-4), (0.0, 0.002), "curves"
+    )
+    force_ratio: float = quantity(
+        1.0, "this unit's force over that of the curves", "", (0.8, 1.2), (0.1, 10.0), "literature"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Slider:
+    """What moves with the cap, and how it rubs: stem, cap, a third of the spring, markers."""
+
+    mass_kg: float = quantity(0.003, "moving mass", "kg", (0.0013, 0.004), (3e-4, 0.05), "assumed")
+    viscous_N_s_m: float = quantity(0.15, "viscous drag", "N s/m", (0.05, 0.4), (0.0, 20.0), "assumed")
+    bristle_m: float = quantity(
+        1e-5, "way over which friction turns round", "m", (8e-6, 2e-5), (5e-6, 1e-3), "assumed"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """The leaf spring that rides on the cam and falls on the fixed contact; unused by a dome."""
+
+    mass_kg: float = quantity(5e-5, "effective mass", "kg", (3e-5, 1e-4), (1e-5, 0.01), "assumed")
+    stiffness_N_m: float = quantity(300.0, "stiffness", "N/m", (200.0, 500.0), (10.0, 1e4), "assumed")
+    damping_ratio: float = quantity(
+        0.05, "damping of the free leaf, of critical", "", (0.02, 0.1), (0.0, 1.0), "assumed"
+    )
+    cam_stiffness_N_m: float = quantity(2e4, "leaf on plastic cam", "N/m", (1e4, 4e4), (1e3, 1e5), "assumed")
+    cam_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0), "assumed")
+    fixed_stiffness_N_m: float = quantity(
+        1000.0, "fixed contact, itself a leaf", "N/m", (600.0, 2000.0), (100.0, 1e5), "assumed"
+    )
+    fixed_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0), "assumed")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Dome:
+    """The rubber: one relaxing arm makes the loop, a law of velocity makes it stiffer; unused by a leaf."""
+
+    law: str = choice("log", "how force grows with speed", ("log", "linear"), "literature")
+    log_ratio: float = quantity(
+        0.028, "growth per e-fold of 1 + v / log_speed", "", (0.02, 0.035), (0.0, 0.5), "literature"
+    )
+    log_speed_m_s: float = quantity(
+        5e-4, "speed where the logarithm begins", "m/s", (2e-4, 1e-3), (1e-6, 0.1), "assumed"
+    )
+    linear_s_m: float = quantity(
+        1.55, "growth per speed of the linear law", "s/m", (1.3, 1.9), (0.0, 50.0), "literature"
+    )
+    arm_m: float = quantity(
+        1e-4, "way over which the arm turns round", "m", (5e-5, 3e-4), (5e-6, 0.01), "assumed"
+    )
+    arm_s: float = quantity(2.0, "time in which the arm relaxes", "s", (0.5, 10.0), (0.01, 1e4), "assumed")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Housing:
+    """The stops of the housing (Hunt-Crossley) and the two modes of the plate under it."""
+
+    bottom_stiffness_N_m: float = quantity(
+        5e4, "bottom stop", "N/m", (2e4, 1e5), (1e3, 3e5), "literature, assumed"
+    )
+    bottom_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0), "assumed")
+    top_stiffness_N_m: float = quantity(2e4, "top stop", "N/m", (1e4, 5e4), (1e3, 3e5), "assumed")
+    top_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0), "assumed")
+    first_Hz: float = quantity(239.0, "first mode", "Hz", (150.0, 350.0), (20.0, 5000.0), "literature")
+    first_damping_ratio: float = quantity(
+        0.1, "damping of it, of critical", "", (0.05, 0.15), (0.0, 1.0), "assumed"
+    )
+    first_kg: float = quantity(0.04, "modal mass of it", "kg", (0.02, 0.1), (1e-3, 100.0), "assumed")
+    second_Hz: float = quantity(900.0, "second mode", "Hz", (600.0, 1500.0), (20.0, 5000.0), "assumed")
+    second_damping_ratio: float = quantity(
+        0.06, "damping of it, of critical", "", (0.03, 0.1), (0.0, 1.0), "assumed"
+    )
+    second_kg: float = quantity(0.03, "modal mass of it", "kg", (0.015, 0.08), (1e-3, 100.0), "assumed")
+    snap_ratio: float = quantity(
+        0.5, "part of the leaf's blow on the fixed contact that drives the plate", "", (0.2, 1.0), (0.0, 1.0)
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True, eq=False)
+class ButtonPhysics:
+    """One real button as the twin has it; nothing here changes during a press.
+
+    Attributes
+    ----------
+    name, source, licence : of the button and of the curves it is made from.
+    press_N, release_N : (n,) slow force at 0, curve.step_m, ... up to the stop.
+    """
+
+    name: str
+    source: str
+    licence: str
+    press_N: FloatArray
+    release_N: FloatArray
+    curve: Curve = field(default_factory=Curve)
+    slider: Slider = field(default_factory=Slider)
+    leaf: Leaf = field(default_factory=Leaf)
+    dome: Dome = field(default_factory=Dome)
+    housing: Housing = field(default_factory=Housing)
+
+    def __post_init__(self) -> None:
+        for name in ("press_N", "release_N"):
+            force = np.array(getattr(self, name), dtype=np.float64)
+            if force.ndim != 1 or force.size < FEWEST_FORCES or not np.isfinite(force).all():
+                raise ModelError(f"{name} must hold at least {FEWEST_FORCES} finite forces")
+            force.flags.writeable = False
+            object.__setattr__(self, name, force)
+        if self.press_N.size != self.release_N.size:
+            sizes = f"{self.press_N.size} and {self.release_N.size}"
+            raise ModelError(f"press_N and release_N must be equally long, got {sizes}")
+        self._check_places()
+
+    def _check_places(self) -> None:
+        curve = self.curve
+        reach_m = (self.press_N.size - 1) * curve.step_m
+        if not reach_m <= curve.travel_m + 1e-9 < reach_m + curve.step_m + 2e-9:
+            raise ModelError(
+                f"press_N must end less than a step before travel_m {curve.travel_m:g} m, not at {reach_m:g}"
+            )
+        if not curve.seat_m < curve.close_m < curve.travel_m:
+            raise ModelError(
+                f"close_m must lie between seat_m {curve.seat_m:g} and travel_m {curve.travel_m:g} m, "
+                f"got {curve.close_m:g}"
+            )
+        if curve.open_m > curve.close_m:
+            raise ModelError(f"open_m must not exceed close_m {curve.close_m:g} m, got {curve.open_m:g}")

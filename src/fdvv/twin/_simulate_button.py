@@ -1,0 +1,172 @@
+"""From button, finger and gesture to the record of one press of a real button, or of many. Simulated."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import Press
+from fdvv.twin._button import ButtonPhysics
+from fdvv.twin._button_noise import ButtonNoise, button_ticks, read_force_N, settle_button_ticks
+from fdvv.twin._finger import Finger
+from fdvv.twin._flatten_button import ROW_s, STEP_s, TICK_s, button_plant, prepare
+from fdvv.twin._gesture import Gesture
+from fdvv.twin._kernel_button import ButtonGrid, run_button
+from fdvv.twin._rig_senses import ForceSensor
+from fdvv.twin._trace import BoolArray
+from fdvv.units import FloatArray, cN_from_N, mm_from_m
+
+AHEAD = 4
+"""Presses per thread that a batch runs ahead of who takes them."""
+
+
+@dataclass(frozen=True, eq=False)
+class ButtonTrace:
+    """All that the twin knows of one press of a real button, simulated; columns (n,) on one 10 kHz clock.
+
+    Attributes
+    ----------
+    t_s : from 0.
+    displacement_mm, velocity_mm_s, acceleration_m_s2 : of the cap, true.
+    force_cN : between finger (or the sensor on it) and cap, true.
+    sensed_cN : what the force sensor on the finger gives, sampled at tick and held; None for a bare finger.
+    tick : rows at which the force was sampled, every millisecond.
+    finger_mm : of the finger.
+    leaf_mm, fixed_cN : the leaf, 0 where it reaches the fixed contact, and the force of that contact.
+    plate_mm, plate_velocity_mm_s : of the plate under the button.
+    closed : the circuit is closed.
+    closing_s, opening_s : when it first closed and last opened; None if it never did.
+    energy_J : energy that the balance cannot account for, 0 if integration were exact; None if not asked.
+    """
+
+    t_s: FloatArray
+    displacement_mm: FloatArray
+    velocity_mm_s: FloatArray
+    acceleration_m_s2: FloatArray
+    force_cN: FloatArray
+    sensed_cN: FloatArray | None
+    tick: BoolArray
+    finger_mm: FloatArray
+    leaf_mm: FloatArray
+    fixed_cN: FloatArray
+    plate_mm: FloatArray
+    plate_velocity_mm_s: FloatArray
+    closed: BoolArray
+    closing_s: float | None
+    opening_s: float | None
+    energy_J: FloatArray | None
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Give the record that devices share, as a bench with perfect displacement would capture it."""
+        return Press(
+            self.t_s,
+            self.displacement_mm,
+            self.force_cN,
+            velocity_mm_s,
+            sensed_cN=self.sensed_cN,
+            tick=None if self.sensed_cN is None else self.tick,
+            simulated=True,
+        )
+
+
+def simulate_button(
+    button: ButtonPhysics,
+    finger: Finger,
+    gesture: Gesture,
+    noise: ButtonNoise,
+    sensor: ForceSensor | None = None,
+    step_s: float = STEP_s,
+    audit: bool = False,
+) -> ButtonTrace:
+    """Simulate one press of a real button in compiled C.
+
+    sensor : the force sensor worn on the fingertip; None for a bare finger, which senses nothing.
+    audit : also account for the energy of the press.
+
+    Raises ModelError if button or finger are too stiff for the step. Safe to call from threads.
+    """
+    ticks, settle = button_ticks(gesture), settle_button_ticks()
+    per_tick, per_row = _whole(TICK_s / step_s), _whole(ROW_s / step_s)
+    table = prepare(button).table
+    grid = ButtonGrid(settle, ticks, per_tick, per_row, len(table), int(audit))
+    plant = replace(button_plant(button, finger, gesture, sensor), step_s=step_s)
+    rows, switching = run_button(plant, grid, table, noise.effort_ratio)
+    if not np.isfinite(rows[:-1, -1]).all():
+        raise ModelError(
+            f"the press diverged: button or finger are too stiff or too light for steps of {step_s:g} s; "
+            "raise the lightest mass or lower the largest stiffness, damping or loss"
+        )
+    return _trace(rows, switching, noise, sensor, audit)
+
+
+def _whole(ratio: float) -> int:
+    count = round(ratio)
+    if count < 1 or abs(count - ratio) > 1e-6:
+        raise ModelError(f"the step must divide {ROW_s:g} s")
+    return count
+
+
+def _trace(
+    rows: FloatArray, switching: FloatArray, noise: ButtonNoise, sensor: ForceSensor | None, audit: bool
+) -> ButtonTrace:
+    t, x, v, a, force, filtered, finger, leaf, fixed, plate, shake, closed, energy = rows
+    per_tick = round(TICK_s / ROW_s)
+    tick = np.arange(t.size) % per_tick == 0
+    sensed = None
+    if sensor is not None:
+        sensed = np.repeat(read_force_N(sensor, filtered[tick], noise.force_N), per_tick)
+    closing, opening = (None if math.isnan(value) else float(value) for value in switching)
+    return ButtonTrace(
+        t,
+        mm_from_m(x),
+        mm_from_m(v),
+        a,
+        cN_from_N(force),
+        None if sensed is None else cN_from_N(sensed),
+        tick,
+        mm_from_m(finger),
+        mm_from_m(leaf),
+        cN_from_N(fixed),
+        mm_from_m(plate),
+        mm_from_m(shake),
+        closed > 0.5,
+        closing,
+        opening,
+        energy if audit else None,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class PressPlan:
+    """One press of a batch: what is pressed, by whom, how, and with which noise."""
+
+    button: ButtonPhysics
+    finger: Finger
+    gesture: Gesture
+    noise: ButtonNoise
+    sensor: ForceSensor | None = None
+
+
+def simulate_batch(plans: Iterable[PressPlan], threads: int = 2) -> Iterator[ButtonTrace]:
+    """Simulate many presses on a pool of threads; give them one by one, in the order of plans.
+
+    Only a few are under way or waiting at a time, so that memory does not grow with their number.
+    """
+    from concurrent.futures import Future, ThreadPoolExecutor
+
+    def one(p: PressPlan) -> ButtonTrace:
+        return simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
+
+    waiting: deque[Future[ButtonTrace]] = deque()
+    with ThreadPoolExecutor(threads) as pool:
+        for press_plan in plans:
+            waiting.append(pool.submit(one, press_plan))
+            if len(waiting) > AHEAD * threads:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()

@@ -1,0 +1,88 @@
+"""The compiled button beside adaptive solvers that share no code with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fdvv.twin import (
+    Finger,
+    ForceSensor,
+    PressPlan,
+    button_names,
+    draw_button,
+    draw_button_noise,
+    draw_finger,
+    load_button,
+    plan,
+    reference_button,
+    simulate_batch,
+    simulate_button,
+)
+from fdvv.units import FloatArray
+
+
+def rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def a_plan(name: str, press_s: float, sensor: ForceSensor | None, seed: int = 1) -> PressPlan:
+    button, finger = load_button(name), Finger()
+    gesture = plan(finger, button.curve.travel_m, press_s)
+    noise = draw_button_noise(finger, gesture, np.random.default_rng(seed), sensor)
+    return PressPlan(button, finger, gesture, noise, sensor)
+
+
+def agrees(p: PressPlan, method: str = "DOP853", rtol: float = 1e-8) -> None:
+    trace = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
+    reference = reference_button(p.button, p.finger, p.gesture, p.noise, p.sensor, method, rtol)  # type: ignore[arg-type]
+    assert np.abs(trace.displacement_mm - reference.displacement_mm).max() < 1e-3
+    assert rms(trace.force_cN - reference.force_cN) < 0.1
+    assert np.abs(trace.leaf_mm - reference.leaf_mm).max() < 2e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "sensor"), [("mx-clear", ForceSensor()), ("macbook-pro-2011", None)], ids=["leaf", "dome"]
+)
+def test_a_fast_press_agrees_with_the_adaptive_solver(name: str, sensor: ForceSensor | None) -> None:
+    agrees(a_plan(name, 0.04, sensor))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", button_names())
+@pytest.mark.parametrize(("method", "rtol"), [("DOP853", 1e-8), ("Radau", 1e-7)])
+def test_every_button_agrees_with_two_adaptive_solvers(name: str, method: str, rtol: float) -> None:
+    agrees(a_plan(name, 0.05, ForceSensor()), method, rtol)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", button_names())
+def test_every_button_under_a_bare_finger_agrees_with_the_adaptive_solver(name: str) -> None:
+    agrees(a_plan(name, 0.12, None))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_drawn_buttons_and_fingers_agree_with_the_adaptive_solver(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    button = draw_button(load_button(button_names()[seed]), random)
+    finger, sensor = draw_finger(random), ForceSensor()
+    gesture = plan(finger, button.curve.travel_m, 0.08)
+    agrees(PressPlan(button, finger, gesture, draw_button_noise(finger, gesture, random, sensor), sensor))
+
+
+def test_a_batch_gives_the_same_presses_in_order_on_any_number_of_threads() -> None:
+    plans = [a_plan("mx-brown", 0.03 + 0.002 * i, ForceSensor(), i) for i in range(8)]
+    one, two = (list(simulate_batch(plans * 3, threads)) for threads in (1, 2))
+    alone = [simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor) for p in plans]
+    for a, b, c in zip(one, two, alone * 3, strict=True):
+        assert np.array_equal(a.force_cN, b.force_cN)
+        assert np.array_equal(a.force_cN, c.force_cN)
+    assert len({trace.t_s.size for trace in alone}) > 1
+
+
+def test_two_presses_with_the_same_noise_are_the_same_to_the_bit() -> None:
+    p = a_plan("hp-pr1101u", 0.05, None)
+    first, second = (simulate_button(p.button, p.finger, p.gesture, p.noise) for _ in range(2))
+    assert np.array_equal(first.acceleration_m_s2, second.acceleration_m_s2)
