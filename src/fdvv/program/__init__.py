@@ -6,10 +6,11 @@ from fdvv.program._compile import Compiled, compile_program
 from fdvv.program._condition import Condition, Transition, When
 from fdvv.program._describe import Description, describe
 from fdvv.program._file import SUFFIX, load_program, program_from_json, program_to_json, save_program
+from fdvv.program._library import Parameter, Recipe, load_shipped, make, programs
 from fdvv.program._limits import Limits
 from fdvv.program._program import During, Program, Signal, State, Velocity, VibrationEvent
 from fdvv.program._records import VERSION, schema
-from fdvv.program._surface import Surface, flat, line, of_model, of_surface
+from fdvv.program._surface import Surface, flat, line, of_model, of_surface, raised, scaled
 from fdvv.program._synth import (
     RATE_HZ,
     SINE_Q12,
@@ -42,7 +43,9 @@ __all__ = [
     "During",
     "Finding",
     "Limits",
+    "Parameter",
     "Program",
+    "Recipe",
     "Report",
     "SILENCE_counts",
     "Severity",
@@ -66,15 +69,20 @@ __all__ = [
     "line",
     "load_messages",
     "load_program",
+    "load_shipped",
+    "make",
     "of_model",
     "of_surface",
     "play_message",
     "program_from_json",
     "program_to_json",
+    "programs",
+    "raised",
     "read_status",
     "render",
     "require_accepted",
     "save_program",
+    "scaled",
     "schema",
     "set_message",
     "slot_of_vibration",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,3 +123,19 @@ def of_surface(surface: ForceSurface, stroke: Stroke | str, name: str | None = N
 def _of_table(name: str, x_mm: FloatArray, v_mm_s: FloatArray, table_cN: FloatArray) -> Surface:
     rounded = np.round(table_cN, DIGITS_cN) + 0.0
     return Surface(name, tuple(x_mm.tolist()), tuple(map(tuple, rounded.tolist())), tuple(v_mm_s.tolist()))
+
+
+def scaled(surface: Surface, name: str, ratio_of_mm_s: Mapping[float, float]) -> Surface:
+    """Make the slowest row of a surface depend on velocity: at each given one, so many times itself."""
+    row = np.array(surface.force_cN[0])
+    speeds = np.array(sorted(ratio_of_mm_s))
+    rows = np.array([ratio * row for _, ratio in sorted(ratio_of_mm_s.items())])
+    return _of_table(name, np.array(surface.displacement_mm), speeds, rows)
+
+
+def raised(surface: Surface, name: str, points: Sequence[tuple[float, float]]) -> Surface:
+    """Add lines between (displacement_mm, force_cN) points to every row, at the surface's own points."""
+    places, forces = (np.array(column, dtype=float) for column in zip(*sorted(points), strict=True))
+    x_mm = np.array(surface.displacement_mm)
+    table = surface.table_cN + np.interp(x_mm, places, forces, left=0.0, right=0.0)
+    return _of_table(name, x_mm, np.array(surface.velocity_mm_s), table)
