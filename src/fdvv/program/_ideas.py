@@ -1,6 +1,7 @@
 """Buttons that no mechanism has: the five of the paper, and rapid trigger, each over a base model.
 
-Button Simulation and Design via FDVV Models (CHI 2020), "Prototyping Innovative Buttons". What each does is promised in its docstring and tested in tests/program/test_ideas.py.
+Button Simulation and Design via FDVV Models (CHI 2020), "Prototyping Innovative Buttons". What
+each does is promised in its docstring and tested in tests/program/test_ideas.py.
 """
 
 from __future__ import annotations
@@ -127,12 +128,14 @@ def _slowest(base: FDVVModel, stroke: Stroke) -> tuple[float, ...]:
     return base.velocities_mm_s(serving)[:1]
 
 
-def multi_level(base: FDVVModel, levels: int = 3, detent_cN: float = 25.0, detent_mm: float = 0.3) -> Program:
+def multi_level(
+    base: FDVVModel, levels: int = 3, detent_cN: float = 25.0, detent_mm: float = 0.32
+) -> Program:
     """Divide the stroke into depths that can be told apart, each with its key level.
 
     Level k of `levels` begins at k / (levels + 1) of the travel, to 0.02 mm. Before it, the press is raised
-    by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz more per
-    level. The key is the level; a level is left 0.1 mm above where it begins. The release has no detents.
+    by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz
+    more per level. The key is the level; it is left 0.1 mm above where it begins. The release has no detents.
     """
     _within("levels", levels, 1, 8)
     _within("detent_cN", detent_cN, 0, 100)
