@@ -62,6 +62,8 @@ class Candidates:
 
     def __init__(self, surface: Surface) -> None:
         self.surface = surface
+        self._points_mm = np.array(surface.displacement_mm)
+        self._source_cN = surface.table_cN
         self.start_um16 = place_um16(surface.displacement_mm[0])
         # inner points only: up to the last one, grid and surface hold the same end
         self.span_um16 = max(place_um16(surface.displacement_mm[-1]) - self.start_um16, FINEST_um16)
@@ -73,21 +75,24 @@ class Candidates:
     def _step_um16(self, columns: int) -> int:
         return -(-self.span_um16 // (columns - 1))
 
-    def _places_mm(self, columns: int) -> FloatArray:
-        step = self._step_um16(columns)
-        return (self.start_um16 + step * np.arange(columns, dtype=np.float64)) / COUNTS_PER_MM
-
     def _table_cN(self, columns: int) -> FloatArray:
-        places = self._places_mm(columns)
-        rows = range(len(self.surface.velocity_mm_s))
-        return np.array([self.surface.row_cN(row, places) for row in rows])
+        """Evaluate every row at the columns."""
+        step_mm = self._step_um16(columns) / COUNTS_PER_MM
+        places = self.start_um16 / COUNTS_PER_MM + step_mm * np.arange(columns)
+        after = np.clip(np.searchsorted(self._points_mm, places), 1, self._points_mm.size - 1)
+        before_mm, after_mm = self._points_mm[after - 1], self._points_mm[after]
+        part = np.clip((places - before_mm) / (after_mm - before_mm), 0.0, 1.0)
+        table: FloatArray = (1 - part) * self._source_cN[:, after - 1] + part * self._source_cN[:, after]
+        return table
 
     def _error_cN(self, columns: int) -> float:
         """Compare at the surface's own points: between straight lines nothing can be worse."""
-        places = self._places_mm(columns)
-        points = np.array(self.surface.displacement_mm)
-        found = [np.interp(points, places, row) for row in self._table_cN(columns)]
-        return float(np.max(np.abs(np.array(found) - self.surface.table_cN)))
+        table = self._table_cN(columns)
+        along = (self._points_mm * COUNTS_PER_MM - self.start_um16) / self._step_um16(columns)
+        before = np.clip(along.astype(int), 0, columns - 2)
+        part = np.clip(along - before, 0.0, 1.0)
+        found = (1 - part) * table[:, before] + part * table[:, before + 1]
+        return float(np.max(np.abs(found - self._source_cN)))
 
     def coarsest(self, bound_cN: float) -> int:
         """Give the fewest columns within the bound; where none is, the best there are."""

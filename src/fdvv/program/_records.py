@@ -143,5 +143,6 @@ def schema() -> dict[str, Any]:
 def _tidy(value: Any) -> Any:
     """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
     if isinstance(value, dict):
-        return {k: inspect.cleandoc(v) if k == "description" else _tidy(v) for k, v in value.items()}
+        told = isinstance(value.get("description"), str)
+        return {k: inspect.cleandoc(v) if told and k == "description" else _tidy(v) for k, v in value.items()}
     return [_tidy(v) for v in value] if isinstance(value, list) else value
