@@ -31,6 +31,8 @@ def conditions(draw: st.DrawFn) -> Condition:
         return Condition(when)
     if when in (When.AFTER, When.HOST_EVENT):
         return Condition(when, draw(st.integers(0, 31)))
+    if when in (When.FASTER_THAN, When.SLOWER_THAN):
+        return Condition(when, draw(st.integers(0, 500)))
     return Condition(when, draw(PLACES_mm))
 
 

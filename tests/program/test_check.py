@@ -120,7 +120,7 @@ def test_a_travel_beyond_the_stop_is_refused() -> None:
     assert "6.2" in refusals(replace(two(), travel_mm=6.3))[0][1]
 
 
-# -- programs that hang ---------------------------------------------------------------------------------------
+# -- programs that hang --------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_an_earlier_transition_may_save_a_program_from_hanging() -> None:
     assert any("without any motion" in reason for _, reason in refusals(two(up_at=2.5)))
 
 
-# -- programs that never come back ------------------------------------------------------------------------------
+# -- programs that never come back --------------------------------------------------
 
 
 def test_a_state_that_waits_for_the_host_alone_is_refused() -> None:
@@ -176,7 +176,7 @@ def test_a_button_too_weak_for_friction_and_weight_is_refused_by_where_it_sticks
 
 
 def test_a_bounce_at_the_top_that_triggers_again_is_refused() -> None:
-    close = make("fast-tapping", push_cN=300, trigger_mm=0.4)
+    close = make("fast-tapping", push_cN=60, trigger_mm=0.4)
     bouncy = Limits(rebound_ratio=0.9)
     assert check_program(close).refused == ()
     assert any("for ever" in reason for _, reason in refusals(close, bouncy))

@@ -100,7 +100,7 @@ def test_a_straight_surface_takes_few_columns_and_a_wavy_one_many() -> None:
 
 
 def test_where_room_is_short_all_grids_become_coarser_within_the_bound() -> None:
-    few, many = (one_state(*(wavy(f"w{i}", 400, 5, 8) for i in range(n))) for n in (1, 12))
+    few, many = (one_state(*(wavy(f"w{i}", 400, 5 + i / 100, 8) for i in range(n))) for n in (1, 12))
     loose = Limits(worst_grid_error_cN=2.0)
     roomy, tight = compile_program(few, loose), compile_program(many, loose)
     assert roomy.grid_error_cN["w0"] <= 0.1 < tight.grid_error_cN["w0"] <= 2.0
@@ -112,7 +112,7 @@ def test_where_room_is_short_all_grids_become_coarser_within_the_bound() -> None
 def test_equal_tables_are_stored_once() -> None:
     same = compile_program(one_state(wavy("a", 100, 2), replace(wavy("a", 100, 2), name="b")))
     other = compile_program(one_state(wavy("a", 100, 2), wavy("b", 100, 2.1)))
-    assert len(same.image) < len(other.image) - 100
+    assert len(same.image) < len(other.image) - 90
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 from msgspec import Meta
@@ -34,6 +34,7 @@ ConditionRecord = Annotated[
         min_length=1,
         max_length=1,
         description="one condition and its value; true for always, turned_to_press and turned_to_release",
+        extra_json_schema={"propertyNames": {"enum": list(get_args(ConditionName))}},
     ),
 ]
 
