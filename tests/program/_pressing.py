@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.core import Core, inputs_at
+from fdvv.core import Core, RecordArray, inputs_at
 from fdvv.program import Program, compile_program
 from fdvv.protocol import NONE, Mode, Settings
 
@@ -24,7 +24,8 @@ def path(*points: tuple[float, float]) -> Array:
     """Give displacements (mm) of every tick on straight lines through (time s, displacement mm) points."""
     times, places = zip(*points, strict=True)
     t = np.arange(round(times[-1] * TICKS_PER_S) + 1) / TICKS_PER_S
-    return np.interp(t, times, places)
+    x_mm: Array = np.interp(t, times, places)
+    return x_mm
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def press(program: Program, x_mm: Array, events: Mapping[int, int] | None = None
     return Pressed(sensed / 16000, states, outputs["key"].tolist(), signals, forces)
 
 
-def _run(core: Core, inputs: np.ndarray, event: int | None) -> np.ndarray:  # type: ignore[type-arg]
+def _run(core: Core, inputs: RecordArray, event: int | None) -> RecordArray:
     if event is not None:
         core.event(event)
     return core.run(inputs)

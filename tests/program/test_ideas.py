@@ -165,12 +165,12 @@ def test_states_follow_each_other_the_same_at_every_pace() -> None:
 )
 def test_a_parameter_that_cannot_be_is_named(name: str, parameters: dict[str, float], place: str) -> None:
     with pytest.raises(InputError, match=place):
-        make(name, **parameters)
+        make(name, None, **parameters)
 
 
 def test_parameters_change_only_what_they_name() -> None:
     def changed(**parameters: float) -> list[tuple[Program, Program]]:
-        return list(pairwise([make("dwell-ticks"), make("dwell-ticks", **parameters)]))
+        return list(pairwise([make("dwell-ticks"), make("dwell-ticks", None, **parameters)]))
 
     ((before, after),) = changed(period_ms=100)
     assert before.surfaces == after.surfaces

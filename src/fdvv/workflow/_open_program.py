@@ -10,6 +10,11 @@ from fdvv.program import SUFFIX, Program, load_program, load_shipped, make, prog
 from fdvv.workflow._open import open_model
 
 
+def names_program(spec: str) -> bool:
+    """Tell whether spec names a program: a shipped one, or a file of that ending."""
+    return spec.endswith(SUFFIX) or spec in [recipe.name for recipe in programs()]
+
+
 def open_program(spec: str) -> Program:
     """Give the program that spec names: a shipped one, or a *.fdvv-program.json file. Raises InputError."""
     names = [recipe.name for recipe in programs()]
