@@ -1,21 +1,26 @@
-"""Write the published JSON schema of the model file: ``python tools/make_schema.py``."""
+"""Write the published JSON schemas of model and program files: ``python tools/make_schema.py``."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 from fdvv.files import write_atomic
 from fdvv.model import schema
+from fdvv.program import schema as program_schema
 
-OUTPUT = Path(__file__).parents[1] / "docs" / "reference" / "fdvv.schema.json"
+REFERENCE = Path(__file__).parents[1] / "docs" / "reference"
+OUTPUT = REFERENCE / "fdvv.schema.json"
+PROGRAM_OUTPUT = REFERENCE / "fdvv-program.schema.json"
 
 
-def text() -> str:
-    """Give the schema as it is published."""
-    return json.dumps(schema(), indent=2, ensure_ascii=False) + "\n"
+def text(found: dict[str, Any] | None = None) -> str:
+    """Give a schema as it is published; by default that of the model file."""
+    return json.dumps(schema() if found is None else found, indent=2, ensure_ascii=False) + "\n"
 
 
 if __name__ == "__main__":
-    write_atomic(OUTPUT, text())
-    print(OUTPUT)
+    for path, found in ((OUTPUT, schema()), (PROGRAM_OUTPUT, program_schema())):
+        write_atomic(path, text(found))
+        print(path)

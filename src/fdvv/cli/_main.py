@@ -22,6 +22,7 @@ COMMANDS = {
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
+    "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
 }
 

@@ -15,6 +15,7 @@ from fdvv.workflow._devices import open_device
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
+from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
@@ -44,6 +45,7 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "load_actuation",
+    "make_program",
     "measured_files",
     "merge_parts",
     "one_curve",
@@ -52,6 +54,7 @@ __all__ = [
     "open_model",
     "open_models",
     "open_part",
+    "open_program",
     "probe",
     "program_image",
     "save_actuation",

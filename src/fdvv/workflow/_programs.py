@@ -8,8 +8,10 @@ from pathlib import Path
 from fdvv.device import surface_image
 from fdvv.errors import InputError
 from fdvv.model import ForceSurface
+from fdvv.program import compile_program, require_accepted
 from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC
 from fdvv.workflow._open import open_model
+from fdvv.workflow._open_program import names_program, open_program
 
 MAGIC = IMAGE_MAGIC.to_bytes(4, "little")
 STEP_mm = 0.05
@@ -18,12 +20,17 @@ STEP_mm = 0.05
 def program_image(button: str, velocities_mm_s: Sequence[float]) -> bytes:
     """Give the image of a program: that of a file, or one that follows a button's own force.
 
-    button : a program image (its first bytes are FDVP), else what `open_model` opens; its force is sampled
-    at these speeds and not compensated for any rig. Raises InputError.
+    button : a program image (its first bytes are FDVP), a program as `open_program` opens it, which must be
+    accepted, else what `open_model` opens; its force is sampled at these speeds and not compensated for any
+    rig. Raises InputError.
     """
     path = Path(button)
     if path.is_file() and path.stat().st_size <= IMAGE_BYTES and path.read_bytes()[:4] == MAGIC:
         return path.read_bytes()
+    if names_program(button):
+        program = open_program(button)
+        require_accepted(program)
+        return compile_program(program).image
     model = open_model(button)
     if not model.of("press"):
         raise InputError(button, "curves", "it has no press, there is nothing to render", "merge one into it")

@@ -1,0 +1,229 @@
+"""fdvv program: list, show, make, check and compile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._output import (
+    Finite,
+    check_output,
+    counted,
+    json_option,
+    number,
+    print_json,
+    print_table,
+    print_warnings,
+    print_wrapped,
+)
+
+if TYPE_CHECKING:
+    from fdvv.program import Limits, Program, Report, State
+
+SUFFIX = ".fdvv-program.json"
+IMAGE_SUFFIX = ".fdvv-image"
+
+opposing_option = click.option(
+    "--opposing-cN",
+    "opposing_cN",
+    type=Finite(min=0),
+    help="Friction, and weight that nothing carries, that may keep the cap down (cN); 5 by default.",
+)
+
+
+@click.group()
+def program() -> None:
+    """Work with programs: list, show, make, check, compile.
+
+    A program is what a device runs: states with their forces, and what leads from one to another.
+    PROGRAM is a shipped program's name or a *.fdvv-program.json file (docs/reference/program-file.md).
+    """
+
+
+@program.command("list")
+@json_option
+def list_(as_json: bool) -> None:
+    """List the shipped programs and their parameters."""
+    from fdvv.program import programs
+
+    found = programs()
+    if as_json:
+        entries = [
+            {
+                "name": p.name,
+                "summary": p.summary,
+                "details": p.details,
+                "parameters": {q.name: q.default for q in p.parameters},
+            }
+            for p in found
+        ]
+        print_json({"programs": entries})
+        return
+    for recipe in found:
+        print_wrapped(f"{recipe.name}: {recipe.summary}")
+        if recipe.parameters:
+            click.echo("  " + ", ".join(f"{p.name}={p.default:g}" for p in recipe.parameters))
+
+
+@program.command()
+@click.argument("program")
+@json_option
+def show(program: str, as_json: bool) -> None:
+    """Show the states of a program and what leads from one to another.
+
+    PROGRAM may also be a compiled image, whose parts are numbered.
+    """
+    path = Path(program)
+    if path.is_file() and path.read_bytes()[:4] == b"FDVP":
+        from fdvv.program import describe
+
+        held = describe(path.read_bytes(), path)
+        parts: Any = held
+        told = f"{held.name}: image of {held.size_bytes} bytes"
+    else:
+        from fdvv.workflow import open_program
+
+        opened = open_program(program)
+        parts = opened
+        told = f"{opened.name}: {opened.description}"
+    if as_json:
+        print_json(_parts(parts))
+        return
+    print_wrapped(told)
+    click.echo(f"  travel {parts.travel_mm:g} mm, starts in {parts.start!r}")
+    rows = [_row(state) for state in parts.states]
+    print_table(["state", "press", "release", "plays", "key", "fade_ms", "bias_cN"], rows, left=4)
+    for state in parts.states:
+        for transition in state.transitions:
+            click.echo(f"{state.name}: {transition}")
+
+
+def _row(state: State) -> list[str]:
+    plays = [
+        state.enter_signal or "",
+        f"{state.repeat_signal}/{state.repeat_ms} ms" if state.repeat_ms else "",
+    ]
+    bias = number(state.bias_cN) if not state.bias_ms else f"{state.bias_cN:g}…{state.bias_end_cN:g}"
+    played = ", ".join(filter(None, plays)) or "–"
+    return [state.name, state.press, state.release, played, str(state.key), str(state.fade_ms), bias]
+
+
+def _parts(parts: Any) -> dict[str, Any]:
+    import dataclasses
+
+    return dataclasses.asdict(parts)
+
+
+@program.command()
+@click.argument("name")
+@click.option("--base", help="Button it stands on: a built-in, a *.fdvv.json or a measured file.")
+@click.option("--set", "given", multiple=True, metavar="NAME=NUMBER", help="A parameter; may be repeated.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, dir_okay=False),
+    required=True,
+    help="The *.fdvv-program.json to write.",
+)
+def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> None:
+    """Make a shipped program with parameters of your own, over a button of your choice.
+
+    NAME is one of fdvv program list, as in: make rapid-trigger --set press_mm=0.1 -o r.fdvv-program.json
+    """
+    from fdvv.program import save_program
+    from fdvv.workflow import make_program
+
+    check_output(output, SUFFIX)
+    made = make_program(name, base, given)
+    save_program(made, output)
+    click.echo(f"{output}: {counted(len(made.states), 'state')}, travel {made.travel_mm:.3f} mm")
+
+
+@program.command()
+@click.argument("program")
+@opposing_option
+@json_option
+def check(program: str, opposing_cN: float | None, as_json: bool) -> None:
+    """Check a program against the paper's rig: forces, heat, hangs, and that the cap comes back.
+
+    Exit status 1 if it is refused. What is proven is in docs/explanation/programs.md.
+    """
+    from fdvv.program import check_program
+    from fdvv.workflow import open_program
+
+    opened = open_program(program)
+    report = check_program(opened, _limits(opposing_cN))
+    if as_json:
+        print_json(_report(opened, report))
+    else:
+        for finding in report.findings:
+            print_wrapped(f"{finding.severity}: {finding}")
+        click.echo(f"{opened.name}: {'refused' if report.refused else 'accepted'}")
+        if report.return_s is not None:
+            click.echo(f"  back at the top within {report.return_s:.2f} s of letting go")
+        click.echo(
+            f"  steepest {report.stiffness_cN_mm:.0f} cN/mm, coil {report.rise_K:.1f} K warmer if held"
+        )
+    if report.refused:
+        raise click.exceptions.Exit(1)
+
+
+def _limits(opposing_cN: float | None) -> Limits:
+    from fdvv.program import Limits
+
+    return Limits() if opposing_cN is None else Limits(opposing_cN=opposing_cN)
+
+
+def _report(opened: Program, report: Report) -> dict[str, Any]:
+    findings = [
+        {"severity": str(f.severity), "state": f.state, "place": f.place, "reason": f.reason}
+        for f in report.findings
+    ]
+    return {
+        "name": opened.name,
+        "accepted": not report.refused,
+        "return_s": report.return_s,
+        "stiffness_cN_mm": report.stiffness_cN_mm,
+        "rise_K": report.rise_K,
+        "findings": findings,
+    }
+
+
+@program.command("compile")
+@click.argument("program")
+@opposing_option
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, dir_okay=False),
+    required=True,
+    help="The *.fdvv-image to write.",
+)
+@json_option
+def compile_(program: str, opposing_cN: float | None, output: Path, as_json: bool) -> None:
+    """Check a program and compile it to the image that a device takes.
+
+    Columns of a surface are evenly spaced in an image; what that and rounding cost is told.
+    """
+    from fdvv.files import write_atomic
+    from fdvv.program import compile_program, require_accepted
+    from fdvv.workflow import open_program
+
+    check_output(output, IMAGE_SUFFIX)
+    opened = open_program(program)
+    limits = _limits(opposing_cN)
+    report = require_accepted(opened, limits)
+    compiled = compile_program(opened, limits)
+    write_atomic(output, compiled.image)
+    if as_json:
+        surfaces = {
+            name: {"columns": columns, "grid_error_cN": compiled.grid_error_cN[name]}
+            for name, columns in compiled.columns.items()
+        }
+        print_json({"output": str(output), "bytes": len(compiled.image), "surfaces": surfaces})
+    else:
+        worst_cN = max(compiled.grid_error_cN.values())
+        click.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
+    print_warnings([str(finding) for finding in report.warnings])

@@ -1,0 +1,249 @@
+"""Whether a program may be given to a rig: what it asks for, whether it hangs, whether the cap comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from fdvv.errors import InputError
+from fdvv.program._compile import compile_program
+from fdvv.program._condition import When
+from fdvv.program._limits import Limits
+from fdvv.program._program import Program, State
+from fdvv.program._return import Returning
+from fdvv.program._still import find_hang
+from fdvv.program._surface import Surface
+
+FASTEST_PRESS_mm_s = 300.0
+"""Speed at which a surface's slope is held against the rig's slew; fingers seldom press faster."""
+
+
+class Severity(StrEnum):
+    """Whether a finding forbids the program."""
+
+    REFUSED = "refused"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is wrong or doubtful.
+
+    Attributes
+    ----------
+    severity : refused or a warning.
+    state : name of the state it is about; empty for the whole program.
+    place : where in it.
+    reason : what is wrong, with the figures.
+    """
+
+    severity: Severity
+    state: str
+    place: str
+    reason: str
+
+    def __str__(self) -> str:
+        where = f"state {self.state!r}, " if self.state else ""
+        return f"{where}{self.place}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a check found.
+
+    Attributes
+    ----------
+    findings : refusals first.
+    return_s : bound of the time from leaving the cap to the start state at the top; None if unproven.
+    stiffness_cN_mm : steepest slope of any surface in use.
+    rise_K : how much warmer the coil ends if the strongest force at the bottom is held for ever.
+    """
+
+    findings: tuple[Finding, ...]
+    return_s: float | None
+    stiffness_cN_mm: float
+    rise_K: float
+
+    @property
+    def refused(self) -> tuple[Finding, ...]:
+        """Give the findings that forbid the program."""
+        return tuple(f for f in self.findings if f.severity is Severity.REFUSED)
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Give the others."""
+        return tuple(f for f in self.findings if f.severity is Severity.WARNING)
+
+
+def check_program(program: Program, limits: Limits | None = None) -> Report:
+    """Check a program against a rig.
+
+    Refused: what does not compile, forces beyond the limit, forces that must change faster than the rig can
+    (but for the contact step at the top), a travel beyond the stop, states that cannot be reached, vibrations
+    repeated before they end, a hold at the bottom that overheats the coil, states that follow each other for
+    ever without motion, and a program whose cap is not proven to come back. Warnings: stiffness that may
+    buzz, a hold that derates, transitions beyond the travel.
+    docs/explanation/programs.md tells what is proven.
+    """
+    limits = limits or Limits()
+    refusal, margin_cN = _compiled(program, limits)
+    returning = Returning(program, limits, margin_cN)
+    rests = [_held_at_bottom_cN(program, state) for state in program.states]
+    findings = [
+        *refusal,
+        *_travel(program, limits),
+        *(f for state in program.states for f in _state(program, state, limits)),
+        *(f for state, force in zip(program.states, rests, strict=True) for f in _heat(state, force, limits)),
+        *_unreachable(program),
+        *_hang(program),
+        *_flaws(returning),
+    ]
+    findings.sort(key=lambda f: f.severity is Severity.WARNING)
+    proven = not any(f.severity is Severity.REFUSED for f in findings)
+    return Report(
+        tuple(findings),
+        returning.return_s() if proven else None,
+        max(
+            _slope_cN_mm(program.surface(n), limits)[0] for s in program.states for n in (s.press, s.release)
+        ),
+        max(limits.rise_K(force) for force in rests),
+    )
+
+
+def require_accepted(program: Program, limits: Limits | None = None) -> Report:
+    """Check a program; raise InputError with the first reason if it is refused."""
+    report = check_program(program, limits)
+    if report.refused:
+        first = report.refused[0]
+        place = f"state {first.state!r}, {first.place}" if first.state else first.place
+        remedy = "change it; fdvv program check lists everything"
+        raise InputError(f"program {program.name!r}", place, first.reason, remedy)
+    return report
+
+
+def _refused(state: str, place: str, reason: str) -> Finding:
+    return Finding(Severity.REFUSED, state, place, reason)
+
+
+def _warning(state: str, place: str, reason: str) -> Finding:
+    return Finding(Severity.WARNING, state, place, reason)
+
+
+def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
+    """Give the refusal to compile, and how far the image's forces are from the program's."""
+    try:
+        compiled = compile_program(program, limits)
+    except InputError as error:
+        return [_refused("", error.place, error.reason)], limits.worst_grid_error_cN
+    return [], max(compiled.grid_error_cN.values()) + compiled.rounding_cN
+
+
+def _travel(program: Program, limits: Limits) -> Iterator[Finding]:
+    if program.travel_mm > limits.largest_travel_mm:
+        reason = f"{program.travel_mm:g} mm, the rig's stop reaches {limits.largest_travel_mm:g}"
+        yield _refused("", "travel", reason)
+
+
+def _state(program: Program, state: State, limits: Limits) -> Iterator[Finding]:
+    for name in dict.fromkeys((state.press, state.release)):
+        yield from _surface(state, program.surface(name), limits)
+    if state.bias_ms:
+        slew_cN_s = 1000 * abs(state.bias_end_cN - state.bias_cN) / state.bias_ms
+        if slew_cN_s > limits.slew_cN_s:
+            reason = f"{slew_cN_s:.3g} cN/s, the rig's force changes by {limits.slew_cN_s:.3g}"
+            yield _refused(state.name, "bias", reason)
+    for signal in program.signals:
+        if signal.name == state.repeat_signal and state.repeat_ms < 1000 * signal.duration_s:
+            reason = f"every {state.repeat_ms} ms, it lasts {1000 * signal.duration_s:g} ms"
+            yield _refused(state.name, f"repeated signal {signal.name!r}", reason)
+    for i, transition in enumerate(state.transitions):
+        when = transition.when
+        if when.when is When.DEEPER_THAN and when.value >= program.travel_mm:
+            reason = f"{when}, the travel ends at {program.travel_mm:g} mm"
+            yield _warning(state.name, f"transition {i + 1}", reason)
+
+
+def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding]:
+    place = f"surface {surface.name!r}"
+    low, high = state.biases_cN()
+    table = surface.table_cN
+    strongest_cN = max(abs(float(table.min()) + low), abs(float(table.max()) + high))
+    if strongest_cN > limits.force_cN:
+        yield _refused(state.name, place, f"{strongest_cN:.4g} cN, the rig gives {limits.force_cN:g}")
+    slope_cN_mm, at_mm = _slope_cN_mm(surface, limits)
+    slew_cN_s = slope_cN_mm * FASTEST_PRESS_mm_s
+    where = f"{place} at {at_mm:.2f} mm"
+    if slew_cN_s > limits.slew_cN_s:
+        reason = (
+            f"{slope_cN_mm:.0f} cN/mm at {FASTEST_PRESS_mm_s:g} mm/s is {slew_cN_s:.3g} cN/s, "
+            f"the rig's force changes by {limits.slew_cN_s:.3g}"
+        )
+        yield _refused(state.name, where, reason)
+    elif slope_cN_mm > limits.stiffness_cN_mm:
+        reason = f"{slope_cN_mm:.0f} cN/mm, a held cap may buzz above {limits.stiffness_cN_mm:.0f}"
+        yield _warning(state.name, where, reason)
+
+
+def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
+    """Give the steepest slope of a surface below the top, up or down, and where it begins.
+
+    Above it the cap rests against its stop, and the contact step of a real button is as steep as it is.
+    """
+    slopes = np.abs(np.diff(surface.table_cN, axis=1) / np.diff(surface.displacement_mm))
+    slopes[:, np.array(surface.displacement_mm[1:]) <= limits.top_mm] = 0.0
+    column = int(np.argmax(slopes.max(axis=0)))
+    return float(slopes.max()), surface.displacement_mm[column]
+
+
+def _held_at_bottom_cN(program: Program, state: State) -> float:
+    """Give the strongest force that a state holds against a finger at the bottom."""
+    bottom = np.array([program.travel_mm])
+    forces = [
+        float(surface.row_cN(row, bottom)[0]) + bias
+        for surface in (program.surface(state.press), program.surface(state.release))
+        for row in range(len(surface.velocity_mm_s))
+        for bias in state.biases_cN()
+    ]
+    return max(forces, key=abs)
+
+
+def _heat(state: State, force_cN: float, limits: Limits) -> Iterator[Finding]:
+    rise_K = limits.rise_K(force_cN)
+    reason = f"{force_cN:.0f} cN held warms the coil by {rise_K:.0f} K"
+    if rise_K > limits.settings.heat_limit_K:
+        reason += f", the rig stops at {limits.settings.heat_limit_K}"
+        yield _refused(state.name, "at the bottom", reason)
+    elif rise_K > limits.settings.derate_start_K:
+        reason += f", above {limits.settings.derate_start_K} the rig weakens it"
+        yield _warning(state.name, "at the bottom", reason)
+
+
+def _unreachable(program: Program) -> Iterator[Finding]:
+    reached, new = {program.start}, [program.start]
+    while new:
+        fresh = {t.to for t in program.state(new.pop()).transitions} - reached
+        reached |= fresh
+        new += fresh
+    for state in program.states:
+        if state.name not in reached:
+            yield _refused(state.name, "whole state", "no way leads to it")
+
+
+def _hang(program: Program) -> Iterator[Finding]:
+    found = find_hang(program)
+    if found:
+        cycle, stillness = found
+        place = f"at {stillness.displacement_mm:.2f} mm"
+        yield _refused(cycle[0], place, f"without any motion it goes {' → '.join(cycle)} for ever")
+
+
+def _flaws(returning: Returning) -> Iterator[Finding]:
+    flaws = returning.dead_ends()
+    if not flaws:
+        cycle = returning.cycle_flaw()
+        flaws = [cycle] if cycle else []
+    for flaw in flaws:
+        yield _refused(flaw.state, flaw.place, flaw.reason)

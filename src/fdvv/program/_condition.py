@@ -1,0 +1,115 @@
+"""When a program moves on: one condition with its value, and what leads from state to state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.protocol import Condition as Code
+
+EVENTS = 32
+LARGEST_mm = 100.0
+LARGEST_ms = 2**31 - 1
+LARGEST_mm_s = 4000.0
+
+
+class When(StrEnum):
+    """What a condition looks at; the unit of its value ends the name, as in a program file.
+
+    `faster_than` and `slower_than` compare the velocity that the state's `velocity` names, never negative.
+    `turned_…` hold in the tick in which the cap's direction turned. `risen_by_mm` counts up from the deepest
+    point since the state was entered, `fallen_by_mm` down from the highest.
+    """
+
+    ALWAYS = "always"
+    DEEPER_THAN = "deeper_than_mm"
+    SHALLOWER_THAN = "shallower_than_mm"
+    TURNED_TO_PRESS = "turned_to_press"
+    TURNED_TO_RELEASE = "turned_to_release"
+    FASTER_THAN = "faster_than_mm_s"
+    SLOWER_THAN = "slower_than_mm_s"
+    AFTER = "after_ms"
+    HOST_EVENT = "host_event"
+    RISEN_BY = "risen_by_mm"
+    FALLEN_BY = "fallen_by_mm"
+
+    @property
+    def code(self) -> Code:
+        """Give its number on the device: both lists have one order."""
+        return Code(list(When).index(self))
+
+
+BARE = (When.ALWAYS, When.TURNED_TO_PRESS, When.TURNED_TO_RELEASE)
+"""Conditions without a value."""
+WHOLE = (When.AFTER, When.HOST_EVENT)
+BOUNDS = {
+    When.DEEPER_THAN: (-LARGEST_mm, LARGEST_mm),
+    When.SHALLOWER_THAN: (-LARGEST_mm, LARGEST_mm),
+    When.FASTER_THAN: (0.0, LARGEST_mm_s),
+    When.SLOWER_THAN: (0.0, LARGEST_mm_s),
+    When.AFTER: (0.0, LARGEST_ms),
+    When.HOST_EVENT: (0.0, EVENTS - 1),
+    When.RISEN_BY: (0.0, LARGEST_mm),
+    When.FALLEN_BY: (0.0, LARGEST_mm),
+}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Something that may be so at a tick, as `Condition("deeper_than_mm", 1.9)`.
+
+    Attributes
+    ----------
+    when : what is looked at.
+    value : what it is compared with, in the unit that ends the name of `when`; whole milliseconds for
+        `after_ms`, 0 to 31 for `host_event`; 0 for what takes no value.
+    """
+
+    when: When
+    value: float = 0.0
+
+    def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "when", When(self.when))
+        except ValueError:
+            raise ModelError(f"no condition {self.when!r}; use one of {', '.join(When)}") from None
+        low, high = BOUNDS.get(self.when, (0.0, 0.0))
+        if not (np.isfinite(self.value) and low <= self.value <= high):
+            raise ModelError(f"{self.when} must be {low:g} to {high:g}, got {self.value}")
+        if self.when in WHOLE and self.value != int(self.value):
+            raise ModelError(f"{self.when} must be a whole number, got {self.value}")
+
+    def __str__(self) -> str:
+        name, _, unit = self.when.rpartition("_")
+        if self.when in BARE:
+            return self.when.replace("_", " ")
+        if self.when is When.HOST_EVENT:
+            return f"host event {self.value:g}"
+        if self.when in (When.FASTER_THAN, When.SLOWER_THAN):
+            name, unit = self.when.removesuffix("_mm_s"), "mm/s"
+        return f"{name.replace('_', ' ')} {self.value:g} {unit}"
+
+
+@dataclass(frozen=True)
+class Transition:
+    """The way to another state, taken when its condition and its guard both hold.
+
+    Attributes
+    ----------
+    to : name of the state to enter, which may be the same one.
+    when : the condition.
+    only_if : the guard, or None.
+    signal : what vibrates on the way, instead of what the entered state plays; or None.
+    """
+
+    to: str
+    when: Condition
+    only_if: Condition | None = None
+    signal: str | None = None
+
+    def __str__(self) -> str:
+        guard = f" if {self.only_if}" if self.only_if else ""
+        return f"{self.when}{guard} → {self.to}"

@@ -1,0 +1,179 @@
+"""What an image holds, back in a designer's units."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from fdvv.errors import InputError, ModelError
+from fdvv.program._condition import Condition, Transition, When
+from fdvv.program._image import CHECKED_FROM
+from fdvv.program._limits import COUNTS_PER_MM, COUNTS_PER_MM_S, COUNTS_PER_cN
+from fdvv.program._program import During, State, Velocity, VibrationEvent
+from fdvv.program._surface import Surface
+from fdvv.program._synth import Slot, Waveform
+from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC, NONE, ImageHeader, Record
+from fdvv.protocol import Slot as SlotRecord
+from fdvv.protocol import State as StateRecord
+from fdvv.protocol import Surface as SurfaceRecord
+from fdvv.protocol import Transition as TransitionRecord
+from fdvv.protocol import Vibration as VibrationRecord
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass(frozen=True)
+class Description:
+    """The parts of an image; it keeps no names, so they are numbered: `state 0`, `surface 0`, `signal 0`.
+
+    Attributes
+    ----------
+    name : its first ten characters.
+    travel_mm, start : as in a program.
+    states, surfaces, vibrations : as in a program; surfaces as they are on their even grids.
+    slots : what the vibration board plays as `signal 0`, `signal 1`, …
+    size_bytes : of the image.
+    """
+
+    name: str
+    travel_mm: float
+    start: str
+    states: tuple[State, ...]
+    surfaces: tuple[Surface, ...]
+    vibrations: tuple[VibrationEvent, ...]
+    slots: tuple[Slot, ...]
+    size_bytes: int
+
+
+def describe(image: bytes, source: object = "image") -> Description:
+    """Take an image apart.
+
+    Raises InputError if it is none, is damaged, or its parts do not fit together.
+    """
+    remedy = "compile the program again"
+    head_bytes = ImageHeader.length_bytes()
+    if not head_bytes <= len(image) <= IMAGE_BYTES or image[:4] != struct.pack("<I", IMAGE_MAGIC):
+        raise InputError(source, "whole file", "is not the image of a program", remedy)
+    if struct.unpack_from("<I", image, 4)[0] != zlib.crc32(image[CHECKED_FROM:]):
+        raise InputError(source, "checksum", "does not fit the bytes", remedy)
+    try:
+        return _Parts(image).description()
+    except (ModelError, struct.error, ValueError, IndexError) as error:
+        raise InputError(source, "layout", str(error), remedy) from error
+
+
+class _Parts:
+    """The records of an image, in the order in which they lie."""
+
+    def __init__(self, image: bytes) -> None:
+        self.image, self.at = image, 0
+        (self.head,) = self._take(ImageHeader, 1)
+        if self.head.size_bytes != len(image):
+            raise ModelError(f"{len(image)} bytes, its header tells of {self.head.size_bytes}")
+        self.states = self._take(StateRecord, self.head.states)
+        self.transitions = self._take(TransitionRecord, self.head.transitions)
+        self.surfaces = self._take(SurfaceRecord, self.head.surfaces)
+        self.vibrations = self._take(VibrationRecord, self.head.vibrations)
+        self.slots = self._take(SlotRecord, self.head.slots)
+
+    def _take(self, kind: type[R], count: int) -> list[R]:
+        size = kind.length_bytes()
+        found = [kind.unpack(self.image[self.at + i * size :][:size]) for i in range(count)]
+        self.at += count * size
+        return found
+
+    def description(self) -> Description:
+        head = self.head
+        return Description(
+            head.name.rstrip(b"\0").decode("ascii"),
+            head.travel_um16 / COUNTS_PER_MM,
+            _state(head.start_state),
+            tuple(self._state(i) for i in range(head.states)),
+            tuple(self._surface(i) for i in range(head.surfaces)),
+            tuple(self._vibration(v) for v in self.vibrations),
+            tuple(self._slot(s) for s in self.slots),
+            head.size_bytes,
+        )
+
+    def _state(self, index: int) -> State:
+        record = self.states[index]
+        run = self.transitions[record.first_transition :][: record.transitions]
+        if len(run) < record.transitions:
+            raise ModelError(f"state {index}: its transitions reach beyond the last")
+        return State(
+            _state(index),
+            f"surface {record.press_surface}",
+            f"surface {record.release_surface}",
+            tuple(_transition(t) for t in run),
+            record.key,
+            Velocity(list(Velocity)[record.velocity_source]),
+            _signal(record.enter_slot),
+            _signal(record.repeat_slot),
+            record.repeat_ms,
+            record.fade_ms,
+            record.bias_cN64 / COUNTS_PER_cN,
+            record.bias_end_cN64 / COUNTS_PER_cN,
+            record.bias_ms,
+        )
+
+    def _surface(self, index: int) -> Surface:
+        record = self.surfaces[index]
+        count = record.rows * record.columns
+        speeds = struct.unpack_from(f"<{record.rows}H", self.image, record.velocities_at)
+        forces = struct.unpack_from(f"<{count}h", self.image, record.forces_at)
+        places = (record.start_um16 + record.step_um16 * np.arange(record.columns)) / COUNTS_PER_MM
+        table = np.reshape(forces, (record.rows, record.columns)) / COUNTS_PER_cN
+        return Surface(
+            f"surface {index}",
+            tuple(places.tolist()),
+            tuple(map(tuple, table.tolist())),
+            tuple(speed / COUNTS_PER_MM_S for speed in speeds),
+        )
+
+    def _vibration(self, record: VibrationRecord) -> VibrationEvent:
+        return VibrationEvent(
+            f"signal {record.slot}",
+            record.at_um16 / COUNTS_PER_MM,
+            list(During)[record.stroke],
+            record.slowest_mm_s16 / COUNTS_PER_MM_S or None,
+            None if record.fastest_mm_s16 == 65_535 else record.fastest_mm_s16 / COUNTS_PER_MM_S,
+            tuple(_state(i) for i in range(self.head.states) if record.states >> i & 1),
+        )
+
+    def _slot(self, record: SlotRecord) -> Slot:
+        wave = struct.unpack_from(f"{record.wave_samples}b", self.image, record.wave_at)
+        return Slot(
+            Waveform(record.waveform),
+            record.frequency_Hz16,
+            record.duration_samples,
+            record.amplitude_counts,
+            record.decay_q16,
+            wave,
+        )
+
+
+def _state(index: int) -> str:
+    return f"state {index}"
+
+
+def _signal(slot: int) -> str | None:
+    return None if slot == NONE else f"signal {slot}"
+
+
+def _condition(code: int, value: int) -> Condition:
+    when = list(When)[code]
+    if when.endswith("_mm"):
+        return Condition(when, value / COUNTS_PER_MM)
+    if when.endswith("_mm_s"):
+        return Condition(when, value / COUNTS_PER_MM_S)
+    return Condition(when, value)
+
+
+def _transition(record: TransitionRecord) -> Transition:
+    guard = _condition(record.guard, record.guard_value) if record.guard else None
+    signal = _signal(record.slot)
+    return Transition(_state(record.target), _condition(record.condition, record.value), guard, signal)

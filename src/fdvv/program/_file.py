@@ -1,0 +1,230 @@
+"""The ``*.fdvv-program.json`` file: versioned plain JSON with a published schema.
+
+Only what differs from its default is written, in one order, numbers with the shortest digits that read back
+to the same bits, a list of plain values to a line.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from fdvv.errors import InputError, ModelError
+from fdvv.files import write_atomic
+from fdvv.model import Mode
+from fdvv.program._condition import BARE, Condition, Transition, When
+from fdvv.program._program import During, Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program._records import (
+    FORMAT,
+    VERSION,
+    ConditionRecord,
+    ModeRecord,
+    ProgramRecord,
+    SignalRecord,
+    StateRecord,
+    SurfaceRecord,
+    TransitionRecord,
+    VibrationRecord,
+)
+from fdvv.program._surface import Surface
+
+SUFFIX = ".fdvv-program.json"
+LIMIT_bytes = 16_000_000
+"""Far above any program (an image holds 7 kB), far below what would fill a machine's memory."""
+
+_REMEDY = "compare with docs/reference/program-file.md"
+_NEWLINE = b"\n"
+_CHOICES = {"stroke": During, "velocity": Velocity}
+
+
+def program_to_json(program: Program) -> str:
+    """Write a program as the text of a ``*.fdvv-program.json`` file."""
+    record = ProgramRecord(
+        "fdvv-program",
+        1,
+        program.name,
+        program.travel_mm,
+        program.start,
+        [_state_record(state) for state in program.states],
+        [
+            SurfaceRecord(s.name, list(s.displacement_mm), list(s.velocity_mm_s), _rows(s))
+            for s in program.surfaces
+        ],
+        [
+            SignalRecord(s.name, s.duration_s, [ModeRecord(**vars(mode)) for mode in s.modes])
+            for s in program.signals
+        ],
+        [VibrationRecord(**{**vars(v), "states": list(v.states)}) for v in program.vibrations],
+        program.description,
+    )
+    return _pretty(_without_defaults(record)) + "\n"
+
+
+def _rows(surface: Surface) -> list[list[float]]:
+    return [list(row) for row in surface.force_cN]
+
+
+def _state_record(state: State) -> StateRecord:
+    transitions = [
+        TransitionRecord(
+            t.to, _condition_record(t.when), _condition_record(t.only_if) if t.only_if else None, t.signal
+        )
+        for t in state.transitions
+    ]
+    return StateRecord(**{**vars(state), "transitions": transitions})
+
+
+def _condition_record(condition: Condition) -> ConditionRecord:
+    value = True if condition.when in BARE else float(condition.value)
+    return {str(condition.when): value}  # type: ignore[dict-item]
+
+
+def _without_defaults(value: Any) -> Any:
+    """Turn records into plain values, leaving out fields that have their default."""
+    if isinstance(value, msgspec.Struct):
+        found = {}
+        for field in msgspec.structs.fields(value):
+            held = getattr(value, field.name)
+            default = [] if field.default_factory is list else field.default
+            if held != default:
+                found[field.name] = _without_defaults(held)
+        return found
+    if isinstance(value, list):
+        return [_without_defaults(item) for item in value]
+    return str(value) if isinstance(value, str) else value
+
+
+def _pretty(value: object, indent: str = "") -> str:
+    """Indent objects and lists of them; keep a list of plain values and a condition on one line."""
+    deeper = indent + "  "
+    if isinstance(value, dict) and set(value) - set(When):
+        items = [f"{deeper}{json.dumps(k)}: {_pretty(v, deeper)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
+        return "[\n" + ",\n".join(deeper + _pretty(v, deeper) for v in value) + f"\n{indent}]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+class _Head(msgspec.Struct):
+    """What is looked at first, whatever else the file holds."""
+
+    format: object = None
+    version: object = None
+
+
+def program_from_json(text: str | bytes, source: object = "program") -> Program:
+    """Read a program from the text of a ``*.fdvv-program.json`` file.
+
+    Raises InputError that names source, the place in it and the remedy.
+    """
+    data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
+    try:
+        head = msgspec.json.decode(data, type=_Head)
+        if head.format != FORMAT:
+            raise InputError(source, "$.format", f'not a program ("format" must be "{FORMAT}")', _REMEDY)
+        if head.version != VERSION:
+            reason = f"file version {head.version!r:.40}, this fdvv reads version {VERSION}"
+            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
+        return _program(msgspec.json.decode(data, type=ProgramRecord), source)
+    except msgspec.ValidationError as error:
+        reason, _, path = str(error).partition(" - at ")
+        place = path.strip("`") or "$"
+        choices = _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None)
+        expected = f", expected one of {', '.join(choices)}" if choices else ""
+        raise InputError(source, place, reason + expected, _REMEDY) from error
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        raise InputError(source, _place(data, str(error)), f"not valid JSON ({error})", _REMEDY) from error
+
+
+def _place(data: bytes, reason: str) -> str:
+    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
+    found = re.search(r"\(byte (\d+)\)", reason)
+    if not found:
+        return "end of file" if "truncated" in reason else "whole file"
+    before = data[: int(found[1])]
+    return f"line {before.count(_NEWLINE) + 1}, column {len(before) - before.rfind(_NEWLINE)}"
+
+
+class _Reader:
+    """Builds the parts of a program and remembers where it is, for the message of what fails."""
+
+    def __init__(self) -> None:
+        self.place = "$"
+
+    def surface(self, i: int, record: SurfaceRecord) -> Surface:
+        self.place = f"$.surfaces[{i}]"
+        rows = tuple(tuple(row) for row in record.force_cN)
+        return Surface(record.name, tuple(record.displacement_mm), rows, tuple(record.velocity_mm_s))
+
+    def signal(self, i: int, record: SignalRecord) -> Signal:
+        self.place = f"$.signals[{i}]"
+        modes = tuple(Mode(**msgspec.structs.asdict(mode)) for mode in record.modes)
+        return Signal(record.name, record.duration_s, modes)
+
+    def state(self, i: int, record: StateRecord) -> State:
+        transitions = []
+        for j, t in enumerate(record.transitions):
+            self.place = f"$.states[{i}].transitions[{j}]"
+            guard = self.condition(t.only_if) if t.only_if else None
+            transitions.append(Transition(t.to, self.condition(t.when), guard, t.signal))
+        self.place = f"$.states[{i}]"
+        return State(**{**msgspec.structs.asdict(record), "transitions": tuple(transitions)})
+
+    def condition(self, record: ConditionRecord) -> Condition:
+        ((name, value),) = record.items()
+        when = When(name)
+        if (value is True) != (when in BARE):
+            wanted = "true" if when in BARE else "a number"
+            raise ModelError(f"{name} takes {wanted}, got {json.dumps(value)}")
+        return Condition(when, 0.0 if value is True else value)
+
+    def vibration(self, i: int, record: VibrationRecord) -> VibrationEvent:
+        self.place = f"$.vibrations[{i}]"
+        return VibrationEvent(**{**msgspec.structs.asdict(record), "states": tuple(record.states)})
+
+
+def _program(record: ProgramRecord, source: object) -> Program:
+    """Build the program from a record of the right shape; each failure names its place."""
+    reader = _Reader()
+    try:
+        states = tuple(reader.state(i, s) for i, s in enumerate(record.states))
+        surfaces = tuple(reader.surface(i, s) for i, s in enumerate(record.surfaces))
+        signals = tuple(reader.signal(i, s) for i, s in enumerate(record.signals))
+        vibrations = tuple(reader.vibration(i, v) for i, v in enumerate(record.vibrations))
+        reader.place = "$"
+        return Program(
+            record.name,
+            record.travel_mm,
+            record.start,
+            states,
+            surfaces,
+            signals,
+            vibrations,
+            record.description,
+        )
+    except ModelError as error:
+        raise InputError(source, reader.place, str(error), _REMEDY) from error
+
+
+def save_program(program: Program, path: Path | str) -> None:
+    """Write a program to a ``*.fdvv-program.json`` file, whole or not at all. Raises OSError."""
+    write_atomic(Path(path), program_to_json(program))
+
+
+def load_program(path: Path | str) -> Program:
+    """Read a program from a ``*.fdvv-program.json`` file. Raises InputError, also where it cannot be read."""
+    try:
+        with Path(path).open("rb") as stream:
+            content = stream.read(LIMIT_bytes + 1)
+    except OSError as error:
+        remedy = "check the path and its permissions"
+        raise InputError(path, "whole file", error.strerror or str(error), remedy) from error
+    if len(content) > LIMIT_bytes:
+        raise InputError(
+            path, "whole file", f"larger than {LIMIT_bytes // 1_000_000} MB", "pass a program file"
+        )
+    return program_from_json(content, path)

@@ -1,0 +1,257 @@
+"""Buttons that no mechanism has: the five of the paper, and rapid trigger, each over a base model.
+
+Button Simulation and Design via FDVV Models (CHI 2020), "Prototyping Innovative Buttons". What
+each does is promised in its docstring and tested in tests/program/test_ideas.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fdvv.errors import InputError
+from fdvv.model import FDVVModel, Mode, Stroke
+from fdvv.program._button import key_points_mm, vibrations_of
+from fdvv.program._condition import Condition, Transition, When
+from fdvv.program._program import Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program._surface import STEP_mm, Surface, flat, of_model, raised, scaled
+
+NEAR_BOTTOM_mm = 0.3
+HOLD_mm = 0.2
+"""How far a cap must come back before a place counts as left."""
+
+
+def _within(name: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise InputError(name, "value", f"must be {low:g} to {high:g}, got {value:g}", "choose another")
+
+
+def _surfaces(base: FDVVModel) -> tuple[Surface, Surface]:
+    return of_model(base, Stroke.PRESS), of_model(base, Stroke.RELEASE)
+
+
+def _deeper(place_mm: float, to: str, signal: str | None = None) -> Transition:
+    return Transition(to, Condition(When.DEEPER_THAN, round(place_mm, 4)), signal=signal)
+
+
+def _shallower(place_mm: float, to: str) -> Transition:
+    return Transition(to, Condition(When.SHALLOWER_THAN, round(place_mm, 4)))
+
+
+def _after(time_ms: int, to: str) -> Transition:
+    return Transition(to, Condition(When.AFTER, time_ms))
+
+
+def _tick(name: str, frequency_Hz: float, amplitude_m_s2: float = 6.0) -> Signal:
+    """Make a click of 12 ms that has died away by its end."""
+    return Signal(name, 0.012, (Mode(frequency_Hz, amplitude_m_s2, 250.0),))
+
+
+def _snaps(base: FDVVModel, *states: str) -> tuple[tuple[Signal, ...], tuple[VibrationEvent, ...]]:
+    """Give the base's own vibrations, in some of the states."""
+    signals, events = vibrations_of(base)
+    return signals, tuple(replace(event, states=states) for event in events)
+
+
+def fast_tapping(
+    base: FDVVModel,
+    trigger_mm: float = 1.0,
+    pull_cN: float = 30.0,
+    push_cN: float = 120.0,
+    drop_ms: int = 60,
+) -> Program:
+    """Drop to the bottom once a press is detected, and return by itself: for very fast tapping.
+
+    Below trigger_mm the cap is pulled down with pull_cN, key 1, until it is 0.3 mm above the bottom or
+    drop_ms are over; then it is pushed up with push_cN, key 0, and armed again at half of trigger_mm.
+    """
+    _within("trigger_mm", trigger_mm, 0.4, base.travel_mm - 2 * NEAR_BOTTOM_mm)
+    _within("pull_cN", pull_cN, 6, 200)
+    _within("push_cN", push_cN, 20, 300)
+    _within("drop_ms", drop_ms, 5, 1000)
+    press, release = _surfaces(base)
+    signals, events = _snaps(base, "ready")
+    bottom_mm = base.travel_mm - NEAR_BOTTOM_mm
+    states = (
+        State("ready", press.name, release.name, (_deeper(trigger_mm, "dropping"),)),
+        State(
+            "dropping",
+            "pull",
+            "pull",
+            (_deeper(bottom_mm, "returning"), _after(drop_ms, "returning")),
+            key=1,
+        ),
+        State("returning", "push", "push", (_shallower(trigger_mm / 2, "ready"),)),
+    )
+    surfaces = (press, release, flat("pull", -pull_cN), flat("push", push_cN))
+    told = f"Pressed {trigger_mm:g} mm deep it drops to the bottom and comes back by itself."
+    return Program("fast-tapping", base.travel_mm, "ready", states, surfaces, signals, events, told)
+
+
+def non_newtonian(
+    base: FDVVModel, soft_ratio: float = 0.6, stiffening_per_m_s: float = 5.0, fastest_mm_s: float = 300.0
+) -> Program:
+    """Be soft when pressed gently and stiff when pressed fast, at every instant of the press.
+
+    The base's slowest press times (soft_ratio + stiffening_per_m_s * speed), the speed being found anew at
+    every tick and held from fastest_mm_s on. The release is the base's times soft_ratio at any speed, so that
+    the speed cannot push the cap up. Key 1 between the base's actuation and reset.
+    """
+    _within("soft_ratio", soft_ratio, 0.1, 1.5)
+    _within("stiffening_per_m_s", stiffening_per_m_s, 0, 20)
+    _within("fastest_mm_s", fastest_mm_s, 10, 1000)
+    slow_press, slow_release = (of_model(base, s, velocity_mm_s=_slowest(base, s)) for s in Stroke)
+    press = scaled(
+        slow_press,
+        "press",
+        {0.0: soft_ratio, fastest_mm_s: soft_ratio + stiffening_per_m_s * fastest_mm_s / 1000},
+    )
+    release = scaled(slow_release, "release", {0.0: soft_ratio})
+    actuation_mm, reset_mm = key_points_mm(base)
+    signals, events = _snaps(base)
+    states = (
+        State("up", press.name, release.name, (_deeper(actuation_mm, "down"),), velocity=Velocity.CONTINUOUS),
+        State(
+            "down",
+            press.name,
+            release.name,
+            (_shallower(reset_mm, "up"),),
+            key=1,
+            velocity=Velocity.CONTINUOUS,
+        ),
+    )
+    told = "Soft when pressed gently, stiff when pressed fast."
+    return Program("non-newtonian", base.travel_mm, "up", states, (press, release), signals, events, told)
+
+
+def _slowest(base: FDVVModel, stroke: Stroke) -> tuple[float, ...]:
+    serving = stroke if base.of(stroke) else Stroke.PRESS
+    return base.velocities_mm_s(serving)[:1]
+
+
+def multi_level(
+    base: FDVVModel, levels: int = 3, detent_cN: float = 25.0, detent_mm: float = 0.32
+) -> Program:
+    """Divide the stroke into depths that can be told apart, each with its key level.
+
+    Level k of `levels` begins at k / (levels + 1) of the travel, to 0.02 mm. Before it, the press is raised
+    by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz
+    more per level. The key is the level; it is left 0.1 mm above where it begins. The release has no detents.
+    """
+    _within("levels", levels, 1, 8)
+    _within("detent_cN", detent_cN, 0, 100)
+    _within("detent_mm", detent_mm, 0.1, base.travel_mm / (levels + 1))
+    press, release = _surfaces(base)
+    starts_mm = [STEP_mm * round(base.travel_mm * k / (levels + 1) / STEP_mm) for k in range(1, levels + 1)]
+    bumps = [
+        point
+        for start in starts_mm
+        for point in ((start - detent_mm, 0.0), (start - detent_mm / 2, detent_cN), (start, 0.0))
+    ]
+    states = []
+    for level in range(levels + 1):
+        ways = []
+        if level < levels:
+            ways.append(_deeper(starts_mm[level], f"level {level + 1}", f"click {level + 1}"))
+        if level > 0:
+            ways.append(_shallower(starts_mm[level - 1] - 0.1, f"level {level - 1}"))
+        states.append(State(f"level {level}", "detents", release.name, tuple(ways), key=level))
+    clicks = tuple(_tick(f"click {k}", 100.0 + 40.0 * k) for k in range(1, levels + 1))
+    surfaces = (raised(press, "detents", bumps), release)
+    told = f"{levels} levels, told by detents and clicks, each reported as a key level."
+    return Program("multi-level", base.travel_mm, "level 0", tuple(states), surfaces, clicks, (), told)
+
+
+def dwell_ticks(base: FDVVModel, period_ms: int = 250, bottom_mm: float = 0.3) -> Program:
+    """Tick while the press dwells at the bottom, so that shots can be counted with the finger.
+
+    Within bottom_mm of the bottom the key is 2 and a tick of 12 ms is felt at once and every period_ms; it
+    ends when the cap has come back by 0.2 mm more. Otherwise the base, key 1 between actuation and reset.
+    """
+    _within("period_ms", period_ms, 20, 10_000)
+    actuation_mm, reset_mm = key_points_mm(base)
+    _within("bottom_mm", bottom_mm, 0.05, base.travel_mm - actuation_mm - 2 * HOLD_mm)
+    press, release = _surfaces(base)
+    signals, events = _snaps(base)
+    edge_mm = base.travel_mm - bottom_mm
+    both = (press.name, release.name)
+    states = (
+        State("up", *both, (_deeper(actuation_mm, "down"),)),
+        State("down", *both, (_deeper(edge_mm, "dwelling"), _shallower(reset_mm, "up")), key=1),
+        State(
+            "dwelling",
+            *both,
+            (_shallower(edge_mm - HOLD_mm, "down"),),
+            key=2,
+            enter_signal="tick",
+            repeat_signal="tick",
+            repeat_ms=period_ms,
+        ),
+    )
+    told = f"Ticks every {period_ms} ms while held at the bottom."
+    sounds = (*signals, _tick("tick", 200.0))
+    return Program("dwell-ticks", base.travel_mm, "up", states, (press, release), sounds, events, told)
+
+
+def returning_later(
+    base: FDVVModel, cooldown_ms: int = 1500, event: int = 0, sunk_cN: float = 15.0, fade_ms: int = 80
+) -> Program:
+    """Stay down after a press until the cooldown is over, then come back and be ready: a button with a pause.
+
+    From the base's actuation on the cap is held down with sunk_cN, key 1, for cooldown_ms or until host event
+    `event`. Then the base's force returns within fade_ms, key 0, and the button is armed again at half the
+    actuation depth.
+    """
+    _within("cooldown_ms", cooldown_ms, 1, 60_000)
+    _within("event", event, 0, 31)
+    _within("sunk_cN", sunk_cN, 6, 100)
+    _within("fade_ms", fade_ms, 0, 2000)
+    actuation_mm, _ = key_points_mm(base)
+    press, release = _surfaces(base)
+    signals, events = _snaps(base, "ready", "returning")
+    both = (press.name, release.name)
+    back = Transition("returning", Condition(When.HOST_EVENT, event))
+    states = (
+        State("ready", *both, (_deeper(actuation_mm, "spent"),)),
+        State("spent", "sunk", "sunk", (back, _after(cooldown_ms, "returning")), key=1),
+        State("returning", *both, (_shallower(actuation_mm / 2, "ready"),), fade_ms=fade_ms),
+    )
+    surfaces = (press, release, flat("sunk", -sunk_cN))
+    told = f"Once pressed it stays down for {cooldown_ms} ms, or until the host lets it go."
+    return Program("returning-later", base.travel_mm, "ready", states, surfaces, signals, events, told)
+
+
+def rapid_trigger(
+    base: FDVVModel,
+    press_mm: float = 0.15,
+    release_mm: float = 0.15,
+    top_dead_mm: float = 0.3,
+    bottom_dead_mm: float = 0.2,
+) -> Program:
+    """Go down after any fall of press_mm and up after any rise of release_mm, wherever in the stroke.
+
+    All four in steps of 0.01 mm. Falls and rises count from the highest and the deepest point since the key
+    last changed. Above top_dead_mm the key is always up; within bottom_dead_mm of the bottom it is always
+    down. The feel is the base's.
+    """
+    steps = {
+        "press_mm": press_mm,
+        "release_mm": release_mm,
+        "top_dead_mm": top_dead_mm,
+        "bottom_dead_mm": bottom_dead_mm,
+    }
+    for name, value in steps.items():
+        _within(name, value, 0.01, base.travel_mm / 2 - 0.1)
+        if abs(value * 100 - round(value * 100)) > 1e-6:
+            raise InputError(name, "value", f"goes in steps of 0.01, got {value:g}", "round it")
+    press, release = _surfaces(base)
+    signals, events = _snaps(base)
+    both = (press.name, release.name)
+    bottom_mm = round(base.travel_mm - bottom_dead_mm, 4)
+    fall = Transition("down", Condition(When.FALLEN_BY, press_mm), Condition(When.DEEPER_THAN, top_dead_mm))
+    rise = Transition("up", Condition(When.RISEN_BY, release_mm), Condition(When.SHALLOWER_THAN, bottom_mm))
+    states = (
+        State("up", *both, (_deeper(bottom_mm, "down"), fall)),
+        State("down", *both, (_shallower(top_dead_mm, "up"), rise), key=1),
+    )
+    told = f"Down after {press_mm:g} mm of fall, up after {release_mm:g} mm of rise, anywhere."
+    return Program("rapid-trigger", base.travel_mm, "up", states, (press, release), signals, events, told)

@@ -1,0 +1,248 @@
+"""What a device runs, in a designer's words: states, what leads from one to another, what is felt in each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import Mode, Stroke, Vibration
+from fdvv.program._condition import Transition
+from fdvv.program._surface import Surface, check_name
+from fdvv.protocol import Stroke as Direction
+from fdvv.protocol import VelocitySource
+
+TRAVEL_mm = (0.2, 6.4)
+LONGEST_fade_ms = 2000
+LONGEST_ms = 65_535
+
+
+class Velocity(StrEnum):
+    """Which velocity chooses the row of a surface: told by the host, found once a press, or ever anew."""
+
+    ANNOUNCED = "announced"
+    DECIDED = "decided"
+    CONTINUOUS = "continuous"
+
+    @property
+    def code(self) -> VelocitySource:
+        """Give its number on the device."""
+        return VelocitySource[self.name]
+
+
+class During(StrEnum):
+    """The stroke in which a vibration is played."""
+
+    PRESS = "press"
+    RELEASE = "release"
+    EITHER = "either"
+
+    @property
+    def code(self) -> Direction:
+        """Give its number on the device."""
+        return Direction[self.name]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A short vibration of the cap, without a place.
+
+    Attributes
+    ----------
+    name : how states, transitions and events refer to it.
+    duration_s : length; silence after it.
+    modes : damped sinusoids that add up to the cap's acceleration.
+    """
+
+    name: str
+    duration_s: float
+    modes: tuple[Mode, ...]
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
+        object.__setattr__(self, "modes", tuple(self.modes))
+        self.vibration()
+
+    def vibration(self) -> Vibration:
+        """Give it as the model room's vibration, at displacement 0; raises ModelError."""
+        return Vibration(Stroke.PRESS, None, 0.0, self.duration_s, self.modes)
+
+
+@dataclass(frozen=True)
+class VibrationEvent:
+    """A signal felt at a displacement, once per stroke; the device starts it early by its board's latency.
+
+    Attributes
+    ----------
+    signal : name of what is played.
+    at_mm : where it is to be felt.
+    stroke : in which direction.
+    slowest_mm_s, fastest_mm_s : it is played at or above the one and below the other; None: no bound.
+    states : names of the states in which it is played; none named: in all.
+    """
+
+    signal: str
+    at_mm: float
+    stroke: During = During.PRESS
+    slowest_mm_s: float | None = None
+    fastest_mm_s: float | None = None
+    states: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stroke", During(self.stroke))
+        object.__setattr__(self, "states", tuple(self.states))
+        if not (np.isfinite(self.at_mm) and -2 <= self.at_mm <= TRAVEL_mm[1]):
+            raise ModelError(f"at_mm must be -2 to {TRAVEL_mm[1]}, got {self.at_mm}")
+        for bound in (self.slowest_mm_s, self.fastest_mm_s):
+            if bound is not None and not 0 <= bound <= 4000:
+                raise ModelError(f"velocities of a vibration are 0 to 4000 mm/s, got {bound}")
+        if (self.slowest_mm_s or 0.0) >= (4000.0 if self.fastest_mm_s is None else self.fastest_mm_s):
+            raise ModelError(f"no velocity is {self.slowest_mm_s} mm/s or more and below {self.fastest_mm_s}")
+
+
+@dataclass(frozen=True)
+class State:
+    """What is felt and reported until a transition leads on.
+
+    Attributes
+    ----------
+    name : how transitions refer to it.
+    press, release : names of the surfaces looked up while the cap goes down and up.
+    transitions : tried in this order at every tick; the first that holds is taken.
+    key : reported to the host: 0 up, else the level that is down.
+    velocity : which velocity chooses the row of the surfaces.
+    enter_signal : played on entering, or None.
+    repeat_signal, repeat_ms : played again and again in the state with that period, or None and 0.
+    fade_ms : time in which the force moves from the last state's to this one's.
+    bias_cN, bias_end_cN, bias_ms : added to the surface's force: from the first to the second in that time.
+    """
+
+    name: str
+    press: str
+    release: str
+    transitions: tuple[Transition, ...] = ()
+    key: int = 0
+    velocity: Velocity = Velocity.DECIDED
+    enter_signal: str | None = None
+    repeat_signal: str | None = None
+    repeat_ms: int = 0
+    fade_ms: int = 0
+    bias_cN: float = 0.0
+    bias_end_cN: float = 0.0
+    bias_ms: int = 0
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
+        object.__setattr__(self, "transitions", tuple(self.transitions))
+        object.__setattr__(self, "velocity", Velocity(self.velocity))
+        self._check_whole("key", self.key, 255)
+        self._check_whole("repeat_ms", self.repeat_ms, LONGEST_ms)
+        self._check_whole("fade_ms", self.fade_ms, LONGEST_fade_ms)
+        self._check_whole("bias_ms", self.bias_ms, LONGEST_ms)
+        if (self.repeat_signal is None) != (self.repeat_ms == 0):
+            raise ModelError(f"state {self.name!r}: repeat_signal and repeat_ms go together")
+        if not np.isfinite([self.bias_cN, self.bias_end_cN]).all():
+            raise ModelError(f"state {self.name!r}: a bias must be finite")
+        if self.bias_ms == 0 and self.bias_end_cN != 0:
+            raise ModelError(f"state {self.name!r}: bias_end_cN needs bias_ms, the time to get there")
+
+    def _check_whole(self, field: str, value: int, high: int) -> None:
+        if not 0 <= value <= high or value != int(value):
+            raise ModelError(f"state {self.name!r}: {field} must be a whole number to {high}, got {value}")
+
+    def biases_cN(self) -> tuple[float, float]:
+        """Give the least and the greatest bias while in the state."""
+        end = self.bias_end_cN if self.bias_ms else self.bias_cN
+        return min(self.bias_cN, end), max(self.bias_cN, end)
+
+
+class Named(Protocol):
+    """Anything with a name."""
+
+    @property
+    def name(self) -> str:
+        """Give it."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """A button as a machine of states.
+
+    Attributes
+    ----------
+    name : short, as a file would be called.
+    travel_mm : where the bottom stop is set.
+    start : name of the state entered first.
+    states, surfaces, signals : each with names of its own; every name referred to exists.
+    vibrations : signals tied to displacements.
+    description : what the button does, for people.
+
+    Raises ModelError on anything else. What a device can render and whether the button comes back is for
+    `check_program`.
+    """
+
+    name: str
+    travel_mm: float
+    start: str
+    states: tuple[State, ...]
+    surfaces: tuple[Surface, ...]
+    signals: tuple[Signal, ...] = ()
+    vibrations: tuple[VibrationEvent, ...] = ()
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
+        for field in ("states", "surfaces", "signals", "vibrations"):
+            object.__setattr__(self, field, tuple(getattr(self, field)))
+        low, high = TRAVEL_mm
+        if not low <= self.travel_mm <= high:
+            raise ModelError(f"travel_mm must be {low} to {high}, got {self.travel_mm}")
+        states = _names(self.states, "state")
+        surfaces = _names(self.surfaces, "surface")
+        signals = _names(self.signals, "signal")
+        _check_known(self.start, states, "state", "start")
+        for state in self.states:
+            _check_state(state, states, surfaces, signals)
+        for i, event in enumerate(self.vibrations):
+            _check_known(event.signal, signals, "signal", f"vibration {i + 1}")
+            for name in event.states:
+                _check_known(name, states, "state", f"vibration {i + 1}")
+
+    def state(self, name: str) -> State:
+        """Give a state by its name."""
+        return next(state for state in self.states if state.name == name)
+
+    def surface(self, name: str) -> Surface:
+        """Give a surface by its name."""
+        return next(surface for surface in self.surfaces if surface.name == name)
+
+
+def _names(things: Iterable[Named], what: str) -> list[str]:
+    found = [thing.name for thing in things]
+    twice = {name for name in found if found.count(name) > 1}
+    if twice:
+        raise ModelError(f"two {what}s are called {sorted(twice)[0]!r}")
+    return found
+
+
+def _check_known(name: str, known: list[str], what: str, place: str) -> None:
+    if name not in known:
+        listed = ", ".join(repr(k) for k in known) or "none"
+        raise ModelError(f"{place}: no {what} is called {name!r}; there is {listed}")
+
+
+def _check_state(state: State, states: list[str], surfaces: list[str], signals: list[str]) -> None:
+    place = f"state {state.name!r}"
+    for name in (state.press, state.release):
+        _check_known(name, surfaces, "surface", place)
+    for signal in (state.enter_signal, state.repeat_signal):
+        if signal is not None:
+            _check_known(signal, signals, "signal", place)
+    for i, transition in enumerate(state.transitions):
+        _check_known(transition.to, states, "state", f"{place}, transition {i + 1}")
+        if transition.signal is not None:
+            _check_known(transition.signal, signals, "signal", f"{place}, transition {i + 1}")

@@ -1,0 +1,246 @@
+"""Proof that the cap comes back: with the finger off, every state leads to the start state at the top.
+
+All motions of the cap are over-approximated by a finite graph; a node is a state, what is known of the
+motion, and a cell of the stroke. Every node is left in a bounded time. So if the graph has no cycle, and no
+dead end but the start state at the top, every motion ends there. What is assumed is in `Limits`;
+docs/explanation/programs.md says what follows and what does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import NamedTuple
+
+from fdvv.program._cells import Way
+from fdvv.program._limits import Limits
+from fdvv.program._motion import Motion
+from fdvv.program._program import Program
+
+
+class Kind(Enum):
+    """What is known of the cap's motion at a node."""
+
+    DOWN = "moving down against a force that lifts"
+    UP = "moving up, or at rest below the top"
+    TOP = "bouncing or at rest at the top"
+    PULLED = "moving down with a force that pulls"
+    ANYHOW = "moving anyhow until the state's time is over"
+    FADING = "moving anyhow until the force has faded in"
+
+
+class Node(NamedTuple):
+    """Where the cap may be: number of the state, what is known of its motion, cell."""
+
+    state: int
+    kind: Kind
+    cell: int = 0
+
+
+@dataclass(frozen=True)
+class Flaw:
+    """Why the return cannot be proven: the state, the place in it, and what may happen."""
+
+    state: str
+    place: str
+    reason: str
+
+
+class Returning:
+    """The graph of all motions of one program with the finger off."""
+
+    def __init__(self, program: Program, limits: Limits, margin_cN: float) -> None:
+        self.program = program
+        self.motion = Motion(program, limits, margin_cN)
+        self.cells = self.motion.cells
+        self.index = {state.name: i for i, state in enumerate(program.states)}
+        self._known: dict[tuple[int, int, Way], tuple[list[int], bool]] = {}
+
+    def fired(self, state: int, cell: int, way: Way) -> tuple[list[int], bool]:
+        """Give the states that may follow at once in a cell, and whether one of them must."""
+        key = (state, cell, way)
+        if key not in self._known:
+            found, must = [], False
+            for transition in self.program.states[state].transitions:
+                if self.cells.may_fire(transition, cell, way):
+                    found.append(self.index[transition.to])
+                    must = self.cells.must_fire(transition, cell)
+                if must:
+                    break
+            self._known[key] = found, must
+        return self._known[key]
+
+    def enter(self, state: int, cell: int, way: Way, pulled: bool = False) -> Node:
+        """Give the node that a transition leads to; pulled: the force before it may not have lifted."""
+        fades = self.program.states[state].fade_ms > 0
+        if self.motion.lifts(state):
+            if fades and pulled:
+                return Node(state, Kind.FADING)
+            return Node(state, Kind.DOWN if way is Way.DOWN else Kind.UP, cell)
+        if self.motion.pulls(state) and way is Way.DOWN and not fades:
+            return Node(state, Kind.PULLED, cell)
+        return Node(state, Kind.ANYHOW)
+
+    def _entered(self, node: Node, cell: int, way: Way) -> Iterator[Node]:
+        pulled = node.kind in (Kind.PULLED, Kind.ANYHOW, Kind.FADING)
+        for state in self.fired(node.state, cell, way)[0]:
+            yield self.enter(state, cell, way, pulled)
+
+    def followers(self, node: Node) -> tuple[list[Node], list[Node]]:
+        """Give the nodes that follow by motion within the state, and those that follow by a transition."""
+        match node.kind:
+            case Kind.DOWN:
+                return self._down(node)
+            case Kind.UP:
+                return self._up(node)
+            case Kind.TOP:
+                near = self.motion.top_cells(node.state)
+                return [], [e for c in near for way in Way for e in self._entered(node, c, way)]
+            case Kind.PULLED:
+                return self._pulled(node)
+            case _:
+                everywhere = range(self.cells.count)
+                entered = [e for c in everywhere for way in Way for e in self._entered(node, c, way)]
+                kinds = (Kind.DOWN, Kind.UP) if node.kind is Kind.FADING else ()
+                return [Node(node.state, kind, c) for c in everywhere for kind in kinds], entered
+
+    def _down(self, node: Node) -> tuple[list[Node], list[Node]]:
+        """Coast down from anywhere in the cell, and turn."""
+        turned: list[Node] = []
+        entered: list[Node] = []
+        for cell in self.motion.coast_cells(node.state, node.cell):
+            entered += self._entered(node, cell, Way.DOWN)
+            if self.fired(node.state, cell, Way.DOWN)[1]:
+                break
+            turned = [Node(node.state, Kind.UP, cell)]
+        return turned, entered
+
+    def _up(self, node: Node) -> tuple[list[Node], list[Node]]:
+        """Rise by a cell, into the bounces at the top in the end."""
+        entered = list(self._entered(node, node.cell, Way.UP))
+        if self.fired(node.state, node.cell, Way.UP)[1]:
+            return [], entered
+        if node.cell in self.motion.top_cells(node.state):
+            return [Node(node.state, Kind.TOP)], entered
+        return [Node(node.state, Kind.UP, node.cell - 1)], entered
+
+    def _pulled(self, node: Node) -> tuple[list[Node], list[Node]]:
+        """Go down to the bottom, and bounce there."""
+        edges_mm = self.cells.edges_mm
+        zone_mm = edges_mm[-1] - self.motion.bottom_zone_mm(node.state)
+        entered: list[Node] = []
+        for cell in range(self.cells.count):
+            bounces = edges_mm[cell + 1] > zone_mm
+            if cell >= node.cell or bounces:
+                entered += self._entered(node, cell, Way.DOWN)
+            if bounces:
+                entered += self._entered(node, cell, Way.UP)
+        return [], entered
+
+    # -- flaws ---------------------------------------------------------------------------------------------
+
+    def dead_ends(self) -> list[Flaw]:
+        """Give the states in which the cap may stay for ever, other than at the top in the start state."""
+        found = []
+        for i, state in enumerate(self.program.states):
+            lifts = self.motion.lifts(i)
+            if not lifts and state.name == self.program.start:
+                found.append(
+                    Flaw(state.name, self._weakest(i), "may not lift the cap, and is the start state")
+                )
+            elif not lifts and self.motion.longest_stay_s(i) is None:
+                reason = "may not lift the cap, and no after_ms without a guard ends it"
+                found.append(Flaw(state.name, self._weakest(i), reason))
+            elif lifts and self.motion.stay_at_top_s(i) is None and state.name != self.program.start:
+                found.append(Flaw(state.name, "at the top", "nothing is sure to lead on to the start state"))
+        return found
+
+    def _weakest(self, state: int) -> str:
+        first = self.motion.first
+        least = self.cells.least_cN[state]
+        cell = first + int(least[first:].argmin())
+        opposing_cN = self.motion.limits.opposing_cN
+        return (
+            f"{self.cells.edges_mm[cell]:.2f} mm, at least {least[cell]:.1f} cN "
+            f"against {opposing_cN:g} cN of friction and weight"
+        )
+
+    @cached_property
+    def starts(self) -> list[Node]:
+        """Give every node in which the finger may leave the cap."""
+        found = []
+        for i in range(len(self.program.states)):
+            for cell in range(self.cells.count):
+                found += [self.enter(i, cell, way) for way in Way]
+        return list(dict.fromkeys(found))
+
+    def find_cycle(self) -> list[Node]:
+        """Give nodes that may follow each other for ever, the last being the first again; or none."""
+        done: set[Node] = set()
+        for start in self.starts:
+            path: dict[Node, Iterator[Node]] = {}
+            self._push(path, start, done)
+            while path:
+                node = next(reversed(path))
+                follower = next(path[node], None)
+                if follower is None:
+                    done.add(node)
+                    del path[node]
+                elif follower in path:
+                    nodes = list(path)
+                    return [*nodes[nodes.index(follower) :], follower]
+                else:
+                    self._push(path, follower, done)
+        return []
+
+    def _push(self, path: dict[Node, Iterator[Node]], node: Node, done: set[Node]) -> None:
+        if node not in done:
+            moved, entered = self.followers(node)
+            path[node] = iter(dict.fromkeys([*moved, *entered]))
+
+    def cycle_flaw(self) -> Flaw | None:
+        """Tell of a cycle, by its states and where it turns."""
+        cycle = self.find_cycle()
+        if not cycle:
+            return None
+        names = [self.program.states[node.state].name for node in cycle]
+        told = [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
+        edge_mm = self.cells.edges_mm[max(node.cell for node in cycle)]
+        reason = f"with the finger off it may go {' → '.join(told if len(told) > 1 else told * 2)} for ever"
+        return Flaw(names[0], f"near {edge_mm:.2f} mm", reason)
+
+    # -- time ----------------------------------------------------------------------------------------------
+
+    def return_s(self) -> float:
+        """Bound the time until the cap rests at the top in the start state; only where there is no flaw."""
+        known: dict[Node, float] = {}
+        for start in self.starts:
+            stack = [start]
+            while stack:
+                node = stack[-1]
+                moved, entered = self.followers(node)
+                missing = [n for n in (*moved, *entered) if n not in known]
+                if missing:
+                    stack += missing
+                    continue
+                stack.pop()
+                after = [known[n] + self._top_s(n) for n in moved]
+                after += [known[n] + self._entry_s(n) for n in entered]
+                known[node] = max(after, default=0.0)
+        return max(known[n] + self._entry_s(n) for n in self.starts)
+
+    def _top_s(self, node: Node) -> float:
+        if node.kind is not Kind.TOP:
+            return 0.0
+        return self.motion.settle_s(node.state) + (self.motion.stay_at_top_s(node.state) or 0.0)
+
+    def _entry_s(self, node: Node) -> float:
+        match node.kind:
+            case Kind.DOWN | Kind.UP:
+                return self.motion.rise_s(node.state)
+            case Kind.FADING:
+                return self.program.states[node.state].fade_ms / 1000 + self.motion.rise_s(node.state)
+            case _:
+                return self.motion.longest_stay_s(node.state) or 0.0

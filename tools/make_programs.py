@@ -1,0 +1,21 @@
+"""Write the shipped programs as files: ``python tools/make_programs.py``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fdvv.files import write_atomic
+from fdvv.program import SUFFIX, make, program_to_json, programs
+
+FOLDER = Path(__file__).parents[1] / "src" / "fdvv" / "program" / "library"
+
+
+def files() -> dict[Path, str]:
+    """Give every file with its text: each program on its default base with its default parameters."""
+    return {FOLDER / f"{p.name}{SUFFIX}": program_to_json(make(p.name)) for p in programs()}
+
+
+if __name__ == "__main__":
+    for path, text in files().items():
+        write_atomic(path, text)
+        print(path)
