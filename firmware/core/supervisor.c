@@ -176,13 +176,18 @@ static void judge(fdvv_supervisor *me, const findings *found)
 /* settings are read as words, whatever their fields */
 typedef uint32_t __attribute__((may_alias)) settings_word;
 
-/* Changes with any one word and with their order. */
+static uint32_t with(uint32_t sum, settings_word word)
+{
+    return (sum << 31 | sum >> 1) + word;
+}
+
+/* Changes with any one word and with their order; four at a time, as it is found anew in every tick. */
 static uint32_t checksum(const fdvv_settings *settings)
 {
     const settings_word *word = (const settings_word *)settings, *end = (const settings_word *)(settings + 1);
     uint32_t sum = 0;
-    for (; word != end; word++)
-        sum = (sum << 31 | sum >> 1) + *word;
+    for (; word != end; word += 4)
+        sum = with(with(with(with(sum, word[0]), word[1]), word[2]), word[3]);
     return sum;
 }
 
@@ -351,8 +356,10 @@ void fdvv_supervisor_heat(fdvv_supervisor *supervisor, const fdvv_settings *sett
     uint32_t duty_q16 = ((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14;
     uint32_t end_K_q16 = settings->full_duty_rise_K * duty_q16;
     int64_t way_K_q16 = (int64_t)end_K_q16 - supervisor->heat_K_q16;
-    uint64_t rate_q32 = (uint64_t)supervisor->heat_rate_q32 * elapsed_ticks;
+    uint64_t rate_q32 = supervisor->heat_rate_q32;
     uint64_t heat_K_q48 = (uint64_t)supervisor->heat_K_q16 << 32 | supervisor->heat_rest_q48;
+    if (elapsed_ticks != 1) /* rarely; a long product */
+        rate_q32 *= elapsed_ticks;
     if (rate_q32 > UINT32_MAX)
         rate_q32 = UINT32_MAX; /* beyond the time constant: at the end */
     heat_K_q48 += (uint64_t)(way_K_q16 * (int64_t)rate_q32);

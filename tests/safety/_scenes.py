@@ -263,7 +263,7 @@ def heat(script: Script) -> None:
                 script.heat(settings, duty if warming else 0, 1 + 61 * (i % 7))
                 script.limit(settings)
             script.tick(settings, Inputs(sum=1))
-            for elapsed in (1, 40_000, 65_535, 0):
+            for elapsed in (1, 2, 40_000, 65_535, 0):
                 script.heat(settings, -32768, elapsed)
                 script.limit(settings)
             script.tick(settings, Inputs(sum=2))

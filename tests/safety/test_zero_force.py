@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -131,8 +130,9 @@ def test_too_warm_a_coil_ends_the_force_in_the_tick_after(tick_us: int) -> None:
 def test_any_flipped_bit_of_the_settings_ends_the_force_in_the_next_tick() -> None:
     for bit in range(8 * Settings.length_bytes()):
         core, inputs = rendering(Settings())
-        memory = (ctypes.c_uint8 * Settings.length_bytes()).from_address(core._core.value or 0)
-        memory[bit // 8] ^= 1 << bit % 8
+        memory = core._memory.view(np.uint8)
+        assert memory.tobytes().count(Settings().pack()) == 1
+        memory[memory.tobytes().index(Settings().pack()) + bit // 8] ^= 1 << bit % 8
         output = core.run(inputs[:1])[0]
         assert (output["duty_q15"], output["enable"]) == (0, 0), bit
         assert core.mode is Mode.FAULT

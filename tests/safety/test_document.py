@@ -1,0 +1,47 @@
+"""docs/explanation/safety.md tells the tables that the C code has."""
+
+from __future__ import annotations
+
+import re
+
+from tests.safety._build import CORE, REPOSITORY
+from tests.safety._equivalents import EQUIVALENT
+from tests.safety._mutants import mutants
+
+from fdvv.protocol import Fault, Mode
+
+TEXT = (REPOSITORY / "docs" / "explanation" / "safety.md").read_text()
+SOURCE = (CORE / "supervisor.c").read_text()
+
+
+def rows_below(heading: str) -> list[list[str]]:
+    """Give the cells of the first table below a heading, without its head."""
+    part = TEXT[TEXT.index(f"## {heading}") :]
+    lines = re.findall(r"^\|(.*)\|$", part[: part.index("\n## ", 1)], re.MULTILINE)
+    return [[cell.strip() for cell in line.split("|")] for line in lines[2:]]
+
+
+def test_the_modes_told_are_those_of_the_table() -> None:
+    table = re.findall(r"/\* (\w+) \*/ +\{(.*)\},", SOURCE)
+    assert rows_below("Modes") == [[mode, *cells.lower().split(", ")] for mode, cells in _plain(table)]
+    assert [mode for mode, _ in table] == [mode.name.lower() for mode in Mode]
+
+
+def _plain(table: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [(mode, ", ".join(cell.strip() for cell in cells.split(","))) for mode, cells in table]
+
+
+def test_the_faults_told_are_those_of_the_table() -> None:
+    table = re.findall(r"X\((\w+), (\w+), (\w+), (\w+), (\w+),", SOURCE)
+    numbers = {fault.name: str(fault.value) for fault in Fault}
+    expected = [
+        [numbers[name], name.lower(), when.lower(), clear.lower(), effect.lower(), unit]
+        for name, when, clear, effect, unit in table
+    ]
+    assert rows_below("Faults") == expected
+    assert [name for name, *_ in table] == [fault.name for fault in Fault if fault]
+
+
+def test_the_counts_told_are_those_of_the_tests() -> None:
+    assert f"{len(mutants(SOURCE)) - len(EQUIVALENT)} mutants" in TEXT
+    assert f"{len(EQUIVALENT)} equivalent" in TEXT
