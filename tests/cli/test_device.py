@@ -16,7 +16,7 @@ Run = Callable[..., Ran]
 
 def test_the_kinds_of_device_are_listed(fdvv: Run) -> None:
     names = [row["device"] for row in json.loads(fdvv("device", "list", "--json").out)["devices"]]
-    assert names[:4] == ["twin", "host", "serial:PORT", "replay:FILE"]
+    assert names[:6] == ["twin", "host", "emulated", "emulated:FILE", "serial:PORT", "replay:FILE"]
     assert "what it is" in fdvv("device", "list").out
 
 

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 def device() -> None:
     """Work with a device: list, info, selftest, monitor, upload, press.
 
-    --device is 'host' (the firmware as a program of this machine), 'twin', 'serial:PORT' or 'replay:FILE'.
+    --device is 'host' (the firmware as a program of this machine), 'emulated' (the program of the board in an
+    emulator), 'twin', 'serial:PORT' or 'replay:FILE'.
     What is simulated says so.
     """
 

@@ -21,6 +21,7 @@ COMMANDS = {
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
+    "press": ("fdvv.cli._press", "Press a real button; simulated."),
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fdvv.device._client import Client
+from fdvv.device._contract import DeviceInfo
 from fdvv.device._lockstep import Board, LockstepPort
 from fdvv.device._plant import Person, Truth
 from fdvv.device._remote import Remote
@@ -33,6 +36,16 @@ class LinkedDevice(Remote):
         except BaseException:
             self.port.close()
             raise
+
+    def info(self) -> DeviceInfo:
+        """Tell who this is; an emulated board does not know that nothing about it is real."""
+        return replace(super().info(), name=self.board_name, simulated=True)
+
+    @property
+    def board_name(self) -> str:
+        """Name the board, and how it runs where its firmware names a real one."""
+        name, kind = super().info().name, self.port.board.name
+        return name if name == kind else f"{kind} {name}"
 
     def write_settings(self, settings: Settings) -> None:
         """Replace calibration and limits; the device forgets its program."""

@@ -17,10 +17,12 @@ from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folde
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
+from fdvv.workflow._press import ButtonPress, Presses, press_button
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
 
 __all__ = [
+    "ButtonPress",
     "Comparison",
     "CompensationResult",
     "DemoResult",
@@ -31,6 +33,7 @@ __all__ = [
     "FolderSummary",
     "ModelFit",
     "PressDone",
+    "Presses",
     "ProbeResult",
     "Rendering",
     "SwitchFit",
@@ -55,6 +58,7 @@ __all__ = [
     "open_models",
     "open_part",
     "open_program",
+    "press_button",
     "probe",
     "program_image",
     "save_actuation",

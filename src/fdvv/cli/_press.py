@@ -1,0 +1,88 @@
+"""fdvv press: the simulated person presses a simulated real button."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fdvv.cli._output import Finite, check_output, json_option, number, print_json, print_table
+
+
+@click.command()
+@click.option(
+    "--button", required=True, help="A shipped real button, or a TOML file (docs/reference/button.md)."
+)
+@click.option(
+    "--finger",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="TOML file of the person (docs/reference/rig.md).",
+)
+@click.option(
+    "--speed",
+    "speeds_mm_s",
+    type=Finite(min=5, max=500),
+    multiple=True,
+    default=(50.0, 100.0, 150.0, 200.0),
+    show_default=True,
+    help="Mean speed of the stroke down, mm/s; repeatable.",
+)
+@click.option("--presses", type=click.IntRange(1, 1000), default=3, show_default=True, help="Of each speed.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Repeats the presses.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="The *.csv of every press to write.")
+@json_option
+def press(
+    button: str,
+    finger: Path | None,
+    speeds_mm_s: tuple[float, ...],
+    presses: int,
+    seed: int,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Press a real button; simulated.
+
+    Finger, switch or dome, leaf and plate are those of the twin (docs/explanation/real-buttons.md). Forces
+    are those on the cap, before the stop and over the whole press; the circuit's closing counts from the
+    cap's first 0.05 mm.
+    """
+    from fdvv.workflow import press_button
+
+    check_output(output, ".csv")
+    found = press_button(button, finger, speeds_mm_s, presses, seed)
+    if output:
+        found.write_csv(output)
+    if as_json:
+        rows = [
+            {
+                "asked_mm_s": p.asked_mm_s,
+                "achieved_mm_s": p.achieved_mm_s,
+                "before_stop_cN": p.before_stop_cN,
+                "largest_cN": p.largest_cN,
+                "closing_ms": p.closing_ms,
+            }
+            for p in found.presses
+        ]
+        document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
+        print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
+        return
+    click.echo(
+        f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
+        f"{found.quasi_static_peak_cN:.1f} cN before the stop at 0.5 mm/s"
+    )
+    head = ["asked mm/s", "reached mm/s", "before stop cN", "largest cN", "closing ms"]
+    print_table(
+        head,
+        [
+            [
+                number(p.asked_mm_s),
+                number(p.achieved_mm_s),
+                number(p.before_stop_cN),
+                number(p.largest_cN),
+                number(p.closing_ms),
+            ]
+            for p in found.presses
+        ],
+    )
+    if output:
+        click.echo(f"written: {output}")

@@ -1,0 +1,126 @@
+"""Press a simulated real button, and tell what was felt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.files import write_atomic
+from fdvv.twin import (
+    ButtonTrace,
+    Finger,
+    ForceSensor,
+    draw_button_noise,
+    load_button,
+    load_finger,
+    mean_speed_mm_s,
+    probe_button,
+    simulate_button,
+    solve_button_pace,
+    vary,
+)
+from fdvv.units import m_from_mm, mm_from_m
+from fdvv.workflow._compensate import check_speeds
+
+COLUMNS = "press,asked_mm_s,t_s,displacement_mm,velocity_mm_s,force_cN,sensed_cN,closed"
+
+
+@dataclass(frozen=True, eq=False)
+class ButtonPress:
+    """One simulated press of a real button.
+
+    Attributes
+    ----------
+    asked_mm_s, achieved_mm_s : mean speed of the stroke down, asked for and reached.
+    before_stop_cN : largest force on the cap before the last 0.1 mm of the travel.
+    largest_cN : and over the whole press, impact at the bottom included.
+    closing_ms : when the circuit closed, after the cap had begun to move; None if it never did.
+    """
+
+    asked_mm_s: float
+    achieved_mm_s: float
+    before_stop_cN: float
+    largest_cN: float
+    closing_ms: float | None
+    trace: ButtonTrace
+
+
+@dataclass(frozen=True, eq=False)
+class Presses:
+    """Presses of one button, and its slow curve for comparison; simulated.
+
+    Attributes
+    ----------
+    quasi_static_peak_cN : largest force of the press before the last 0.1 mm at 0.5 mm/s, as a force tester
+        has it.
+    """
+
+    button: str
+    travel_mm: float
+    quasi_static_peak_cN: float
+    presses: tuple[ButtonPress, ...]
+
+    def write_csv(self, path: Path) -> None:
+        """Write every row of every press, whole or not at all."""
+        lines = [COLUMNS]
+        for number, press in enumerate(self.presses, 1):
+            t = press.trace
+            sensed = t.force_cN if t.sensed_cN is None else t.sensed_cN
+            columns = (t.t_s, t.displacement_mm, t.velocity_mm_s, t.force_cN, sensed)
+            for row, closed in zip(zip(*columns, strict=True), t.closed, strict=True):
+                numbers = ",".join(f"{value:.6g}" for value in row)
+                lines.append(f"{number},{press.asked_mm_s:g},{numbers},{int(closed)}")
+        write_atomic(path, "\n".join(lines) + "\n")
+
+
+def press_button(
+    button: Path | str,
+    finger: Path | None,
+    speeds_mm_s: Sequence[float],
+    presses: int,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> Presses:
+    """Have the simulated person press a simulated real button, each press a fresh one.
+
+    button : name of a shipped one or a TOML file; finger : a TOML file, the default person if None.
+    speeds_mm_s : mean speeds of the stroke down; presses : of each. seed repeats everything.
+    progress : called with presses done and to do.
+
+    Raises InputError on an unusable name, file or speed.
+    """
+    speeds = check_speeds(speeds_mm_s)
+    physics, person = load_button(button), load_finger(finger) if finger else Finger()
+    travel_mm = float(mm_from_m(physics.curve.travel_m))
+    random, sensor = np.random.default_rng(seed), ForceSensor()
+    made: list[ButtonPress] = []
+    for speed in speeds:
+        pace_s = solve_button_pace(physics, person, speed, sensor)
+        for _ in range(presses):
+            gesture = vary(person, physics.curve.travel_m, pace_s, float(m_from_mm(speed)), random)
+            noise = draw_button_noise(person, gesture, random, sensor)
+            made.append(_felt(simulate_button(physics, person, gesture, noise, sensor), speed, travel_mm))
+            if progress:
+                progress(len(made), presses * len(speeds))
+    slow = probe_button(physics)
+    peak = float(slow.press_cN[slow.displacement_mm < travel_mm - 0.1].max())
+    return Presses(str(button), travel_mm, peak, tuple(made))
+
+
+def _felt(trace: ButtonTrace, asked_mm_s: float, travel_mm: float) -> ButtonPress:
+    x = trace.displacement_mm
+    arrived = np.flatnonzero(x >= travel_mm - 0.1)
+    down = slice(0, int(arrived[0]) if arrived.size else int(x.argmax()) + 1)
+    moved_s = trace.t_s[np.flatnonzero(x >= x[0] + 0.05)[0]] if np.ptp(x) > 0.05 else 0.0
+    closing = None if trace.closing_s is None else 1e3 * float(trace.closing_s - moved_s)
+    return ButtonPress(
+        asked_mm_s,
+        mean_speed_mm_s(trace.t_s, x, travel_mm),
+        float(trace.force_cN[down].max(initial=0.0)),
+        float(trace.force_cN.max()),
+        closing,
+        trace,
+    )
