@@ -50,8 +50,9 @@ def compile_program(program: Program, limits: Limits | None = None) -> Compiled:
     """Compile a program to an image of protocol/fdvv.toml.
 
     Every state carries limits.weight_cN. Columns of a surface are evenly spaced: each surface gets the fewest
-    that keep it within limits.grid_error_cN of its lines; while the image is too large, that bound is doubled,
-    up to limits.worst_grid_error_cN. Raises InputError that names what does not fit, or a force beyond the limit.
+    that keep it within limits.grid_error_cN of its lines; while the image is too large, that bound is
+    doubled, up to limits.worst_grid_error_cN. Raises InputError that names what does not fit, or a force
+    beyond the limit.
     """
     limits = limits or Limits()
     _check_counts(program)
