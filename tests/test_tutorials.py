@@ -98,3 +98,23 @@ def test_the_readmes_program_runs(tmp_path: Path, environment: dict[str, str]) -
         ran = run([sys.executable, "-W", "error", "-c", program], tmp_path, environment)
         assert (ran.returncode, ran.stderr) == (0, "")
         assert len(ran.stdout.splitlines()) == program.count("print(")
+
+
+NEW_PROGRAM = REPOSITORY / "docs" / "tutorials" / "new-program.md"
+
+
+def test_a_new_program_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    printed, ran_here = "", set()
+    for language, text in blocks(NEW_PROGRAM):
+        if language == "python":
+            ran = run([sys.executable, "-W", "error", "-c", text], tmp_path, environment)
+            assert (ran.returncode, ran.stderr) == (0, "")
+            printed = ran.stdout
+        elif language == "console":
+            for command, shown in steps(text):
+                check(command, shown, tmp_path, environment)
+                ran_here.add(" ".join(command[1:3]))
+        else:
+            assert text == printed, "the block after a program shows what it prints"
+    assert (tmp_path / "shutter.fdvv-image").read_bytes().startswith(b"FDVP")
+    assert ran_here >= {f"program {name}" for name in ("list", "make", "check", "show", "compile")}

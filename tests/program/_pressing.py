@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.core import Core, RecordArray, inputs_at
-from fdvv.program import Program, compile_program
+from fdvv.program import Limits, Program, compile_program
 from fdvv.protocol import NONE, Mode, Settings
 
 from ._interpreter import interpret
@@ -57,7 +57,7 @@ def press(program: Program, x_mm: Array, events: Mapping[int, int] | None = None
     events : tick to host event. Signals tied to displacements are the core's own tests' and left out there.
     """
     settings, told = Settings(), events or {}
-    core = Core(settings, compile_program(program).image)
+    core = Core(settings, compile_program(program, Limits(weight_cN=0.0)).image)
     core.arm()
     # a reading that never changes is a dead sensor to the rig
     alive_mm = 0.0003 * (np.arange(len(x_mm)) % 2)

@@ -61,7 +61,7 @@ def test_a_plain_button_is_accepted_with_its_figures() -> None:
 def test_force_beyond_the_limit_counts_the_bias() -> None:
     found = refusals(two(surface=flat("push", 400.0), bias_cN=60.0))
     assert [state for state, _ in found] == ["down"]
-    assert "460 cN, the rig gives 440" in found[0][1]
+    assert "479.6 cN, weight included, the rig gives 440" in found[0][1]
 
 
 def test_a_step_steeper_than_the_rigs_slew_is_refused_and_one_that_may_buzz_is_a_warning() -> None:
@@ -103,10 +103,10 @@ def test_a_vibration_repeated_before_it_ends_is_refused() -> None:
 
 def test_a_hold_that_overheats_the_coil_is_refused_and_one_that_derates_is_a_warning() -> None:
     hot = replace(Limits().settings, full_duty_rise_K=2000)
-    (first, _) = check_program(two(surface=flat("push", 420.0)), Limits(settings=hot)).refused
+    (first, _) = check_program(two(surface=flat("push", 400.0)), Limits(settings=hot)).refused
     assert first.place == "at the bottom"
     assert "420 cN held warms the coil" in first.reason
-    warm = check_program(two(surface=flat("push", 320.0)), Limits(settings=hot))
+    warm = check_program(two(surface=flat("push", 300.0)), Limits(settings=hot))
     assert warm.refused == ()
     assert "weakens" in warm.warnings[0].reason
 

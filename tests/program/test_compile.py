@@ -39,7 +39,7 @@ NAMES = [p.name for p in programs()]
 @settings(max_examples=30, deadline=None)
 @given(program_strategies.programs())
 def test_an_image_holds_what_the_program_says(program: Program) -> None:
-    compiled = compile_program(program, Limits(worst_grid_error_cN=400.0))
+    compiled = compile_program(program, Limits(worst_grid_error_cN=400.0, weight_cN=0.0))
     held = describe(compiled.image)
     assert held.travel_mm == program.travel_mm
     assert held.start == program.start
@@ -71,6 +71,20 @@ def test_every_built_in_button_fits_within_a_tenth_of_a_centinewton(name: str) -
     compiled = compile_button(load_builtin(name))
     assert check_image(compiled.image).verdict is Refusal.NONE
     assert max(compiled.grid_error_cN.values()) <= 0.1
+
+
+def test_every_state_carries_the_weight_but_for_learned_forces() -> None:
+    model = load_builtin("mx-red")
+    surface = ForceSurface.of_model(model, [100.0])
+    found = [
+        describe(compiled.image).states[1].bias_cN
+        for compiled in (
+            compile_button(model),
+            compile_button(model, limits=Limits(weight_cN=0.0)),
+            compile_button(model, surface),
+        )
+    ]
+    assert found == pytest.approx([19.6, 0, 0], abs=1 / 128)
 
 
 def test_the_image_of_a_shipped_program_has_not_changed() -> None:
@@ -160,4 +174,4 @@ def test_a_models_vibrations_are_played_at_the_velocities_nearest_to_theirs() ->
     assert [e.stroke for e in both.vibrations] == [During.PRESS, During.RELEASE]
 
 
-GOLDEN = "195d139ca2554310"
+GOLDEN = "a34cb80a3aa7c71b"

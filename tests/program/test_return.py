@@ -44,7 +44,7 @@ def all_readings() -> list[RecordArray]:
 
 @dataclass
 class FreeCap:
-    """A mass with drag, friction and stops, without a finger; drawn within what the limits assume."""
+    """An upright mass with drag, friction and stops, without a finger, within what limits assume."""
 
     drag_N_s_m: float
     friction_N: float
@@ -56,7 +56,7 @@ class FreeCap:
     def advance(self, force_cN: float) -> None:
         """Let a force push up for one tick."""
         for _ in range(STEPS):
-            push_N = 0.01 * force_cN + self.drag_N_s_m * self.v_mm_s * 1e-3
+            push_N = 0.01 * (force_cN - LIMITS.weight_cN) + self.drag_N_s_m * self.v_mm_s * 1e-3
             rub_N = math.copysign(self.friction_N, self.v_mm_s)
             if self.v_mm_s == 0:
                 rub_N = -min(max(push_N, -self.friction_N), self.friction_N)
@@ -191,7 +191,7 @@ def accepted_come_back(seeds: range) -> tuple[int, int]:
 
 
 def test_random_programs_that_are_accepted_come_back_within_their_bound() -> None:
-    accepted, refused = accepted_come_back(range(60))
+    accepted, refused = accepted_come_back(range(40))
     assert accepted >= 5
     assert refused >= 5
 

@@ -25,11 +25,17 @@ if TYPE_CHECKING:
 SUFFIX = ".fdvv-program.json"
 IMAGE_SUFFIX = ".fdvv-image"
 
+weight_option = click.option(
+    "--weight-cN",
+    "weight_cN",
+    type=Finite(min=-400, max=400),
+    help="Weight that the rig's force carries (cN); 19.6 by default, 0 for a rig that lies.",
+)
 opposing_option = click.option(
     "--opposing-cN",
     "opposing_cN",
     type=Finite(min=0),
-    help="Friction, and weight that nothing carries, that may keep the cap down (cN); 5 by default.",
+    help="Friction that may keep the cap down (cN); 5 by default.",
 )
 
 
@@ -143,9 +149,10 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
 
 @program.command()
 @click.argument("program")
+@weight_option
 @opposing_option
 @json_option
-def check(program: str, opposing_cN: float | None, as_json: bool) -> None:
+def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_json: bool) -> None:
     """Check a program against the paper's rig: forces, heat, hangs, and that the cap comes back.
 
     Exit status 1 if it is refused. What is proven is in docs/explanation/programs.md.
@@ -154,7 +161,7 @@ def check(program: str, opposing_cN: float | None, as_json: bool) -> None:
     from fdvv.workflow import open_program
 
     opened = open_program(program)
-    report = check_program(opened, _limits(opposing_cN))
+    report = check_program(opened, _limits(weight_cN, opposing_cN))
     if as_json:
         print_json(_report(opened, report))
     else:
@@ -170,10 +177,17 @@ def check(program: str, opposing_cN: float | None, as_json: bool) -> None:
         raise click.exceptions.Exit(1)
 
 
-def _limits(opposing_cN: float | None) -> Limits:
+def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
+    from dataclasses import replace
+
     from fdvv.program import Limits
 
-    return Limits() if opposing_cN is None else Limits(opposing_cN=opposing_cN)
+    limits = Limits()
+    return replace(
+        limits,
+        weight_cN=limits.weight_cN if weight_cN is None else weight_cN,
+        opposing_cN=limits.opposing_cN if opposing_cN is None else opposing_cN,
+    )
 
 
 def _report(opened: Program, report: Report) -> dict[str, Any]:
@@ -193,6 +207,7 @@ def _report(opened: Program, report: Report) -> dict[str, Any]:
 
 @program.command("compile")
 @click.argument("program")
+@weight_option
 @opposing_option
 @click.option(
     "-o",
@@ -202,7 +217,9 @@ def _report(opened: Program, report: Report) -> dict[str, Any]:
     help="The *.fdvv-image to write.",
 )
 @json_option
-def compile_(program: str, opposing_cN: float | None, output: Path, as_json: bool) -> None:
+def compile_(
+    program: str, weight_cN: float | None, opposing_cN: float | None, output: Path, as_json: bool
+) -> None:
     """Check a program and compile it to the image that a device takes.
 
     Columns of a surface are evenly spaced in an image; what that and rounding cost is told.
@@ -213,7 +230,7 @@ def compile_(program: str, opposing_cN: float | None, output: Path, as_json: boo
 
     check_output(output, IMAGE_SUFFIX)
     opened = open_program(program)
-    limits = _limits(opposing_cN)
+    limits = _limits(weight_cN, opposing_cN)
     report = require_accepted(opened, limits)
     compiled = compile_program(opened, limits)
     write_atomic(output, compiled.image)

@@ -60,8 +60,14 @@ def button_program(model: FDVVModel, surface: ForceSurface | None = None) -> Pro
 def compile_button(
     model: FDVVModel, surface: ForceSurface | None = None, limits: Limits | None = None
 ) -> Compiled:
-    """Compile a model, or what was learned for it, as button_program writes it. Raises InputError."""
-    return compile_program(button_program(model, surface), limits)
+    """Compile a model, or what was learned for it, as button_program writes it. Raises InputError.
+
+    Learned forces carry the weight already, whatever the limits say.
+    """
+    limits = limits or Limits()
+    return compile_program(
+        button_program(model, surface), replace(limits, weight_cN=0.0) if surface else limits
+    )
 
 
 def vibrations_of(model: FDVVModel) -> tuple[tuple[Signal, ...], tuple[VibrationEvent, ...]]:

@@ -91,7 +91,7 @@ def check_program(program: Program, limits: Limits | None = None) -> Report:
     limits = limits or Limits()
     refusal, margin_cN = _compiled(program, limits)
     returning = Returning(program, limits, margin_cN)
-    rests = [_held_at_bottom_cN(program, state) for state in program.states]
+    rests = [_held_at_bottom_cN(program, state, limits) for state in program.states]
     findings = [
         *refusal,
         *_travel(program, limits),
@@ -170,9 +170,11 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
     place = f"surface {surface.name!r}"
     low, high = state.biases_cN()
     table = surface.table_cN
-    strongest_cN = max(abs(float(table.min()) + low), abs(float(table.max()) + high))
+    ends = (float(table.min()) + low + limits.weight_cN, float(table.max()) + high + limits.weight_cN)
+    strongest_cN = max(map(abs, ends))
     if strongest_cN > limits.force_cN:
-        yield _refused(state.name, place, f"{strongest_cN:.4g} cN, the rig gives {limits.force_cN:g}")
+        reason = f"{strongest_cN:.4g} cN, weight included, the rig gives {limits.force_cN:g}"
+        yield _refused(state.name, place, reason)
     slope_cN_mm, at_mm = _slope_cN_mm(surface, limits)
     slew_cN_s = slope_cN_mm * FASTEST_PRESS_mm_s
     where = f"{place} at {at_mm:.2f} mm"
@@ -198,11 +200,11 @@ def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
     return float(slopes.max()), surface.displacement_mm[column]
 
 
-def _held_at_bottom_cN(program: Program, state: State) -> float:
-    """Give the strongest force that a state holds against a finger at the bottom."""
+def _held_at_bottom_cN(program: Program, state: State, limits: Limits) -> float:
+    """Give the strongest force, weight included, that a state holds against a finger at the bottom."""
     bottom = np.array([program.travel_mm])
     forces = [
-        float(surface.row_cN(row, bottom)[0]) + bias
+        float(surface.row_cN(row, bottom)[0]) + bias + limits.weight_cN
         for surface in (program.surface(state.press), program.surface(state.release))
         for row in range(len(surface.velocity_mm_s))
         for bias in state.biases_cN()

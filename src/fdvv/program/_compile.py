@@ -49,9 +49,10 @@ class Compiled:
 def compile_program(program: Program, limits: Limits | None = None) -> Compiled:
     """Compile a program to an image of protocol/fdvv.toml.
 
-    Columns of a surface are evenly spaced: each surface gets the fewest that keep it within
-    limits.grid_error_cN of its lines; while the image is too large, that bound is doubled, up to
-    limits.worst_grid_error_cN. Raises InputError that names what does not fit, or a force beyond the limit.
+    Every state carries limits.weight_cN. Columns of a surface are evenly spaced: each surface gets the fewest
+    that keep it within limits.grid_error_cN of its lines; while the image is too large, that bound is
+    doubled, up to limits.worst_grid_error_cN. Raises InputError that names what does not fit, or a force
+    beyond the limit.
     """
     limits = limits or Limits()
     _check_counts(program)
@@ -83,7 +84,7 @@ def _fit(
     bound_cN = min(limits.grid_error_cN, limits.worst_grid_error_cN)
     while True:
         grids = [found.grid(found.coarsest(bound_cN)) for found in candidates]
-        image = lay_out(program, grids, [c.slot for c in converted])
+        image = lay_out(program, grids, [c.slot for c in converted], limits.weight_cN)
         if len(image) <= IMAGE_BYTES or bound_cN >= limits.worst_grid_error_cN:
             return grids, image
         bound_cN = min(2 * bound_cN, limits.worst_grid_error_cN)
@@ -114,9 +115,9 @@ def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
         raise _refuse(program, place, reason, "leave some out")
     if rows[-1] > 65_535 or np.any(np.diff(rows) < 1):
         raise _refuse(program, place, "velocities closer than 1/16 mm/s or above 4095", "move them apart")
-    strongest_cN = float(np.max(np.abs(surface.table_cN)))
+    strongest_cN = float(np.max(np.abs(surface.table_cN + limits.weight_cN)))
     if strongest_cN > limits.force_cN:
-        reason = f"{strongest_cN:.4g} cN, the rig gives {limits.force_cN:g}"
+        reason = f"{strongest_cN:.4g} cN, weight included, the rig gives {limits.force_cN:g}"
         raise _refuse(program, place, reason, "weaken it")
     ends = (16_000 * surface.displacement_mm[0], 16_000 * surface.displacement_mm[-1])
     if not START_um16[0] <= ends[0] <= ends[1] <= START_um16[1]:
@@ -124,7 +125,7 @@ def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
 
 
 def _check_bias(program: Program, state: State, limits: Limits) -> None:
-    bias_cN = max(abs(b) for b in state.biases_cN())
+    bias_cN = max(abs(b + limits.weight_cN) for b in state.biases_cN())
     if bias_cN > limits.force_cN:
         reason = f"a bias of {bias_cN:g} cN, the rig gives {limits.force_cN:g}"
         raise _refuse(program, f"state {state.name!r}", reason, "weaken it")

@@ -38,8 +38,11 @@ class _Pool:
         return self.places[data, align]
 
 
-def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot]) -> bytes:
-    """Give the image of a program; one that is larger than a device takes is only as long, and empty."""
+def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weight_cN: float) -> bytes:
+    """Give the image of a program whose states carry a weight.
+
+    An image that is larger than a device takes is only as long as it would be, and empty.
+    """
     transitions = [t for state in program.states for t in state.transitions]
     counts = (
         (len(program.states), StateRecord),
@@ -57,7 +60,7 @@ def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot]) -> b
         return bytes(size)
     records = [
         _header(program, len(transitions), size),
-        *_state_records(program),
+        *_state_records(program, weight_cN),
         *(
             _transition_record(program, state, i)
             for state in program.states
@@ -102,15 +105,15 @@ def _slot_index(program: Program, signal: str | None) -> int:
     return NONE if signal is None else [s.name for s in program.signals].index(signal)
 
 
-def _state_records(program: Program) -> list[StateRecord]:
+def _state_records(program: Program, weight_cN: float) -> list[StateRecord]:
     found, first = [], 0
     for state in program.states:
-        found.append(_state_record(program, state, first))
+        found.append(_state_record(program, state, first, weight_cN))
         first += len(state.transitions)
     return found
 
 
-def _state_record(program: Program, state: State, first: int) -> StateRecord:
+def _state_record(program: Program, state: State, first: int, weight_cN: float) -> StateRecord:
     return StateRecord(
         press_surface=_surface_index(program, state.press),
         release_surface=_surface_index(program, state.release),
@@ -122,8 +125,8 @@ def _state_record(program: Program, state: State, first: int) -> StateRecord:
         repeat_slot=_slot_index(program, state.repeat_signal),
         repeat_ms=state.repeat_ms,
         fade_ms=state.fade_ms,
-        bias_cN64=counts_cN64(state.bias_cN),
-        bias_end_cN64=counts_cN64(state.bias_end_cN),
+        bias_cN64=counts_cN64(state.bias_cN + weight_cN),
+        bias_end_cN64=counts_cN64(state.bias_end_cN + weight_cN) if state.bias_ms else 0,
         bias_ms=state.bias_ms,
     )
 

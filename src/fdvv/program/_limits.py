@@ -28,8 +28,9 @@ class Limits:
     mass_kg : what moves: coil, shaft, cap.
     damping_N_s_m : drag that is sure to be there: back-EMF of the coil at voltage drive, k_t²/R, and bushing.
     most_damping_N_s_m : the most it may be; only times depend on it.
-    opposing_cN : largest force that may keep the cap down with the finger off. Friction; where the rig stands
-        upright and neither a bias nor a learned table carries the weight, add it (20 cN for 20 g).
+    weight_cN : of what moves, along the stroke: 20 g in a rig that stands upright. Every state of an image
+        carries it, so that forces are felt as they are written. 0 for a rig that lies and for learned forces.
+    opposing_cN : largest force that may keep the cap down with the finger off: friction.
     rebound_ratio : speed after over speed before hitting a stop, at most.
     top_mm : above it the cap counts as returned: the rig's re-arming height.
     delay_us : from the middle of the readings to the new force.
@@ -43,6 +44,7 @@ class Limits:
     mass_kg: float = 0.02
     damping_N_s_m: float = 4.0
     most_damping_N_s_m: float = 8.0
+    weight_cN: float = 19.6
     opposing_cN: float = 5.0
     rebound_ratio: float = 0.3
     top_mm: float = 0.1
@@ -56,6 +58,8 @@ class Limits:
         for name in positive:
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise ModelError(f"{name} must be positive, got {getattr(self, name)}")
+        if not np.isfinite(self.weight_cN):
+            raise ModelError(f"weight_cN must be finite, got {self.weight_cN}")
         if not (np.isfinite(self.opposing_cN) and self.opposing_cN >= 0):
             raise ModelError(f"opposing_cN must be 0 or more, got {self.opposing_cN}")
         if not 0 <= self.rebound_ratio < 1:

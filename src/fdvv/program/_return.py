@@ -164,7 +164,7 @@ class Returning:
         opposing_cN = self.motion.limits.opposing_cN
         return (
             f"{self.cells.edges_mm[cell]:.2f} mm, at least {least[cell]:.1f} cN "
-            f"against {opposing_cN:g} cN of friction and weight"
+            f"against {opposing_cN:g} cN of friction"
         )
 
     @cached_property
