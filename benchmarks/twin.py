@@ -1,45 +1,111 @@
-"""How fast is the twin, beside plain SciPy solving the same press in the same run? Simulated.
+"""How fast is the rig's twin: beside plain SciPy, over paces and loops, on one core and two? Simulated.
 
 Run as ``python -m benchmarks.twin``. The plain loop is the twin's reference: the same equations written in
-Python, integrated with SciPy's DOP853 between the controller's ticks.
+Python, integrated with SciPy's DOP853 between the ticks. Times are of the thread, so that a busy machine does
+not count; simulated time is that of the record alone, without the settling before it, which is paid for too.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.fit import time_ms
 from fdvv.model import ForceSurface, load_builtin
-from fdvv.twin import Finger, Rig, plan, reference_simulate, silence, simulate, solve_pace
+from fdvv.twin import (
+    Controller,
+    Exciter,
+    Finger,
+    Rig,
+    RigPress,
+    draw_noise,
+    image_of,
+    plan,
+    reference_simulate,
+    silence,
+    simulate,
+    simulate_rig_batch,
+    solve_pace,
+    vary,
+)
 from fdvv.units import m_from_mm
 
-VELOCITY_mm_s = 100.0
+PACES_mm_s = (50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0)
+STEPS_s = (2e-5, 1e-5, 5e-6, 2.5e-6)
+RIGS = {
+    "default, 1 kHz": Rig(),
+    "without exciter": Rig(exciter=Exciter(fitted="no")),
+    "4 kHz": Rig(controller=Controller(tick_s=2.5e-4, compute_s=1e-4)),
+}
+BUTTON = load_builtin("mx-clear")
+SURFACE = ForceSurface.of_model(BUTTON, [50.0, 100.0, 150.0, 200.0])
+
+
+def press_of(rig: Rig, velocity_mm_s: float, seed: int) -> RigPress:
+    """Vary one press."""
+    random, finger = np.random.default_rng(seed), Finger()
+    pace_s = solve_pace(rig, finger, SURFACE, BUTTON.travel_mm, velocity_mm_s)
+    gesture = vary(finger, float(m_from_mm(BUTTON.travel_mm)), pace_s, velocity_mm_s / 1000, random)
+    image = image_of(SURFACE, BUTTON.travel_mm).image
+    return RigPress(rig, finger, gesture, image, draw_noise(rig, finger, gesture, random), velocity_mm_s)
+
+
+def times_real_time(press: RigPress, rounds: int = 9) -> float:
+    """Give simulated over computing time, median of rounds."""
+    spent = []
+    for _ in range(rounds):
+        begun = time.thread_time()
+        trace = press.simulate()
+        spent.append(time.thread_time() - begun)
+    return float(trace.t_s[-1]) / float(np.median(spent))
+
+
+def speeds() -> None:
+    print("times real time, one core, median over presses at 50 to 200 mm/s (least to greatest), simulated")
+    for name, rig in RIGS.items():
+        ratios = [times_real_time(press_of(rig, v, k)) for k, v in enumerate(PACES_mm_s)]
+        print(f"  {name:20} {np.median(ratios):6.0f}  ({min(ratios):.0f} to {max(ratios):.0f})")
+
+
+def steps() -> None:
+    """Compare steps with the reference on one quiet press, and time them."""
+    rig, finger = Rig(), Finger()
+    pace_s = solve_pace(rig, finger, SURFACE, BUTTON.travel_mm, 100.0)
+    gesture = plan(finger, float(m_from_mm(BUTTON.travel_mm)), pace_s)
+    call = (rig, finger, gesture, SURFACE, BUTTON.travel_mm, silence(rig, gesture), 100.0)
+    begun = time.thread_time()
+    slow = reference_simulate(*call)
+    plain_s = time.thread_time() - begun
+    print("step, computing time, and difference from SciPy's DOP853 (rms um, rms cN), 100 mm/s, simulated")
+    for step_s in STEPS_s:
+        begun = time.thread_time()
+        fast = simulate(*call, step_s)
+        spent_s = time.thread_time() - begun
+        um = 1e3 * np.sqrt(np.mean((fast.displacement_mm - slow.displacement_mm) ** 2))
+        cN = np.sqrt(np.mean((fast.force_cN - slow.force_cN) ** 2))
+        print(f"  {1e6 * step_s:4.1f} us {1e3 * spent_s:7.2f} ms  {um:.6f}  {cN:.5f}")
+    print(f"  plain SciPy {1e3 * plain_s:.0f} ms")
+
+
+def copies(press: RigPress, count: int) -> Iterator[RigPress]:
+    return (press for _ in range(count))
+
+
+def batches() -> None:
+    print("many presses at 200 mm/s, presses per second by the clock, simulated")
+    press = press_of(Rig(), 200.0, 1)
+    for count, threads in ((1000, 1), (1000, 2), (10_000, 2)):
+        begun = time.perf_counter()
+        done = sum(1 for _ in simulate_rig_batch(copies(press, count), threads))
+        spent_s = time.perf_counter() - begun
+        print(f"  {done:6} on {threads} threads {done / spent_s:7.0f}/s")
 
 
 def main() -> None:
-    rig, finger, button = Rig(), Finger(), load_builtin("mx-clear")
-    surface = ForceSurface.of_model(button, [50.0, 100.0, 150.0, 200.0])
-    pace_s = solve_pace(rig, finger, surface, button.travel_mm, VELOCITY_mm_s)
-    gesture = plan(finger, m_from_mm(button.travel_mm), pace_s)
-    quiet = silence(rig, gesture)
-    call = (rig, finger, gesture, surface, button.travel_mm, quiet, VELOCITY_mm_s)
-    trace = simulate(*call)
-    length_s = float(trace.t_s[-1])
-    median, least, greatest = time_ms(lambda: simulate(*call), 20)
-    begun = time.perf_counter()
-    reference = reference_simulate(*call)
-    plain_ms = 1e3 * (time.perf_counter() - begun)
-    print(f"one press of {1e3 * length_s:.0f} ms at {VELOCITY_mm_s:g} mm/s, simulated, one core")
-    ratio, steps_per_s = 1e3 * length_s / median, length_s / 5e-6 / (1e-3 * median)
-    print(f"twin, C at 5 us steps   {median:9.2f} ms  ({least:.2f} to {greatest:.2f})")
-    print(f"                        {ratio:9.0f} x real time, {steps_per_s:.2e} steps/s")
-    print(f"plain SciPy, DOP853     {plain_ms:9.0f} ms  {plain_ms / median:.0f} x slower")
-    count = min(trace.t_s.size, reference.t_s.size)
-    for name in ("displacement_mm", "force_cN"):
-        error = getattr(trace, name)[:count] - getattr(reference, name)[:count]
-        print(f"  difference of {name}: rms {np.sqrt(np.mean(error**2)):.2e}, max {np.abs(error).max():.2e}")
+    speeds()
+    steps()
+    batches()
 
 
 if __name__ == "__main__":

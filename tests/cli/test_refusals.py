@@ -53,7 +53,7 @@ def bad(tmp_path: Path) -> Path:
 
 
 REFUSED = {
-    "no such command": (("press",), "'press'"),
+    "no such command": (("squeeze",), "'squeeze'"),
     "no argument": (("fit",), "'PATH'"),
     "a missing file": (("fit", "gone.csv"), "'gone.csv' does not exist"),
     "a built-in to fit": (("fit", "mx-blue"), "'mx-blue' does not exist"),

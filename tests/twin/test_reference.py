@@ -33,15 +33,16 @@ def compare(
     slow = reference_simulate(rig, finger, gesture, surface, 4.0, noise, speed, method)
     fast = simulate(rig, finger, gesture, surface, 4.0, noise, speed)
     assert fast.t_s == pytest.approx(slow.t_s, abs=1e-12)
-    # the bounds asked for are 1 um and 0.1 cN; what is left is a cap that all but floats at
-    # its top stop, and a read on the brink of a converter step, which may fall either way now and then
-    assert rms(fast.displacement_mm - slow.displacement_mm) < 1e-4
+    # the bounds asked for are 1 um and 0.1 cN; kinks of a chattering contact are what is left
+    assert rms(fast.displacement_mm - slow.displacement_mm) < 1e-5
     assert rms(fast.force_cN - slow.force_cN) < 0.05
-    assert np.mean(fast.sensed_cN != slow.sensed_cN) < 0.02
-    step_mm = 2 * 12.7 / 4096 / 25 + 1 / 16000
+    assert np.array_equal(fast.sensed_cN, slow.sensed_cN)
+    # a read on the brink of a converter step may fall either way: one of 25, now and then
+    step_mm = 12.7 / 4096 / 25 + 1 / 16000
     assert fast.sensed_mm == pytest.approx(slow.sensed_mm, abs=1.01 * step_mm)
-    assert np.mean(np.abs(fast.sensed_mm - slow.sensed_mm) > 1e-9) < 0.05
+    assert np.mean(np.abs(fast.sensed_mm - slow.sensed_mm) > 1e-9) < 0.02
     assert fast.commanded_cN == pytest.approx(slow.commanded_cN, abs=100 * step_mm)
+    assert np.array_equal(fast.release, slow.release > 0.5)
 
 
 def rms(values: FloatArray) -> float:

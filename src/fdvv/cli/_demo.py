@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 @click.option(
     "--rig", type=click.Path(path_type=Path, exists=True, dir_okay=False), help="TOML file of the rig."
 )
+@click.option(
+    "--finger", type=click.Path(path_type=Path, exists=True, dir_okay=False), help="TOML file of the finger."
+)
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Repeats the twin.")
 @click.option(
     "-o",
@@ -32,7 +35,9 @@ if TYPE_CHECKING:
     help="Folder for report.html and the fitted model.",
 )
 @json_option
-def demo(switch: Path | None, rig: Path | None, seed: int, output: Path, as_json: bool) -> None:
+def demo(
+    switch: Path | None, rig: Path | None, finger: Path | None, seed: int, output: Path, as_json: bool
+) -> None:
     """Run the whole chain on the simulated rig and write a report.
 
     Fits a real switch, learns to render the published button at four velocities, judges the rendering on
@@ -45,7 +50,7 @@ def demo(switch: Path | None, rig: Path | None, seed: int, output: Path, as_json
     from fdvv.workflow import demo_report, open_device
 
     with stages() as stage:
-        result = run(lambda chosen: open_device("twin", rig, None, chosen), switch, seed, stage)
+        result = run(lambda chosen: open_device("twin", rig, finger, chosen), switch, seed, stage)
     save_model(result.switch.adaptive.model, output / f"switch{SUFFIX}")
     if as_json:
         print_json(result.to_dict())

@@ -1,16 +1,44 @@
-"""Helpers for tests, shipped: devices without physics, what every device must honour, random programs."""
+"""Helpers for tests, shipped: devices without physics, what every device and every rig must obey."""
 
+from fdvv.testing._closed_forms import coil_error_ratio, mean_response
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
+from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
+from fdvv.testing._loop import (
+    AWAY,
+    LinearLoop,
+    bare_loop,
+    cycles,
+    grainy_loop,
+    onset_N_m,
+    quantisation_limit_N_m,
+)
 from fdvv.testing._random_presses import random_inputs, random_settings
 from fdvv.testing._random_programs import random_image
 from fdvv.testing._scripted import ScriptedDevice
 
 __all__ = [
+    "AWAY",
     "DeviceConformance",
+    "Felt",
+    "LinearLoop",
     "ProgramConformance",
+    "SNAP_AT_mm",
+    "SNAP_DURATION_s",
+    "SNAP_Hz",
     "ScriptedDevice",
+    "bare_loop",
+    "coil_error_ratio",
+    "cycles",
+    "felt",
+    "grainy_loop",
+    "mean_response",
+    "onset_N_m",
     "plain_surface",
+    "press_with",
+    "quantisation_limit_N_m",
     "random_image",
     "random_inputs",
     "random_settings",
+    "snap",
+    "ways",
 ]

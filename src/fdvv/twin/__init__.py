@@ -1,5 +1,6 @@
 """Physics of finger, rig and real button: constants apart from state; compiled presses. Simulated."""
 
+from fdvv.twin._batch import RigPress, in_threads, simulate_rig_batch
 from fdvv.twin._button import ButtonPhysics, Curve, Dome, Housing, Leaf, Slider
 from fdvv.twin._button_file import button_names, button_to_toml, load_button
 from fdvv.twin._button_model import button_of_model
@@ -57,6 +58,7 @@ __all__ = [
     "ReferenceTrace",
     "Rig",
     "RigPlant",
+    "RigPress",
     "Servo",
     "Slider",
     "Stops",
@@ -74,6 +76,7 @@ __all__ = [
     "finger_to_toml",
     "identify",
     "image_of",
+    "in_threads",
     "load_button",
     "load_finger",
     "load_rig",
@@ -90,6 +93,7 @@ __all__ = [
     "simulate_batch",
     "simulate_button",
     "simulate_program",
+    "simulate_rig_batch",
     "solve_button_pace",
     "solve_pace",
     "solve_program_pace",

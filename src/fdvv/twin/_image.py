@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,9 +18,11 @@ from fdvv.protocol import (
     SURFACE_DISPLACEMENTS,
     SURFACE_VELOCITIES,
     ImageHeader,
+    Slot,
     State,
     Surface,
     VelocitySource,
+    Vibration,
 )
 from fdvv.units import FloatArray
 
@@ -42,8 +45,10 @@ class TableImage:
     error_cN: float
 
 
-def image_of(surface: ForceSurface, travel_mm: float) -> TableImage:
-    """Make the program that renders a table as it is.
+def image_of(
+    surface: ForceSurface, travel_mm: float, vibrations: Sequence[Vibration] = (), slots: Sequence[Slot] = ()
+) -> TableImage:
+    """Make the program that renders a table as it is, and plays these sines at these displacements.
 
     Columns stay where they are if their step is a whole number of 1/16 um and all fit; else the table is
     sampled anew, as finely as fits. ModelError if that changes it by more than 0.1 cN, or if its numbers are
@@ -68,14 +73,14 @@ def image_of(surface: ForceSurface, travel_mm: float) -> TableImage:
             f"the table would change by {error:.3g} cN to fit a device; {columns} places at most fit"
             f" {surface.velocity_mm_s.size} velocities"
         )
-    return TableImage(_pack(surface, travel_mm, (start, step, columns), held), error)
+    return TableImage(_pack(surface, travel_mm, (start, step, columns), held, [*vibrations, *slots]), error)
 
 
 def _grid(surface: ForceSurface) -> tuple[int, int, int]:
     """Choose first column, step (both 1/16 um) and count."""
     first, last = (UM16_mm * float(surface.displacement_mm[i]) for i in (0, -1))
     start, count = round(first), surface.displacement_mm.size
-    fits = min(SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 96) // (4 * surface.velocity_mm_s.size) - 2)
+    fits = min(SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 160) // (4 * surface.velocity_mm_s.size) - 2)
     low, high = Surface.LIMITS["step_um16"]
     exact = (last - first) / (count - 1)
     if count <= fits and low <= exact <= high and abs(exact - round(exact)) * (count - 1) < 1:
@@ -101,11 +106,16 @@ def _error(surface: ForceSurface, x: FloatArray, held: list[FloatArray]) -> floa
 
 
 def _pack(
-    surface: ForceSurface, travel_mm: float, grid: tuple[int, int, int], held: list[FloatArray]
+    surface: ForceSurface,
+    travel_mm: float,
+    grid: tuple[int, int, int],
+    held: list[FloatArray],
+    events: Sequence[Vibration | Slot],
 ) -> bytes:
     start, step, columns = grid
     rows = surface.velocity_mm_s.size
     fixed = ImageHeader.length_bytes() + State.length_bytes() + 2 * Surface.length_bytes()
+    fixed += sum(event.length_bytes() for event in events)
     speeds = np.round(MM_S16 * surface.velocity_mm_s).astype("<u2").tobytes()
     forces = [table.astype("<i2").tobytes() for table in held]
     places = [fixed + len(speeds) + i * len(forces[0]) for i in (0, 1)]
@@ -116,9 +126,9 @@ def _pack(
         ).pack()
         for at in places
     ]
-    body = b"".join([*parts, speeds, *forces])
+    body = b"".join([*parts, *(event.pack() for event in events), speeds, *forces])
     body += bytes(-len(body) % 4)
-    return _seal(body, round(UM16_mm * travel_mm))
+    return _seal(body, round(UM16_mm * travel_mm), events)
 
 
 def _state() -> State:
@@ -140,7 +150,7 @@ def _state() -> State:
     )
 
 
-def _seal(body: bytes, travel_um16: int) -> bytes:
+def _seal(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
     """Put the header with its checksum before the parts."""
     head = ImageHeader(
         magic=IMAGE_MAGIC,
@@ -152,8 +162,8 @@ def _seal(body: bytes, travel_um16: int) -> bytes:
         states=1,
         transitions=0,
         surfaces=2,
-        vibrations=0,
-        slots=0,
+        vibrations=sum(isinstance(event, Vibration) for event in events),
+        slots=sum(isinstance(event, Slot) for event in events),
         spare=0,
         name=b"table",
     )

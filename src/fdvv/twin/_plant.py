@@ -121,7 +121,8 @@ class RigPlant:
 
     def load(self, image: bytes) -> None:
         """Give the vibration board the waveforms of a program; ModelError if it cannot hold them."""
-        if not doors().fdvv_rig_load(self._held, address(words(image))):
+        held = words(image)
+        if not doors().fdvv_rig_load(self._held, address(held)):
             raise ModelError("the vibration board has no room for the waveforms of this program")
 
     def record(self) -> Trace:

@@ -37,6 +37,7 @@ class ReferencePlant:
     gesture: Gesture
     travel_m: float
     ratio: float = 0.0
+    enabled: bool = False
     modulation: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
 
     def referent(self, t: float) -> tuple[float, float]:
@@ -75,6 +76,7 @@ class ReferencePlant:
     def set_duty(self, duty_q15: int) -> None:
         """Set the bridge to what its converter makes of a duty."""
         c, ratio = self.rig.coil, duty_q15 / 32768
+        self.enabled = True
         if c.command_bits:
             ratio = math.floor(ratio * 2**c.command_bits + 0.5) / 2**c.command_bits
         self.ratio = ratio if c.bipolar == "yes" else max(ratio, 0.0)
@@ -100,16 +102,24 @@ class ReferencePlant:
             volts = lost + henry * (wanted - amps) / c.current_loop_s
             volts = min(max(volts, -c.supply_V), c.supply_V)
         warming = (c.heat_K_W * copper * amps**2 - float(y[14])) / c.heat_s
-        return constant * amps - c.reluctance_H_m * amps**2 / 2, (volts - lost) / henry, warming
+        return (
+            constant * amps - c.reluctance_H_m * amps**2 / 2,
+            (volts - lost) / henry * self.enabled,
+            warming,
+        )
 
-    def exciter(self, y: FloatArray) -> tuple[float, float]:
-        """Give the force on the cap and the magnet's acceleration; undriven, its current without lag."""
+    def exciter(self, y: FloatArray, slip_rate: float = 0.0) -> tuple[float, float]:
+        """Give the force on the cap and the magnet's acceleration, undriven.
+
+        The lag of the current, microseconds, is that of a line: slip_rate is the rate of its cause.
+        """
         e = self.rig.exciter
         if e.fitted == "no":
             return 0.0, 0.0
         omega, slip = 2 * math.pi * e.resonance_Hz, float(y[13] - y[7])
         force = e.mass_kg * omega**2 * float(y[12]) + e.mass_kg * omega / e.quality * slip
-        force += e.motor_N_A**2 / e.resistance_ohm * slip
+        lag_s = e.inductance_H / e.resistance_ohm
+        force += e.motor_N_A**2 / e.resistance_ohm * (slip - lag_s * slip_rate)
         return force, -force / e.mass_kg
 
     def cap(self, y: FloatArray, touch: float, up: float, shake: float) -> tuple[float, float]:
@@ -134,6 +144,8 @@ class ReferencePlant:
         cone = (pulp - touch) / rig.force_sensor.mass_kg
         lvdt = 2 * math.pi * rig.position_sensor.bandwidth_Hz * (y[6] - y[9])
         felt = (pulp - y[10]) / rig.force_sensor.filter_s
+        cap, _ = self.cap(y, touch, up, shake)
+        shake, magnet = self.exciter(y, magnet - cap)
         cap, bristle = self.cap(y, touch, up, shake)
         first = [y[1], finger, fast, slow, y[5], cone, y[7], cap, amps, lvdt, felt, bristle]
         return np.array([*first, y[13] - y[7], magnet, warm])
