@@ -182,7 +182,9 @@ def test_the_part_of_unknown_velocity_is_named() -> None:
 def test_devices_are_opened_by_name() -> None:
     assert open_device("twin").info().simulated
     for name in ("robot", "serial", "serial:", "replay:", "host:1", ""):
-        with pytest.raises(InputError, match="use one of twin, host, emulated, emulated:FILE, serial:PORT, replay:FILE"):
+        with pytest.raises(
+            InputError, match="use one of twin, host, emulated, emulated:FILE, serial:PORT, replay:FILE"
+        ):
             open_device(name)
 
 
