@@ -46,8 +46,9 @@ static uint8_t read_settings(fdvv_link *link, const void *request)
 static uint8_t write_settings(fdvv_link *link, const void *request)
 {
     const fdvv_settings *settings = (const fdvv_settings *)request;
-    uint8_t wrong;
-    if (link->core->supervisor.mode != FDVV_MODE_IDLE)
+    uint8_t wrong, mode = link->core->supervisor.mode;
+    /* in fault too: settings that do not suit the rig may be what holds it there */
+    if (mode != FDVV_MODE_IDLE && mode != FDVV_MODE_FAULT)
         return FDVV_REFUSAL_WRONG_MODE;
     wrong = fdvv_settings_check(settings);
     if (wrong) {

@@ -156,7 +156,7 @@ enum {
     FDVV_BOARD_FLAG_SERVO = 1 << 4,
 };
 
-/* a rig's calibration and limits; written while idle, refused as a whole if one field is out of range */
+/* a rig's calibration and limits; written while idle or in fault, refused as a whole if one field is out of range */
 typedef struct {
     int32_t position_gain_q14; /* um16 per count of the sum; -65535 to 65535; scale of the summed readings; its size times the largest sum stays below 2^32 */
     int32_t position_offset_um16; /* um16; -400000 to 400000; displacement at a sum of 0 */
@@ -700,7 +700,7 @@ enum {
     FDVV_MSG_HELLO = 0x01, /* who are you; must be the first request */
     FDVV_MSG_PING = 0x02, /* I am here; feeds the host watch and relates the clocks */
     FDVV_MSG_READ_SETTINGS = 0x03, /* tell your settings */
-    FDVV_MSG_WRITE_SETTINGS = 0x04, /* use these; idle only, all or none */
+    FDVV_MSG_WRITE_SETTINGS = 0x04, /* use these; while idle or in fault, all or none */
     FDVV_MSG_BEGIN = 0x05, /* a program follows into the bank that is not active; forgets an unfinished one */
     FDVV_MSG_DATA = 0x06, /* the next bytes of the program; a repeated offset is accepted if the bytes are the same */
     FDVV_MSG_COMMIT = 0x07, /* check what was received: checksum, layout, ranges; answers when done */

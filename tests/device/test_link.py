@@ -268,6 +268,17 @@ def test_settings_are_refused_while_armed(known: Bench) -> None:
     assert refusal(known.ask(Message.WRITE_SETTINGS, Settings())) is Refusal.WRONG_MODE
 
 
+def test_settings_that_hold_the_device_in_a_fault_can_be_replaced(known: Bench) -> None:
+    known.ask(Message.WRITE_SETTINGS, Settings(reading_low=4000))
+    known.run(10)
+    told = ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload)
+    assert told.fault == Fault.POSITION_LOW
+    known.ask(Message.WRITE_SETTINGS, Settings())
+    known.run(10)
+    known.ask(Message.CLEAR_FAULT, ClearFaultRequest(fault=told.fault))
+    assert ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload).fault == Fault.NONE
+
+
 def test_telemetry_comes_without_gaps_at_the_asked_distance(known: Bench) -> None:
     for every in (1, 2, 5, 16, 100):
         known.ask(Message.TELEMETRY, TelemetryRequest(every=every))

@@ -5,7 +5,7 @@ from fdvv.device._client import Client
 from fdvv.device._clocks import ClockRelation, Exchange, relate
 from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
 from fdvv.device._emulated import EmulatedBoard
-from fdvv.device._image import seal, surface_image
+from fdvv.device._image import surface_image
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._lockstep import Board, LockstepPort
 from fdvv.device._monitor import watch
@@ -61,7 +61,6 @@ __all__ = [
     "open_device",
     "read_session",
     "relate",
-    "seal",
     "serial_ports",
     "surface_image",
     "watch",

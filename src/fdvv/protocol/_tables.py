@@ -189,7 +189,7 @@ class Message(IntEnum):
     READ_SETTINGS = 0x03
     """Tell your settings."""
     WRITE_SETTINGS = 0x04
-    """Use these; idle only, all or none."""
+    """Use these; while idle or in fault, all or none."""
     BEGIN = 0x05
     """A program follows into the bank that is not active; forgets an unfinished one."""
     DATA = 0x06
@@ -280,7 +280,7 @@ REPLY_BYTES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(Record):
-    """A rig's calibration and limits; written while idle, refused as a whole if one field is out of range.
+    """A rig's calibration and limits; written while idle or in fault, refused as a whole if one field is out of range.
 
     Attributes
     ----------

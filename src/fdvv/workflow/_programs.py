@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from fdvv.device import surface_image
 from fdvv.errors import InputError
 from fdvv.model import ForceSurface
-from fdvv.program import compile_program, require_accepted
+from fdvv.program import button_program, compile_program, require_accepted
 from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC
 from fdvv.workflow._open import open_model
 from fdvv.workflow._open_program import names_program, open_program
@@ -21,8 +20,8 @@ def program_image(button: str, velocities_mm_s: Sequence[float]) -> bytes:
     """Give the image of a program: that of a file, or one that follows a button's own force.
 
     button : a program image (its first bytes are FDVP), a program as `open_program` opens it, which must be
-    accepted, else what `open_model` opens; its force is sampled at these speeds and not compensated for any
-    rig. Raises InputError.
+    accepted, else what `open_model` opens; its force is sampled at these speeds, with the weight of what
+    moves but not compensated for any rig, its vibrations and key points go along. Raises InputError.
     """
     path = Path(button)
     if path.is_file() and path.stat().st_size <= IMAGE_BYTES and path.read_bytes()[:4] == MAGIC:
@@ -35,4 +34,4 @@ def program_image(button: str, velocities_mm_s: Sequence[float]) -> bytes:
     if not model.of("press"):
         raise InputError(button, "curves", "it has no press, there is nothing to render", "merge one into it")
     surface = ForceSurface.of_model(model, sorted(velocities_mm_s), STEP_mm)
-    return surface_image(surface, model.travel_mm, model.name)
+    return compile_program(button_program(model, surface)).image
