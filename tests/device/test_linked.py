@@ -170,7 +170,7 @@ def test_a_board_is_told_what_suits_the_rig() -> None:
 def test_a_table_that_no_program_holds_is_refused_with_what_it_would_lose() -> None:
     table = np.random.default_rng(1).uniform(-100, 100, (8, 255))
     surface = ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 9.0), table, table)
-    with pytest.raises(DeviceError, match="the table would change by .* cN to fit a device"):
+    with pytest.raises(DeviceError, match=r"the table would change by .* cN to fit a device"):
         linked().upload(surface, 4.0)
 
 
