@@ -22,9 +22,11 @@ from fdvv.testing import (
     mean_response,
     onset_N_m,
     quantisation_limit_N_m,
+    ripple_N,
     ways,
 )
 from fdvv.twin import (
+    Coil,
     Finger,
     Rig,
     draw_noise,
@@ -36,6 +38,8 @@ from fdvv.twin import (
 from fdvv.units import FloatArray
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
+FELT_cN = 5.0
+"""A force that is felt at 60 cN, about 7 to 15 % of it."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,10 @@ def checks() -> list[Check]:
     )
     worst = max(abs(a - b) for a, b in (mean_response(f) for f in (5.0, 13.0, 27.0, 60.0, 111.0)))
     rows.append(_row("V7 sliding mean against its closed form", worst, "{:.5f}", 1e-3))
+    for switching_Hz in (732.0, 2e4, 187.5e3):
+        ripple_cN = 100 * ripple_N(Coil(), switching_Hz)
+        name = f"ripple left out by averaging, {switching_Hz / 1000:g} kHz"
+        rows.append(_row(name, ripple_cN, "{:.1f} cN peak to peak", FELT_cN))
     return rows + loop_checks() + vibration_checks()
 
 
