@@ -1,7 +1,7 @@
 """Does a faster loop render better after learning? Simulated; some minutes.
 
-Run as ``python -m benchmarks.loop_rate``. Learns MX Clear and judges it on fresh presses of another seed, as the
-demo does; mean over strokes, velocities and seeds of the mean error in true displacement.
+Run as ``python -m benchmarks.loop_rate``. Learns MX Clear and judges it on fresh presses of another
+seed, as the demo does; mean over strokes, velocities and seeds of the mean error in true displacement.
 """
 
 from __future__ import annotations

@@ -58,9 +58,10 @@ def mean_response(frequency_Hz: float, ticks: int = 25, tick_us: int = 1000) -> 
 
 
 def ripple_N(coil: Coil, switching_Hz: float, ratio: float = 0.5) -> float:
-    """Give the ripple of the force, peak to peak, under a switched supply: what averaging the duty leaves out.
+    """Give the ripple of the force, peak to peak, under a switched supply.
 
-    A locked coil between 0 and the supply, settled: the current rises and falls on exponentials.
+    It is what averaging the duty leaves out. A locked coil between 0 and the supply, settled: the current
+    rises and falls on exponentials.
     """
     ohm = coil.resistance_ohm + coil.bridge_ohm
     rise, fall = (np.exp(-part * ohm / (coil.inductance_H * switching_Hz)) for part in (ratio, 1 - ratio))
