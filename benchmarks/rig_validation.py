@@ -22,9 +22,11 @@ from fdvv.testing import (
     mean_response,
     onset_N_m,
     quantisation_limit_N_m,
+    ripple_N,
     ways,
 )
 from fdvv.twin import (
+    Coil,
     Finger,
     Rig,
     draw_noise,
@@ -36,6 +38,8 @@ from fdvv.twin import (
 from fdvv.units import FloatArray
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
+FELT_um = 0.1
+"""Vibration that a fingertip feels at 250 Hz at best; recalled."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,11 @@ def checks() -> list[Check]:
     )
     worst = max(abs(a - b) for a, b in (mean_response(f) for f in (5.0, 13.0, 27.0, 60.0, 111.0)))
     rows.append(_row("V7 sliding mean against its closed form", worst, "{:.5f}", 1e-3))
+    for switching_Hz in (732.0, 2e4, 187.5e3):
+        force_N = ripple_N(Coil(), switching_Hz)
+        um = 1e6 * force_N / (Rig().mover.mass_kg * (2 * np.pi * switching_Hz) ** 2)
+        name = f"ripple of {100 * force_N:.0f} cN left out at {switching_Hz / 1000:g} kHz"
+        rows.append(_row(name, um, "{:.4f} um of the cap", FELT_um))
     return rows + loop_checks() + vibration_checks()
 
 

@@ -21,10 +21,11 @@ from fdvv.testing import (
     onset_N_m,
     press_with,
     quantisation_limit_N_m,
+    ripple_N,
     snap,
     ways,
 )
-from fdvv.twin import Exciter, Mover, Rig, RigPlant, image_of, settings_of
+from fdvv.twin import Coil, Exciter, Mover, Rig, RigPlant, image_of, settings_of
 
 
 def test_a_released_coil_gains_speed_as_its_closed_form_says() -> None:
@@ -98,3 +99,14 @@ def test_a_rig_without_an_exciter_does_not_feel_a_vibration() -> None:
     with_it, without = (press_with(rig, settings_of(rig), SNAP_AT_mm, 100.0, s) for s in ([snap()], []))
     assert (with_it.slot != NONE).any()
     assert np.array_equal(with_it.cap_acceleration_m_s2, without.cap_acceleration_m_s2)
+
+
+def test_the_ripple_of_a_switched_bridge_is_that_of_its_current_followed_step_by_step() -> None:
+    coil, amps, seen = Coil(), 0.0, []
+    ohm, period = coil.resistance_ohm + coil.bridge_ohm, 1000
+    for step in range(40 * period):
+        volts = coil.supply_V if step % period < period / 2 else 0.0
+        amps += (volts - ohm * amps) / coil.inductance_H / (732.0 * period)
+        seen.append(amps)
+    followed = float(np.ptp(seen[-period:])) * coil.force_constant_N_A
+    assert ripple_N(coil, 732.0) == pytest.approx(followed, rel=2e-3)

@@ -83,12 +83,17 @@ static double drive_magnet(fdvv_rig *r, double t) {
 
 /* -- what the board reads -- */
 
+/* A whole count from 0 to most; a press that diverged reads 0. */
+static inline uint32_t counted(double value, double most) {
+    return value > 0.0 ? (uint32_t)(value < most ? value : most) : 0u;
+}
+
 /* The scale bends as u - u^3 over half the range, by lvdt_linearity_m where it bends most; mid scale is x = 0. */
 static inline uint32_t read_position(const fdvv_rig_model *m, double lvdt_m, double noise_m) {
     double u = 2.0 * lvdt_m / m->lvdt_range_m, most = 2.598076211353316; /* 1 / max(u - u^3) */
     double place = lvdt_m + m->lvdt_linearity_m * most * u * (1.0 - u * u) + noise_m;
     double count = (place / m->lvdt_range_m + 0.5) * m->lvdt_steps + 0.5;
-    return (uint32_t)clamp(count, 0.0, m->lvdt_steps - 0.5);
+    return counted(count, m->lvdt_steps - 0.5);
 }
 
 /* The play of the finger's sensor, then gain, range and converter. */
@@ -104,14 +109,14 @@ static uint16_t read_keycap(const fdvv_rig *r, double noise) {
     const fdvv_rig_model *m = &r->model;
     if (m->keycap_kind <= 0.0) return 0;
     double count = (0.5 + 0.5 * (r->keycap / m->keycap_full_scale + noise)) * m->keycap_steps + 0.5;
-    return (uint16_t)clamp(count, 0.0, m->keycap_steps - 0.5);
+    return (uint16_t)counted(count, m->keycap_steps - 0.5);
 }
 
 static uint16_t read_supply_mV(const fdvv_rig *r) {
     const fdvv_rig_model *m = &r->model;
     double ratio = m->current_loop_s > 0.0 ? 0.0 : r->drive / m->supply_V;
     double volts = m->supply_V - m->source_ohm * ratio * (r->enable ? r->y[AMPS] : 0.0);
-    return (uint16_t)clamp(1000.0 * volts + 0.5, 0.0, 65535.0);
+    return (uint16_t)counted(1000.0 * volts + 0.5, 65535.0);
 }
 
 static void read_sensors(fdvv_rig *r, const fdvv_rig_noise *noise, fdvv_inputs *inputs) {

@@ -7,7 +7,7 @@ import numpy as np
 from fdvv.device._contract import DeviceInfo
 from fdvv.errors import DeviceError, ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import ImageHeader
+from fdvv.protocol import ImageHeader, Mode
 from fdvv.twin import (
     Finger,
     Rig,
@@ -90,7 +90,13 @@ class TwinDevice:
         travel_m, speed_m_s = m_from_mm(travel_mm), m_from_mm(velocity_mm_s)
         gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
         noise = draw_noise(self._rig, self._finger, gesture, self._random)
-        return simulate_program(self._rig, self._finger, gesture, self._active, noise, velocity_mm_s)
+        trace = simulate_program(self._rig, self._finger, gesture, self._active, noise, velocity_mm_s)
+        if (trace.mode == Mode.FAULT).any():
+            raise DeviceError(
+                f"twin: the supervisor let go after {trace.t_s[np.argmax(trace.mode == Mode.FAULT)]:.3f} s; "
+                "look for a rig whose sensor, supply or heat is beyond its limits"
+            )
+        return trace
 
     def _check_travel(self, travel_mm: float) -> None:
         limit_mm = self.info().travel_limit_mm

@@ -1,6 +1,6 @@
-"""Helpers for tests, shipped: devices without physics, what every device and every rig must obey."""
+"""Helpers for tests, shipped: devices without physics, random programs, what devices and rigs must honour."""
 
-from fdvv.testing._closed_forms import coil_error_ratio, mean_response
+from fdvv.testing._closed_forms import coil_error_ratio, mean_response, ripple_N
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
 from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
 from fdvv.testing._loop import (
@@ -39,6 +39,7 @@ __all__ = [
     "random_image",
     "random_inputs",
     "random_settings",
+    "ripple_N",
     "snap",
     "ways",
 ]

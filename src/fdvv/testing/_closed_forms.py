@@ -55,3 +55,15 @@ def mean_response(frequency_Hz: float, ticks: int = 25, tick_us: int = 1000) -> 
     turns = np.exp(-2j * np.pi * frequency_Hz * t[ticks:])
     x = np.pi * frequency_Hz * 1e-6 * tick_us
     return 2 * float(np.abs(np.mean(place * turns))), float(np.abs(np.sin(ticks * x) / (ticks * np.sin(x))))
+
+
+def ripple_N(coil: Coil, switching_Hz: float, ratio: float = 0.5) -> float:
+    """Give the ripple of the force, peak to peak, under a switched supply.
+
+    It is what averaging the duty leaves out. A locked coil between 0 and the supply, settled: the current
+    rises and falls on exponentials.
+    """
+    ohm = coil.resistance_ohm + coil.bridge_ohm
+    rise, fall = (np.exp(-part * ohm / (coil.inductance_H * switching_Hz)) for part in (ratio, 1 - ratio))
+    amps = coil.supply_V / ohm * (1 - rise) * (1 - fall) / (1 - rise * fall)
+    return float(coil.force_constant_N_A * amps)

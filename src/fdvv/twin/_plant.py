@@ -129,7 +129,7 @@ class RigPlant:
         """Give what happened since the last call (60 s at most), from time 0, and forget it.
 
         What the board decided is not known here: sensed_mm is what the readings amount to, commanded_cN what
-        the duty amounts to; release, state, key and flags are 0. ModelError if no tick has passed.
+        the duty amounts to; release, state, key, mode and flags are 0. ModelError if no tick has passed.
         """
         if not self._kept:
             raise ModelError("no tick has passed since the last record")

@@ -9,7 +9,7 @@ from fdvv.twin._quantity import check, choice, quantity
 
 @dataclass(frozen=True)
 class Coil:
-    """The voice coil and its amplifier; pulse width is averaged (its ripple: ripple_N)."""
+    """The voice coil and its amplifier; pulse width is averaged (its ripple: fdvv.testing.ripple_N)."""
 
     drive: str = choice("voltage", "what the amplifier holds", ("voltage", "current"), "assumed")
     force_constant_N_A: float = quantity(

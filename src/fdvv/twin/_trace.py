@@ -27,8 +27,9 @@ class Trace:
     t_s : from 0.
     displacement_mm, cap_velocity_mm_s, cap_acceleration_m_s2 : of the cap, true.
     force_cN : between cap and sensor cone, true.
-    sensed_mm, commanded_cN, saturated, release, state, key, slot, flags : the controller's, held between
-        ticks; flags are bits of fdvv.protocol.TickFlag, slot the waveform started in that tick or NONE.
+    sensed_mm, commanded_cN, saturated, release, state, key, slot, mode, flags : the controller's, held
+        between ticks; flags are bits of fdvv.protocol.TickFlag, slot the waveform started in that tick or
+        NONE.
     sensed_cN : as the finger's force sensor told at the tick.
     tick : rows at which the controller ran.
     duty_ratio : of the supply, as the controller set it at the tick.
@@ -50,6 +51,7 @@ class Trace:
     state: ByteArray
     key: ByteArray
     slot: ByteArray
+    mode: ByteArray
     flags: ByteArray
     tick: BoolArray
     duty_ratio: FloatArray
@@ -82,6 +84,7 @@ class Trace:
             state=out["state"],
             key=out["key"],
             slot=out["slot"],
+            mode=out["mode"],
             flags=flags,
             tick=np.arange(t.size) % per_tick == 0,
             duty_ratio=duty_ratio,
