@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.files import write_atomic
+from fdvv.errors import InputError
+from fdvv.files import read_limited, write_atomic
 
 
 def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
@@ -42,3 +43,13 @@ def test_a_written_file_has_the_permissions_of_an_ordinary_one(tmp_path: Path) -
     (tmp_path / "plain").write_text("")
     write_atomic(tmp_path / "atomic", "")
     assert (tmp_path / "atomic").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+def test_a_small_file_is_read_and_a_larger_or_absent_one_refused_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_bytes(b"x" * 1_000_000)
+    assert len(read_limited(path, 1_000_000, "pass another")) == 1_000_000
+    with pytest.raises(InputError, match=r"a\.json: whole file: larger than 0 MB; pass another"):
+        read_limited(path, 999_999, "pass another")
+    with pytest.raises(InputError, match="No such file"):
+        read_limited(tmp_path / "gone", 10, "pass another")

@@ -1,10 +1,12 @@
-"""Write files whole or not at all."""
+"""Write files whole or not at all; read small ones."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 from pathlib import Path
+
+from fdvv.errors import InputError
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -30,3 +32,19 @@ def write_atomic(path: Path, content: str | bytes) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def read_limited(path: Path | str, limit_bytes: int, remedy: str) -> bytes:
+    """Read a file that should be small. InputError where it cannot be read or is larger than the limit.
+
+    remedy : what to pass instead of a file that is too large.
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            content = stream.read(limit_bytes + 1)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
+    if len(content) > limit_bytes:
+        raise InputError(path, "whole file", f"larger than {limit_bytes // 1_000_000} MB", remedy)
+    return content

@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 
 from fdvv.errors import InputError, ModelError
-from fdvv.files import write_atomic
+from fdvv.files import read_limited, write_atomic
 from fdvv.model._curve import ForceCurve, Stroke
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._records import FORMAT, VERSION, ModelRecord, ModeRecord
@@ -154,14 +154,4 @@ def save_model(model: FDVVModel, path: Path | str) -> None:
 
 def load_model(path: Path | str) -> FDVVModel:
     """Read a model from a ``*.fdvv.json`` file. Raises InputError, also where the file cannot be read."""
-    try:
-        with Path(path).open("rb") as stream:
-            content = stream.read(LIMIT_bytes + 1)
-    except OSError as error:
-        remedy = "check the path and its permissions"
-        raise InputError(path, "whole file", error.strerror or str(error), remedy) from error
-    if len(content) > LIMIT_bytes:
-        raise InputError(
-            path, "whole file", f"larger than {LIMIT_bytes // 1_000_000} MB", "pass a model file"
-        )
-    return model_from_json(content, path)
+    return model_from_json(read_limited(path, LIMIT_bytes, "pass a model file"), path)

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from fdvv.errors import InputError, ModelError
-from fdvv.files import write_atomic
+from fdvv.files import read_limited, write_atomic
 from fdvv.model import Mode
 from fdvv.program._condition import BARE, Condition, Transition, When
 from fdvv.program._program import During, Program, Signal, State, Velocity, VibrationEvent
@@ -217,14 +217,4 @@ def save_program(program: Program, path: Path | str) -> None:
 
 def load_program(path: Path | str) -> Program:
     """Read a program from a ``*.fdvv-program.json`` file. Raises InputError, also where it cannot be read."""
-    try:
-        with Path(path).open("rb") as stream:
-            content = stream.read(LIMIT_bytes + 1)
-    except OSError as error:
-        remedy = "check the path and its permissions"
-        raise InputError(path, "whole file", error.strerror or str(error), remedy) from error
-    if len(content) > LIMIT_bytes:
-        raise InputError(
-            path, "whole file", f"larger than {LIMIT_bytes // 1_000_000} MB", "pass a program file"
-        )
-    return program_from_json(content, path)
+    return program_from_json(read_limited(path, LIMIT_bytes, "pass a program file"), path)

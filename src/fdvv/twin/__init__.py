@@ -1,6 +1,6 @@
 """Physics of finger, rig and real button: constants apart from state; compiled presses. Simulated."""
 
-from fdvv.twin._batch import RigPress, in_threads, simulate_rig_batch
+from fdvv.twin._batch import RigPress, simulate_rig_batch
 from fdvv.twin._button import ButtonPhysics, Curve, Dome, Housing, Leaf, Slider
 from fdvv.twin._button_file import button_names, button_to_toml, load_button
 from fdvv.twin._button_model import button_of_model
@@ -25,6 +25,7 @@ from fdvv.twin._rig_senses import ForceSensor, KeycapSensor, PositionSensor
 from fdvv.twin._settings import settings_of
 from fdvv.twin._simulate import simulate, simulate_program
 from fdvv.twin._simulate_button import ButtonTrace, PressPlan, simulate_batch, simulate_button
+from fdvv.twin._threads import in_threads
 from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._trace import Trace
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -18,11 +17,9 @@ from fdvv.twin._flatten_button import ROW_s, STEP_s, TICK_s, button_plant, prepa
 from fdvv.twin._gesture import Gesture
 from fdvv.twin._kernel_button import ButtonGrid, run_button
 from fdvv.twin._rig_senses import ForceSensor
+from fdvv.twin._threads import in_threads
 from fdvv.twin._trace import BoolArray
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
-
-AHEAD = 4
-"""Presses per thread that a batch runs ahead of who takes them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,16 +154,8 @@ def simulate_batch(plans: Iterable[PressPlan], threads: int = 2) -> Iterator[But
 
     Only a few are under way or waiting at a time, so that memory does not grow with their number.
     """
-    from concurrent.futures import Future, ThreadPoolExecutor
 
     def one(p: PressPlan) -> ButtonTrace:
         return simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
 
-    waiting: deque[Future[ButtonTrace]] = deque()
-    with ThreadPoolExecutor(threads) as pool:
-        for press_plan in plans:
-            waiting.append(pool.submit(one, press_plan))
-            if len(waiting) > AHEAD * threads:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+    return in_threads(one, plans, threads)
