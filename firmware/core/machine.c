@@ -52,6 +52,9 @@ static void pass_time(fdvv_machine *machine, uint32_t elapsed_us)
 {
     uint32_t us = machine->us + elapsed_us, ms = machine->ms;
     int32_t step = us >= 2000 ? 16 : 0;
+    machine->us = us;
+    if (us < 1000)
+        return;
     for (; us >= 1000; step--)
         if (us >= 1000u << step) {
             us -= 1000u << step;
@@ -126,14 +129,16 @@ static const fdvv_transition *find_transition(const fdvv_machine *machine, const
                                               const fdvv_moment *moment)
 {
     const fdvv_transition *transition;
-    int32_t velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
-    uint8_t left = machine->now->transitions;
+    int32_t velocity_mm_s16;
+    uint32_t left = machine->now->transitions;
     if (!left)
         return 0;
+    velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
     transition = fdvv_image_transition(image, machine->now->first_transition);
     for (; left; left--, transition++)
         if (holds(machine, moment, velocity_mm_s16, transition->condition, transition->value) &&
-            holds(machine, moment, velocity_mm_s16, transition->guard, transition->guard_value))
+            (transition->guard == FDVV_CONDITION_ALWAYS ||
+             holds(machine, moment, velocity_mm_s16, transition->guard, transition->guard_value)))
             return transition;
     return 0;
 }

@@ -1,6 +1,8 @@
 /* Two tables say what may happen: which mode a question leads to, and what is a fault. */
 #include "supervisor.h"
 
+#include "arithmetic.h"
+
 /* -- asking ------------------------------------------------------------------------------------------------- */
 
 #define BOOT FDVV_MODE_BOOT
@@ -40,42 +42,43 @@ typedef struct {
 /* Each fault: whether it is looked for ALWAYS or while RENDERING, or ELSEWHERE (fdvv_supervisor_fault tells);
  * whether it may be cleared when its condition has GONE, at ANY time (it tells of the past) or NEVER (boot again);
  * whether it means STOP or only WARN, which leaves the mode as it is; the unit of value and bound in the evidence;
- * condition, value, bound. Of several in a tick that with the lowest number is latched. */
+ * margin, which is below zero while the condition holds, value, bound. Of several in a tick that with the lowest
+ * number is latched. */
 #define FAULT_TABLE(X)                                                                                          \
     X(POSITION_LOW, ALWAYS, GONE, STOP, counts,                                                                 \
-      in->lowest < set->reading_low, in->lowest, set->reading_low)                                              \
+      in->lowest - set->reading_low, in->lowest, set->reading_low)                                              \
     X(POSITION_HIGH, ALWAYS, GONE, STOP, counts,                                                                \
-      in->highest > set->reading_high, in->highest, set->reading_high)                                          \
+      set->reading_high - in->highest, in->highest, set->reading_high)                                          \
     X(POSITION_STUCK, RENDERING, GONE, STOP, ticks,                                                             \
-      me->equal_sums >= set->stuck_ticks, me->equal_sums, set->stuck_ticks)                                     \
+      set->stuck_ticks - 1 - me->equal_sums, me->equal_sums, set->stuck_ticks)                                  \
     X(POSITION_JUMP, RENDERING, GONE, STOP, um16,                                                               \
-      found->moved_um16 > found->jump_um16, found->moved_um16, found->jump_um16)                                \
+      found->jump_um16 - found->moved_um16, found->moved_um16, found->jump_um16)                                \
     X(OVER_FORCE, RENDERING, GONE, STOP, cN64,                                                                  \
-      set->force_gain_q14 && found->force_cN64 > set->over_force_cN64, found->force_cN64, set->over_force_cN64) \
+      set->force_gain_q14 ? set->over_force_cN64 - found->force_cN64 : 0, found->force_cN64, set->over_force_cN64)\
     X(OVER_HEAT, ALWAYS, GONE, STOP, K,                                                                         \
-      me->heat_K_q16 >> 16 >= set->heat_limit_K, me->heat_K_q16 >> 16, set->heat_limit_K)                       \
+      set->heat_limit_K - 1 - (int32_t)(me->heat_K_q16 >> 16), me->heat_K_q16 >> 16, set->heat_limit_K)         \
     X(SUPPLY_LOW, ALWAYS, GONE, STOP, mV,                                                                       \
-      in->supply_mV < set->supply_low_mV, in->supply_mV, set->supply_low_mV)                                    \
+      in->supply_mV - set->supply_low_mV, in->supply_mV, set->supply_low_mV)                                    \
     X(SUPPLY_HIGH, ALWAYS, GONE, STOP, mV,                                                                      \
-      in->supply_mV > set->supply_high_mV, in->supply_mV, set->supply_high_mV)                                  \
+      set->supply_high_mV - in->supply_mV, in->supply_mV, set->supply_high_mV)                                  \
     X(HOST_LOST, RENDERING, GONE, STOP, us,                                                                     \
-      !me->host_heard, found->silent_us, found->timeout_us)                                                     \
+      me->host_heard - 1, found->silent_us, found->timeout_us)                                                  \
     X(IMAGE_CORRUPT, ELSEWHERE, ANY, STOP, offset,                                                              \
       0, me->now.value, me->now.bound)                                                                          \
     X(WATCHDOG, ALWAYS, ANY, STOP, none,                                                                        \
-      in->board & FDVV_BOARD_WATCHDOG, 0, 0)                                                                    \
+      -(in->board & FDVV_BOARD_WATCHDOG), 0, 0)                                                                 \
     X(BROWN_OUT, ALWAYS, ANY, STOP, mV,                                                                         \
-      in->board & FDVV_BOARD_BROWN_OUT, in->supply_mV, set->supply_low_mV)                                      \
+      -(in->board & FDVV_BOARD_BROWN_OUT), in->supply_mV, set->supply_low_mV)                                   \
     X(LATE, RENDERING, GONE, STOP, ticks,                                                                       \
-      in->elapsed_ticks > set->late_ticks, in->elapsed_ticks, set->late_ticks)                                  \
+      set->late_ticks - in->elapsed_ticks, in->elapsed_ticks, set->late_ticks)                                  \
     X(OUTPUT, ALWAYS, GONE, STOP, none,                                                                         \
-      in->board & FDVV_BOARD_OUTPUT, 0, 0)                                                                      \
+      -(in->board & FDVV_BOARD_OUTPUT), 0, 0)                                                                   \
     X(SETTINGS_CORRUPT, ALWAYS, GONE, STOP, checksum,                                                           \
-      found->checksum != me->settings_sum, found->checksum, me->settings_sum)                                   \
+      -(found->checksum != me->settings_sum), found->checksum, me->settings_sum)                                \
     X(VIBRATION_BOARD, ALWAYS, GONE, WARN, none,                                                                \
-      in->board & FDVV_BOARD_VIBRATION, 0, 0)                                                                   \
+      -(in->board & FDVV_BOARD_VIBRATION), 0, 0)                                                                \
     X(INTERNAL, ALWAYS, NEVER, STOP, mode,                                                                      \
-      me->mode >= FDVV_MODES, me->mode, FDVV_MODES - 1)
+      FDVV_MODES - 1 - me->mode, me->mode, FDVV_MODES - 1)
 
 #define BIT(fault) ((uint32_t)1 << (fault))
 
@@ -95,14 +98,23 @@ static uint8_t renders(uint8_t mode)
     return mode == ARMED || mode == DERATED;
 }
 
+/* The usual tick: the OR of the margins is below zero if one of them is. */
+static uint8_t is_usual(const fdvv_supervisor *me, const findings *found)
+{
+    const fdvv_settings *set = found->set;
+    const fdvv_inputs *in = found->in;
+#define OR_MARGIN(fault, when, clear, effect, unit, margin, value, bound) | (margin)
+    return (0 FAULT_TABLE(OR_MARGIN)) >= 0;
+}
+
 /* Bits of the faults whose conditions hold. */
 static uint32_t holding(const fdvv_supervisor *me, const findings *found)
 {
     const fdvv_settings *set = found->set;
     const fdvv_inputs *in = found->in;
     uint32_t bits = 0;
-#define LOOK(fault, when, clear, effect, unit, condition, value, bound)                                         \
-    if (condition)                                                                                              \
+#define LOOK(fault, when, clear, effect, unit, margin, value, bound)                                            \
+    if ((margin) < 0)                                                                                           \
         bits |= BIT(FDVV_FAULT_##fault);
     FAULT_TABLE(LOOK)
     return renders(me->mode) ? bits : bits & ~while_rendering;
@@ -112,7 +124,7 @@ static void evidence_of(const fdvv_supervisor *me, const findings *found, uint8_
 {
     const fdvv_settings *set = found->set;
     const fdvv_inputs *in = found->in;
-#define TELL(which, when, clear, effect, unit, condition, found_value, found_bound)                             \
+#define TELL(which, when, clear, effect, unit, margin, found_value, found_bound)                                \
     case FDVV_FAULT_##which:                                                                                    \
         evidence->value = (int32_t)(found_value);                                                               \
         evidence->bound = (int32_t)(found_bound);                                                               \
@@ -157,8 +169,8 @@ static uint8_t lowest(uint32_t faults)
 }
 
 /* A condition that has gone and come again is another fault; one that stays is a reason again once the reason
- * before it was cleared, unless it tells of the past. */
-static void judge(fdvv_supervisor *me, const findings *found)
+ * before it was cleared, unless it tells of the past. Apart, so that the usual tick keeps its registers. */
+static __attribute__((noinline)) void judge(fdvv_supervisor *me, const findings *found)
 {
     uint32_t present = holding(me, found), fresh = present & ~me->present;
     uint32_t candidates = reasons(me, present & (fresh | ~cleared_any));
@@ -240,7 +252,10 @@ void fdvv_supervisor_check(fdvv_supervisor *supervisor, const fdvv_settings *set
     supervisor->now.displacement_um16 = displacement_um16;
     supervisor->now.commanded_cN64 = commanded_cN64;
     supervisor->now.state = program_state;
-    judge(supervisor, &found);
+    if (is_usual(supervisor, &found))
+        supervisor->present = 0;
+    else
+        judge(supervisor, &found);
 }
 
 void fdvv_supervisor_host_seen(fdvv_supervisor *supervisor, uint32_t time_us)
@@ -355,14 +370,16 @@ void fdvv_supervisor_heat(fdvv_supervisor *supervisor, const fdvv_settings *sett
     /* rounded up: rather too warm than too cool */
     uint32_t duty_q16 = ((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14;
     uint32_t end_K_q16 = settings->full_duty_rise_K * duty_q16;
-    int64_t way_K_q16 = (int64_t)end_K_q16 - supervisor->heat_K_q16;
-    uint64_t rate_q32 = supervisor->heat_rate_q32;
-    uint64_t heat_K_q48 = (uint64_t)supervisor->heat_K_q16 << 32 | supervisor->heat_rest_q48;
-    if (elapsed_ticks != 1) /* rarely; a long product */
-        rate_q32 *= elapsed_ticks;
-    if (rate_q32 > UINT32_MAX)
-        rate_q32 = UINT32_MAX; /* beyond the time constant: at the end */
-    heat_K_q48 += (uint64_t)(way_K_q16 * (int64_t)rate_q32);
+    uint32_t heat_K_q16 = supervisor->heat_K_q16, rate_q32 = supervisor->heat_rate_q32;
+    uint64_t heat_K_q48 = (uint64_t)heat_K_q16 << 32 | supervisor->heat_rest_q48;
+    if (elapsed_ticks != 1) {
+        uint64_t long_q32 = fdvv_wide_product(rate_q32, elapsed_ticks);
+        rate_q32 = long_q32 >> 32 ? UINT32_MAX : (uint32_t)long_q32; /* beyond the time constant: at the end */
+    }
+    if (end_K_q16 > heat_K_q16)
+        heat_K_q48 += fdvv_wide_product(end_K_q16 - heat_K_q16, rate_q32);
+    else
+        heat_K_q48 -= fdvv_wide_product(heat_K_q16 - end_K_q16, rate_q32);
     supervisor->heat_K_q16 = (uint32_t)(heat_K_q48 >> 32);
     supervisor->heat_rest_q48 = (uint32_t)heat_K_q48;
 }

@@ -3,6 +3,8 @@
 /* In the window: below 2^15 samples, times below 2^15, places below 2^16. Among the newest: up to 16 samples,
  * times up to 960, places below 2^16. So every product of a sample is below 2^32, and every product in
  * line_slope below 2^62. */
+#define SHORT_TICKS 480 /* 16 samples within it: 16 * 16 * 240 * 32768 < 2^31 is the most their differences come to */
+
 static void line_reset(fdvv_line *line)
 {
     line->tick_tick = line->tick_um16 = 0;
@@ -24,21 +26,35 @@ static uint64_t times(uint32_t count, uint64_t sum)
     return fdvv_wide_product(count, (uint32_t)sum) + ((uint64_t)(count * (uint32_t)(sum >> 32)) << 32);
 }
 
-/* Slope of the line times a ratio, to the nearest; 0 if it does not rise. */
-static uint16_t line_slope(const fdvv_line *line, fdvv_ratio scale)
+/* up / spread, parts of a slope, times a ratio, to the nearest. */
+static uint16_t slope_of(fdvv_ratio up, fdvv_ratio spread, fdvv_ratio scale)
 {
-    uint64_t up = times(line->count, line->tick_um16), down = fdvv_wide_product(line->ticks, line->um16);
-    uint64_t spread = times(line->count, line->tick_tick) - fdvv_wide_product(line->ticks, line->ticks);
-    fdvv_ratio slope;
-    if (up <= down || !spread)
-        return 0;
-    slope = fdvv_ratio_product(fdvv_ratio_of_wide(up - down), fdvv_ratio_inverse(fdvv_ratio_of_wide(spread)));
-    slope = fdvv_ratio_product(slope, scale);
+    fdvv_ratio slope = fdvv_ratio_product(fdvv_ratio_product(up, fdvv_ratio_inverse(spread)), scale);
     if (slope.shift < 0)
         return UINT16_MAX;
     if (slope.shift > 16)
         return 0;
     return (uint16_t)((((uint32_t)slope.mantissa << 1 >> slope.shift) + 1u) >> 1);
+}
+
+/* Slope of the line times a ratio, to the nearest; 0 if it does not rise. */
+static uint16_t line_slope(const fdvv_line *line, fdvv_ratio scale)
+{
+    uint64_t up = times(line->count, line->tick_um16), down = fdvv_wide_product(line->ticks, line->um16);
+    uint64_t spread = times(line->count, line->tick_tick) - fdvv_wide_product(line->ticks, line->ticks);
+    if (up <= down || !spread)
+        return 0;
+    return slope_of(fdvv_ratio_of_wide(up - down), fdvv_ratio_of_wide(spread), scale);
+}
+
+/* The same of a short line, whose differences fit 32 bits even where their parts do not. */
+static uint16_t short_line_slope(const fdvv_line *line, fdvv_ratio scale)
+{
+    int32_t up = (int32_t)(line->count * (uint32_t)line->tick_um16 - line->ticks * line->um16);
+    uint32_t spread = line->count * (uint32_t)line->tick_tick - line->ticks * line->ticks;
+    if (up <= 0 || !spread)
+        return 0;
+    return slope_of(fdvv_ratio_of((uint32_t)up), fdvv_ratio_of(spread), scale);
 }
 
 /* -- once per press ------------------------------------------------------------------------------------- */
@@ -49,41 +65,48 @@ static void forget_window(fdvv_velocity *velocity)
     velocity->first_tick = velocity->now_tick;
 }
 
-/* Fill a line with the newest few. Places count from 65535 um16 above the newest one, and those that lie further
+/* Fill a line with the newest few and give the ticks it spans. Places count from 65535 um16 above the newest one, and those that lie further
  * off (a button's whole travel) count as the nearest that does not; so the sums fit 32 bits until the end. */
-static void line_of_newest(const fdvv_velocity *velocity, uint8_t few, fdvv_line *line)
+static uint32_t line_of_newest(const fdvv_velocity *velocity, uint8_t few, fdvv_line *line)
 {
-    uint32_t at = (uint32_t)(velocity->next - few), first_tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)];
+    const uint32_t *tick_at = velocity->newest_tick, *tick_end = tick_at + FDVV_NEWEST;
+    const int32_t *place_at = velocity->newest_um16;
     int32_t from_um16 = velocity->newest_um16[(velocity->next - 1) & (FDVV_NEWEST - 1)] - UINT16_MAX;
-    uint32_t ticks = 0, um16 = 0, tick_tick = 0, tick_um16 = 0, left;
-    for (left = few; left; left--, at++) {
-        uint32_t tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)] - first_tick;
-        int32_t place = velocity->newest_um16[at & (FDVV_NEWEST - 1)] - from_um16;
-        if ((uint32_t)place > UINT16_MAX)
-            place = place < 0 ? 0 : UINT16_MAX;
+    uint32_t first_tick, ticks = 0, um16 = 0, tick_tick = 0, tick_um16 = 0, left = few;
+    tick_at += (uint32_t)(velocity->next - few) & (FDVV_NEWEST - 1);
+    place_at += (uint32_t)(velocity->next - few) & (FDVV_NEWEST - 1);
+    first_tick = *tick_at;
+    do {
+        uint32_t tick = *tick_at++ - first_tick, place = (uint32_t)(*place_at++ - from_um16);
+        if (place > UINT16_MAX)
+            place = place >> 31 ? 0 : UINT16_MAX;
+        um16 += place;
+        tick_um16 += tick * place;
         ticks += tick;
-        um16 += (uint32_t)place;
         tick_tick += tick * tick;
-        tick_um16 += tick * (uint32_t)place;
-    }
+        if (tick_at == tick_end)
+            tick_at -= FDVV_NEWEST, place_at -= FDVV_NEWEST;
+    } while (--left);
     line->count = few;
     line->ticks = ticks;
     line->um16 = um16;
     line->tick_tick = tick_tick;
     line->tick_um16 = tick_um16;
+    return velocity->now_tick - first_tick;
 }
 
 static void decide(fdvv_velocity *velocity, const fdvv_settings *settings)
 {
     fdvv_line newest;
-    const fdvv_line *line = &velocity->inside;
-    if (line->count < settings->fewest_samples) {
+    if (velocity->inside.count >= settings->fewest_samples) {
+        velocity->decided_mm_s16 = line_slope(&velocity->inside, velocity->decided_scale);
+    } else {
         if (velocity->kept < settings->fewest_samples)
             return;
-        line_of_newest(velocity, settings->fewest_samples, &newest);
-        line = &newest;
+        velocity->decided_mm_s16 = line_of_newest(velocity, settings->fewest_samples, &newest) <= SHORT_TICKS
+            ? short_line_slope(&newest, velocity->decided_scale)
+            : line_slope(&newest, velocity->decided_scale);
     }
-    velocity->decided_mm_s16 = line_slope(line, velocity->decided_scale);
     velocity->decided = 1;
 }
 

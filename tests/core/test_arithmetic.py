@@ -20,7 +20,7 @@ def test_a_reciprocal_is_wrong_by_5e_5_at_most_and_fits_16_bits() -> None:
 
 def test_a_part_of_a_whole_is_that_of_the_readable_one_and_near_the_true_one() -> None:
     rng = np.random.default_rng(0)
-    part = library().fdvv_part_q15
+    part = library().fdvv_bridge_part_q15
     for whole in [*range(1, 70), *(2**k + d for k in range(7, 26) for d in (-1, 0, 1)), 65_535_000]:
         for way in {0, whole - 1, whole // 2, *rng.integers(0, whole, 20).tolist()}:
             found = part(ctypes.c_uint32(way), ctypes.c_uint32(whole))
@@ -31,7 +31,7 @@ def test_a_part_of_a_whole_is_that_of_the_readable_one_and_near_the_true_one() -
 
 
 def test_a_wide_product_is_exact() -> None:
-    product = library().fdvv_wide_product
+    product = library().fdvv_bridge_wide_product
     product.restype = ctypes.c_uint64
     ends = [
         0,

@@ -7,7 +7,6 @@ EQUIVALENT = {
     ),
     "return heat < end ? (int16_t)(supervisor->derate_cN64_K_q8 * ((end - heat) >> 8) >> 16) : 0;"
     ": < -> <= at 17": "at the end the product is zero as well",
-    "if (rate_q32 > UINT32_MAX): > -> >= at 18": "at the bound it is set to what it is",
     "#define BIT(fault) ((uint32_t)1 << (fault)): 1 -> 2 at 31": "all faults move one bit up alike",
     "#define MASK(COLUMN_BIT) (0 FAULT_TABLE(COLUMN_BIT)): 0 -> 1 at 27": "bit 0 is that of no fault",
     "for (; fresh; fresh &= fresh - 1) /* a bit at a time */: 1 -> 2 at 36": (
@@ -23,4 +22,9 @@ EQUIVALENT = {
     "X(IMAGE_CORRUPT, ELSEWHERE, ANY, STOP, offset,: ANY -> GONE at 33": (
         "its condition never holds, so that it has always gone"
     ),
+    "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: >= -> > at 39": "the long way finds what the short one does",
+    "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 13": "the long way finds what the short one does",
+    "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> (-1) at 13": "the long way finds what the short one does",
+    "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 42": "the long way finds what the short one does",
+    "if (end_K_q16 > heat_K_q16): > -> >= at 19": "at the bound the step is nothing",
 }

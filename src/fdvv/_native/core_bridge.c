@@ -1,4 +1,5 @@
 /* The firmware's core for Python: how large it is, many ticks in one call, what the supervisor knows. */
+#include "arithmetic.h"
 #include "core.h"
 
 #include <stddef.h>
@@ -55,3 +56,8 @@ void fdvv_bridge_run(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *o
         fdvv_core_tick(core, inputs + i, outputs + i);
     }
 }
+
+/* Inline in the core, to be called from outside. */
+int32_t fdvv_bridge_part_q15(uint32_t way, uint32_t whole) { return fdvv_part_q15(way, whole); }
+
+uint64_t fdvv_bridge_wide_product(uint32_t one, uint32_t other) { return fdvv_wide_product(one, other); }
