@@ -1,34 +1,38 @@
 """What does a tick of the core cost a Cortex-M0+? Emulated, in cycles of its instruction table.
 
-``python -m benchmarks.core_cost`` needs arm-none-eabi-gcc and unicorn. Loads and stores cost 2 cycles, flash
-has no wait states; the whole board with its flash is the business of the board's own emulator.
+``python -m benchmarks.core_cost`` needs arm-none-eabi-gcc and unicorn. Loads and stores cost 2 cycles; each
+figure is told without wait states and with those of the board's flash behind its cache. Half of the random rigs
+are the dearest that the settings allow. The whole board is the business of ``python -m benchmarks.m0``.
 """
 
 from __future__ import annotations
 
+import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
-from importlib import import_module
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from fdvv.core import Core, RecordArray
-from fdvv.protocol import Settings
+from fdvv.device._m0._bus import Bus
+from fdvv.device._m0._processor import Processor
+from fdvv.protocol import NONE, Condition, Settings, Slot, State, Transition, Vibration
 from fdvv.testing import random_image, random_inputs, random_settings
+from fdvv.testing._random_programs import assemble, random_state, random_vibration, random_waveform
 
-CORE = Path(__file__).resolve().parents[1] / "firmware" / "core"
+FIRMWARE = Path(__file__).resolve().parents[1] / "firmware"
+CORE = FIRMWARE / "core"
 FLAGS = ["-mcpu=cortex-m0plus", "-mthumb", "-std=c99", "-ffreestanding", "-nostdlib", "-nostartfiles"]
 STUBS = """
 #include "core.h"
 #include <stddef.h>
-void *memcpy(void *to, const void *from, size_t n)
+__attribute__((used)) void *memcpy(void *to, const void *from, size_t n)
 { char *a = to; const char *b = from; while (n--) *a++ = *b++; return to; }
-void *memset(void *to, int value, size_t n)
+__attribute__((used)) void *memset(void *to, int value, size_t n)
 { char *a = to; while (n--) *a++ = value; return to; }
 static void ask(fdvv_core *core, uint8_t what)
 { fdvv_supervisor_ask(&core->supervisor, &core->settings, what, 0); }
@@ -37,8 +41,17 @@ void hear(fdvv_core *core, uint32_t time_us) { fdvv_supervisor_host_seen(&core->
 """
 ENTRIES = ("fdvv_core_init", "fdvv_core_activate", "arm", "hear")
 FLASH, RAM, RETURN = 0x2000, 0x20000000, 0x1000
+CACHED, NO_WAIT = 1, 2
 CORE_AT, IMAGE_AT, INPUTS_AT = RAM, RAM + 0x2000, RAM + 0x4000
 OUTPUTS_AT, SETTINGS_AT = RAM + 0x4100, RAM + 0x4200
+
+
+def board_flags() -> str:
+    """Give what the board's Makefile compiles the tick with."""
+    text = (FIRMWARE / "boards" / "itsybitsy_m0" / "Makefile").read_text()
+    found = re.search(r"^TICK_FLAGS := (.+)$", text, re.MULTILINE)
+    assert found is not None
+    return found[1]
 
 
 def build(folder: Path, optimise: str) -> tuple[bytes, dict[str, int]]:
@@ -49,7 +62,8 @@ def build(folder: Path, optimise: str) -> tuple[bytes, dict[str, int]]:
     extra = ["-fno-tree-loop-distribute-patterns", f"-I{CORE}", "-ffunction-sections", "-Wl,--gc-sections"]
     extra += [f"-Wl,-Ttext={FLASH:#x}", "-Wl,--entry=fdvv_core_tick", *(f"-Wl,-u,{name}" for name in ENTRIES)]
     subprocess.run(
-        ["arm-none-eabi-gcc", optimise, *FLAGS, *extra, *sources, "-lgcc", "-o", str(elf)], check=True
+        ["arm-none-eabi-gcc", *optimise.split(), *FLAGS, *extra, *sources, "-lgcc", "-o", str(elf)],
+        check=True,
     )
     subprocess.run(["arm-none-eabi-objcopy", "-O", "binary", str(elf), str(binary)], check=True)
     names = subprocess.run(["arm-none-eabi-nm", str(elf)], check=True, capture_output=True, text=True).stdout
@@ -59,66 +73,39 @@ def build(folder: Path, optimise: str) -> tuple[bytes, dict[str, int]]:
     return binary.read_bytes(), places
 
 
-def cost_of(first: int) -> tuple[int, int]:
-    """Cycles of an instruction by its first halfword, and how many more if it branches."""
-    top = first >> 11
-    if top in (0b01001, 0b10010, 0b10011) or first >> 12 in (0b0101, 0b0110, 0b0111, 0b1000):
-        return 2, 0
-    if first >> 12 == 0b1100 or first & 0xF600 == 0xB400:
-        many = bin(first & 0xFF).count("1") + (first >> 8 & 1 if first >> 12 == 0b1011 else 0)
-        return 1 + many, 2
-    if first & 0xF800 == 0xF000:
-        return 2, 1
-    return 1, 1
+class Machine(Processor):
+    """The core on an emulated Cortex-M0+, its flash CACHED or with NO_WAIT."""
 
-
-class Machine:
-    """The core on an emulated Cortex-M0+."""
-
-    def __init__(self, code: bytes, places: dict[str, int], settings: Settings, image: bytes) -> None:
-        unicorn: Any = import_module("unicorn")
-        self.arm: Any = import_module("unicorn.arm_const")
-        self.places, self.code, self.cycles, self.last = places, code, 0, 0
-        self.uc = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
-        self.uc.ctl_set_cpu_model(self.arm.UC_CPU_ARM_CORTEX_M0)
-        self.uc.mem_map(0, 0x20000)
-        self.uc.mem_map(RAM, 0x8000)
-        self.uc.mem_write(FLASH, code)
-        self.uc.mem_write(IMAGE_AT, image)
-        self.uc.mem_write(SETTINGS_AT, settings.pack())
-        self.halves = struct.unpack(f"<{len(code) // 2}H", code[: len(code) // 2 * 2])
-        self.after, self.extra = 0, 0
-        self.uc.hook_add(unicorn.UC_HOOK_CODE, self._count)
-        self.uc.ctl_flush_tb()
+    def __init__(
+        self, code: bytes, places: dict[str, int], settings: Settings, image: bytes, waits: int = NO_WAIT
+    ) -> None:
+        bus = Bus(is_cached=True, bus_wait_cycles=0)
+        bus.clockwork.is_cached = waits
+        bus.flash[FLASH : FLASH + len(code)] = code
+        super().__init__(bus)
+        self.places = places
+        self._uc.mem_write(IMAGE_AT, image)
+        self._uc.mem_write(SETTINGS_AT, settings.pack())
         self.call("fdvv_core_init", CORE_AT, SETTINGS_AT)
         self.call("fdvv_core_activate", CORE_AT, IMAGE_AT)
         self.call("arm", CORE_AT)
 
-    def _count(self, _uc: object, address: int, size: int, _data: object) -> None:
-        if address == RETURN:
-            return
-        if address != self.after:
-            self.cycles += self.extra
-        plain, self.extra = cost_of(self.halves[(address - FLASH) // 2])
-        self.cycles += plain
-        self.after = address + size
-
     def call(self, name: str, *arguments: int) -> int:
         """Call a function and give the cycles it took."""
-        self.cycles, self.extra = 0, 0
-        self.uc.reg_write(self.arm.UC_ARM_REG_SP, RAM + 0x7FF0)
-        self.uc.reg_write(self.arm.UC_ARM_REG_LR, RETURN | 1)
+        before = self._bus.cycles
+        self.set_stack(RAM + 0x7FF0)
+        self._uc.reg_write(self._arm.UC_ARM_REG_LR, RETURN | 1)
         for k, value in enumerate(arguments):
-            self.uc.reg_write(self.arm.UC_ARM_REG_R0 + k, value)
-        self.uc.emu_start(self.places[name] | 1, RETURN)
-        return self.cycles + self.extra
+            self._uc.reg_write(self._arm.UC_ARM_REG_R0 + k, value)
+        self._uc.emu_start(self.places[name] | 1, RETURN)
+        return self._bus.cycles - before
 
     def tick(self, inputs: bytes) -> tuple[int, bytes]:
         """Run a tick; give its cycles and its outputs."""
-        self.uc.mem_write(INPUTS_AT, inputs)
+        self._uc.mem_write(INPUTS_AT, inputs)
         self.call("hear", CORE_AT, int.from_bytes(inputs[:4], "little"))
         cycles = self.call("fdvv_core_tick", CORE_AT, INPUTS_AT, OUTPUTS_AT)
-        return cycles, bytes(self.uc.mem_read(OUTPUTS_AT, 20))
+        return cycles, bytes(self._uc.mem_read(OUTPUTS_AT, 20))
 
 
 def measure(machine: Machine, core: Core, inputs: RecordArray) -> list[int]:
@@ -132,25 +119,69 @@ def measure(machine: Machine, core: Core, inputs: RecordArray) -> list[int]:
     return cycles
 
 
-def main(cases: int = 12, ticks: int = 150) -> None:
+def dearest(settings: Settings) -> Settings:
+    """Let every part of a tick that settings can make dearer be so."""
+    return replace(
+        settings, fewest_samples=16, sliding_ticks=32, force_gain_q14=settings.force_gain_q14 or 4000
+    )
+
+
+def full_image(transitions: int, vibrations: int, settings: Settings) -> bytes:
+    """Give a program of one state with so many transitions that never hold, and vibrations."""
+    rng, most_cN64 = np.random.default_rng(0), settings.force_limit_cN64 // 2
+    state: State = replace(random_state(rng, 1, 1, most_cN64, 0, transitions), fade_ms=2000, bias_ms=60000)
+    never = Transition(
+        condition=Condition.DEEPER_THAN, guard=0, target=0, slot=NONE, value=2**31 - 1, guard_value=0
+    )
+    behind: list[State | Transition | Vibration | Slot] = [
+        random_vibration(rng, 1, 1) for _ in range(vibrations)
+    ]
+    behind.append(random_waveform(rng))
+    counts = (1, transitions, 1, vibrations, 1)
+    return assemble(rng, [state, *[never] * transitions], behind, counts, most_cN64)
+
+
+def random_cycles(
+    built: tuple[bytes, dict[str, int]], cases: int, ticks: int, waits: int = NO_WAIT
+) -> list[int]:
+    """Give the cycles of ticks of random rigs and programs, every other rig the dearest of its kind."""
+    found = []
+    for seed in range(cases):
+        rng = np.random.default_rng(seed)
+        settings = random_settings(rng)
+        settings = dearest(settings) if seed % 2 else settings
+        image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
+        found += measure(Machine(*built, settings, image, waits), Core(settings, image), inputs)
+    return found
+
+
+def full_cycles(built: tuple[bytes, dict[str, int]], transitions: int, vibrations: int) -> list[int]:
+    """Give the cycles of ticks of a program with so many transitions and vibrations."""
+    rng = np.random.default_rng(1)
+    settings = dearest(random_settings(rng))
+    image, inputs = full_image(transitions, vibrations, settings), random_inputs(rng, 1000, settings)
+    return measure(Machine(*built, settings, image), Core(settings, image), inputs)
+
+
+def tell(optimise: str, cases: int, ticks: int) -> None:
+    """Print what ticks cost when compiled in one way."""
+    with tempfile.TemporaryDirectory() as folder:
+        built = build(Path(folder), optimise)
+    print(f"core, emulated, {optimise}: {len(built[0])} bytes, {cases * ticks} random ticks")
+    for waits, name in ((NO_WAIT, "no wait states"), (CACHED, "flash waits")):
+        found = random_cycles(built, cases, ticks, waits)
+        print(f"  {name}: median {np.median(found):.0f}, worst {max(found)} cycles")
+    few, many, full = (full_cycles(built, *counts) for counts in ((0, 0), (48, 0), (48, 32)))
+    print(f"  a transition that does not hold: {(np.median(many) - np.median(few)) / 48:.0f} cycles")
+    print(f"  a state with 48 of them, 32 vibrations: worst {max(full)} cycles")
+
+
+def main(cases: int = 40, ticks: int = 500) -> None:
+    """Print all figures."""
     if not shutil.which("arm-none-eabi-gcc"):
         sys.exit("core_cost needs arm-none-eabi-gcc")
-    with tempfile.TemporaryDirectory() as folder:
-        for optimise in ("-Os", "-O2"):
-            code, places = build(Path(folder), optimise)
-            found: list[int] = []
-            for seed in range(cases):
-                rng = np.random.default_rng(seed)
-                settings = random_settings(rng)
-                image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
-                machine = Machine(code, places, settings, image)
-                took = measure(machine, Core(settings, image), inputs)
-                print(f"  seed {seed}: median {np.median(took):.0f}, worst {max(took)}")
-                found += took
-            print(
-                f"core, emulated, {optimise}: {len(code)} bytes, {len(found)} random ticks: "
-                f"median {np.median(found):.0f}, worst {max(found)} cycles"
-            )
+    for optimise in ("-Os", "-O2", board_flags()):
+        tell(optimise, cases, ticks)
 
 
 if __name__ == "__main__":

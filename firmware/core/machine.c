@@ -162,12 +162,11 @@ static void change_state(fdvv_machine *machine, const uint8_t *image, const fdvv
 
 /* -- vibrations ----------------------------------------------------------------------------------------- */
 
-static uint8_t plays(const fdvv_machine *machine, const fdvv_moment *moment, const fdvv_vibration *vibration)
+static uint8_t plays(const fdvv_vibration *vibration, uint32_t state_bit, uint8_t other_stroke,
+                     uint32_t velocity_mm_s16)
 {
-    uint32_t velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
-    return vibration->stroke != (moment->position->release ? FDVV_STROKE_PRESS : FDVV_STROKE_RELEASE) &&
-           (vibration->states >> machine->state & 1u) && velocity_mm_s16 >= vibration->slowest_mm_s16 &&
-           velocity_mm_s16 < vibration->fastest_mm_s16;
+    return vibration->stroke != other_stroke && (vibration->states & state_bit) &&
+           velocity_mm_s16 >= vibration->slowest_mm_s16 && velocity_mm_s16 < vibration->fastest_mm_s16;
 }
 
 /* Where the cap will be once a vibration started now is felt, growing in the stroke's direction. */
@@ -192,7 +191,8 @@ static void vibrate(fdvv_machine *machine, const uint8_t *image, const fdvv_mome
     int32_t ahead_um16 = look_ahead_um16(machine, moment), reached_um16 = machine->reached_um16;
     int32_t next_um16 = INT32_MAX;
     const fdvv_vibration *vibration;
-    uint8_t left;
+    uint32_t left, velocity_mm_s16, state_bit = (uint32_t)1 << machine->state;
+    uint8_t release = moment->position->release, other_stroke = release ? FDVV_STROKE_PRESS : FDVV_STROKE_RELEASE;
     if (ahead_um16 <= reached_um16)
         return;
     machine->reached_um16 = ahead_um16;
@@ -200,12 +200,14 @@ static void vibrate(fdvv_machine *machine, const uint8_t *image, const fdvv_mome
         return;
     left = fdvv_image_head(image)->vibrations;
     vibration = fdvv_image_vibration(image, 0);
+    velocity_mm_s16 = chosen_velocity_mm_s16(machine, moment);
     for (; left; left--, vibration++) {
-        int32_t at_um16 = moment->position->release ? -vibration->at_um16 : vibration->at_um16;
+        int32_t at_um16 = release ? -vibration->at_um16 : vibration->at_um16;
         if (at_um16 > ahead_um16)
             next_um16 = at_um16 < next_um16 ? at_um16 : next_um16;
-        else if (at_um16 > reached_um16 && plays(machine, moment, vibration))
-            play(machine, vibration->slot);
+        else if (at_um16 > reached_um16 && machine->slot == FDVV_NONE &&
+                 plays(vibration, state_bit, other_stroke, velocity_mm_s16))
+            machine->slot = vibration->slot;
     }
     machine->next_um16 = next_um16;
 }

@@ -1,10 +1,11 @@
 #include "velocity.h"
 
+/* The differences of 16 samples within it come to 16 * 16 * 240 * 32768 < 2^31 at most. */
+#define SHORT_TICKS 480
+
 /* In the window: below 2^15 samples, times below 2^15, places below 2^16. Among the newest: up to 16 samples,
  * times up to 960, places below 2^16. So every product of a sample is below 2^32, and every product in
  * line_slope below 2^62. */
-#define SHORT_TICKS 480 /* 16 samples within it: 16 * 16 * 240 * 32768 < 2^31 is the most their differences come to */
-
 static void line_reset(fdvv_line *line)
 {
     line->tick_tick = line->tick_um16 = 0;
@@ -65,48 +66,73 @@ static void forget_window(fdvv_velocity *velocity)
     velocity->first_tick = velocity->now_tick;
 }
 
-/* Fill a line with the newest few and give the ticks it spans. Places count from 65535 um16 above the newest one, and those that lie further
- * off (a button's whole travel) count as the nearest that does not; so the sums fit 32 bits until the end. */
-static uint32_t line_of_newest(const fdvv_velocity *velocity, uint8_t few, fdvv_line *line)
+/* Places count from 65535 um16 above the newest one, and those that lie further off (a button's whole travel) count
+ * as the nearest that does not; so the sums fit 32 bits until the end. */
+static inline uint32_t place_of(int32_t um16, int32_t from_um16)
 {
-    const uint32_t *tick_at = velocity->newest_tick, *tick_end = tick_at + FDVV_NEWEST;
-    const int32_t *place_at = velocity->newest_um16;
-    int32_t from_um16 = velocity->newest_um16[(velocity->next - 1) & (FDVV_NEWEST - 1)] - UINT16_MAX;
-    uint32_t first_tick, ticks = 0, um16 = 0, tick_tick = 0, tick_um16 = 0, left = few;
-    tick_at += (uint32_t)(velocity->next - few) & (FDVV_NEWEST - 1);
-    place_at += (uint32_t)(velocity->next - few) & (FDVV_NEWEST - 1);
-    first_tick = *tick_at;
+    uint32_t place = (uint32_t)(um16 - from_um16);
+    return place <= UINT16_MAX ? place : place >> 31 ? 0 : UINT16_MAX;
+}
+
+/* Fill a line with the newest few, between which no tick was missed: from the newest back, each partial sum once
+ * more for each sample before it, which makes the products with the tick. */
+static void even_line_of_newest(const fdvv_velocity *velocity, uint32_t few, fdvv_line *line)
+{
+    uint32_t at = velocity->next, um16 = 0, tick_um16 = 0, left = few;
+    int32_t from_um16 = velocity->newest_um16[(at - 1) & (FDVV_NEWEST - 1)] - UINT16_MAX;
     do {
-        uint32_t tick = *tick_at++ - first_tick, place = (uint32_t)(*place_at++ - from_um16);
-        if (place > UINT16_MAX)
-            place = place >> 31 ? 0 : UINT16_MAX;
-        um16 += place;
-        tick_um16 += tick * place;
-        ticks += tick;
-        tick_tick += tick * tick;
-        if (tick_at == tick_end)
-            tick_at -= FDVV_NEWEST, place_at -= FDVV_NEWEST;
+        at = (at - 1) & (FDVV_NEWEST - 1);
+        tick_um16 += um16;
+        um16 += place_of(velocity->newest_um16[at], from_um16);
     } while (--left);
-    line->count = few;
+    line->um16 = um16;
+    line->tick_um16 = tick_um16;
+    line->ticks = few * (few - 1) >> 1;
+    line->tick_tick = line->ticks * (2 * few - 1) * 21846u >> 16; /* a third, exact below 2^15 */
+}
+
+/* The same where ticks may have been missed. */
+static void line_of_newest(const fdvv_velocity *velocity, uint32_t few, fdvv_line *line)
+{
+    uint32_t at = (uint32_t)(velocity->next - few), ticks = 0, um16 = 0, tick_tick = 0, tick_um16 = 0, left;
+    uint32_t first_tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)];
+    int32_t from_um16 = velocity->newest_um16[(velocity->next - 1) & (FDVV_NEWEST - 1)] - UINT16_MAX;
+    for (left = few; left; left--, at++) {
+        uint32_t tick = velocity->newest_tick[at & (FDVV_NEWEST - 1)] - first_tick;
+        uint32_t place = place_of(velocity->newest_um16[at & (FDVV_NEWEST - 1)], from_um16);
+        ticks += tick;
+        um16 += place;
+        tick_tick += tick * tick;
+        tick_um16 += tick * place;
+    }
     line->ticks = ticks;
     line->um16 = um16;
     line->tick_tick = tick_tick;
     line->tick_um16 = tick_um16;
-    return velocity->now_tick - first_tick;
+}
+
+/* Slope of the newest few, times a ratio. */
+static uint16_t newest_slope(const fdvv_velocity *velocity, uint32_t few, fdvv_ratio scale)
+{
+    uint32_t first = (uint32_t)(velocity->next - few) & (FDVV_NEWEST - 1);
+    uint32_t span_ticks = velocity->now_tick - velocity->newest_tick[first];
+    fdvv_line line;
+    line.count = few;
+    if (span_ticks == few - 1)
+        even_line_of_newest(velocity, few, &line);
+    else
+        line_of_newest(velocity, few, &line);
+    return span_ticks <= SHORT_TICKS ? short_line_slope(&line, scale) : line_slope(&line, scale);
 }
 
 static void decide(fdvv_velocity *velocity, const fdvv_settings *settings)
 {
-    fdvv_line newest;
-    if (velocity->inside.count >= settings->fewest_samples) {
+    if (velocity->inside.count >= settings->fewest_samples)
         velocity->decided_mm_s16 = line_slope(&velocity->inside, velocity->decided_scale);
-    } else {
-        if (velocity->kept < settings->fewest_samples)
-            return;
-        velocity->decided_mm_s16 = line_of_newest(velocity, settings->fewest_samples, &newest) <= SHORT_TICKS
-            ? short_line_slope(&newest, velocity->decided_scale)
-            : line_slope(&newest, velocity->decided_scale);
-    }
+    else if (velocity->kept >= settings->fewest_samples)
+        velocity->decided_mm_s16 = newest_slope(velocity, settings->fewest_samples, velocity->decided_scale);
+    else
+        return;
     velocity->decided = 1;
 }
 

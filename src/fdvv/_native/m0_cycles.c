@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { LINES = 8, LINE_SHIFT = 3, BLOCK_LINES = 24 };
+enum { SLOW, CACHED, NO_WAIT }; /* flash: a wait on each fetched word, on each miss of the cache, never */
 enum { CALL_WRITE = 1, CALL_READ = 2, WRITE_ONE_CLEARS = 4, COUNTER = 8, POLLED = 16 };
 
 typedef struct {
@@ -44,7 +45,7 @@ typedef struct {
     uint32_t after;               /* address behind it */
     uint32_t is_stopped;          /* before that block ran: it will be announced again */
     uint32_t is_conditional;
-    uint32_t is_cached;
+    uint32_t is_cached;           /* SLOW, CACHED or NO_WAIT */
     uint32_t unclocked;           /* address of an access to a peripheral whose bus clock is off; 0: none */
     uint32_t clocks;              /* a bit per kilobyte of the window that has `gated` set */
 } fdvv_m0;
@@ -151,9 +152,9 @@ static void spend(fdvv_m0 *m0, uint32_t address, uint32_t size)
     if (code->size != size) look_at(m0, code, address, size);
     m0->cycles += code->cycles;
     m0->is_conditional = code->is_conditional;
-    if (m0->is_cached) {
+    if (m0->is_cached == CACHED) {
         for (uint32_t i = 0; i < code->lines; i++) touch(m0, code->line[i]);
-    } else {
+    } else if (m0->is_cached == SLOW) {
         m0->cycles += code->fetches;
     }
 }
