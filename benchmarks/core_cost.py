@@ -1,8 +1,8 @@
 """What does a tick of the core cost a Cortex-M0+? Emulated, in cycles of its instruction table.
 
 ``python -m benchmarks.core_cost`` needs arm-none-eabi-gcc and unicorn. Loads and stores cost 2 cycles; each
-figure is told without wait states and with those of the board's flash behind its cache. Half of the random rigs
-are the dearest that the settings allow. The whole board is the business of ``python -m benchmarks.m0``.
+figure is told without wait states and with those of the board's flash behind its cache. Half of the random
+rigs are the dearest that the settings allow. The whole board is the business of ``python -m benchmarks.m0``.
 """
 
 from __future__ import annotations

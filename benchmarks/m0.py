@@ -1,6 +1,6 @@
 """The whole ItsyBitsy M0, emulated, cycles counted: ``python -m benchmarks.m0``.
 
-How fast the emulator is, and whether a tick is late while programs are uploaded and pressed with every tick told.
+How fast the emulator is, and whether a tick is late while programs are uploaded and pressed, each tick told.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ class Load:
     latency_us: float
 
 
-def run_load(elf: Path, ticks: int, settings: Settings, velocities_mm_s: Sequence[float] = VELOCITIES_mm_s) -> Load:
+def run_load(
+    elf: Path, ticks: int, settings: Settings, velocities_mm_s: Sequence[float] = VELOCITIES_mm_s
+) -> Load:
     """Upload a full program and press it, again and again, for at least so many ticks."""
     device = LinkedDevice(EmulatedBoard(elf), ScriptedPerson(3))
     device.write_settings(settings)

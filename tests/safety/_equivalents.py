@@ -27,8 +27,8 @@ EQUIVALENT = {
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> (-1) at 13": "the long way finds what the short one does",
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 42": "the long way finds what the short one does",
     "if (end_K_q16 > heat_K_q16): > -> >= at 19": "at the bound the step is nothing",
-    "set->force_gain_q14 ? set->over_force_cN64 - found->force_cN64 : 0, found->force_cN64, set->over_force_cN64)"
-    ": 0 -> 1 at 72": "neither margin is below zero",
+    "set->force_gain_q14 ? set->over_force_cN64 - found->force_cN64 : 0, "
+    "found->force_cN64, set->over_force_cN64): 0 -> 1 at 72": "neither margin is below zero",
     "0, me->now.value, me->now.bound): 0 -> 1 at 7": "neither margin is below zero",
     "supervisor->present = 0;: 0 -> 1 at 31": "bit 0 is that of no fault",
 }
