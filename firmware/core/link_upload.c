@@ -112,6 +112,7 @@ static void begin_check(fdvv_link *link, uint8_t bank, uint8_t what)
     link->checking = what;
     fdvv_image_check_begin(&link->check, bank_bytes(link, bank), link->content[bank].size_bytes,
                            link->content[bank].crc32);
+    link->check.travel_limit_um16 = (int32_t)link->board->travel_limit_um16_256 * 256;
 }
 
 uint8_t fdvv_link_commit(fdvv_link *link, const void *request)

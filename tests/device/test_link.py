@@ -11,6 +11,7 @@ import pytest
 from tests.device.rigs import LONG, PROGRAMS, Bench
 
 from fdvv import _native
+from fdvv.device import surface_image
 from fdvv.protocol import (
     DATA_BYTES,
     HASH,
@@ -45,6 +46,7 @@ from fdvv.protocol import (
     read_notice,
     request_frame,
 )
+from fdvv.testing import plain_surface
 
 IMAGE, OTHER = PROGRAMS
 
@@ -252,6 +254,15 @@ def test_settings_are_written_whole_while_idle_and_forget_the_program(known: Ben
     assert Settings.unpack(known.ask(Message.READ_SETTINGS).payload) == settings
     assert known.board.program() is None
     assert refusal(known.ask(Message.ARM)) is Refusal.NO_IMAGE
+
+
+def test_a_program_whose_stop_lies_beyond_the_board_s_is_refused(known: Bench) -> None:
+    deepest_mm = HelloReply.unpack(known.hello().payload).travel_um16_256 * 256 / 16000
+    upload(known, surface_image(plain_surface(20.0, 4.0), deepest_mm))
+    image = surface_image(plain_surface(20.0, 4.0), deepest_mm + 0.01)
+    begin(known, image)
+    send_data(known, image)
+    assert refusal(known.ask(Message.COMMIT, ticks=40)) is Refusal.IMAGE_RANGE
 
 
 def test_settings_out_of_range_change_nothing(known: Bench) -> None:

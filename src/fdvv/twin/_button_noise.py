@@ -64,7 +64,8 @@ def read_force_N(sensor: ForceSensor, filtered_N: FloatArray, noise_N: FloatArra
     def play(held: float, now: float) -> float:
         return now - half if held < now - half else now + half if held > now + half else held
 
-    held = np.fromiter(accumulate(filtered_N.tolist(), play, initial=0.0), float, filtered_N.size + 1)[1:]
+    filtered: list[float] = filtered_N.tolist()
+    held = np.array(list(accumulate(filtered, play, initial=0.0))[1:])
     value = np.clip((1 + sensor.gain_error_ratio) * held + noise_N, -sensor.full_scale_N, sensor.full_scale_N)
     lsb = lsb_of(sensor.full_scale_N, sensor.converter_bits)
     return np.asarray(lsb * np.floor(value / lsb + 0.5) if lsb else value)
