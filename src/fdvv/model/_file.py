@@ -6,12 +6,12 @@ line, so that a round trip is exact and a diff shows which curve changed.
 
 from __future__ import annotations
 
-import json
-import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
 
+from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import InputError, ModelError
 from fdvv.files import read_limited, write_atomic
 from fdvv.model._curve import ForceCurve, Stroke
@@ -25,7 +25,7 @@ LIMIT_bytes = 64_000_000
 """Far above any button (a curve takes some 400 bytes), far below what would fill a machine's memory."""
 
 _REMEDY = "compare with docs/reference/model-file.md, or fit the measurement again"
-_NEWLINE = b"\n"
+_KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY)
 _CHOICES = {"stroke": Stroke, "interpolation": Interpolation}
 
 
@@ -61,18 +61,7 @@ def model_to_json(model: FDVVModel) -> str:
         ],
         "provenance": {**vars(model.provenance), "assumptions": list(model.provenance.assumptions)},
     }
-    return _pretty(record) + "\n"
-
-
-def _pretty(value: object, indent: str = "") -> str:
-    """Indent objects and lists of objects; keep a list of plain values on one line."""
-    deeper = indent + "  "
-    if isinstance(value, dict) and value:
-        items = [f"{deeper}{json.dumps(k)}: {_pretty(v, deeper)}" for k, v in value.items()]
-        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
-    if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
-        return "[\n" + ",\n".join(deeper + _pretty(v, deeper) for v in value) + f"\n{indent}]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return pretty(record) + "\n"
 
 
 def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
@@ -81,39 +70,17 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
     Raises InputError that names source, the place in it and the remedy: not JSON, another format or
     version, a missing or unknown field, numbers that make no spline.
     """
-    data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
-    try:
-        head = msgspec.json.decode(data, type=_Head)
-        if head.format != FORMAT:
-            raise InputError(source, "$.format", f'not an FDVV model ("format" must be "{FORMAT}")', _REMEDY)
-        if head.version != VERSION:
-            reason = f"file version {head.version!r:.40}, this fdvv reads version {VERSION}"
-            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
-        return _model(msgspec.json.decode(data, type=ModelRecord), source)
-    except msgspec.ValidationError as error:
-        reason, _, path = str(error).partition(" - at ")
-        place = path.strip("`") or "$"
-        choices = _CHOICES.get(place.rpartition(".")[2])
-        expected = f", expected one of {', '.join(choices)}" if choices else ""
-        raise InputError(source, place, reason + expected, _REMEDY) from error
-    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        raise InputError(source, _place(data, str(error)), f"not valid JSON ({error})", _REMEDY) from error
+    return read_document(
+        text,
+        source,
+        _KIND,
+        lambda data: _model(msgspec.json.decode(data, type=ModelRecord), source),
+        _choices,
+    )
 
 
-class _Head(msgspec.Struct):
-    """What is looked at first, whatever else the file holds."""
-
-    format: object = None
-    version: object = None
-
-
-def _place(data: bytes, reason: str) -> str:
-    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
-    found = re.search(r"\(byte (\d+)\)", reason)
-    if not found:
-        return "end of file" if "truncated" in reason else "whole file"
-    before = data[: int(found[1])]
-    return f"line {before.count(_NEWLINE) + 1}, column {len(before) - before.rfind(_NEWLINE)}"
+def _choices(place: str) -> Iterable[str] | None:
+    return _CHOICES.get(place.rpartition(".")[2])
 
 
 def _model(record: ModelRecord, source: object) -> FDVVModel:

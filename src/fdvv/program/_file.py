@@ -7,12 +7,13 @@ to the same bits, a list of plain values to a line.
 from __future__ import annotations
 
 import json
-import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import InputError, ModelError
 from fdvv.files import read_limited, write_atomic
 from fdvv.model import Mode
@@ -37,7 +38,7 @@ LIMIT_bytes = 16_000_000
 """Far above any program (an image holds 7 kB), far below what would fill a machine's memory."""
 
 _REMEDY = "compare with docs/reference/program-file.md"
-_NEWLINE = b"\n"
+_KIND = Kind(FORMAT, VERSION, "a program", _REMEDY)
 _CHOICES = {"stroke": During, "velocity": Velocity}
 
 
@@ -61,7 +62,7 @@ def program_to_json(program: Program) -> str:
         [VibrationRecord(**{**vars(v), "states": list(v.states)}) for v in program.vibrations],
         program.description,
     )
-    return _pretty(_without_defaults(record)) + "\n"
+    return pretty(_without_defaults(record), one_line=list(When)) + "\n"
 
 
 def _rows(surface: Surface) -> list[list[float]]:
@@ -98,55 +99,22 @@ def _without_defaults(value: Any) -> Any:
     return str(value) if isinstance(value, str) else value
 
 
-def _pretty(value: object, indent: str = "") -> str:
-    """Indent objects and lists of them; keep a list of plain values and a condition on one line."""
-    deeper = indent + "  "
-    if isinstance(value, dict) and set(value) - set(When):
-        items = [f"{deeper}{json.dumps(k)}: {_pretty(v, deeper)}" for k, v in value.items()]
-        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
-    if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
-        return "[\n" + ",\n".join(deeper + _pretty(v, deeper) for v in value) + f"\n{indent}]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
-
-
-class _Head(msgspec.Struct):
-    """What is looked at first, whatever else the file holds."""
-
-    format: object = None
-    version: object = None
-
-
 def program_from_json(text: str | bytes, source: object = "program") -> Program:
     """Read a program from the text of a ``*.fdvv-program.json`` file.
 
     Raises InputError that names source, the place in it and the remedy.
     """
-    data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
-    try:
-        head = msgspec.json.decode(data, type=_Head)
-        if head.format != FORMAT:
-            raise InputError(source, "$.format", f'not a program ("format" must be "{FORMAT}")', _REMEDY)
-        if head.version != VERSION:
-            reason = f"file version {head.version!r:.40}, this fdvv reads version {VERSION}"
-            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
-        return _program(msgspec.json.decode(data, type=ProgramRecord), source)
-    except msgspec.ValidationError as error:
-        reason, _, path = str(error).partition(" - at ")
-        place = path.strip("`") or "$"
-        choices = _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None)
-        expected = f", expected one of {', '.join(choices)}" if choices else ""
-        raise InputError(source, place, reason + expected, _REMEDY) from error
-    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        raise InputError(source, _place(data, str(error)), f"not valid JSON ({error})", _REMEDY) from error
+    return read_document(
+        text,
+        source,
+        _KIND,
+        lambda data: _program(msgspec.json.decode(data, type=ProgramRecord), source),
+        _choices,
+    )
 
 
-def _place(data: bytes, reason: str) -> str:
-    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
-    found = re.search(r"\(byte (\d+)\)", reason)
-    if not found:
-        return "end of file" if "truncated" in reason else "whole file"
-    before = data[: int(found[1])]
-    return f"line {before.count(_NEWLINE) + 1}, column {len(before) - before.rfind(_NEWLINE)}"
+def _choices(place: str) -> Iterable[str] | None:
+    return _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None)
 
 
 class _Reader:

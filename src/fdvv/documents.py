@@ -1,0 +1,95 @@
+"""Versioned JSON documents that people may edit: how they are laid out, and what is said of a broken one."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import msgspec
+
+from fdvv.errors import InputError
+
+Read = TypeVar("Read")
+NEWLINE = b"\n"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of document.
+
+    Attributes
+    ----------
+    format, version : what its head must say.
+    name : with its article, for people.
+    remedy : what to do about one that cannot be read.
+    """
+
+    format: str
+    version: int
+    name: str
+    remedy: str
+
+
+class Head(msgspec.Struct):
+    """What is looked at first, whatever else the file holds."""
+
+    format: object = None
+    version: object = None
+
+
+def read_document(
+    text: str | bytes,
+    source: object,
+    kind: Kind,
+    read: Callable[[bytes], Read],
+    choices: Callable[[str], Iterable[str] | None],
+) -> Read:
+    """Read a document whose head says that it is one of that kind.
+
+    read : decodes the bytes with msgspec; choices : the words that may stand at a place, None for any.
+    Raises InputError that names source, the place in it and the remedy.
+    """
+    data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
+    try:
+        head = msgspec.json.decode(data, type=Head)
+        if head.format != kind.format:
+            reason = f'not {kind.name} ("format" must be "{kind.format}")'
+            raise InputError(source, "$.format", reason, kind.remedy)
+        if head.version != kind.version:
+            reason = f"file version {head.version!r:.40}, this fdvv reads version {kind.version}"
+            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
+        return read(data)
+    except msgspec.ValidationError as error:
+        reason, _, path = str(error).partition(" - at ")
+        place = path.strip("`") or "$"
+        words = choices(place)
+        expected = f", expected one of {', '.join(words)}" if words else ""
+        raise InputError(source, place, reason + expected, kind.remedy) from error
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        place = _place(data, str(error))
+        raise InputError(source, place, f"not valid JSON ({error})", kind.remedy) from error
+
+
+def _place(data: bytes, reason: str) -> str:
+    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
+    found = re.search(r"\(byte (\d+)\)", reason)
+    if not found:
+        return "end of file" if "truncated" in reason else "whole file"
+    before = data[: int(found[1])]
+    return f"line {before.count(NEWLINE) + 1}, column {len(before) - before.rfind(NEWLINE)}"
+
+
+def pretty(value: object, one_line: Collection[str] = (), indent: str = "") -> str:
+    """Indent objects and lists of them; keep on one line a list of plain values, and an object of nothing
+    but the keys one_line.
+    """
+    deeper = indent + "  "
+    if isinstance(value, dict) and set(value) - set(one_line):
+        items = [f"{deeper}{json.dumps(k)}: {pretty(v, one_line, deeper)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
+        return "[\n" + ",\n".join(deeper + pretty(v, one_line, deeper) for v in value) + f"\n{indent}]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
