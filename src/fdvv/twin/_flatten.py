@@ -9,6 +9,7 @@ from fdvv.twin._finger import Finger
 from fdvv.twin._kernel import Grid, Plant
 from fdvv.twin._noise import lsb_of
 from fdvv.twin._rig import Rig
+from fdvv.twin._rig_senses import ForceSensor
 
 STEP_s = 1e-5
 ROW_s = 1e-4
@@ -32,12 +33,20 @@ def plant_of(rig: Rig, finger: Finger, step_s: float = STEP_s) -> Plant:
 
 
 def _finger_part(rig: Rig, finger: Finger) -> dict[str, float]:
-    pulp, sensor = finger.pulp, rig.force_sensor
+    return {
+        "finger_stiffness_N_m": finger.impedance.stiffness_N_m,
+        "finger_damping_N_s_m": finger.impedance.damping_N_s_m,
+        **flesh_part(finger),
+        **worn_part(rig.force_sensor),
+    }
+
+
+def flesh_part(finger: Finger) -> dict[str, float]:
+    """Flatten what every press has of a finger, whatever its gesture."""
+    pulp = finger.pulp
     relaxing = 1 - pulp.relaxed_ratio
     return {
         "finger_mass_kg": finger.impedance.mass_kg,
-        "finger_stiffness_N_m": finger.impedance.stiffness_N_m,
-        "finger_damping_N_s_m": finger.impedance.damping_N_s_m,
         "pulp_scale_N": pulp.scale_N,
         "pulp_exponent_1_m": pulp.exponent_1_m,
         "pulp_relaxed_ratio": pulp.relaxed_ratio,
@@ -47,6 +56,12 @@ def _finger_part(rig: Rig, finger: Finger) -> dict[str, float]:
         "pulp_slow_s": pulp.slow_s,
         "strap_N": pulp.strap_N,
         "strap_m": math.log1p(pulp.strap_N / (pulp.relaxed_ratio * pulp.scale_N)) / pulp.exponent_1_m,
+    }
+
+
+def worn_part(sensor: ForceSensor) -> dict[str, float]:
+    """Flatten the mechanics of the sensor on the fingertip."""
+    return {
         "sensor_mass_kg": sensor.mass_kg,
         "contact_stiffness_N_m": sensor.contact_stiffness_N_m,
         "contact_loss_s_m": HUNT_CROSSLEY * sensor.contact_loss_s_m,

@@ -12,7 +12,7 @@ import numpy as np
 from fdvv.twin._button import ButtonPhysics
 from fdvv.twin._cam import Cam, CELL_m, identify
 from fdvv.twin._finger import Finger
-from fdvv.twin._flatten import HUNT_CROSSLEY
+from fdvv.twin._flatten import HUNT_CROSSLEY, flesh_part, worn_part
 from fdvv.twin._gesture import Gesture
 from fdvv.twin._kernel_button import CELL, ButtonPlant
 from fdvv.twin._rig_senses import ForceSensor
@@ -74,32 +74,16 @@ def button_plant(
 
 
 def _finger_part(finger: Finger, gesture: Gesture) -> dict[str, float]:
-    pulp = finger.pulp
-    relaxing = 1 - pulp.relaxed_ratio
     places = ("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s")
     return {name: getattr(gesture, name) for name in places} | {
-        "finger_mass_kg": finger.impedance.mass_kg,
         "finger_stiffness_N_m": gesture.stiffness_N_m,
         "finger_damping_N_s_m": gesture.damping_N_s_m,
-        "pulp_scale_N": pulp.scale_N,
-        "pulp_exponent_1_m": pulp.exponent_1_m,
-        "pulp_relaxed_ratio": pulp.relaxed_ratio,
-        "pulp_fast_ratio": relaxing * pulp.fast_share,
-        "pulp_slow_ratio": relaxing * (1 - pulp.fast_share),
-        "pulp_fast_s": pulp.fast_s,
-        "pulp_slow_s": pulp.slow_s,
-        "strap_N": pulp.strap_N,
-        "strap_m": math.log1p(pulp.strap_N / (pulp.relaxed_ratio * pulp.scale_N)) / pulp.exponent_1_m,
+        **flesh_part(finger),
     }
 
 
 def _sensor_part(sensor: ForceSensor) -> dict[str, float]:
-    return {
-        "sensor_mass_kg": sensor.mass_kg,
-        "contact_stiffness_N_m": sensor.contact_stiffness_N_m,
-        "contact_loss_s_m": HUNT_CROSSLEY * sensor.contact_loss_s_m,
-        "sensor_rc_s": sensor.filter_s,
-    }
+    return {**worn_part(sensor), "sensor_rc_s": sensor.filter_s}
 
 
 def _button_part(button: ButtonPhysics) -> dict[str, float]:

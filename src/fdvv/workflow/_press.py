@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,13 +82,11 @@ def press_button(
     speeds_mm_s: Sequence[float],
     presses: int,
     seed: int = 0,
-    progress: Callable[[int, int], None] | None = None,
 ) -> Presses:
     """Have the simulated person press a simulated real button, each press a fresh one.
 
     button : name of a shipped one or a TOML file; finger : a TOML file, the default person if None.
     speeds_mm_s : mean speeds of the stroke down; presses : of each. seed repeats everything.
-    progress : called with presses done and to do.
 
     Raises InputError on an unusable name, file or speed.
     """
@@ -103,8 +101,6 @@ def press_button(
             gesture = vary(person, physics.curve.travel_m, pace_s, float(m_from_mm(speed)), random)
             noise = draw_button_noise(person, gesture, random, sensor)
             made.append(_felt(simulate_button(physics, person, gesture, noise, sensor), speed, travel_mm))
-            if progress:
-                progress(len(made), presses * len(speeds))
     slow = probe_button(physics)
     peak = float(slow.press_cN[slow.displacement_mm < travel_mm - 0.1].max())
     return Presses(str(button), travel_mm, peak, tuple(made))
