@@ -27,6 +27,11 @@ def library() -> ctypes.CDLL:
         ) from error
 
 
+def words(data: bytes) -> npt.NDArray[np.uint32]:
+    """Copy bytes to memory aligned for the core."""
+    return np.frombuffer(data + bytes(-len(data) % 4), np.uint32).copy()
+
+
 def address(array: npt.NDArray[np.generic]) -> ctypes.c_void_p:
     """Give the address of a C-contiguous array; the caller keeps the array alive during the call."""
     if not array.flags.c_contiguous:

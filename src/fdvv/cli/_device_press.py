@@ -24,16 +24,15 @@ def upload(
 
     A model is rendered by its own force, not compensated for the rig.
     """
-    from fdvv.protocol import ImageHeader
+    from fdvv.protocol import head_of, travel_mm_of
     from fdvv.workflow import program_image
 
     image = program_image(button, velocities_mm_s)
     with opened(spec, recording) as found:
         _programs(found, spec).upload_program(image)
         name = found.info().name
-    head = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-    travel_mm = head.travel_um16 / 16000
-    document = {"device": name, "bytes": len(image), "states": head.states, "travel_mm": travel_mm}
+    travel_mm = travel_mm_of(image)
+    document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
     if as_json:
         print_json(document)
         return

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from fdvv._native import address, library
+from fdvv._native import address, library, words
 from fdvv.core._records import INPUTS, OUTPUTS, RecordArray
 from fdvv.errors import BuildError, DeviceError, ModelError
 from fdvv.protocol import IMAGE_BYTES, Evidence, Fault, Mode, Refusal, Settings
@@ -47,11 +47,6 @@ def layout(lib: ctypes.CDLL) -> list[int]:
     numbers = np.zeros(18, np.int64)
     lib.fdvv_bridge_layout(address(numbers))
     return [int(number) for number in numbers]
-
-
-def words(data: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
-    """Copy bytes to memory aligned for the core."""
-    return np.frombuffer(data + bytes(-len(data) % 4), np.uint32).copy()
 
 
 class Core:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.protocol import Settings
+from fdvv.protocol import Settings, UM16_PER_mm
 
 RecordArray = np.ndarray[Any, np.dtype[np.void]]
 
@@ -67,6 +67,6 @@ def inputs_like(settings: Settings, sums: npt.ArrayLike) -> RecordArray:
 
 def inputs_at(settings: Settings, displacement_mm: npt.ArrayLike) -> RecordArray:
     """Give undisturbed inputs of a cap at these displacements (mm), as near as sums of readings can tell."""
-    um16 = 16000.0 * np.asarray(displacement_mm, float) - settings.position_offset_um16
+    um16 = UM16_PER_mm * np.asarray(displacement_mm, float) - settings.position_offset_um16
     sums = np.round(um16 * 2**14 / settings.position_gain_q14)
     return inputs_like(settings, np.clip(sums, 0, 65535 * settings.reads))

@@ -23,7 +23,6 @@ from fdvv.protocol import (
     FaultedRequest,
     HelloReply,
     HelloRequest,
-    ImageHeader,
     KeyRequest,
     Message,
     PingReply,
@@ -37,6 +36,7 @@ from fdvv.protocol import (
     TelemetryRequest,
     VibrateRequest,
     data_request,
+    head_of,
 )
 
 Kind = TypeVar("Kind", bound=Record)
@@ -129,8 +129,7 @@ class Client:
 
     def upload(self, image: bytes) -> None:
         """Send a program and have it checked; it becomes the active one whole, or the old one stays."""
-        header = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-        self._tell(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=header.crc32))
+        self._tell(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=head_of(image).crc32))
         for offset in range(0, len(image), DATA_BYTES):
             self._tell(Message.DATA, data_request(offset, image[offset : offset + DATA_BYTES]))
         self._tell(Message.COMMIT)

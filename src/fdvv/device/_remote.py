@@ -5,18 +5,14 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Self
 
-import numpy as np
-
 from fdvv.device._client import Client
 from fdvv.device._contract import DeviceInfo, FaultReport
 from fdvv.device._image import surface_image
-from fdvv.device._telemetry import UM16_PER_mm
+from fdvv.device._limits import check_speed, check_table
 from fdvv.device._wire import RefusedError
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface
-from fdvv.protocol import BoardFlag, Fault, Refusal, Settings
-
-SPEED_LIMITS_mm_s = (5.0, 500.0)
+from fdvv.protocol import BoardFlag, CN64_PER_cN, Fault, Refusal, Settings, UM16_PER_mm, travel_mm_of
 
 
 class Remote:
@@ -42,7 +38,7 @@ class Remote:
         return DeviceInfo(
             hello.name.rstrip(b"\0").decode("ascii", "replace"),
             bool(hello.board_flags & (BoardFlag.SIMULATED | BoardFlag.EMULATED)),
-            settings.force_limit_cN64 / 64,
+            settings.force_limit_cN64 / CN64_PER_cN,
             hello.travel_um16_256 * 256 / UM16_PER_mm,
             settings.tick_us * 1e-6,
         )
@@ -54,7 +50,7 @@ class Remote:
 
     def upload_program(self, image: bytes) -> None:
         """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
-        travel_mm = int.from_bytes(image[8:12], "little", signed=True) / UM16_PER_mm
+        travel_mm = travel_mm_of(image)
         self.client.upload(image)
         self.travel_mm, self.image = travel_mm, image
 
@@ -76,7 +72,7 @@ class Remote:
             reply.bound,
             reply.time_us * 1e-6,
             reply.displacement_um16 / UM16_PER_mm,
-            reply.commanded_cN64 / 64,
+            reply.commanded_cN64 / CN64_PER_cN,
             reply.count,
         )
 
@@ -109,9 +105,7 @@ class Remote:
         name = self.client.port.name
         if self.travel_mm is None:
             raise DeviceError(f"{name}: press before upload; upload a surface or a program first")
-        low, high = SPEED_LIMITS_mm_s
-        if not low <= velocity_mm_s <= high:
-            raise DeviceError(f"{name}: speed {velocity_mm_s:g} mm/s is not within {low:g} to {high:g} mm/s")
+        check_speed(name, velocity_mm_s)
         return self.travel_mm
 
     def _fail_on_fault(self) -> None:
@@ -119,18 +113,3 @@ class Remote:
         report = self.fault()
         if report.fault is not Fault.NONE:
             raise DeviceError(f"{self.client.port.name}: fell to zero force, {report}; clear the fault")
-
-
-def check_table(info: DeviceInfo, surface: ForceSurface, travel_mm: float) -> None:
-    """Refuse, before anything is sent, a table or travel beyond the limits. DeviceError."""
-    largest = max(float(np.abs(table).max()) for table in (surface.press_cN, surface.release_cN))
-    if largest > info.force_limit_cN:
-        raise DeviceError(
-            f"{info.name}: the table reaches {largest:.4g} cN, the limit is {info.force_limit_cN:g} cN; "
-            "clip the table before uploading it"
-        )
-    if not 0 < travel_mm <= info.travel_limit_mm:
-        raise DeviceError(
-            f"{info.name}: travel {travel_mm:g} mm is not within 0 to {info.travel_limit_mm:g} mm; "
-            "choose a travel that the stop can set"
-        )

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from fdvv.device._contract import DeviceInfo, FaultReport
+from fdvv.device._limits import check_speed, check_table
 from fdvv.device._recording import read_session, unpack_press, unpack_surface
-from fdvv.device._remote import SPEED_LIMITS_mm_s, check_table
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface, Press
 from fdvv.protocol import Fault
@@ -53,9 +53,7 @@ class ReplayDevice:
         """Give the next press of this upload; DeviceError if another speed was asked for, or none is left."""
         if not self._active:
             raise DeviceError(f"{self._path}: press before upload; upload a surface first")
-        low, high = SPEED_LIMITS_mm_s
-        if not low <= velocity_mm_s <= high:
-            raise DeviceError(f"{self._path}: speed {velocity_mm_s:g} is not within {low:g} to {high:g} mm/s")
+        check_speed(str(self._path), velocity_mm_s)
         if self._place >= len(self._lines):
             raise DeviceError(f"{self._path}: the recording ends here")
         line = self._lines[self._place]

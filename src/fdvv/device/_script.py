@@ -8,7 +8,7 @@ import numpy as np
 
 from fdvv.device._plant import Inputs
 from fdvv.model import Press
-from fdvv.protocol import Settings
+from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm, travel_mm_of
 from fdvv.units import FloatArray
 
 Meddle = Callable[[int, Inputs], Inputs]
@@ -48,9 +48,9 @@ class ScriptedPlant:
 
     def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
         """Move on by a tick."""
-        felt = duty_q15 * 65536 / self._settings.duty_gain_q16 / 64 if enable else 0.0
+        felt = duty_q15 * 65536 / self._settings.duty_gain_q16 / CN64_PER_cN if enable else 0.0
         self._felt_cN.append(felt)
-        x_um16 = 16000 * float(self._path_mm[min(self._tick, self.ticks - 1)])
+        x_um16 = UM16_PER_mm * float(self._path_mm[min(self._tick, self.ticks - 1)])
         scale = self._settings.position_gain_q14 / 2**14
         total = round((x_um16 - self._settings.position_offset_um16) / scale)
         total += int(self._noise[self._tick % self._noise.size])
@@ -88,7 +88,7 @@ class ScriptedPerson:
 
     def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> ScriptedPlant:
         """Press once, to the program's travel."""
-        travel_mm = int.from_bytes(image[8:12], "little") / 16000
+        travel_mm = travel_mm_of(image)
         down_s = travel_mm / velocity_mm_s
         corners_s = np.cumsum([0.0, 0.01, down_s, 0.02, down_s, 0.04])
         t_s = np.arange(round(corners_s[-1] / (settings.tick_us * 1e-6))) * settings.tick_us * 1e-6

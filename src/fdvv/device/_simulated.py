@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from fdvv.device._plant import Inputs
-from fdvv.protocol import ImageHeader, Settings
+from fdvv.protocol import Settings, travel_mm_of
 from fdvv.twin import Finger, Rig, RigPlant, Trace, settings_of, solve_program_pace, vary
 from fdvv.units import m_from_mm
 
-UM16_m = 1.6e7
 SETTLE_s = 0.3
 """Without force the cap lies at the stop; it must be up before anyone presses."""
 
@@ -44,8 +43,7 @@ class SimulatedPerson:
 
     def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> SimulatedPerson:
         """Begin a press at about this speed; what happened before it is forgotten."""
-        head = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-        travel_m, speed_m_s = head.travel_um16 / UM16_m, float(m_from_mm(velocity_mm_s))
+        travel_m, speed_m_s = float(m_from_mm(travel_mm_of(image))), float(m_from_mm(velocity_mm_s))
         pace_s = self._pace_s(image, velocity_mm_s)
         gesture = vary(self._plant.finger, travel_m, pace_s, speed_m_s, self._random)
         self._plant.load(image)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.protocol import RecordsRequest
+from fdvv.protocol import CN64_PER_cN, RecordsRequest, UM16_PER_mm
 from fdvv.units import FloatArray
 
 IntArray = npt.NDArray[np.int64]
@@ -22,7 +22,6 @@ TICK_RECORD = np.dtype(
         ("flags", "u1"),
     ]
 )
-UM16_PER_mm = 16000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +109,8 @@ def _columns(tick: IntArray, rows: npt.NDArray[np.void]) -> TickColumns:
         tick,
         rows["displacement_um16"] / UM16_PER_mm,
         rows["velocity_mm_s16"] / 16.0,
-        rows["commanded_cN64"] / 64.0,
-        rows["force_cN64"] / 64.0,
+        rows["commanded_cN64"] / CN64_PER_cN,
+        rows["force_cN64"] / CN64_PER_cN,
         rows["state"].astype(np.int64),
         rows["flags"].astype(np.int64),
     )

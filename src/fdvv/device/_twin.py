@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv.device._contract import DeviceInfo
+from fdvv.device._limits import check_speed, check_table, check_travel
 from fdvv.errors import DeviceError, ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import ImageHeader, Mode
+from fdvv.protocol import Mode, travel_mm_of
 from fdvv.twin import (
     Finger,
     Rig,
@@ -19,9 +20,6 @@ from fdvv.twin import (
     vary,
 )
 from fdvv.units import cN_from_N, m_from_mm, mm_from_m
-
-SPEED_LIMITS_mm_s = (5.0, 500.0)
-UM16_mm = 16000
 
 
 class TwinDevice:
@@ -55,14 +53,7 @@ class TwinDevice:
 
         The table is rounded to 1/64 cN and, if it has more places than a device holds, sampled to fit.
         """
-        info = self.info()
-        largest = max(float(np.abs(table).max()) for table in (surface.press_cN, surface.release_cN))
-        if largest > info.force_limit_cN:
-            raise DeviceError(
-                f"twin: the table reaches {largest:.4g} cN, the limit is {info.force_limit_cN:g} cN; "
-                "clip the table before uploading it"
-            )
-        self._check_travel(travel_mm)
+        check_table(self.info(), surface, travel_mm)
         try:
             self._activate(image_of(surface, travel_mm).image)
         except ModelError as error:
@@ -70,8 +61,7 @@ class TwinDevice:
 
     def upload_program(self, image: bytes) -> None:
         """Make a program (a checked image, protocol/fdvv.toml) active; DeviceError beyond the travel."""
-        header = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-        self._check_travel(header.travel_um16 / UM16_mm)
+        check_travel(self.info(), travel_mm_of(image))
         self._activate(image)
 
     def press(self, velocity_mm_s: float) -> Press:
@@ -82,12 +72,9 @@ class TwinDevice:
         """Press as press() does and give all that the twin knows of it, the program's states included."""
         if self._active is None:
             raise DeviceError("twin: press before upload; upload a surface first")
-        low, high = SPEED_LIMITS_mm_s
-        if not low <= velocity_mm_s <= high:
-            raise DeviceError(f"twin: speed {velocity_mm_s:g} mm/s is not within {low:g} to {high:g} mm/s")
+        check_speed("twin", velocity_mm_s)
         press_s = self._pace_s(velocity_mm_s, self._active)
-        travel_mm = ImageHeader.unpack(self._active[: ImageHeader.length_bytes()]).travel_um16 / UM16_mm
-        travel_m, speed_m_s = m_from_mm(travel_mm), m_from_mm(velocity_mm_s)
+        travel_m, speed_m_s = m_from_mm(travel_mm_of(self._active)), m_from_mm(velocity_mm_s)
         gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
         noise = draw_noise(self._rig, self._finger, gesture, self._random)
         trace = simulate_program(self._rig, self._finger, gesture, self._active, noise, velocity_mm_s)
@@ -97,14 +84,6 @@ class TwinDevice:
                 "look for a rig whose sensor, supply or heat is beyond its limits"
             )
         return trace
-
-    def _check_travel(self, travel_mm: float) -> None:
-        limit_mm = self.info().travel_limit_mm
-        if not 0 < travel_mm <= limit_mm:
-            raise DeviceError(
-                f"twin: travel {travel_mm:g} mm is not within 0 to {limit_mm:g} mm; "
-                "choose a travel that the stop can set"
-            )
 
     def _activate(self, image: bytes) -> None:
         self._active = image

@@ -9,9 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from fdvv.program._condition import Condition, Transition, When
-from fdvv.program._limits import COUNTS_PER_MM, Limits
+from fdvv.program._limits import Limits
 from fdvv.program._program import Program, State
 from fdvv.program._still import conditions
+from fdvv.protocol import UM16_PER_mm
 from fdvv.units import FloatArray
 
 WIDEST_mm = 0.05
@@ -126,7 +127,7 @@ def make_cells(program: Program, limits: Limits, margin_cN: float) -> Cells:
         edges,
         np.array([low for low, _ in bounds]) - margin_cN,
         np.array([high for _, high in bounds]) + margin_cN,
-        limits.settings.rearm_um16 / COUNTS_PER_MM,
+        limits.settings.rearm_um16 / UM16_PER_mm,
     )
 
 

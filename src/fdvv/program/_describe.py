@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -11,12 +10,20 @@ import numpy as np
 
 from fdvv.errors import InputError, ModelError
 from fdvv.program._condition import Condition, Transition, When
-from fdvv.program._image import CHECKED_FROM
-from fdvv.program._limits import COUNTS_PER_MM, COUNTS_PER_MM_S, COUNTS_PER_cN
 from fdvv.program._program import During, State, Velocity, VibrationEvent
 from fdvv.program._surface import Surface
 from fdvv.program._synth import Slot, Waveform
-from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC, NONE, ImageHeader, Record
+from fdvv.protocol import (
+    IMAGE_BYTES,
+    IMAGE_MAGIC,
+    NONE,
+    CN64_PER_cN,
+    ImageHeader,
+    MM_S16_PER_mm_s,
+    Record,
+    UM16_PER_mm,
+    checksum_of,
+)
 from fdvv.protocol import Slot as SlotRecord
 from fdvv.protocol import State as StateRecord
 from fdvv.protocol import Surface as SurfaceRecord
@@ -58,7 +65,7 @@ def describe(image: bytes, source: object = "image") -> Description:
     head_bytes = ImageHeader.length_bytes()
     if not head_bytes <= len(image) <= IMAGE_BYTES or image[:4] != struct.pack("<I", IMAGE_MAGIC):
         raise InputError(source, "whole file", "is not the image of a program", remedy)
-    if struct.unpack_from("<I", image, 4)[0] != zlib.crc32(image[CHECKED_FROM:]):
+    if struct.unpack_from("<I", image, 4)[0] != checksum_of(image):
         raise InputError(source, "checksum", "does not fit the bytes", remedy)
     try:
         return _Parts(image).description()
@@ -90,7 +97,7 @@ class _Parts:
         head = self.head
         return Description(
             head.name.rstrip(b"\0").decode("ascii"),
-            head.travel_um16 / COUNTS_PER_MM,
+            head.travel_um16 / UM16_PER_mm,
             _state(head.start_state),
             tuple(self._state(i) for i in range(head.states)),
             tuple(self._surface(i) for i in range(head.surfaces)),
@@ -115,8 +122,8 @@ class _Parts:
             _signal(record.repeat_slot),
             record.repeat_ms,
             record.fade_ms,
-            record.bias_cN64 / COUNTS_PER_cN,
-            record.bias_end_cN64 / COUNTS_PER_cN,
+            record.bias_cN64 / CN64_PER_cN,
+            record.bias_end_cN64 / CN64_PER_cN,
             record.bias_ms,
         )
 
@@ -125,22 +132,22 @@ class _Parts:
         count = record.rows * record.columns
         speeds = struct.unpack_from(f"<{record.rows}H", self.image, record.velocities_at)
         forces = struct.unpack_from(f"<{count}h", self.image, record.forces_at)
-        places = (record.start_um16 + record.step_um16 * np.arange(record.columns)) / COUNTS_PER_MM
-        table = np.reshape(forces, (record.rows, record.columns)) / COUNTS_PER_cN
+        places = (record.start_um16 + record.step_um16 * np.arange(record.columns)) / UM16_PER_mm
+        table = np.reshape(forces, (record.rows, record.columns)) / CN64_PER_cN
         return Surface(
             f"surface {index}",
             tuple(places.tolist()),
             tuple(map(tuple, table.tolist())),
-            tuple(speed / COUNTS_PER_MM_S for speed in speeds),
+            tuple(speed / MM_S16_PER_mm_s for speed in speeds),
         )
 
     def _vibration(self, record: VibrationRecord) -> VibrationEvent:
         return VibrationEvent(
             f"signal {record.slot}",
-            record.at_um16 / COUNTS_PER_MM,
+            record.at_um16 / UM16_PER_mm,
             list(During)[record.stroke],
-            record.slowest_mm_s16 / COUNTS_PER_MM_S or None,
-            None if record.fastest_mm_s16 == 65_535 else record.fastest_mm_s16 / COUNTS_PER_MM_S,
+            record.slowest_mm_s16 / MM_S16_PER_mm_s or None,
+            None if record.fastest_mm_s16 == 65_535 else record.fastest_mm_s16 / MM_S16_PER_mm_s,
             tuple(_state(i) for i in range(self.head.states) if record.states >> i & 1),
         )
 
@@ -167,9 +174,9 @@ def _signal(slot: int) -> str | None:
 def _condition(code: int, value: int) -> Condition:
     when = list(When)[code]
     if when.endswith("_mm"):
-        return Condition(when, value / COUNTS_PER_MM)
+        return Condition(when, value / UM16_PER_mm)
     if when.endswith("_mm_s"):
-        return Condition(when, value / COUNTS_PER_MM_S)
+        return Condition(when, value / MM_S16_PER_mm_s)
     return Condition(when, value)
 
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.program._limits import COUNTS_PER_MM, COUNTS_PER_MM_S, COUNTS_PER_cN
 from fdvv.program._surface import Surface
-from fdvv.protocol import SURFACE_DISPLACEMENTS
+from fdvv.protocol import SURFACE_DISPLACEMENTS, CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm
 from fdvv.units import FloatArray
 
 COARSEST_um16 = 16_000
@@ -44,17 +43,17 @@ class Grid:
 
 def place_um16(place_mm: float) -> int:
     """Give a displacement in 1/16 µm, to the nearest."""
-    return round(place_mm * COUNTS_PER_MM)
+    return round(place_mm * UM16_PER_mm)
 
 
 def speed_mm_s16(speed_mm_s: float) -> int:
     """Give a velocity in 1/16 mm/s, to the nearest."""
-    return round(speed_mm_s * COUNTS_PER_MM_S)
+    return round(speed_mm_s * MM_S16_PER_mm_s)
 
 
 def counts_cN64(force_cN: float) -> int:
     """Give a force in 1/64 cN, to the nearest."""
-    return round(force_cN * COUNTS_PER_cN)
+    return round(force_cN * CN64_PER_cN)
 
 
 class Candidates:
@@ -77,8 +76,8 @@ class Candidates:
 
     def _table_cN(self, columns: int) -> FloatArray:
         """Evaluate every row at the columns."""
-        step_mm = self._step_um16(columns) / COUNTS_PER_MM
-        places = self.start_um16 / COUNTS_PER_MM + step_mm * np.arange(columns)
+        step_mm = self._step_um16(columns) / UM16_PER_mm
+        places = self.start_um16 / UM16_PER_mm + step_mm * np.arange(columns)
         after = np.clip(np.searchsorted(self._points_mm, places), 1, self._points_mm.size - 1)
         before_mm, after_mm = self._points_mm[after - 1], self._points_mm[after]
         part = np.clip((places - before_mm) / (after_mm - before_mm), 0.0, 1.0)
@@ -88,7 +87,7 @@ class Candidates:
     def _error_cN(self, columns: int) -> float:
         """Compare at the surface's own points: between straight lines nothing can be worse."""
         table = self._table_cN(columns)
-        along = (self._points_mm * COUNTS_PER_MM - self.start_um16) / self._step_um16(columns)
+        along = (self._points_mm * UM16_PER_mm - self.start_um16) / self._step_um16(columns)
         before = np.clip(along.astype(int), 0, columns - 2)
         part = np.clip(along - before, 0.0, 1.0)
         found = (1 - part) * table[:, before] + part * table[:, before + 1]
@@ -101,7 +100,7 @@ class Candidates:
 
     def grid(self, columns: int) -> Grid:
         """Sample the surface on that many columns."""
-        exact = self._table_cN(columns) * COUNTS_PER_cN
+        exact = self._table_cN(columns) * CN64_PER_cN
         rounded = np.rint(exact)
         return Grid(
             self.start_um16,
@@ -109,5 +108,5 @@ class Candidates:
             tuple(speed_mm_s16(v) for v in self.surface.velocity_mm_s),
             tuple(tuple(int(f) for f in row) for row in rounded),
             float(self.errors_cN[columns - self.columns[0]]),
-            float(np.max(np.abs(rounded - exact))) / COUNTS_PER_cN,
+            float(np.max(np.abs(rounded - exact))) / CN64_PER_cN,
         )

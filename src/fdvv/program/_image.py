@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Sequence
 
 from fdvv.program._condition import Condition, When
 from fdvv.program._grid import Grid, counts_cN64, place_um16, speed_mm_s16
 from fdvv.program._program import Program, State, VibrationEvent
 from fdvv.program._synth import Slot
-from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC, IMAGE_VERSION, NONE, ImageHeader
+from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC, IMAGE_VERSION, NONE, ImageHeader, seal
 from fdvv.protocol import Slot as SlotRecord
 from fdvv.protocol import State as StateRecord
 from fdvv.protocol import Surface as SurfaceRecord
 from fdvv.protocol import Transition as TransitionRecord
 from fdvv.protocol import Vibration as VibrationRecord
 
-CHECKED_FROM = 8
-"""Offset of the first byte that the checksum covers."""
 NAME_BYTES = 10
 
 
@@ -72,7 +69,7 @@ def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weig
     ]
     body = b"".join(record.pack() for record in records) + pool.data
     body += bytes(size - len(body))
-    return body[:4] + struct.pack("<I", zlib.crc32(body[CHECKED_FROM:])) + body[CHECKED_FROM:]
+    return seal(body)
 
 
 def _header(program: Program, transitions: int, size: int) -> ImageHeader:

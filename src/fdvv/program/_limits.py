@@ -7,11 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.protocol import Settings
-
-COUNTS_PER_cN = 64
-COUNTS_PER_MM = 16_000
-COUNTS_PER_MM_S = 16
+from fdvv.protocol import CN64_PER_cN, Settings
 
 
 @dataclass(frozen=True)
@@ -68,12 +64,12 @@ class Limits:
     @property
     def force_cN(self) -> float:
         """Give the largest force, both signs."""
-        return self.settings.force_limit_cN64 / COUNTS_PER_cN
+        return self.settings.force_limit_cN64 / CN64_PER_cN
 
     @property
     def slew_cN_s(self) -> float:
         """Give the fastest change of the force."""
-        return self.settings.slew_cN64_tick / COUNTS_PER_cN * 1e6 / self.settings.tick_us
+        return self.settings.slew_cN64_tick / CN64_PER_cN * 1e6 / self.settings.tick_us
 
     @property
     def stiffness_cN_mm(self) -> float:
@@ -86,6 +82,6 @@ class Limits:
 
     def rise_K(self, force_cN: float) -> float:
         """Give how much warmer the coil ends if a force is held for ever, by the controller's own model."""
-        counts = abs(force_cN) * COUNTS_PER_cN
+        counts = abs(force_cN) * CN64_PER_cN
         duty = min(1.0, counts * self.settings.duty_gain_q16 / 2**16 / 2**15)
         return self.settings.full_duty_rise_K * duty**2

@@ -1,6 +1,15 @@
 """What host and firmware say to each other: messages, settings, images; defined in protocol/fdvv.toml."""
 
 from fdvv.protocol._frame import Frame, FrameDecoder, crc16, decode, encode, stuff, unstuff
+from fdvv.protocol._images import (
+    CN64_PER_cN,
+    MM_S16_PER_mm_s,
+    UM16_PER_mm,
+    checksum_of,
+    head_of,
+    seal,
+    travel_mm_of,
+)
 from fdvv.protocol._messages import (
     REPLIES,
     REPLY,
@@ -97,6 +106,7 @@ __all__ = [
     "AnnounceRequest",
     "BeginRequest",
     "BoardFlag",
+    "CN64_PER_cN",
     "ClearFaultRequest",
     "Condition",
     "DataReply",
@@ -111,6 +121,7 @@ __all__ = [
     "HelloRequest",
     "ImageHeader",
     "KeyRequest",
+    "MM_S16_PER_mm_s",
     "Message",
     "Mode",
     "Part",
@@ -132,18 +143,23 @@ __all__ = [
     "TickFlag",
     "TickRecord",
     "Transition",
+    "UM16_PER_mm",
     "VelocitySource",
     "Verdict",
     "VibrateRequest",
     "Vibration",
     "Waveform",
+    "checksum_of",
     "crc16",
     "data_request",
     "decode",
     "encode",
+    "head_of",
     "read_notice",
     "read_reply",
     "request_frame",
+    "seal",
     "stuff",
+    "travel_mm_of",
     "unstuff",
 ]

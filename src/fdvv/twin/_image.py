@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,16 +16,19 @@ from fdvv.protocol import (
     NONE,
     SURFACE_DISPLACEMENTS,
     SURFACE_VELOCITIES,
+    CN64_PER_cN,
     ImageHeader,
+    MM_S16_PER_mm_s,
     Slot,
     State,
     Surface,
+    UM16_PER_mm,
     VelocitySource,
     Vibration,
+    seal,
 )
 from fdvv.units import FloatArray
 
-UM16_mm, CN64_cN, MM_S16 = 16000, 64, 16
 LARGEST_ERROR_cN = 0.1
 """A table that would change by more on its way into an image is refused."""
 
@@ -59,12 +61,12 @@ def image_of(
             f"a device holds {SURFACE_VELOCITIES} velocities at most, got {surface.velocity_mm_s.size}"
         )
     start, step, columns = _grid(surface)
-    x = (start + step * np.arange(columns)) / UM16_mm
+    x = (start + step * np.arange(columns)) / UM16_PER_mm
     old = surface.displacement_mm
     tables = [
         np.array([np.interp(x, old, row) for row in rows]) for rows in (surface.press_cN, surface.release_cN)
     ]
-    held = [np.round(CN64_cN * table) for table in tables]
+    held = [np.round(CN64_PER_cN * table) for table in tables]
     if max(float(np.abs(table).max()) for table in held) > 32000:
         raise ModelError("a device holds forces up to 500 cN")
     error = _error(surface, x, held)
@@ -78,7 +80,7 @@ def image_of(
 
 def _grid(surface: ForceSurface) -> tuple[int, int, int]:
     """Choose first column, step (both 1/16 um) and count."""
-    first, last = (UM16_mm * float(surface.displacement_mm[i]) for i in (0, -1))
+    first, last = (UM16_PER_mm * float(surface.displacement_mm[i]) for i in (0, -1))
     start, count = round(first), surface.displacement_mm.size
     fits = min(SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 160) // (4 * surface.velocity_mm_s.size) - 2)
     low, high = Surface.LIMITS["step_um16"]
@@ -99,7 +101,11 @@ def _error(surface: ForceSurface, x: FloatArray, held: list[FloatArray]) -> floa
     places = np.concatenate([inside, surface.displacement_mm])
     pairs = [(surface.press_cN, held[0]), (surface.release_cN, held[1])]
     return max(
-        float(np.abs(np.interp(places, surface.displacement_mm, a) - np.interp(places, x, b) / CN64_cN).max())
+        float(
+            np.abs(
+                np.interp(places, surface.displacement_mm, a) - np.interp(places, x, b) / CN64_PER_cN
+            ).max()
+        )
         for table, coarse in pairs
         for a, b in zip(table, coarse, strict=True)
     )
@@ -116,7 +122,7 @@ def _pack(
     rows = surface.velocity_mm_s.size
     fixed = ImageHeader.length_bytes() + State.length_bytes() + 2 * Surface.length_bytes()
     fixed += sum(event.length_bytes() for event in events)
-    speeds = np.round(MM_S16 * surface.velocity_mm_s).astype("<u2").tobytes()
+    speeds = np.round(MM_S16_PER_mm_s * surface.velocity_mm_s).astype("<u2").tobytes()
     forces = [table.astype("<i2").tobytes() for table in held]
     places = [fixed + len(speeds) + i * len(forces[0]) for i in (0, 1)]
     parts = [_state().pack()]
@@ -128,7 +134,7 @@ def _pack(
     ]
     body = b"".join([*parts, *(event.pack() for event in events), speeds, *forces])
     body += bytes(-len(body) % 4)
-    return _seal(body, round(UM16_mm * travel_mm), events)
+    return _sealed(body, round(UM16_PER_mm * travel_mm), events)
 
 
 def _state() -> State:
@@ -150,7 +156,7 @@ def _state() -> State:
     )
 
 
-def _seal(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
+def _sealed(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
     """Put the header with its checksum before the parts."""
     head = ImageHeader(
         magic=IMAGE_MAGIC,
@@ -167,6 +173,4 @@ def _seal(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> 
         spare=0,
         name=b"table",
     )
-    checked = 8  # the checksum covers what follows it
-    crc = zlib.crc32(head.pack()[checked:] + body)
-    return replace(head, crc32=crc).pack() + body
+    return seal(head.pack() + body)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fdvv._native import address, library
+from fdvv._native import address, library, words
 from fdvv.core import OUTPUTS, RecordArray
 from fdvv.errors import ModelError
 from fdvv.protocol import Settings
@@ -191,11 +191,6 @@ def rig_bytes() -> int:
     sizes = [ctypes.c_int64() for _ in range(3)]
     doors().fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes))
     return sizes[2].value
-
-
-def words(data: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
-    """Copy bytes to memory aligned for the core."""
-    return np.frombuffer(data + bytes(-len(data) % 4), np.uint32).copy()
 
 
 def run(

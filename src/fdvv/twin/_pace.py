@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from fdvv.model import ForceSurface
-from fdvv.protocol import ImageHeader
+from fdvv.protocol import travel_mm_of
 from fdvv.twin._finger import Finger
 from fdvv.twin._gesture import Gesture, plan
-from fdvv.twin._image import UM16_mm, image_of
+from fdvv.twin._image import image_of
 from fdvv.twin._noise import silence
 from fdvv.twin._rig import Rig
 from fdvv.twin._simulate import simulate_program
@@ -67,7 +67,7 @@ def solve_program_pace(
     rig: Rig, finger: Finger, image: bytes, velocity_mm_s: float, guess_s: float | None = None
 ) -> float:
     """Find the same for a program (its image, protocol/fdvv.toml)."""
-    travel_mm = ImageHeader.unpack(image[: ImageHeader.length_bytes()]).travel_um16 / UM16_mm
+    travel_mm = travel_mm_of(image)
 
     def miss(log_s: float) -> float:
         gesture = plan(finger, float(m_from_mm(travel_mm)), math.exp(log_s))

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fdvv._native import address
+from fdvv._native import address, words
 from fdvv.core import INPUTS, OUTPUTS, RecordArray
 from fdvv.errors import ModelError
 from fdvv.protocol import NONE
@@ -25,7 +25,6 @@ from fdvv.twin._kernel import (
     Rows,
     doors,
     rig_bytes,
-    words,
 )
 from fdvv.twin._noise import Noise, draw_ticks
 from fdvv.twin._rig import Rig

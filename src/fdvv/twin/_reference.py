@@ -14,7 +14,7 @@ import numpy as np
 
 from fdvv.core import INPUTS, Core
 from fdvv.model import ForceSurface
-from fdvv.protocol import TickFlag
+from fdvv.protocol import TickFlag, UM16_PER_mm
 from fdvv.twin._finger import Finger
 from fdvv.twin._gesture import Gesture
 from fdvv.twin._image import image_of
@@ -66,7 +66,7 @@ class _Run:
         rig, noise = self.plant.rig, self.noise
         control = rig.controller
         out = self.core.tick(self.readings(k))
-        sensed = out["displacement_um16"] / 1.6e7
+        sensed = out["displacement_um16"] / (1000 * UM16_PER_mm)
         release = float(out["flags"] & TickFlag.RELEASE)
         seen = (sensed, self.felt_N, out["commanded_cN64"] / 6400, release)
         end, before = start + control.tick_s, float(noise.effort_ratio[k - 1]) if k else 0.0

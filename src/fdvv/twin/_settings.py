@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fdvv.errors import ModelError
-from fdvv.protocol import Settings
+from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm
 from fdvv.twin._rig import Rig
 
-UM16_m = 1.6e7
+UM16_m = 1000 * UM16_PER_mm
 """Sixteenths of a micrometre in a metre."""
-CN64_N = 6400.0
+CN64_N = 100 * CN64_PER_cN
 """Sixty-fourths of a centinewton in a newton."""
 FASTEST_m_s = 4.0
 """No cap moves faster; beyond it a reading is a fault."""

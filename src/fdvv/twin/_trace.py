@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.model import Press
-from fdvv.protocol import TickFlag
+from fdvv.protocol import CN64_PER_cN, TickFlag, UM16_PER_mm
 from fdvv.twin._kernel import Rows
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
 
 BoolArray = npt.NDArray[np.bool_]
 ByteArray = npt.NDArray[np.uint8]
-UM16_mm, CN64_cN = 16000, 64
 CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
 
 
@@ -76,9 +75,9 @@ class Trace:
             cap_velocity_mm_s=mm_from_m(v),
             cap_acceleration_m_s2=a,
             force_cN=cN_from_N(force),
-            sensed_mm=out["displacement_um16"] / UM16_mm,
+            sensed_mm=out["displacement_um16"] / UM16_PER_mm,
             sensed_cN=cN_from_N(felt),
-            commanded_cN=out["commanded_cN64"] / CN64_cN,
+            commanded_cN=out["commanded_cN64"] / CN64_PER_cN,
             saturated=((flags & CUT) > 0) | (duty_ratio < lowest_ratio),
             release=(flags & TickFlag.RELEASE) > 0,
             state=out["state"],
