@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import struct
 import subprocess
@@ -23,12 +24,24 @@ LIMITS = ("-fno-tree-loop-distribute-patterns", "-ffunction-sections", "-nostdli
 FLASH, RAM, RETURN, SIZE = 0x2000, 0x20000000, 0x1000, 0x40000
 
 
+def board_flags() -> str:
+    """Give what the board's Makefile compiles the tick with."""
+    found = re.search(r"^TICK_FLAGS := (.+)$", (BOARD / "Makefile").read_text(), re.MULTILINE)
+    assert found is not None
+    return found[1]
+
+
 def compile_core(folder: Path, optimise: str) -> bytes:
     """Give the bytes of the program from FLASH on."""
     require_tools()
-    elf, binary = folder / f"core{optimise}.elf", folder / f"core{optimise}.bin"
-    sources = [HERE / "_core_on_m0.c", BOARD / "memory.c", *sorted(CORE.glob("*.c"))]
-    command: list[str | Path] = ["arm-none-eabi-gcc", *FLAGS, *LIMITS, optimise, f"-I{CORE}"]
+    elf, binary = folder / "core.elf", folder / "core.bin"
+    # apart, as on the board: link-time optimisation loses functions that the compiler itself calls
+    memory = folder / "memory.o"
+    subprocess.run(
+        ["arm-none-eabi-gcc", *FLAGS, *LIMITS, "-Os", "-c", BOARD / "memory.c", "-o", memory], check=True
+    )
+    sources = [HERE / "_core_on_m0.c", memory, *sorted(CORE.glob("*.c"))]
+    command: list[str | Path] = ["arm-none-eabi-gcc", *FLAGS, *LIMITS, *optimise.split(), f"-I{CORE}"]
     command += ["-T", HERE / "_core_on_m0.ld", "-Wl,-e0x2000", *sources, "-lgcc", "-o", elf]
     subprocess.run(command, check=True)
     objcopy = shutil.which("arm-none-eabi-objcopy") or "arm-none-eabi-objcopy"

@@ -9,13 +9,13 @@ from fdvv.core import Core
 from fdvv.protocol import Refusal, Settings
 from fdvv.testing import random_image, random_inputs, random_settings
 
-from ._core_on_m0 import CoreOnM0, compile_core
+from ._core_on_m0 import CoreOnM0, board_flags, compile_core
 from ._simavr import say
 
 pytestmark = pytest.mark.firmware
 
 
-@pytest.fixture(scope="module", params=["-Os", "-O2"])
+@pytest.fixture(scope="module", params=["-Os", "-O2", board_flags()])
 def code(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return compile_core(tmp_path_factory.mktemp("core"), request.param)
 
