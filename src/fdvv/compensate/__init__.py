@@ -4,6 +4,7 @@ from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.compensate._curve_state import Best, Learned, State
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
+from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import Count, CurveOutcome, Job, Method, Outcome, Trial
 from fdvv.compensate._observe import Delays, observe
 from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
@@ -20,6 +21,7 @@ __all__ = [
     "GainSchedule",
     "Job",
     "JobState",
+    "KnownRig",
     "Learned",
     "Method",
     "Outcome",

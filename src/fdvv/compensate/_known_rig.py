@@ -1,0 +1,74 @@
+"""What presses have told about a rig: the few numbers that turn a command into the force on the finger."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.units import FloatArray
+
+cN_PER_N = 100.0
+cN_PER_g_m_s2 = 0.1
+"""A gram accelerated by 1 m/s2 needs 0.1 cN."""
+
+
+@dataclass(frozen=True)
+class KnownRig:
+    """A rig as its own presses tell it; the finger's force at time t is
+
+        felt(t) = gain(x) command(t - delay_s) + drag v + friction sign(v) - weight + mass a
+
+    with x, v, a the cap's true motion, positive into the button. The host never sees the twin's parameters:
+    every number here is estimated from what a rig senses and commands.
+
+    Attributes
+    ----------
+    gain : (c0, c1, c2) of c0 + c1 x + c2 x^2, x in mm: felt force per commanded force. It holds calibration,
+        the coil's droop over its stroke and its resistance.
+    delay_s : from the tick that commands a force to the moment when the coil pushes with it: computing, half
+        a tick of holding, and the coil's inductance.
+    position_lag_s : how old the sensed displacement is.
+    drag_N_s_m : viscous friction and, with a voltage drive, back-EMF.
+    friction_cN : dry friction, half of the loop between both directions.
+    weight_cN : of the mover along the stroke; negative if it hangs.
+    mass_g : of all that moves with the cap.
+    play_cN : hysteresis of the finger's force sensor, whole loop.
+    position_noise_mm, force_noise_cN : rms, as sensed from tick to tick.
+    residual_cN : rms of what the model does not explain of the presses it was made from.
+    presses : that it was made from.
+    error : standard error of every number above that was estimated, by its name; of ``gain`` at mid travel.
+    """
+
+    gain: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    delay_s: float = 0.0
+    position_lag_s: float = 0.0
+    drag_N_s_m: float = 0.0
+    friction_cN: float = 0.0
+    weight_cN: float = 0.0
+    mass_g: float = 0.0
+    play_cN: float = 0.0
+    position_noise_mm: float = 0.0
+    force_noise_cN: float = 0.0
+    residual_cN: float = 0.0
+    presses: int = 0
+    error: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        numbers = [getattr(self, f.name) for f in fields(self) if f.name not in ("gain", "error")]
+        if not np.isfinite([*numbers, *self.gain, *self.error.values()]).all():
+            raise ModelError(f"a known rig needs finite numbers, got {self}")
+
+    def gain_at(self, displacement_mm: FloatArray) -> FloatArray:
+        """Give felt per commanded force, the shape of displacement_mm."""
+        c0, c1, c2 = self.gain
+        return c0 + displacement_mm * (c1 + displacement_mm * c2)
+
+    def opposing_cN(self, velocity_mm_s: FloatArray, acceleration_m_s2: FloatArray) -> FloatArray:
+        """Give the force on the finger that the rig makes by itself in this motion, at no command."""
+        drag = self.drag_N_s_m * velocity_mm_s * (cN_PER_N / 1000.0)
+        rub = self.friction_cN * np.sign(velocity_mm_s)
+        inertia = cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2
+        return np.asarray(drag + rub - self.weight_cN + inertia)
