@@ -34,6 +34,15 @@ def write_atomic(path: Path, content: str | bytes) -> None:
         raise
 
 
+def sync_folder(folder: Path) -> None:
+    """Force the names in a folder to disk, so that a file made in it is still there after a power cut."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
 def read_limited(path: Path | str, limit_bytes: int, remedy: str) -> bytes:
     """Read a file that should be small. InputError where it cannot be read or is larger than the limit.
 

@@ -113,7 +113,7 @@ REFUSED = {
         ("compensate", "mx-blue", "-o", "good.csv/x.actuation.json"), "good.csv: output: is a file"),
     "a model as actuation": (("probe", "mx-blue", "good.fdvv.json"), "expected 'fdvv-actuation'"),
     "truncated actuation": (("probe", "mx-blue", "cut.actuation.json"), "cut.actuation.json: whole file"),
-    "actuation as a button": (("show", "cut.actuation.json"), "holds an actuation"),
+    "actuation as a button": (("compare", "cut.actuation.json", "mx-red"), "holds an actuation"),
     "a report below a file": (("demo", "-o", "good.csv/x"), "good.csv: output: is a file"),
 }  # fmt: skip
 

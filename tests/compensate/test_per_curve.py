@@ -1,9 +1,11 @@
 """A whole job, and tables between its speeds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from fdvv.compensate import GainSchedule, Job, PaperLaw, PerCurve, dense_velocities
+from fdvv.compensate import Count, GainSchedule, Job, PaperLaw, PerCurve, dense_velocities
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
 
@@ -31,7 +33,7 @@ def test_speeds_take_turns_on_the_whole_surface() -> None:
         assert trial.surface.velocity_mm_s.size == 2
         state = method.step(press(trial.velocity_mm_s), state)
     assert asked == [50.0, 100.0, 50.0, 100.0]
-    assert method.count(state).made == method.count(state).total == 4
+    assert method.count(state) == Count(made=4, total=4, wanted=(2, 2))
 
 
 def test_one_row_at_a_time_finishes_a_speed_before_the_next() -> None:
@@ -63,32 +65,36 @@ def test_nothing_is_learned_between_the_guard_and_the_stop() -> None:
         np.testing.assert_array_equal(new.command_cN[guarded], old.command_cN[guarded])
 
 
-def test_a_failed_press_is_skipped_with_its_reason_and_made_again() -> None:
-    method = PerCurve(LAW)
-    state = method.step(press(50.0, depth_mm=2.0), method.init(job()))
-    assert "press 1 at 50 mm/s: the press stopped at 2.00 of 4.00 mm" in state.skipped
-    assert state.pairs[0][0].errors_cN == ()
-    trial = method.trial(state)
-    assert trial is not None
-    assert trial.velocity_mm_s == 50.0
-
-
-def test_a_release_without_samples_is_a_reason() -> None:
+def test_a_release_without_samples_teaches_nothing_and_is_the_reason() -> None:
     t = np.arange(0.0, 0.2, 0.001)
     stuck = Press(t, np.minimum(50 * t, 4.0), np.zeros(t.size), 50.0)
-    state = PerCurve(LAW).step(stuck, PerCurve(LAW).init(job()))
-    assert "release" in state.skipped[0]
+    with pytest.raises(ModelError, match="no sample of the release"):
+        PerCurve(LAW).step(stuck, PerCurve(LAW).init(job()))
 
 
-def test_too_many_failures_in_a_row_stop_the_job_with_a_sentence() -> None:
-    method = PerCurve(LAW, patience=3)
-    state = method.init(job())
-    for _ in range(3):
-        state = method.step(press(50.0, depth_mm=2.0), state)
-    assert method.trial(state) is None
-    outcome = method.done(state)
+def test_a_job_that_is_not_finished_says_how_far_it_came() -> None:
+    method = PerCurve(LAW)
+    outcome = method.done(method.step(press(50.0), method.init(job())))
     assert not outcome.complete
-    assert "stopped after 3 presses" in outcome.sentence
+    assert outcome.sentence == "stopped after 1 presses"
+
+
+def test_what_a_press_changed_is_told_in_numbers_and_the_end_of_a_round_in_words() -> None:
+    method = PerCurve(replace(LAW, rounds=2))
+    state = method.init(job((50.0,)))
+    assert method.explain(state) == ""
+    after = method.step(press(), state)
+    moved = [
+        np.abs(new.command_cN - old.command_cN).max()
+        for new, old in zip(after.pairs[0], state.pairs[0], strict=True)
+    ]
+    told = f"moved the press by up to {moved[0]:.1f} cN, the release by up to {moved[1]:.1f} cN"
+    assert method.explain(after) == told
+    after = method.step(press(), after)
+    assert method.explain(after) == "round 1 of 2 is over; the next round begins"
+    for _ in range(2):
+        after = method.step(press(), after)
+    assert method.explain(after) == "round 2 of 2 is over; the tables are averaged"
 
 
 def test_a_finished_job_takes_no_press() -> None:

@@ -13,15 +13,10 @@ from fdvv.device import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.testing import ScriptedDevice
-from fdvv.workflow._compensate import (
-    CompensationResult,
-    PressDone,
-    compensate,
-    load_actuation,
-    save_actuation,
-    uncompensated,
-)
+from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._probe import probe
+from fdvv.workflow._session_events import PressDone
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 100.0]
@@ -141,7 +136,7 @@ def test_a_file_brings_everything_back(result: CompensationResult, tmp_path: Pat
     ("change", "place"),
     [
         ({"format": "other"}, "format"),
-        ({"version": 2}, "version 2"),
+        ({"version": 3}, "version 3"),
         ({"press_cN": [[1.0]]}, "tables"),
         ({"travel_mm": "deep"}, "travel_mm"),
         ({"surprise": 1}, "surprise"),

@@ -9,8 +9,8 @@ from fdvv.device import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import ForceSurface, Press, Stroke, load_builtin
 from fdvv.testing import ScriptedDevice
-from fdvv.workflow._compensate import PressDone
 from fdvv.workflow._probe import fd_only, probe
+from fdvv.workflow._session_events import PressDone
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 200.0]
@@ -105,7 +105,7 @@ def test_a_press_that_cannot_reach_the_stop_ends_in_one_clear_line() -> None:
     wall = ForceSurface(
         SURFACE.displacement_mm, np.array([50.0]), *(np.full((1, 81), 430.0) for _ in range(2))
     )
-    with pytest.raises(DeviceError, match="10 presses in a row failed"):
+    with pytest.raises(DeviceError, match="10 presses in a row could not be used"):
         probe(TwinDevice(seed=1), MODEL, wall, [50.0], 2)
 
 

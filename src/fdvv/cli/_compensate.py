@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 import click
 
@@ -18,35 +17,13 @@ from fdvv.cli._output import (
     print_table,
     print_warnings,
     print_wrapped,
-    progress,
 )
-
-if TYPE_CHECKING:
-    from fdvv.workflow import PressDone
-
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def device_options(command: Command) -> Command:
-    """Add the options that choose a device and the speeds."""
-    path = click.Path(path_type=Path, exists=True, dir_okay=False)
-    options = (
-        click.option("--device", default="twin", show_default=True, help="'twin' is simulated."),
-        click.option("--rig", type=path, help="TOML file of the twin's rig (docs/reference/rig.md)."),
-        click.option("--finger", type=path, help="TOML file of the twin's finger."),
-        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
-                     help="Repeats the twin."),
-        click.option("--velocity", "velocities_mm_s", type=Finite(min=5, max=500), multiple=True,
-                     default=(50.0, 100.0, 150.0, 200.0), show_default=True, help="mm/s; repeatable."),
-    )  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+from fdvv.cli._session_options import beside, guided, open_session, session_options
 
 
 @click.command()
 @click.argument("button")
-@device_options
+@session_options
 @click.option("--rounds", type=click.IntRange(1, 20), default=4, show_default=True, help="Runs averaged.")
 @click.option(
     "--presses", type=click.IntRange(1, 100), default=12, show_default=True, help="Per round and velocity."
@@ -61,6 +38,8 @@ def compensate(
     finger: Path | None,
     seed: int,
     velocities_mm_s: tuple[float, ...],
+    folder: Path | None,
+    pace_ratio: float,
     rounds: int,
     presses: int,
     literal: bool,
@@ -71,25 +50,25 @@ def compensate(
 
     BUTTON is a built-in, a *.fdvv.json file or a measured file. The paper's iterative law presses until
     its rounds are done; its errors are those the rig measured while it learned. Judge with fdvv probe.
+
+    Ctrl-C stops the device; the same command goes on with a session where it stopped. A press that cannot
+    be used, because it stopped short, paused or missed its speed, is told with the reason and made again.
     """
     check_output(output, ".actuation.json")
     from fdvv.compensate import PaperLaw
     from fdvv.workflow import compensate as learn
-    from fdvv.workflow import open_device, open_model, save_actuation
+    from fdvv.workflow import open_model, save_actuation
 
     make = PaperLaw.literal if literal else PaperLaw
     law = make(rounds=rounds, presses_per_round=presses)
-    with progress("pressing", 1) as advance:
-        result = learn(
-            open_device(device, rig, finger, seed),
-            open_model(button),
-            velocities_mm_s,
-            law,
-            progress=_bar(advance),
-        )
+    model = open_model(button)
+    default = beside(output, button, "session")
+    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
+    with guided(session, device, as_json) as (found, view, guide):
+        result = learn(found, model, velocities_mm_s, law, view.done, session, guide)
     if output:
         save_actuation(result, output)
-    _print(result.to_dict(), as_json)
+    _print({**result.to_dict(), **_receipt(result)}, as_json)
     if output and not as_json:
         click.echo(f"written to {output}")
 
@@ -97,7 +76,7 @@ def compensate(
 @click.command()
 @click.argument("button")
 @click.argument("actuation", required=False, type=click.Path(path_type=Path, exists=True, dir_okay=False))
-@device_options
+@session_options
 @click.option("--presses", type=click.IntRange(1, 200), default=10, show_default=True, help="Per velocity.")
 @click.option(
     "--max-mean-error-cN", "bound_cN", type=Finite(min=0),
@@ -112,6 +91,8 @@ def probe(
     finger: Path | None,
     seed: int,
     velocities_mm_s: tuple[float, ...],
+    folder: Path | None,
+    pace_ratio: float,
     presses: int,
     bound_cN: float | None,
     as_json: bool,
@@ -122,27 +103,20 @@ def probe(
     learning starts from: the model's own force). Errors are in true displacement, median over the
     presses. Use another --seed than for learning.
     """
-    from fdvv.workflow import load_actuation, open_device, open_model, uncompensated
+    from fdvv.workflow import load_actuation, open_model, uncompensated
     from fdvv.workflow import probe as judge
 
     model = open_model(button)
     learned = load_actuation(actuation) if actuation else None
-    rendering = open_device(device, rig, finger, seed)
-    surface = learned.surface if learned else uncompensated(rendering, model, velocities_mm_s)
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
         print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
-    with progress("probing", 1) as advance:
-        result = judge(
-            rendering,
-            model,
-            surface,
-            velocities_mm_s,
-            presses,
-            _bar(advance),
-            method,
-        )
-    document = result.to_dict()
+    default = beside(actuation, button, "probe-session")
+    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
+    with guided(session, device, as_json) as (found, view, guide):
+        surface = learned.surface if learned else uncompensated(found, model, velocities_mm_s)
+        result = judge(found, model, surface, velocities_mm_s, presses, view.done, method, session, guide)
+    document = {**result.to_dict(), **_receipt(result)}
     _print(document, as_json)
     worst = max(document["curves"], key=lambda c: c["mean_error_cN"])
     if bound_cN is not None and worst["mean_error_cN"] > bound_cN:
@@ -151,9 +125,8 @@ def probe(
         raise click.exceptions.Exit(1)
 
 
-def _bar(advance: Callable[[int, int], None]) -> Callable[[PressDone], None]:
-    """Turn presses into steps of a progress bar."""
-    return lambda event: advance(event.presses_done, event.presses_total)
+def _receipt(result: Any) -> dict[str, Any]:
+    return {"receipt": result.receipt.to_dict()} if result.receipt else {}
 
 
 def _print(document: dict[str, Any], as_json: bool) -> None:

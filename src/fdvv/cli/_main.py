@@ -52,12 +52,12 @@ class LazyGroup(click.Group):
         """Run the command; click would turn Ctrl-C into an empty line of its own."""
         try:
             return super().invoke(ctx)
-        except KeyboardInterrupt:
-            raise Interrupted from None
+        except KeyboardInterrupt as stop:
+            raise Interrupted(*stop.args) from None
 
 
 class Interrupted(Exception):  # noqa: N818 - nothing failed
-    """The person pressed Ctrl-C."""
+    """The person pressed Ctrl-C; the text, if there is one, says what was kept."""
 
 
 @click.group(
@@ -88,8 +88,8 @@ def main() -> NoReturn:
         _stop(1 if isinstance(error, BuildError | DeviceError) else 2, str(error))
     except OSError as error:
         _stop(2, _system(error))
-    except (Interrupted, KeyboardInterrupt, click.Abort):
-        _stop(130, "interrupted")
+    except (Interrupted, KeyboardInterrupt, click.Abort) as stop:
+        _stop(130, str(stop) or "interrupted")
 
 
 def _stop(status: int, reason: str) -> NoReturn:

@@ -42,9 +42,12 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
     """Show landmarks and curves of a button.
 
     BUTTON is a built-in's name, a *.fdvv.json file, a file of measured curves, or a folder of them (a
-    table, one line per button).
+    table, one line per button). Of an *.actuation.json file, or of the folder of a session, the receipt is
+    shown: rig, method, presses, errors.
     """
     check_output(figure, *FIGURES)
+    if _show_receipt(button, as_json):
+        return
     if button and Path(button).is_dir():
         if figure:
             raise click.UsageError(f"--figure draws one button, and {button} is a folder")
@@ -75,6 +78,21 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
         if model.of(stroke):
             click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
     print_table(["landmark", "value"], [[name, number(value, 3)] for name, value in marks.items()])
+
+
+def _show_receipt(button: str, as_json: bool) -> bool:
+    """Print the receipt of an actuation or of a session; False if BUTTON is neither."""
+    from fdvv.cli._receipt import print_receipt
+    from fdvv.workflow import open_receipt
+
+    receipt = open_receipt(Path(button)) if button else None
+    if receipt is None:
+        return False
+    if as_json:
+        print_json(receipt.to_dict())
+    else:
+        print_receipt(receipt.to_dict())
+    return True
 
 
 def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:

@@ -4,6 +4,7 @@ from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.compensate._curve_state import Best, Learned, State
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
+from fdvv.compensate._judge import Acceptance, Verdict, judge
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import Count, CurveOutcome, Job, Method, Outcome, Trial
 from fdvv.compensate._observe import Delays, observe
@@ -14,6 +15,7 @@ from fdvv.compensate._tables import dense_velocities
 
 __all__ = [
     "RIG_DELAYS",
+    "Acceptance",
     "Best",
     "Count",
     "CurveOutcome",
@@ -30,11 +32,13 @@ __all__ = [
     "Span",
     "State",
     "Trial",
+    "Verdict",
     "bin_force",
     "bump_kept_ratio",
     "dense_velocities",
     "error_cN",
     "grid_mm",
+    "judge",
     "mean_speed_mm_s",
     "observe",
     "smooth",

@@ -61,26 +61,27 @@ class Outcome:
     ----------
     surface : the actuation, one row per velocity of the job.
     curves : one per stroke and velocity.
-    presses : made, those skipped among them.
-    skipped : why each skipped press taught nothing.
+    presses : learned from.
     complete : the method did all it meant to; if not, the sentence says what stopped it.
     """
 
     surface: ForceSurface
     curves: tuple[CurveOutcome, ...]
     presses: int
-    skipped: tuple[str, ...]
     complete: bool
     sentence: str
 
 
 @dataclass(frozen=True)
 class Count:
-    """How far a job is: presses made, presses a job without failures takes, and why some were skipped."""
+    """How far a job is: presses learned from and presses it takes in all.
+
+    wanted : presses it takes per velocity, in the order of the target's rows; empty if that is not known.
+    """
 
     made: int
     total: int
-    skipped: tuple[str, ...]
+    wanted: tuple[int, ...] = ()
 
 
 class Method(Protocol[S]):
@@ -105,11 +106,18 @@ class Method(Protocol[S]):
         ...
 
     def step(self, press: Press, state: S) -> S:
-        """Learn from the press that the last trial asked for."""
+        """Learn from the press that the last trial asked for, which ``judge`` accepted.
+
+        Raises ModelError, whose text is the reason, if it teaches nothing all the same; it is made again.
+        """
         ...
 
     def count(self, state: S) -> Count:
         """Tell how far the job is."""
+        ...
+
+    def explain(self, state: S) -> str:
+        """Tell in a few words what the last press changed, for whoever presses; empty if there is nothing."""
         ...
 
     def done(self, state: S) -> Outcome:

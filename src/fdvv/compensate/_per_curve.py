@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fdvv.compensate._curve_state import State
+from fdvv.compensate._judge import rig_columns
 from fdvv.compensate._method import Count, CurveOutcome, Job, Outcome, Trial
 from fdvv.compensate._observe import felt_at_mm, observe
 from fdvv.compensate._paper import PaperLaw
-from fdvv.compensate._strokes import split_strokes, why_incomplete
+from fdvv.compensate._strokes import split_strokes
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press, Stroke
-from fdvv.units import FloatArray
 
 Pair = tuple[State, State]
 """Press and release of one velocity."""
@@ -21,13 +21,12 @@ Pair = tuple[State, State]
 
 @dataclass(frozen=True, eq=False)
 class JobState:
-    """Where a job stands: the curves per velocity, presses made, and why presses were skipped."""
+    """Where a job stands: the curves per velocity, presses learned from, and what the last one changed."""
 
     job: Job
     pairs: tuple[Pair, ...]
     presses: int = 0
-    skipped: tuple[str, ...] = ()
-    in_a_row: int = 0
+    told: str = ""
 
 
 @dataclass(frozen=True)
@@ -37,15 +36,12 @@ class PerCurve:
     Attributes
     ----------
     law : of each curve.
-    patience : a press that is not complete teaches nothing and is made again; after so many in a row the
-        job stops.
     whole_surface : upload all rows and take the velocities in turn, so that a table is learned with the
         neighbours that the controller will blend it with, by the speed it believes. Else upload one row
         at a time, one velocity after the other, as the paper's text suggests.
     """
 
     law: PaperLaw = field(default_factory=PaperLaw)
-    patience: int = 10
     whole_surface: bool = True
 
     @property
@@ -73,13 +69,13 @@ class PerCurve:
 
     def count(self, state: JobState) -> Count:
         """Count presses."""
-        total = len(state.pairs) * self.law.rounds * self.law.presses_per_round
-        return Count(state.presses, total, state.skipped)
+        each = self.law.rounds * self.law.presses_per_round
+        return Count(state.presses, len(state.pairs) * each, len(state.pairs) * (each,))
 
     def trial(self, state: JobState) -> Trial | None:
         """Press the current commands of the first velocity that is not finished."""
         at = self._at(state)
-        if at is None or state.in_a_row >= self.patience:
+        if at is None:
             return None
         rows = range(len(state.pairs)) if self.whole_surface else [at]
         tables = [np.stack([state.pairs[row][j].command_cN for row in rows]) for j in range(2)]
@@ -88,17 +84,18 @@ class PerCurve:
         return Trial(surface, float(target.velocity_mm_s[at]))
 
     def step(self, press: Press, state: JobState) -> JobState:
-        """Learn both strokes from one press, or skip it with its reason."""
+        """Learn both strokes from one press. Raises ModelError where a stroke of it holds no sample."""
         at = self._at(state)
         if at is None:
             raise ModelError("the job is finished; no press was asked for")
-        pair, reason = self._learn(press, state.job, state.pairs[at])
+        pair = self._learn(press, state.job, state.pairs[at])
         pairs = (*state.pairs[:at], pair, *state.pairs[at + 1 :])
-        skipped, in_a_row = state.skipped, 0
-        if reason:
-            skipped = (*skipped, f"press {state.presses + 1} at {press.velocity_mm_s:g} mm/s: {reason}")
-            in_a_row = state.in_a_row + 1
-        return replace(state, pairs=pairs, presses=state.presses + 1, skipped=skipped, in_a_row=in_a_row)
+        told = self._told(state.pairs[at], pair)
+        return replace(state, pairs=pairs, presses=state.presses + 1, told=told)
+
+    def explain(self, state: JobState) -> str:
+        """Tell what the last press changed; empty before the first."""
+        return state.told
 
     def done(self, state: JobState) -> Outcome:
         """Collect the tables of all curves."""
@@ -112,9 +109,8 @@ class PerCurve:
         tables = [np.stack([pair[j].command_cN for pair in learned]) for j in range(2)]
         surface = ForceSurface(state.job.target.displacement_mm, speeds, *tables)
         complete = self._at(state) is None
-        return Outcome(
-            surface, curves, state.presses, state.skipped, complete, self._sentence(state, complete)
-        )
+        sentence = f"{state.presses} presses" if complete else f"stopped after {state.presses} presses"
+        return Outcome(surface, curves, state.presses, complete, sentence)
 
     def _at(self, state: JobState) -> int | None:
         """Find the velocity at work: the first with presses to make, or the one with fewest made."""
@@ -123,33 +119,25 @@ class PerCurve:
             return next(iter(left), None)
         return min(left, key=lambda i: len(state.pairs[i][0].errors_cN), default=None)
 
-    def _learn(self, press: Press, job: Job, pair: Pair) -> tuple[Pair, str]:
-        """Step both curves; an unusable press gives them back as they were, and the reason."""
+    def _learn(self, press: Press, job: Job, pair: Pair) -> Pair:
+        """Step both curves."""
         t_s, sensed, force = rig_columns(press)
         felt = felt_at_mm(t_s, sensed, self.law.delays)
-        reason = why_incomplete(felt, job.travel_mm)
-        if reason:
-            return pair, reason
         measured = [
             observe(t_s, sensed, force, span, c.target_cN, c.grid_mm, self.law.delays)
             for span, c in zip(split_strokes(felt, job.travel_mm), pair, strict=True)
         ]
         for stroke, column in zip(Stroke, measured, strict=True):
             if not np.isfinite(column).any():
-                return pair, f"no sample of the {stroke} fell within the guards"
+                raise ModelError(f"no sample of the {stroke} fell within the guards")
         press_state, release_state = (self.law.step(m, c)[1] for m, c in zip(measured, pair, strict=True))
-        return (press_state, release_state), ""
+        return press_state, release_state
 
-    def _sentence(self, state: JobState, complete: bool) -> str:
-        if complete:
-            return f"{state.presses} presses, {len(state.skipped)} of them skipped"
-        why = f": {state.skipped[-1]}" if state.in_a_row >= self.patience else ""
-        return f"stopped after {state.presses} presses{why}"
-
-
-def rig_columns(press: Press) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Give time, displacement and force as the rig knows them, at its ticks; the true ones without a rig."""
-    rows = np.ones(press.t_s.size, dtype=np.bool_) if press.tick is None else press.tick
-    sensed = press.displacement_mm if press.sensed_mm is None else press.sensed_mm
-    force = press.force_cN if press.sensed_cN is None else press.sensed_cN
-    return press.t_s[rows], sensed[rows], force[rows]
+    def _told(self, before: Pair, after: Pair) -> str:
+        """Say by how much the tables moved, or that a round is over."""
+        done = len(after[0].rounds)
+        if done > len(before[0].rounds):
+            rest = "the tables are averaged" if done == self.law.rounds else "the next round begins"
+            return f"round {done} of {self.law.rounds} is over; {rest}"
+        moved = [float(np.abs(a.command_cN - b.command_cN).max()) for a, b in zip(after, before, strict=True)]
+        return f"moved the press by up to {moved[0]:.1f} cN, the release by up to {moved[1]:.1f} cN"

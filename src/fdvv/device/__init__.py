@@ -13,7 +13,7 @@ from fdvv.device._open import KINDS, open_device
 from fdvv.device._plant import Inputs, Outputs, Person, Plant, PressedPlant, Truth
 from fdvv.device._port import Port
 from fdvv.device._pressed import PressedDevice
-from fdvv.device._recording import Recorder, read_session
+from fdvv.device._recording import Recorder, pack_record, read_session, unpack_press, unpack_surface
 from fdvv.device._remote import Remote
 from fdvv.device._replay import ReplayDevice
 from fdvv.device._script import ScriptedPerson, ScriptedPlant
@@ -59,9 +59,12 @@ __all__ = [
     "TwinDevice",
     "Wire",
     "open_device",
+    "pack_record",
     "read_session",
     "relate",
     "serial_ports",
     "surface_image",
+    "unpack_press",
+    "unpack_surface",
     "watch",
 ]

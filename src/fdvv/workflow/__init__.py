@@ -1,14 +1,8 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
+from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._compare import Comparison, Difference, compare
-from fdvv.workflow._compensate import (
-    CompensationResult,
-    PressDone,
-    compensate,
-    load_actuation,
-    save_actuation,
-    uncompensated,
-)
+from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
@@ -20,8 +14,12 @@ from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
+from fdvv.workflow._receipt import Receipt
+from fdvv.workflow._session import Session
+from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 
 __all__ = [
+    "Ask",
     "ButtonPress",
     "Comparison",
     "CompensationResult",
@@ -31,11 +29,15 @@ __all__ = [
     "FolderButton",
     "FolderFit",
     "FolderSummary",
+    "Guide",
     "ModelFit",
     "PressDone",
     "Presses",
     "ProbeResult",
+    "Receipt",
     "Rendering",
+    "Session",
+    "Standing",
     "SwitchFit",
     "button_files",
     "compare",
@@ -58,6 +60,7 @@ __all__ = [
     "open_models",
     "open_part",
     "open_program",
+    "open_receipt",
     "press_button",
     "probe",
     "program_image",

@@ -1,47 +1,22 @@
-"""Learn the actuation that makes a device feel like a model, and keep it in a file."""
+"""Learn the actuation that makes a device feel like a model."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
-import msgspec
-import numpy as np
-
-from fdvv.compensate import CurveOutcome, Job, Method, Outcome, PaperLaw, PerCurve
+from fdvv.compensate import Count, CurveOutcome, Job, Method, Outcome, PaperLaw, PerCurve, judge
 from fdvv.device import Device
-from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.files import write_atomic
-from fdvv.model import FDVVModel, ForceSurface, Press, Stroke
-
-FORMAT = "fdvv-actuation"
-VERSION = 1
-SUFFIX = ".actuation.json"
-
-
-@dataclass(frozen=True, eq=False)
-class PressDone:
-    """A press that was made: what a progress display needs, and the record itself.
-
-    Attributes
-    ----------
-    stage : "compensate" or "probe".
-    presses_done, presses_total : the total holds if no press is skipped.
-    skipped : why the press taught nothing; empty if it did.
-    """
-
-    stage: str
-    velocity_mm_s: float
-    presses_done: int
-    presses_total: int
-    press: Press
-    skipped: str = ""
-
-
-Progress = Callable[[PressDone], None]
+from fdvv.errors import DeviceError, InputError
+from fdvv.model import FDVVModel, ForceSurface
+from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
+from fdvv.workflow._session import Session
+from fdvv.workflow._session_events import Guide, Progress, Standing
+from fdvv.workflow._session_log import PressLog
+from fdvv.workflow._session_manifest import make_manifest
+from fdvv.workflow._session_run import Course, run
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +28,9 @@ class CompensationResult:
     method : the law and what it adds to the paper's.
     model_name, device_name, travel_mm : what was rendered, on what, with the stop where.
     outcome : surface of actuation, error history per curve, presses.
+    skipped : the presses that could not be used, each with its reason.
     simulated : the presses came from the twin.
+    receipt : how it came about; None of files of version 1.
     """
 
     method: str
@@ -61,12 +38,19 @@ class CompensationResult:
     device_name: str
     travel_mm: float
     outcome: Outcome
+    skipped: tuple[str, ...]
     simulated: bool
+    receipt: Receipt | None = None
 
     @property
     def surface(self) -> ForceSurface:
         """Give the actuation."""
         return self.outcome.surface
+
+    @property
+    def presses(self) -> int:
+        """Count the presses made, those that could not be used among them."""
+        return self.outcome.presses + len(self.skipped)
 
     def to_dict(self) -> dict[str, Any]:
         """Give the report: per curve error_k of every press as the rig measured it while it learned."""
@@ -74,8 +58,8 @@ class CompensationResult:
             "method": self.method,
             "model": self.model_name,
             "device": self.device_name,
-            "presses": self.outcome.presses,
-            "skipped": list(self.outcome.skipped),
+            "presses": self.presses,
+            "skipped": list(self.skipped),
             "explanation": self.outcome.sentence,
             "curves": [_curve_dict(c) for c in self.outcome.curves],
             "simulated": self.simulated,
@@ -103,31 +87,59 @@ def compensate(
     velocities_mm_s: Sequence[float],
     law: PaperLaw | Method[Any] | None = None,
     progress: Progress | None = None,
+    session: Session | None = None,
+    guide: Guide | None = None,
 ) -> CompensationResult:
     """Press and learn until the method is done.
 
     velocities_mm_s : speeds to learn at, any order; law : settings of a method, the paper's if None.
-    progress : called after every press.
+    progress : called after every press; guide : before it, and with notices.
+    session : where presses are kept and what they must be; in memory with the usual bounds if None.
 
-    Raises DeviceError if the device fails or the method gives up because presses keep failing, and
-    InputError on speeds that cannot be learned at.
+    Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on speeds
+    that cannot be learned at and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
-    method = _method(law)
+    method, session = _method(law), session or Session()
+    job = _job(device, model, velocities_mm_s, method)
+    speeds = job.target.velocity_mm_s.tolist()
+    manifest = make_manifest(
+        "compensate", device, model, speeds, (method.name, method), (session.seed, session.parts)
+    )
+    with session.begun(manifest) as log:
+        course = _course(method, job, log, session)
+        course = replace(course, progress=progress or course.progress, guide=guide or course.guide)
+        outcome = method.done(run(device, course, method.init(job), log))
+        if not outcome.complete:
+            raise DeviceError(f"{device.info().name}: {outcome.sentence}")
+        receipt = make_receipt(manifest, log.runs, log.entries, outcome.curves)
+        if session.folder:
+            save_receipt(session.folder, receipt)
+        skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info = device.info()
-    state = method.init(_job(device, model, velocities_mm_s, method))
-    while (trial := method.trial(state)) is not None:
-        device.upload(trial.surface, model.travel_mm)
-        press = device.press(trial.velocity_mm_s)
-        known = len(method.count(state).skipped)
-        state = method.step(press, state)
-        if progress:
-            count = method.count(state)
-            why = "".join(count.skipped[known:])
-            progress(PressDone("compensate", trial.velocity_mm_s, count.made, count.total, press, why))
-    outcome = method.done(state)
-    if not outcome.complete:
-        raise DeviceError(f"{info.name}: {outcome.sentence}; check that the travel and the speeds suit it")
-    return CompensationResult(method.name, model.name, info.name, model.travel_mm, outcome, info.simulated)
+    names = method.name, model.name, info.name, model.travel_mm
+    return CompensationResult(*names, outcome, skipped, info.simulated, receipt)
+
+
+def _course(method: Method[Any], job: Job, log: PressLog, session: Session) -> Course[Any]:
+    return Course(
+        "compensate",
+        method,
+        job.travel_mm,
+        lambda press: judge(press, job.travel_mm, session.acceptance),
+        session.acceptance.patience,
+        lambda state: standings(job, method.count(state), log, method.done(state).curves),
+    )
+
+
+def standings(job: Job, count: Count, log: PressLog, curves: Sequence[CurveOutcome]) -> tuple[Standing, ...]:
+    """Tell how far every velocity is."""
+    speeds = job.target.velocity_mm_s.tolist()
+    made = [sum(e.used and e.velocity_mm_s == speed for e in log.entries) for speed in speeds]
+    wanted = count.wanted or (None,) * len(speeds)
+    return tuple(
+        Standing(speed, m, w, tuple(c for c in curves if c.velocity_mm_s == speed))
+        for speed, m, w in zip(speeds, made, wanted, strict=True)
+    )
 
 
 def uncompensated(
@@ -162,86 +174,3 @@ def check_speeds(velocities_mm_s: Sequence[float]) -> list[float]:
     if len(set(speeds)) != len(speeds):
         raise InputError("velocities", "all", f"a speed repeats in {speeds} mm/s", remedy)
     return speeds
-
-
-class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """How one curve was learned."""
-
-    stroke: Literal["press", "release"]
-    velocity_mm_s: float
-    error_cN: list[float]
-    mean_error_cN: float | None
-    max_error_cN: float | None
-    explanation: str
-
-
-class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Tables of actuation for one device, and how they were learned."""
-
-    format: Literal["fdvv-actuation"]
-    version: Literal[1]
-    method: str
-    model: str
-    device: str
-    travel_mm: float
-    displacement_mm: list[float]
-    velocity_mm_s: list[float]
-    press_cN: list[list[float]]
-    release_cN: list[list[float]]
-    curves: list[CurveRecord]
-    presses: int
-    skipped: list[str]
-    explanation: str
-    simulated: bool
-
-
-def save_actuation(result: CompensationResult, path: Path | str) -> None:
-    """Write a result to an ``*.actuation.json`` file, whole or not at all. Raises OSError."""
-    surface = result.surface
-    columns = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
-    record = {
-        "format": FORMAT,
-        "version": VERSION,
-        **result.to_dict(),
-        "travel_mm": result.travel_mm,
-        **{name: getattr(surface, name).tolist() for name in columns},
-    }
-    write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")
-
-
-def load_actuation(path: Path | str) -> CompensationResult:
-    """Read an ``*.actuation.json`` file. Raises InputError, also where the file cannot be read."""
-    remedy = "learn it again with fdvv compensate"
-    try:
-        record = msgspec.json.decode(Path(path).read_bytes(), type=dict)
-        if record.get("format") != FORMAT or record.get("version") != VERSION:
-            got = f"{record.get('format')!r} version {record.get('version')!r}"
-            raise InputError(path, "$.format", f"expected {FORMAT!r} version {VERSION}, got {got}", remedy)
-        return _result(msgspec.convert(record, ActuationRecord))
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
-    except (msgspec.MsgspecError, UnicodeDecodeError, ModelError) as error:
-        reason, _, place = str(error).partition(" - at ")
-        raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
-
-
-def _result(record: ActuationRecord) -> CompensationResult:
-    columns = (record.displacement_mm, record.velocity_mm_s, record.press_cN, record.release_cN)
-    surface = ForceSurface(*(np.array(column, dtype=np.float64) for column in columns))
-    nan = float("nan")
-    curves = tuple(
-        CurveOutcome(
-            Stroke(c.stroke),
-            c.velocity_mm_s,
-            tuple(c.error_cN),
-            nan if c.mean_error_cN is None else c.mean_error_cN,
-            nan if c.max_error_cN is None else c.max_error_cN,
-            c.explanation,
-        )
-        for c in record.curves
-    )
-    outcome = Outcome(surface, curves, record.presses, tuple(record.skipped), True, record.explanation)
-    return CompensationResult(
-        record.method, record.model, record.device, record.travel_mm, outcome, record.simulated
-    )

@@ -12,9 +12,10 @@ from typing import Any
 
 from fdvv.device import Device
 from fdvv.model import CurveFit, FDVVModel, FitMethod, fit_curve, load_builtin, scan_sizes
-from fdvv.workflow._compensate import CompensationResult, PressDone, compensate, uncompensated
+from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._fit import ModelFit, fit_file, fit_report
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
+from fdvv.workflow._session_events import PressDone
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"

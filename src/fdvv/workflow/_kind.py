@@ -5,7 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 MODEL, ACTUATION = "an FDVV model", "an actuation"
-MARKS = {b'"fdvv-model"': MODEL, b'"fdvv-actuation"': ACTUATION}
+MARKS = {
+    b'"fdvv-model"': MODEL,
+    b'"fdvv-actuation"': ACTUATION,
+    b'"fdvv-session"': "a session",
+    b'"fdvv-receipt"': "a receipt",
+}
 HEAD_bytes = 200
 """The format is the first field of the files that fdvv writes."""
 

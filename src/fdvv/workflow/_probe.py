@@ -7,78 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from fdvv.compensate import bin_force, error_cN, grid_mm, mean_speed_mm_s, split_strokes, why_incomplete
+from fdvv.compensate import judge
 from fdvv.device import Device
-from fdvv.errors import DeviceError
-from fdvv.model import FDVVModel, ForceSurface, Press, Stroke, reading_order
-from fdvv.units import FloatArray
-from fdvv.workflow._compensate import PressDone, Progress, check_speeds
-
-BIN_mm = 0.05
-FROM_mm = 0.3
-STOP_GUARD_mm = 0.1
-"""Judged is from 0.3 mm, where the finger has met the cap, to 0.1 mm before the stop, ahead of its impact."""
-
-ALPHA = 0.7
-"""Weight of eq. 3, so that the probe's error_k reads like the paper's."""
-
-PATIENCE = 10
-
-
-@dataclass(frozen=True, eq=False)
-class ProbeCurve:
-    """One stroke at one velocity over several fresh presses.
-
-    Attributes
-    ----------
-    displacement_mm, target_cN : (n,) bins judged, and what the model asks for at the asked speed.
-    rendered_cN : (presses, n) force on the finger; 0 in bins the cap did not reach, where there was none.
-    achieved_mm_s : (presses,) mean speed of each stroke.
-    at_achieved_cN : (presses, n) what the model asks for at the achieved speed.
-    reached_ratio : part of the bins that the cap reached, of the worst press.
-    """
-
-    stroke: Stroke
-    velocity_mm_s: float
-    displacement_mm: FloatArray
-    target_cN: FloatArray
-    rendered_cN: FloatArray
-    achieved_mm_s: FloatArray
-    at_achieved_cN: FloatArray
-    reached_ratio: float
-
-    @property
-    def error_cN(self) -> FloatArray:
-        """Give error_k (eq. 3) of each press, (presses,)."""
-        return np.array([error_cN(self.target_cN, row, ALPHA) for row in self.rendered_cN])
-
-    @property
-    def mean_errors_cN(self) -> FloatArray:
-        """Give the mean of |target - rendered| over the bins, (presses,)."""
-        return np.asarray(np.abs(self.target_cN - self.rendered_cN).mean(axis=1))
-
-    @property
-    def max_errors_cN(self) -> FloatArray:
-        """Give the largest |target - rendered|, (presses,)."""
-        return np.asarray(np.abs(self.target_cN - self.rendered_cN).max(axis=1))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give medians over the presses, with quartiles as spread."""
-        achieved = np.abs(self.at_achieved_cN - self.rendered_cN).mean(axis=1)
-        return {
-            "stroke": str(self.stroke),
-            "velocity_mm_s": self.velocity_mm_s,
-            "error_cN": self.error_cN.tolist(),
-            "mean_error_cN": float(np.median(self.mean_errors_cN)),
-            "max_error_cN": float(np.median(self.max_errors_cN)),
-            "mean_error_quartiles_cN": np.percentile(self.mean_errors_cN, [25, 75]).tolist(),
-            "max_error_quartiles_cN": np.percentile(self.max_errors_cN, [25, 75]).tolist(),
-            "mean_error_at_achieved_speed_cN": float(np.median(achieved)),
-            "achieved_mm_s": float(np.median(self.achieved_mm_s)),
-            "reached_ratio": self.reached_ratio,
-        }
+from fdvv.model import FDVVModel, ForceSurface, Stroke, reading_order
+from fdvv.workflow._compensate import check_speeds
+from fdvv.workflow._probe_curve import FROM_mm, ProbeCurve, STOP_GUARD_mm, judged_curves
+from fdvv.workflow._probe_plan import Found, ProbePlan
+from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
+from fdvv.workflow._session import Session
+from fdvv.workflow._session_events import Guide, Progress, Standing
+from fdvv.workflow._session_log import PressLog
+from fdvv.workflow._session_manifest import Manifest, make_manifest, table_digest
+from fdvv.workflow._session_run import Course, run
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +29,9 @@ class ProbeResult:
     ----------
     method : what made the surface.
     range_mm : displacement judged.
-    presses : made, those skipped among them.
+    presses : made, those that could not be used among them.
+    skipped : the presses that could not be used, each with its reason.
+    receipt : how it came about.
     """
 
     method: str
@@ -100,6 +42,7 @@ class ProbeResult:
     presses: int
     skipped: tuple[str, ...]
     simulated: bool
+    receipt: Receipt
 
     def to_dict(self) -> dict[str, Any]:
         """Give the report; errors in cN, true displacement, median over presses."""
@@ -133,72 +76,78 @@ def probe(
     presses: int = 10,
     progress: Progress | None = None,
     method: str = "as uploaded",
+    session: Session | None = None,
+    guide: Guide | None = None,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and hold the felt force against the model.
 
-    presses : per velocity, complete ones. The force on the finger is binned on the true displacement of
-    the cap and held against the model at the speed that was asked for. A press that does not reach the
-    stop is not judged but counted, with its reason.
+    presses : per velocity, usable ones. The force on the finger is binned on the true displacement of
+    the cap and held against the model at the speed that was asked for. A press that cannot be used is not
+    judged but counted, with its reason; being at its limit is the rig's own doing and is judged.
+    progress, session, guide : as in ``compensate``.
 
-    Raises DeviceError if the device fails or ten presses in a row fail, InputError on bad speeds.
+    Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
+    speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
     """
-    info = device.info()
-    speeds = check_speeds(velocities_mm_s)
-    device.upload(surface, model.travel_mm)
-    curves: list[ProbeCurve] = []
-    skipped: list[str] = []
-    for velocity in speeds:
-        found: list[Press] = []
-        failed = 0
-        while len(found) < presses:
-            press = device.press(velocity)
-            reason = why_incomplete(press.displacement_mm, model.travel_mm)
-            if reason:
-                failed += 1
-                skipped.append(f"press at {velocity:g} mm/s: {reason}")
-            else:
-                failed = 0
-                found.append(press)
-            if progress:
-                done = len(curves) // 2 * presses + len(found)
-                progress(PressDone("probe", velocity, done, len(speeds) * presses, press, reason))
-            if failed >= PATIENCE:
-                raise DeviceError(f"{info.name}: {PATIENCE} presses in a row failed; the last {skipped[-1]}")
-        curves += _curves(model, velocity, found)
-    order = sorted(curves, key=reading_order)
-    bounds = (FROM_mm, model.travel_mm - STOP_GUARD_mm)
-    made = len(speeds) * presses + len(skipped)
-    return ProbeResult(
-        method, model.name, info.name, bounds, tuple(order), made, tuple(skipped), info.simulated
+    session = session or Session()
+    plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses)
+    settings = {"presses": presses, "surface_sha256": table_digest(surface)}
+    manifest = make_manifest(
+        "probe", device, model, plan.velocities_mm_s, (method, settings), (session.seed, session.parts)
+    )
+    with session.begun(manifest) as log:
+        course = _course(plan, model, session)
+        course = replace(course, progress=progress or course.progress, guide=guide or course.guide)
+        found = run(device, course, plan.init(), log)
+        result = _result(device, model, method, _all_curves(model, plan, found), log, manifest)
+        if session.folder:
+            save_receipt(session.folder, result.receipt)
+    return result
+
+
+def _course(plan: ProbePlan, model: FDVVModel, session: Session) -> Course[Found]:
+    bounds = replace(session.acceptance, saturated_ratio=1.0)
+    return Course(
+        "probe",
+        plan,
+        model.travel_mm,
+        lambda press: judge(press, model.travel_mm, bounds, true_position=True),
+        bounds.patience,
+        lambda found: _standings(model, plan, found),
     )
 
 
-def _curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
-    """Judge both strokes of the presses at one speed."""
-    grid = grid_mm(model.travel_mm, BIN_mm)
-    judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
-    curves = []
-    spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
-    for i, stroke in enumerate(Stroke):
-        rows, speeds = [], []
-        for press, strokes in zip(presses, spans, strict=True):
-            span = strokes[i]
-            felt = bin_force(press.displacement_mm[span.rows], press.force_cN[span.rows], grid)
-            rows.append(felt[judged])
-            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, span))
-        felt_rows, achieved = np.stack(rows), np.array(speeds)
-        served = stroke if model.of(stroke) else Stroke.PRESS
-        x = grid[judged]
-        curves.append(
-            ProbeCurve(
-                stroke,
-                velocity_mm_s,
-                x,
-                model.force_cN(x, velocity_mm_s, served),
-                np.nan_to_num(felt_rows, nan=0.0),
-                achieved,
-                model.force_cN(x[np.newaxis], np.nan_to_num(achieved, nan=velocity_mm_s)[:, None], served),
-                float(np.isfinite(felt_rows).mean(axis=1).min()),
-            )
-        )
-    return curves
+def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
+    pairs = zip(plan.velocities_mm_s, found, strict=True)
+    curves = [curve for speed, presses in pairs if presses for curve in judged_curves(model, speed, presses)]
+    return sorted(curves, key=reading_order)
+
+
+def _standings(model: FDVVModel, plan: ProbePlan, found: Found) -> tuple[Standing, ...]:
+    curves = [curve.outcome for curve in _all_curves(model, plan, found)]
+    return tuple(
+        Standing(speed, len(made), plan.presses, tuple(c for c in curves if c.velocity_mm_s == speed))
+        for speed, made in zip(plan.velocities_mm_s, found, strict=True)
+    )
+
+
+def _result(
+    device: Device,
+    model: FDVVModel,
+    method: str,
+    curves: Sequence[ProbeCurve],
+    log: PressLog,
+    manifest: Manifest,
+) -> ProbeResult:
+    info = device.info()
+    return ProbeResult(
+        method,
+        model.name,
+        info.name,
+        (FROM_mm, model.travel_mm - STOP_GUARD_mm),
+        tuple(curves),
+        len(log.entries),
+        tuple(str(entry) for entry in log.entries if not entry.used),
+        info.simulated,
+        make_receipt(manifest, log.runs, log.entries, [curve.outcome for curve in curves]),
+    )

@@ -1,0 +1,121 @@
+"""The file of an actuation: tables for one device, how they were learned, and the receipt."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+
+from fdvv.compensate import CurveOutcome, Outcome
+from fdvv.errors import InputError, ModelError
+from fdvv.files import write_atomic
+from fdvv.model import ForceSurface, Stroke
+from fdvv.workflow._compensate import CompensationResult
+from fdvv.workflow._kind import ACTUATION, own_kind
+from fdvv.workflow._receipt import Receipt, read_receipt
+
+FORMAT = "fdvv-actuation"
+VERSION = 2
+READ = (1, 2)
+"""Version 1 had no receipt."""
+
+SUFFIX = ".actuation.json"
+
+
+class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """How one curve was learned."""
+
+    stroke: Literal["press", "release"]
+    velocity_mm_s: float
+    error_cN: list[float]
+    mean_error_cN: float | None
+    max_error_cN: float | None
+    explanation: str
+
+
+class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """Tables of actuation for one device, and how they were learned."""
+
+    format: Literal["fdvv-actuation"]
+    version: Literal[1, 2]
+    method: str
+    model: str
+    device: str
+    travel_mm: float
+    displacement_mm: list[float]
+    velocity_mm_s: list[float]
+    press_cN: list[list[float]]
+    release_cN: list[list[float]]
+    curves: list[CurveRecord]
+    presses: int
+    skipped: list[str]
+    explanation: str
+    simulated: bool
+    receipt: Receipt | None = None
+
+
+def save_actuation(result: CompensationResult, path: Path | str) -> None:
+    """Write a result to an ``*.actuation.json`` file, whole or not at all. Raises OSError."""
+    surface = result.surface
+    columns = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
+    record: dict[str, Any] = {
+        "format": FORMAT,
+        "version": VERSION,
+        **result.to_dict(),
+        "travel_mm": result.travel_mm,
+        **{name: getattr(surface, name).tolist() for name in columns},
+        "receipt": result.receipt.to_dict() if result.receipt else None,
+    }
+    write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")
+
+
+def load_actuation(path: Path | str) -> CompensationResult:
+    """Read an ``*.actuation.json`` file. Raises InputError, also where the file cannot be read."""
+    remedy = "learn it again with fdvv compensate"
+    try:
+        record = msgspec.json.decode(Path(path).read_bytes(), type=dict)
+        if record.get("format") != FORMAT or record.get("version") not in READ:
+            got = f"{record.get('format')!r} version {record.get('version')!r}"
+            reason = f"expected {FORMAT!r} version {' or '.join(map(str, READ))}, got {got}"
+            raise InputError(path, "$.format", reason, remedy)
+        return _result(msgspec.convert(record, ActuationRecord))
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
+    except (msgspec.MsgspecError, UnicodeDecodeError, ModelError) as error:
+        reason, _, place = str(error).partition(" - at ")
+        raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
+
+
+def open_receipt(path: Path) -> Receipt | None:
+    """Give the receipt of an actuation or of a session's folder; None if path is neither. InputError."""
+    if not (path.name.endswith(SUFFIX) or own_kind(path) == ACTUATION):
+        return read_receipt(path)
+    receipt = load_actuation(path).receipt
+    if receipt is None:
+        reason = "was written before actuations had one (version 1)"
+        raise InputError(path, "$.receipt", reason, "learn it again with fdvv compensate")
+    return receipt
+
+
+def _result(record: ActuationRecord) -> CompensationResult:
+    columns = (record.displacement_mm, record.velocity_mm_s, record.press_cN, record.release_cN)
+    surface = ForceSurface(*(np.array(column, dtype=np.float64) for column in columns))
+    nan = float("nan")
+    curves = tuple(
+        CurveOutcome(
+            Stroke(c.stroke),
+            c.velocity_mm_s,
+            tuple(c.error_cN),
+            nan if c.mean_error_cN is None else c.mean_error_cN,
+            nan if c.max_error_cN is None else c.max_error_cN,
+            c.explanation,
+        )
+        for c in record.curves
+    )
+    outcome = Outcome(surface, curves, record.presses - len(record.skipped), True, record.explanation)
+    names = record.method, record.model, record.device, record.travel_mm
+    return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)

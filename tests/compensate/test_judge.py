@@ -1,0 +1,126 @@
+"""Which presses may be used."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fdvv.compensate import Acceptance, judge
+from fdvv.errors import ModelError
+from fdvv.model import Press
+from fdvv.units import FloatArray
+
+STEP_s = 0.0005
+
+
+def along(*corners: tuple[float, float], asked_mm_s: float = 100.0) -> Press:
+    """Make a press whose cap goes straight between (time, displacement) corners."""
+    times, places = zip(*corners, strict=True)
+    t = np.arange(0.0, times[-1] + STEP_s / 2, STEP_s)
+    return Press(t, np.asarray(np.interp(t, times, places)), np.zeros(t.size), asked_mm_s)
+
+
+def plain(speed_mm_s: float, asked_mm_s: float = 100.0, depth_mm: float = 4.0) -> Press:
+    down = depth_mm / speed_mm_s
+    corners = (
+        (0.0, 0.0),
+        (0.02, 0.0),
+        (0.02 + down, depth_mm),
+        (0.05 + down, depth_mm),
+        (0.05 + 2 * down, 0.0),
+    )
+    return along(*corners, asked_mm_s=asked_mm_s)
+
+
+def test_a_press_at_its_speed_down_to_the_stop_is_used() -> None:
+    verdict = judge(plain(100.0), 4.0)
+    assert verdict.reason == ""
+    assert verdict.achieved_mm_s == pytest.approx(100.0, rel=0.02)
+
+
+@given(st.floats(20, 300), st.floats(0.3, 1.7))
+def test_a_press_is_used_exactly_when_its_pace_is_within_the_tolerance(asked: float, ratio: float) -> None:
+    verdict = judge(plain(asked * ratio, asked), 4.0)
+    assert (verdict.reason == "") == (abs(verdict.achieved_mm_s / asked - 1) <= 0.35)
+
+
+def test_too_fast_and_too_slow_say_the_figures_and_what_to_do() -> None:
+    assert judge(plain(138.0), 4.0).reason == "138 mm/s, asked for 100: press slower"
+    assert judge(plain(62.0), 4.0).reason == "62 mm/s, asked for 100: press faster"
+
+
+def test_the_tolerance_of_the_pace_is_a_setting() -> None:
+    assert judge(plain(138.0), 4.0, Acceptance(pace_ratio=0.5)).reason == ""
+    assert "slower" in judge(plain(120.0), 4.0, Acceptance(pace_ratio=0.1)).reason
+
+
+def test_a_press_that_stops_short_has_no_speed_and_says_where_it_stopped() -> None:
+    verdict = judge(plain(100.0, depth_mm=2.5), 4.0)
+    assert verdict.reason == "the press stopped at 2.50 of 4.00 mm; press down to the stop, from the top"
+    assert np.isnan(verdict.achieved_mm_s)
+
+
+def test_a_finger_lifted_on_its_way_is_told_with_the_place() -> None:
+    lifted = along((0.0, 0.0), (0.02, 2.1), (0.025, 1.6), (0.05, 4.0), (0.1, 4.0), (0.14, 0.0))
+    assert judge(lifted, 4.0).reason == "the finger was lifted at 2.10 mm on its way down; press in one go"
+
+
+def test_a_finger_that_pauses_on_its_way_is_told_with_place_and_time() -> None:
+    paused = along((0.0, 0.0), (0.01, 2.1), (0.034, 2.15), (0.044, 4.0), (0.09, 4.0), (0.13, 0.0))
+    assert judge(paused, 4.0).reason.startswith("the finger paused at 2.")
+    assert "ms; press in one go" in judge(paused, 4.0).reason
+
+
+def minimum_jerk(part: FloatArray) -> FloatArray:
+    return np.asarray(part**3 * (10 - 15 * part + 6 * part**2))
+
+
+@given(st.floats(20, 300), st.floats(1.0, 6.0))
+def test_the_smoothest_press_there_is_has_no_pause(speed: float, travel: float) -> None:
+    t = np.arange(0.0, 2 * travel / speed + 0.05, STEP_s / 2)
+    ends = (
+        minimum_jerk(np.clip(t * speed / travel, 0, 1)),
+        minimum_jerk(np.clip((t - travel / speed - 0.05) * speed / travel, 0, 1)),
+    )
+    x = travel * (ends[0] - ends[1])
+    reason = judge(Press(t, x, np.zeros(t.size), speed * 1.3), travel).reason
+    assert "paused" not in reason
+    assert "lifted" not in reason
+
+
+def cut(press: Press, part: float) -> Press:
+    """Cut the commands of the first part of a press."""
+    return replace(press, saturated=np.arange(press.t_s.size) < part * press.t_s.size)
+
+
+def test_a_rig_at_its_limit_for_much_of_the_strokes_teaches_nothing() -> None:
+    assert judge(cut(plain(100.0), 0.2), 4.0).reason == ""
+    assert "at its limit for" in judge(cut(plain(100.0), 0.6), 4.0).reason
+    assert judge(cut(plain(100.0), 0.6), 4.0, Acceptance(saturated_ratio=1.0)).reason == ""
+
+
+def test_what_is_judged_is_what_the_rig_sensed_at_its_ticks() -> None:
+    true = plain(100.0)
+    ticks = np.arange(true.t_s.size) % 4 == 0
+    # between ticks the sensed column holds nonsense that nobody may look at
+    sensed = np.where(ticks, true.displacement_mm, 99.0)
+    seen = replace(true, displacement_mm=np.zeros(true.t_s.size), sensed_mm=sensed, tick=ticks)
+    assert judge(seen, 4.0).reason == ""
+    assert "stopped at 0.00" in judge(seen, 4.0, true_position=True).reason
+
+
+def test_too_few_samples_to_tell_the_speed_are_a_reason() -> None:
+    t = np.array([0.0, 0.02, 0.04, 0.06])
+    press = Press(t, np.array([0.0, 4.0, 4.0, 0.0]), np.zeros(4), 200.0)
+    assert "too few samples" in judge(press, 4.0).reason
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"pace_ratio": 0.0}, {"pace_ratio": 1.1}, {"lifted_mm": 0.0}, {"paused_ratio": -1.0}, {"patience": 0}],
+)
+def test_bounds_without_sense_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(ModelError, match="ratios"):
+        replace(Acceptance(), **wrong)  # type: ignore[arg-type] # the point of the test
