@@ -69,7 +69,7 @@ def test_a_finger_lifted_on_its_way_is_told_with_the_place() -> None:
 
 def test_a_finger_that_pauses_on_its_way_is_told_with_place_and_time() -> None:
     paused = along((0.0, 0.0), (0.01, 2.1), (0.034, 2.15), (0.044, 4.0), (0.09, 4.0), (0.13, 0.0))
-    assert judge(paused, 4.0).reason.startswith("the finger paused at 2.")
+    assert judge(paused, 4.0).reason.startswith("the finger paused at 2.1")
     assert "ms; press in one go" in judge(paused, 4.0).reason
 
 

@@ -13,7 +13,7 @@ from fdvv.device import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.testing import ScriptedDevice
-from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._actuation_file import load_actuation, save_actuation
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._probe import probe
 from fdvv.workflow._session_events import PressDone

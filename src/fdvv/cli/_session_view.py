@@ -58,7 +58,7 @@ def session_view(person: bool, quiet: bool) -> Iterator[View]:
 
 def notice(text: str) -> None:
     """Tell what a person should know of a session."""
-    print_warnings([text]) if "cut short" in text else click.echo(one_line(text), err=True)
+    print_warnings([text]) if "not whole" in text else click.echo(one_line(text), err=True)
 
 
 class LineView:

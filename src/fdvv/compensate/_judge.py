@@ -82,6 +82,8 @@ def judge(
         return Verdict(f"{reason}; press down to the stop, from the top", float("nan"))
     down, up = split_strokes(x_mm, travel_mm)
     speed = mean_speed_mm_s(t_s, x_mm, down)
+    if not np.isfinite(speed):
+        return Verdict("too few samples between the guards to tell the speed; press slower", speed)
     found = (
         _off_pace(speed, press.velocity_mm_s, bounds.pace_ratio),
         _lifted(x_mm[down.rows], bounds.lifted_mm),
@@ -92,8 +94,6 @@ def judge(
 
 
 def _off_pace(achieved_mm_s: float, asked_mm_s: float, bound: float) -> str:
-    if not np.isfinite(achieved_mm_s):
-        return "too few samples between the guards to tell the speed; press slower"
     if abs(achieved_mm_s / asked_mm_s - 1) <= bound:
         return ""
     remedy = "slower" if achieved_mm_s > asked_mm_s else "faster"
@@ -116,7 +116,8 @@ def _paused(t_s: FloatArray, x_mm: FloatArray, travel_mm: float, bound: float) -
     at = int(spent.argmax())
     if spent[at] <= bound * (t_s[-1] - t_s[0]):
         return ""
-    return f"the finger paused at {deepest[at]:.2f} mm for {spent[at] * MS_PER_s:.0f} ms; press in one go"
+    middle = float(np.interp(t_s[at] + spent[at] / 2, t_s, deepest))
+    return f"the finger paused at {middle:.2f} mm for {spent[at] * MS_PER_s:.0f} ms; press in one go"
 
 
 def _saturated(press: Press, strokes: tuple[FloatArray, Span, Span], bound: float) -> str:

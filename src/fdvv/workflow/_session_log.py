@@ -116,7 +116,7 @@ class PressLog:
             assert self._file is not None
             os.ftruncate(self._file, end)
             kept = f"{len(self.entries)} presses before it are kept"
-            self.warnings.append(f"{path}: the last record was cut short and is left out; {kept}")
+            self.warnings.append(f"{path}: the last record is not whole and is left out; {kept}")
 
     def kept(self) -> Iterator[Kept]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""

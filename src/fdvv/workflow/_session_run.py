@@ -246,7 +246,7 @@ def _let_go(device: Any) -> None:
 
 
 def _how_to_go_on(course: Course[Any], log: PressLog) -> str:
-    made = f"{log.used} presses"
+    made = f"{log.used} {'press is' if log.used == 1 else 'presses are'}"
     if log.folder is None:
-        return f"{made} were made and none is kept; name a folder with --session to keep them"
-    return f"{made} are kept in {log.folder}; run the same command again to go on"
+        return f"{made} lost; name a folder with --session to keep them"
+    return f"{made} kept in {log.folder}; run the same command again to go on"

@@ -1,0 +1,416 @@
+"""Sessions: kept, judged, gone on with, refused."""
+
+import json
+import signal
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import Acceptance, GainSchedule, PaperLaw, PerCurve
+from fdvv.device import FaultReport, TwinDevice
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.model import ForceSurface, Press, load_builtin
+from fdvv.protocol import Fault
+from fdvv.testing import ScriptedDevice
+from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._compensate import CompensationResult, compensate
+from fdvv.workflow._probe import ProbeResult, probe
+from fdvv.workflow._receipt import RECEIPT
+from fdvv.workflow._session import Session
+from fdvv.workflow._session_events import Ask, Guide, PressDone
+from fdvv.workflow._session_log import PRESSES, read_log
+from fdvv.workflow._session_manifest import MANIFEST
+
+MODEL = load_builtin("mx-clear")
+SPEEDS = [50.0, 100.0]
+LAW = PaperLaw.literal(rounds=1, presses_per_round=4, start="target", gain=GainSchedule.constant(0.4))
+SURFACE = ForceSurface.of_model(MODEL, SPEEDS)
+
+
+class Hand(ScriptedDevice):
+    """A person whose n-th press is changed, or ends in an error, as a script says."""
+
+    def __init__(self, script: dict[int, Any] | None = None, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.script, self.presses, self.uploads, self.stops = script or {}, 0, 0, 0
+
+    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+        self.uploads += 1
+        super().upload(surface, travel_mm)
+
+    def press(self, velocity_mm_s: float) -> Press:
+        self.presses += 1
+        happens = self.script.get(self.presses)
+        if isinstance(happens, BaseException):
+            raise happens
+        press = super().press(velocity_mm_s)
+        return happens(press) if happens else press
+
+    def stop(self) -> None:
+        self.stops += 1
+
+
+def short(press: Press) -> Press:
+    assert press.sensed_mm is not None
+    return replace(press, displacement_mm=press.displacement_mm / 2, sensed_mm=press.sensed_mm / 2)
+
+
+def hasty(press: Press) -> Press:
+    return replace(press, t_s=press.t_s / 1.5)
+
+
+def learn(device: ScriptedDevice, folder: Path | None = None, **more: Any) -> CompensationResult:
+    return compensate(device, MODEL, SPEEDS, LAW, session=Session(folder), **more)
+
+
+def judged(device: ScriptedDevice, folder: Path | None = None, **more: Any) -> ProbeResult:
+    return probe(device, MODEL, SURFACE, SPEEDS, 4, session=Session(folder), **more)
+
+
+RUNS: dict[str, Callable[..., Any]] = {"compensate": learn, "probe": judged}
+
+
+@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize("at", [1, 4, 8])
+@pytest.mark.parametrize("stop", [KeyboardInterrupt(), DeviceError("unplugged")], ids=["Ctrl-C", "unplugged"])
+def test_wherever_a_session_stops_it_goes_on_to_the_result_of_one_that_did_not(
+    tmp_path: Path, name: str, at: int, stop: BaseException
+) -> None:
+    run = RUNS[name]
+    whole = run(Hand())
+    device = Hand({at: stop})
+    with pytest.raises(type(stop), match=rf"{at - 1} press(es are| is) kept in .*run the same command again"):
+        run(device, tmp_path / "s")
+    assert device.stops == 1
+    again = Hand()
+    gone_on = run(again, tmp_path / "s")
+    assert again.presses == 8 - (at - 1)
+    assert gone_on.to_dict() == whole.to_dict()
+    if name == "compensate":
+        np.testing.assert_array_equal(gone_on.surface.press_cN, whole.surface.press_cN)
+    assert len(gone_on.receipt.runs) == 2
+    assert gone_on.receipt.used == 8
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Path, name: str) -> None:
+    first = RUNS[name](Hand(), tmp_path / "s")
+    device, notices = Hand(), list[str]()
+    again = RUNS[name](device, tmp_path / "s", guide=Guide(notice=notices.append))
+    assert device.presses == 0
+    assert again.to_dict() == first.to_dict()
+    assert notices == [
+        f"the session in {tmp_path / 's'}, with 8 of 8 presses, is finished; "
+        "this is its result again, name another folder for a new one"
+    ]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_press_that_cannot_be_used_is_kept_told_and_asked_again(tmp_path: Path, name: str) -> None:
+    told, asked = list[PressDone](), list[Ask]()
+    device = Hand({2: short, 3: hasty})
+    result = RUNS[name](device, tmp_path / "s", progress=told.append, guide=Guide(ask=asked.append))
+    assert device.presses == 10
+    reasons = [event.skipped for event in told if event.skipped]
+    assert "the press stopped at 2.0" in reasons[0]
+    assert "press slower" in reasons[1]
+    assert [a.number for a in asked] == [1, 2, 2, 2, 3, 4, 5, 6, 7, 8]
+    assert len({a.velocity_mm_s for a in asked[1:4]}) == 1
+    assert [n.number for n in result.receipt.not_used] == [2, 3]
+    assert result.to_dict()["presses"] == 10
+    assert len(result.to_dict()["skipped"]) == 2
+    # what cannot be used changes nothing
+    assert result.to_dict()["curves"] == RUNS[name](Hand()).to_dict()["curves"]
+    _, entries, _ = read_log(tmp_path / "s" / PRESSES)
+    assert [e.used for e in entries] == [True, False, False, *[True] * 7]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_too_many_in_a_row_stop_the_session_in_one_line_and_it_can_go_on(tmp_path: Path, name: str) -> None:
+    device = Hand(dict.fromkeys(range(3, 100), short))
+    with pytest.raises(
+        DeviceError, match="10 presses in a row could not be used; the last press 12 at"
+    ) as stop:
+        RUNS[name](device, tmp_path / "s")
+    assert "\n" not in str(stop.value)
+    assert "2 presses are kept" in str(stop.value)
+    assert RUNS[name](Hand(), tmp_path / "s").receipt.used == 8
+
+
+def test_a_method_that_takes_nothing_from_a_press_has_it_made_again() -> None:
+    class Choosy(PerCurve):
+        """Refuses the first press it is given."""
+
+        refused: ClassVar[list[float]] = []
+
+        def step(self, press: Press, state: Any) -> Any:
+            if not self.refused:
+                self.refused.append(press.velocity_mm_s)
+                raise ModelError("not this one")
+            return super().step(press, state)
+
+    result = compensate(Hand(), MODEL, SPEEDS, Choosy(LAW))
+    assert result.skipped == ("press 1 at 50 mm/s: not this one",)
+    assert result.presses == 9
+
+
+class Faulty(Hand):
+    """A device that faults at some presses, and tells of it until that is cleared."""
+
+    latched = False
+
+    def press(self, velocity_mm_s: float) -> Press:
+        try:
+            return super().press(velocity_mm_s)
+        except DeviceError:
+            self.latched = True
+            raise
+
+    def fault(self) -> FaultReport:
+        return FaultReport(Fault.OVER_FORCE if self.latched else Fault.NONE, 0, 0, 0.0, 0.0, 0.0, 1)
+
+    def clear_fault(self) -> None:
+        assert self.latched
+        self.latched = False
+
+
+def test_a_fault_is_a_press_that_cannot_be_used_and_the_device_is_given_its_table_again(
+    tmp_path: Path,
+) -> None:
+    device = Faulty({3: DeviceError("fell to zero force, over force")})
+    result = judged(device, tmp_path / "s")
+    assert [(n.number, n.reason) for n in result.receipt.not_used] == [(3, "fell to zero force, over force")]
+    assert device.uploads == 2
+    assert not device.latched
+
+
+def test_a_device_that_faults_again_and_again_stops_the_session() -> None:
+    device = Faulty({n: DeviceError("over force") for n in range(1, 50)})
+    with pytest.raises(DeviceError, match="10 presses in a row"):
+        judged(device)
+
+
+def test_a_device_that_is_gone_is_no_fault_of_a_press(tmp_path: Path) -> None:
+    class Gone(Faulty):
+        def fault(self) -> FaultReport:
+            raise DeviceError("the device is gone")
+
+    with pytest.raises(DeviceError, match="unplugged; 2 presses are kept"):
+        learn(Gone({3: DeviceError("unplugged")}), tmp_path / "s")
+
+
+def test_a_probe_uploads_its_surface_once_and_judges_a_rig_at_its_limit() -> None:
+    device = Hand(
+        {n: lambda p: replace(p, saturated=np.ones(p.t_s.size, dtype=np.bool_)) for n in range(1, 9)}
+    )
+    assert judged(device).receipt.used == 8
+    assert device.uploads == 1
+
+
+def changed(folder: Path, **change: Any) -> Callable[[], Any]:
+    """Ask for another job in the folder of a session."""
+    job = {"device": Hand(), "model": MODEL, "speeds": SPEEDS, "law": LAW, "seed": None, **change}
+    return lambda: compensate(
+        job["device"], job["model"], job["speeds"], job["law"], session=Session(folder, job["seed"])
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"model": load_builtin("mx-red")}, 'model.name is "mx-clear" there and "mx-red" now'),
+        ({"model": replace(MODEL, travel_mm=3.5)}, "model.sha256 is"),
+        ({"device": Hand(force_limit_cN=300.0)}, "device.force_limit_cN is 440.0 there and 300.0 now"),
+        ({"speeds": [50.0, 120.0]}, "velocities_mm_s is [50.0, 100.0] there and [50.0, 120.0] now"),
+        ({"law": replace(LAW, rounds=2)}, "settings.law.rounds is 1 there and 2 now"),
+        ({"seed": 4}, "seed is null there and 4 now"),
+    ],
+    ids=lambda v: "" if isinstance(v, str) else next(iter(v)),
+)
+def test_a_session_about_something_else_is_refused_and_says_what_differs(
+    tmp_path: Path, change: dict[str, Any], told: str
+) -> None:
+    learn(Hand(), tmp_path / "s")
+    before = (tmp_path / "s" / PRESSES).read_bytes()
+    with pytest.raises(InputError) as caught:
+        changed(tmp_path / "s", **change)()
+    assert told in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert (tmp_path / "s" / PRESSES).read_bytes() == before
+
+
+def test_a_probe_does_not_go_on_with_a_session_of_learning(tmp_path: Path) -> None:
+    learn(Hand(), tmp_path / "s")
+    with pytest.raises(InputError, match='task is "compensate" there and "probe" now'):
+        judged(Hand(), tmp_path / "s")
+
+
+def test_other_bounds_may_go_on_with_a_session_and_each_run_says_its_own(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        learn(Hand({3: KeyboardInterrupt()}), tmp_path / "s")
+    wide = Session(tmp_path / "s", acceptance=Acceptance(pace_ratio=0.6))
+    result = compensate(Hand({1: hasty}), MODEL, SPEEDS, LAW, session=wide)
+    assert result.skipped == ()
+    assert result.receipt is not None
+    assert [run.acceptance["pace_ratio"] for run in result.receipt.runs] == [0.35, 0.6]
+
+
+@pytest.mark.parametrize("name", ["notes.txt", "model.fdvv.json"])
+def test_a_folder_of_something_else_is_refused_and_left_alone(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(InputError, match=r"holds files but no session\.json; name the folder of a session"):
+        learn(Hand(), tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+
+
+def test_a_file_is_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "s").write_text("mine")
+    with pytest.raises(InputError, match="is a file, a folder is needed"):
+        learn(Hand(), tmp_path / "s")
+
+
+def test_a_process_killed_as_it_began_leaves_a_folder_that_can_be_begun(tmp_path: Path) -> None:
+    (tmp_path / PRESSES).touch()
+    assert learn(Hand(), tmp_path).receipt is not None
+
+
+@pytest.mark.parametrize(
+    "content", ["", "{", '{"format": "fdvv-model", "version": 1}', '{"format": "fdvv-session"}']
+)
+def test_a_damaged_manifest_is_refused_in_one_line(tmp_path: Path, content: str) -> None:
+    learn(Hand(), tmp_path)
+    (tmp_path / MANIFEST).write_text(content)
+    with pytest.raises(InputError, match=MANIFEST) as caught:
+        learn(Hand(), tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_presses_made_on_other_tables_are_not_learned_from(tmp_path: Path) -> None:
+    learn(Hand(), tmp_path)
+    other = replace(LAW, gain=GainSchedule.constant(0.3))
+    # as if another version had given these settings another meaning
+    manifest = json.loads((tmp_path / MANIFEST).read_text())
+    manifest["settings"]["law"]["gain"] = {"most": 0.3, "least": 0.3, "floor_cN": 0.0}
+    (tmp_path / MANIFEST).write_text(json.dumps(manifest))
+    with pytest.raises(InputError, match=r"press 3: was made on another table.*another version of fdvv"):
+        compensate(Hand(), MODEL, SPEEDS, other, session=Session(tmp_path))
+
+
+def test_ctrl_c_between_a_press_and_its_record_waits_for_the_record(tmp_path: Path) -> None:
+    class Impatient(PerCurve):
+        """Presses Ctrl-C while it learns."""
+
+        def step(self, press: Press, state: Any) -> Any:
+            signal.raise_signal(signal.SIGINT)
+            return super().step(press, state)
+
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt, match="interrupted; 1 press is kept"):
+        compensate(Hand(), MODEL, SPEEDS, Impatient(LAW), session=Session(tmp_path / "s"))
+    assert signal.getsignal(signal.SIGINT) is before
+    assert [e.used for e in read_log(tmp_path / "s" / PRESSES)[1]] == [True]
+
+
+def test_the_first_run_has_the_seed_of_the_session_and_no_later_one_has_it_again(tmp_path: Path) -> None:
+    session = Session(tmp_path / "s", seed=5)
+    seeds = []
+    for at in (3, 4, 99):
+        seeds.append(session.run_seed())
+        try:
+            compensate(Hand({at: DeviceError("gone")}), MODEL, SPEEDS, LAW, session=session)
+        except DeviceError:
+            continue
+    assert seeds[0] == 5
+    assert len(set(seeds)) == 3
+    receipt = open_receipt(tmp_path / "s")
+    assert receipt is not None
+    assert [run.seed for run in receipt.runs] == seeds
+
+
+def test_a_twin_that_goes_on_does_not_repeat_the_chance_it_had(tmp_path: Path) -> None:
+    session = Session(tmp_path / "s", seed=5)
+
+    def first_pace(device: Any) -> float:
+        device.upload(SURFACE, MODEL.travel_mm)
+        press = device.press(50.0)
+        return float(press.t_s[-1])
+
+    fresh = first_pace(session.open_device("twin"))
+    assert fresh == first_pace(TwinDevice(seed=5))
+    with pytest.raises(KeyboardInterrupt):
+        probe(Stopping(session.open_device("twin"), 2), MODEL, SURFACE, SPEEDS, 4, session=session)
+    assert first_pace(session.open_device("twin")) != fresh
+
+
+class Stopping:
+    """A device that is interrupted at its n-th press."""
+
+    def __init__(self, device: Any, at: int) -> None:
+        self._device, self._at = device, at
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._device, name)
+
+    def press(self, velocity_mm_s: float) -> Press:
+        self._at -= 1
+        if self._at == 0:
+            raise KeyboardInterrupt
+        press = self._device.press(velocity_mm_s)
+        assert isinstance(press, Press)
+        return press
+
+
+def test_the_standing_counts_presses_and_errors_per_velocity() -> None:
+    events: list[PressDone] = []
+    result = learn(Hand(drag_cN_s_mm=0.1), progress=events.append)
+    rows = events[-1].standing()
+    assert [(r.velocity_mm_s, r.made, r.wanted) for r in rows] == [(50.0, 4, 4), (100.0, 4, 4)]
+    assert {c for row in rows for c in row.curves} == set(result.outcome.curves)
+    assert events[0].told.startswith("moved the press by up to")
+    assert events[0].achieved_mm_s == pytest.approx(50.0, rel=0.05)
+
+
+def test_the_receipt_is_in_the_file_and_in_the_folder(tmp_path: Path) -> None:
+    result = learn(Hand({2: short}), tmp_path / "s")
+    save_actuation(result, tmp_path / "a.actuation.json")
+    assert load_actuation(tmp_path / "a.actuation.json").receipt == result.receipt
+    assert open_receipt(tmp_path / "a.actuation.json") == result.receipt == open_receipt(tmp_path / "s")
+    found = json.loads((tmp_path / "s" / RECEIPT).read_text())
+    assert found["simulated"] is True
+    assert found["used"] == 8
+    assert [n["number"] for n in found["not_used"]] == [2]
+    for curve, learned in zip(found["curves"], result.outcome.curves, strict=True):
+        errors = learned.error_cN
+        assert (curve["first_cN"], curve["last_cN"], curve["best_cN"]) == (errors[0], errors[-1], min(errors))
+
+
+def test_an_unfinished_session_has_a_receipt_of_how_far_it_is(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        learn(Hand({2: short, 5: KeyboardInterrupt()}), tmp_path / "s")
+    receipt = open_receipt(tmp_path / "s")
+    assert receipt is not None
+    assert (receipt.used, len(receipt.not_used), receipt.curves) == (3, 1, [])
+
+
+def test_a_file_of_version_1_is_read_and_has_no_receipt(tmp_path: Path) -> None:
+    path = tmp_path / "a.actuation.json"
+    result = learn(Hand())
+    save_actuation(result, path)
+    old = {**json.loads(path.read_text()), "version": 1}
+    del old["receipt"]
+    path.write_text(json.dumps(old))
+    again = load_actuation(path)
+    assert again.to_dict() == result.to_dict()
+    assert again.receipt is None
+    with pytest.raises(InputError, match="version 1"):
+        open_receipt(path)
+
+
+def test_a_folder_or_file_of_something_else_has_no_receipt(tmp_path: Path) -> None:
+    (tmp_path / "x.csv").write_text("a,b\n")
+    assert open_receipt(tmp_path) is None
+    assert open_receipt(tmp_path / "x.csv") is None

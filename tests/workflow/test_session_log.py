@@ -1,0 +1,192 @@
+"""The log of a session: nothing of it is lost, nothing false is read back."""
+
+import errno
+import os
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from fdvv.errors import InputError
+from fdvv.model import ForceSurface, Press, load_builtin
+from fdvv.testing import ScriptedDevice
+from fdvv.workflow._session_log import PRESSES, Entry, Kept, PressLog, Run, read_log
+
+SURFACE = ForceSurface.of_model(load_builtin("mx-clear"), [50.0, 100.0])
+RUN = Run("2026-01-01T10:00:00.000+00:00", 3, {"fdvv": "0"}, {"pace_ratio": 0.35, "patience": 10})
+
+
+def press(seed: int = 0) -> Press:
+    device = ScriptedDevice(noise_cN=1.0, seed=seed)
+    device.upload(SURFACE, 4.0)
+    return device.press(100.0)
+
+
+def kept(number: int, reason: str = "") -> Kept:
+    return Kept(Entry(number, 100.0, reason, 98.5, "2026-01-01T10:00:01.000+00:00"), SURFACE, press(number))
+
+
+def filled(folder: Path, presses: int = 3) -> PressLog:
+    folder.mkdir(exist_ok=True)
+    log = PressLog(folder)
+    log.begin(RUN)
+    for number in range(1, presses + 1):
+        log.add(kept(number, "too fast" if number == 2 else ""))
+    return log
+
+
+def same(left: Press, right: Press) -> bool:
+    names = [f.name for f in fields(Press)]
+    return all(np.array_equal(getattr(left, n), getattr(right, n)) for n in names)
+
+
+def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) -> None:
+    filled(tmp_path).close()
+    again = PressLog(tmp_path)
+    found = list(again.kept())
+    assert [str(k.entry) for k in found] == [
+        "press 1 at 100 mm/s: used",
+        "press 2 at 100 mm/s: too fast",
+        "press 3 at 100 mm/s: used",
+    ]
+    for number, one in enumerate(found, 1):
+        assert one.press is not None
+        assert same(one.press, press(number))
+        np.testing.assert_array_equal(one.surface.release_cN, SURFACE.release_cN)
+    assert (again.runs, again.used, again.warnings) == ([RUN], 2, [])
+    again.close()
+
+
+def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_path: Path) -> None:
+    log = PressLog(tmp_path)
+    log.add(Kept(kept(1, "over speed").entry, SURFACE, None))
+    assert [k.press for k in log.kept()] == [None]
+    log.close()
+
+
+def test_a_log_without_a_folder_keeps_what_became_of_presses(tmp_path: Path) -> None:
+    log = PressLog()
+    log.begin(RUN)
+    log.add(kept(1))
+    assert (len(log.entries), list(log.kept())) == (1, [])
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
+@given(part=st.floats(0, 1, exclude_max=True))
+def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: Path, part: float) -> None:
+    path = tmp_path / PRESSES
+    path.unlink(missing_ok=True)
+    filled(tmp_path).close()
+    data = path.read_bytes()
+    end = int(part * len(data))
+    path.write_bytes(data[:end])
+    whole = data[:end].count(b"\n")
+    log = PressLog(tmp_path)
+    assert len(log.runs) + len(log.entries) == whole
+    assert bool(log.warnings) == (not data[:end].endswith(b"\n") and end > 0)
+    # it goes on behind the last whole record
+    log.add(kept(len(log.entries) + 1))
+    log.close()
+    assert len(read_log(path)[1]) == max(0, whole - 1) + 1
+
+
+def test_a_record_cut_short_is_told_of_once(tmp_path: Path) -> None:
+    filled(tmp_path).close()
+    path = tmp_path / PRESSES
+    path.write_bytes(path.read_bytes()[:-5])
+    log = PressLog(tmp_path)
+    told = "the last record is not whole and is left out; 2 presses before it are kept"
+    assert log.warnings == [f"{path}: {told}"]
+    log.close()
+    log = PressLog(tmp_path)
+    assert log.warnings == []
+    log.close()
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
+@given(part=st.floats(0, 1, exclude_max=True), flip=st.integers(1, 255))
+def test_a_changed_byte_is_never_read_as_a_press(tmp_path: Path, part: float, flip: int) -> None:
+    path = tmp_path / PRESSES
+    path.unlink(missing_ok=True)
+    filled(tmp_path, 2).close()
+    written = path.read_bytes()
+    data = bytearray(written)
+    at = int(part * len(data))
+    assume(data[at] ^ flip != ord("\n"))
+    data[at] ^= flip
+    path.write_bytes(data)
+    last = written.rfind(b"\n", 0, len(written) - 1)
+    if at < last:
+        with pytest.raises(InputError, match=r"line .*begin a new session"):
+            read_log(path)
+    else:
+        # the last record is taken for one that was cut short
+        assert len(read_log(path)[1]) == (at > last)
+
+
+def test_a_damaged_record_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
+    filled(tmp_path).close()
+    path = tmp_path / PRESSES
+    lines = path.read_bytes().split(b"\n")
+    lines[1] = lines[1].replace(b"98.5", b"99.5")
+    path.write_bytes(b"\n".join(lines))
+    with pytest.raises(InputError, match=r"presses\.jsonl: line 2: the record is damaged"):
+        PressLog(tmp_path)
+
+
+def test_a_missing_press_is_noticed_by_its_number(tmp_path: Path) -> None:
+    filled(tmp_path).close()
+    path = tmp_path / PRESSES
+    lines = path.read_bytes().split(b"\n")
+    path.write_bytes(b"\n".join([*lines[:2], *lines[3:]]))
+    with pytest.raises(InputError, match="press 2: bears the number 3"):
+        PressLog(tmp_path)
+
+
+def test_a_second_process_is_refused_while_the_first_is_at_work(tmp_path: Path) -> None:
+    first = PressLog(tmp_path)
+    with pytest.raises(InputError, match="another process is at work"):
+        PressLog(tmp_path)
+    first.close()
+    PressLog(tmp_path).close()
+
+
+def test_closing_twice_does_nothing(tmp_path: Path) -> None:
+    log = PressLog(tmp_path)
+    log.close()
+    log.close()
+
+
+def test_a_full_disk_leaves_no_half_record_and_names_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    log = filled(tmp_path)
+    size = (tmp_path / PRESSES).stat().st_size
+    write = os.write
+
+    def full(file: int, data: bytes) -> int:
+        if len(data) < 1000:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(file, data[: len(data) // 2])
+
+    monkeypatch.setattr(os, "write", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        log.add(kept(4))
+    assert caught.value.filename == str(tmp_path / PRESSES)
+    assert (tmp_path / PRESSES).stat().st_size == size
+    monkeypatch.undo()
+    log.add(kept(4))
+    log.close()
+    assert len(read_log(tmp_path / PRESSES)[1]) == 4
+
+
+def test_a_record_is_on_the_disk_before_add_returns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log = filled(tmp_path)
+    sizes: list[int] = []
+    monkeypatch.setattr(os, "fsync", lambda file: sizes.append(os.fstat(file).st_size))
+    log.add(kept(4))
+    assert sizes == [(tmp_path / PRESSES).stat().st_size]
+    log.close()
