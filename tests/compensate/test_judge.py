@@ -101,6 +101,12 @@ def test_a_rig_at_its_limit_for_much_of_the_strokes_teaches_nothing() -> None:
     assert judge(cut(plain(100.0), 0.6), 4.0, Acceptance(saturated_ratio=1.0)).reason == ""
 
 
+def test_a_force_sensor_that_tells_one_value_throughout_is_noticed() -> None:
+    numb = replace(plain(100.0), sensed_cN=np.full(plain(100.0).t_s.size, 3.0))
+    assert judge(numb, 4.0).reason == "the force sensor told 3 cN throughout; check it and its cable"
+    assert judge(numb, 4.0, true_position=True).reason == ""
+
+
 def test_what_is_judged_is_what_the_rig_sensed_at_its_ticks() -> None:
     true = plain(100.0)
     ticks = np.arange(true.t_s.size) % 4 == 0

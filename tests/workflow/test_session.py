@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fdvv.compensate import Acceptance, GainSchedule, PaperLaw, PerCurve
-from fdvv.device import FaultReport, TwinDevice
+from fdvv.device import DeviceInfo, FaultReport, LibraryBoard, LinkedDevice, SimulatedPerson, TwinDevice
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.protocol import Fault
@@ -414,3 +414,28 @@ def test_a_folder_or_file_of_something_else_has_no_receipt(tmp_path: Path) -> No
     (tmp_path / "x.csv").write_text("a,b\n")
     assert open_receipt(tmp_path) is None
     assert open_receipt(tmp_path / "x.csv") is None
+
+
+def test_a_real_board_without_a_force_sensor_is_neither_learned_from_nor_judged() -> None:
+    class Real(LinkedDevice):
+        def info(self) -> DeviceInfo:
+            return replace(super().info(), simulated=False)
+
+    for kind, simulated in ((LinkedDevice, True), (Real, False)):
+        with kind(LibraryBoard(), SimulatedPerson()) as board:
+            with pytest.raises(DeviceError, match="no force sensor in its settings"):
+                compensate(board, MODEL, SPEEDS, LAW)
+            if simulated:
+                assert probe(board, MODEL, SURFACE, [50.0], 1).presses == 1
+            else:
+                with pytest.raises(DeviceError, match="fit one"):
+                    probe(board, MODEL, SURFACE, [50.0], 1)
+
+
+def test_a_board_is_told_from_another_by_its_number_and_settings(tmp_path: Path) -> None:
+    with LinkedDevice(LibraryBoard(), SimulatedPerson()) as board:
+        receipt = probe(board, MODEL, SURFACE, [50.0], 1, session=Session(tmp_path / "s")).receipt
+        assert receipt.device["settings"] == vars(board.settings)
+        board.write_settings(replace(board.settings, sliding_ticks=2))
+        with pytest.raises(InputError, match=r"device\.settings\.sliding_ticks is 1 there and 2 now"):
+            probe(board, MODEL, SURFACE, [50.0], 1, session=Session(tmp_path / "s"))

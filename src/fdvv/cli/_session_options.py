@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fdvv.cli._output import Finite, check_folder
-from fdvv.cli._session_view import View, notice, session_view
+from fdvv.cli._session_view import View, session_view
 
 if TYPE_CHECKING:
     from fdvv.device import Device
@@ -74,7 +74,7 @@ def guided(session: Session, device: str, as_json: bool) -> Iterator[tuple[Devic
     found = session.open_device(device)
     try:
         with session_view(device.startswith(PERSON), as_json) as view:
-            yield found, view, Guide(view.ask, notice)
+            yield found, view, Guide(view.ask, view.notice)
     finally:
         if hasattr(found, "close"):
             found.close()

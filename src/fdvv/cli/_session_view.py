@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
 
 import click
 
 from fdvv.cli._cue import show_cue
-from fdvv.cli._output import number, one_line, print_warnings
+from fdvv.cli._output import number, one_line
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 REDRAW_s = 0.1
 LINES = 10
 """Where there is no terminal, simulated presses are told in so many lines."""
+
+Cue = Callable[[float, Callable[[str], None]], None]
 
 KEPT = {"compensate": "best", "probe": "median"}
 """What the mean and the largest error of a curve are of."""
@@ -37,6 +39,10 @@ class View(Protocol):
 
     def done(self, event: PressDone) -> None:
         """Tell what became of a press."""
+        ...
+
+    def notice(self, text: str) -> None:
+        """Tell what a person should know."""
         ...
 
 
@@ -54,11 +60,6 @@ def session_view(person: bool, quiet: bool) -> Iterator[View]:
 
     with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
         yield TableView(person, live)
-
-
-def notice(text: str) -> None:
-    """Tell what a person should know of a session."""
-    print_warnings([text]) if "not whole" in text else click.echo(one_line(text), err=True)
 
 
 class LineView:
@@ -79,19 +80,24 @@ class LineView:
         if due and (self._person or not self._quiet):
             click.echo(told(event), err=True)
 
+    def notice(self, text: str) -> None:
+        """Tell it unless only a document is wanted."""
+        if not self._quiet:
+            click.echo(one_line(text), err=True)
+
 
 class TableView:
     """A row per velocity, the last press and the cue below them, redrawn in place."""
 
-    def __init__(self, person: bool, live: Live) -> None:
-        self._person, self._live = person, live
+    def __init__(self, person: bool, live: Live, cue: Cue = show_cue) -> None:
+        self._person, self._live, self._cue = person, live, cue
         self._rows: tuple[Standing, ...] = ()
         self._line, self._kept, self._drawn_s = "", "best", 0.0
 
     def ask(self, ask: Ask) -> None:
         """Show a person the pace."""
         if self._person:
-            show_cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
+            self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
             self._draw(asked(ask), "now")
 
     def done(self, event: PressDone) -> None:
@@ -101,6 +107,10 @@ class TableView:
             self._rows = event.standing()
             self._draw()
             self._drawn_s = time.monotonic()
+
+    def notice(self, text: str) -> None:
+        """Tell it above the rows."""
+        self._live.console.print(one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
         self._live.update(picture(self._rows, self._kept, (self._line, *lines)), refresh=True)

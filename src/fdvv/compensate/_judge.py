@@ -89,8 +89,16 @@ def judge(
         _lifted(x_mm[down.rows], bounds.lifted_mm),
         _paused(t_s[down.rows], x_mm[down.rows], travel_mm, bounds.paused_ratio),
         _saturated(press, (t_s, down, up), bounds.saturated_ratio),
+        "" if true_position else _numb(press),
     )
     return Verdict(next(filter(None, found), ""), speed)
+
+
+def _numb(press: Press) -> str:
+    """Notice a force sensor that tells one value throughout, as one does whose wire is broken."""
+    if press.sensed_cN is None or np.ptp(press.sensed_cN) > 0:
+        return ""
+    return f"the force sensor told {press.sensed_cN[0]:g} cN throughout; check it and its cable"
 
 
 def _off_pace(achieved_mm_s: float, asked_mm_s: float, bound: float) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from fdvv.compensate import Count, CurveOutcome, Job, Method, Outcome, PaperLaw, PerCurve, judge
-from fdvv.device import Device
+from fdvv.device import Device, Remote
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import FDVVModel, ForceSurface
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
@@ -100,6 +100,7 @@ def compensate(
     that cannot be learned at and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
     method, session = _method(law), session or Session()
+    check_force_sensor(device)
     job = _job(device, model, velocities_mm_s, method)
     speeds = job.target.velocity_mm_s.tolist()
     manifest = make_manifest(
@@ -163,6 +164,22 @@ def _method(law: PaperLaw | Method[Any] | None) -> Method[Any]:
 def _job(device: Device, model: FDVVModel, velocities_mm_s: Sequence[float], method: Method[Any]) -> Job:
     target = ForceSurface.of_model(model, check_speeds(velocities_mm_s), method.bin_mm)
     return Job(target, model.travel_mm, device.info().force_limit_cN)
+
+
+def check_force_sensor(device: Device, truth_counts: bool = False) -> None:
+    """Refuse a board without a force sensor on its cap: what it tells as force says nothing of the finger's.
+
+    truth_counts : a simulated rig will do, as its true force is known. Raises DeviceError.
+    """
+    if not isinstance(device, Remote) or device.settings.force_gain_q14:
+        return
+    info = device.info()
+    if not (truth_counts and info.simulated):
+        remedy = 'name a --rig with [keycap_sensor] kind = "force"' if info.simulated else "fit one"
+        raise DeviceError(
+            f"{info.name}: no force sensor in its settings (force_gain_q14 is 0), its presses tell nothing "
+            f"of the force felt; {remedy}"
+        )
 
 
 def check_speeds(velocities_mm_s: Sequence[float]) -> list[float]:

@@ -10,7 +10,7 @@ from typing import Any
 from fdvv.compensate import judge
 from fdvv.device import Device
 from fdvv.model import FDVVModel, ForceSurface, Stroke, reading_order
-from fdvv.workflow._compensate import check_speeds
+from fdvv.workflow._compensate import check_force_sensor, check_speeds
 from fdvv.workflow._probe_curve import FROM_mm, ProbeCurve, STOP_GUARD_mm, judged_curves
 from fdvv.workflow._probe_plan import Found, ProbePlan
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
@@ -90,6 +90,7 @@ def probe(
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
     """
     session = session or Session()
+    check_force_sensor(device, truth_counts=True)
     plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses)
     settings = {"presses": presses, "surface_sha256": table_digest(surface)}
     manifest = make_manifest(

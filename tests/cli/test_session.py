@@ -1,0 +1,210 @@
+"""Sessions as a person runs them: killed, interrupted, out of disk, in the wrong folder, two at once."""
+
+import json
+import os
+import pty
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fdvv.workflow._session_log import PRESSES, PressLog, read_log
+
+from .conftest import Run
+
+SHORT = ("--velocity", "50", "--velocity", "100", "--rounds", "1", "--presses", "4")
+LONG = ("--rounds", "2", "--presses", "12")
+FDVV = (sys.executable, "-m", "fdvv")
+
+
+def started(*arguments: str, folder: Path, **settings: object) -> subprocess.Popen[str]:
+    command = [*FDVV, *arguments]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command, cwd=folder, **{**pipes, **settings})  # type: ignore[call-overload, no-any-return]
+
+
+def wait_for(presses: int, path: Path) -> None:
+    until_s = time.monotonic() + 30
+    while time.monotonic() < until_s:
+        if path.exists() and path.read_bytes().count(b"\n") > presses:
+            return
+        time.sleep(0.01)
+    raise AssertionError(f"no {presses} presses in {path}")
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
+def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    learn = ("compensate", "mx-clear", *LONG, "--session", "s", "-o", "a.actuation.json")
+    path = tmp_path / "s" / PRESSES
+    running = started(*learn, folder=tmp_path)
+    wait_for(10, path)
+    running.send_signal(how)
+    _, told = running.communicate(timeout=20)
+    kept = path.read_bytes()
+    _, before, end = read_log(path)
+    assert 10 <= len(before) < 96
+    if how is signal.SIGINT:
+        assert running.returncode == 130
+        last = told.splitlines()[-1]
+        assert (
+            last
+            == f"fdvv: interrupted; {len(before)} presses are kept in s; run the same command again to go on"
+        )
+    assert not (tmp_path / "a.actuation.json").exists()
+
+    going_on = started(*learn, folder=tmp_path)
+    _, told = going_on.communicate(timeout=50)
+    assert going_on.returncode == 0, told
+    assert f"the session in s, with {len(before)} of 96 presses, goes on" in told
+    # what was kept is there still, byte for byte
+    assert path.read_bytes().startswith(kept[:end])
+    receipt = json.loads((tmp_path / "a.actuation.json").read_text())["receipt"]
+    assert receipt["used"] == 96
+    assert receipt["runs"][0]["seed"] != receipt["runs"][1]["seed"]
+
+
+def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(tmp_path: Path) -> None:
+    limit = 400_000
+    learn = ("compensate", "mx-clear", *SHORT, "--session", "s")
+
+    def small_disk() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    full = started(*learn, folder=tmp_path, preexec_fn=small_disk)
+    _, told = full.communicate(timeout=30)
+    assert full.returncode == 2
+    assert told.splitlines()[-1].startswith("fdvv: s/presses.jsonl: File too large")
+    _, before, end = read_log(tmp_path / "s" / PRESSES)
+    assert end == (tmp_path / "s" / PRESSES).stat().st_size <= limit
+    assert 0 < len(before) < 8
+    again = started(*learn, folder=tmp_path)
+    _, told = again.communicate(timeout=30)
+    assert (again.returncode, "goes on" in told) == (0, True)
+    assert len(read_log(tmp_path / "s" / PRESSES)[1]) == 8
+
+
+def test_on_a_terminal_the_rows_are_redrawn_in_place(tmp_path: Path) -> None:
+    screen, terminal = pty.openpty()
+    running = started("compensate", "mx-clear", *SHORT, folder=tmp_path, stderr=terminal)
+    os.close(terminal)
+    shown = b""
+    try:
+        while piece := os.read(screen, 4096):
+            shown += piece
+    except OSError:
+        pass  # the other end is closed
+    out, _ = running.communicate(timeout=30)
+    os.close(screen)
+    assert running.returncode == 0
+    assert "mx-clear on twin (simulated), 8 presses" in out
+    assert b"best mean" in shown
+    assert re.search(rb"\x1b\[1A", shown), "nothing was redrawn"
+
+
+def test_the_same_command_again_gives_the_result_again_and_says_so(fdvv: Run) -> None:
+    first = fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    again = fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    assert (first.status, again.status) == (0, 0)
+    assert again.out == first.out
+    assert again.err == (
+        "the session in s, with 8 of 8 presses, is finished; "
+        "this is its result again, name another folder for a new one\n"
+    )
+
+
+def test_beside_a_document_nothing_is_told(fdvv: Run) -> None:
+    for _ in range(2):
+        ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
+        assert (ran.status, ran.err) == (0, "")
+        assert ran.json["receipt"]["used"] == 8
+
+
+def test_the_folder_of_another_button_is_refused_in_one_line(fdvv: Run) -> None:
+    fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    other = fdvv("compensate", "mx-red", *SHORT, "--session", "s")
+    assert other.status == 2
+    assert other.err == (
+        'fdvv: s: session: is another session: model.name is "mx-clear" there and "mx-red" now (and 1 more); '
+        "ask for the same, or name another folder\n"
+    )
+
+
+def test_two_processes_cannot_work_on_one_session(fdvv: Run, tmp_path: Path) -> None:
+    fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    log = PressLog(tmp_path / "s")
+    second = fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    log.close()
+    assert (second.status, second.err) == (
+        2, "fdvv: s: session: another process is at work on this session; wait for it, or name another folder\n"
+    )  # fmt: skip
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_any_press(fdvv: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "file/s")
+    assert ran.status == 2
+    assert ran.err == "fdvv: file: output: is a file, a folder is needed; name another place\n"
+    if os.geteuid() == 0:
+        pytest.skip("root may write anywhere")
+    (tmp_path / "locked").mkdir(mode=0o500)
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "locked/s")
+    assert (ran.status, "may not be written to" in ran.err) == (2, True)
+
+
+def test_a_probe_keeps_its_presses_and_shows_its_receipt(fdvv: Run, tmp_path: Path) -> None:
+    probe = ("probe", "mx-clear", "--velocity", "50", "--presses", "3", "--session", "p")
+    first = fdvv(*probe)
+    assert first.status == 0
+    assert len(read_log(tmp_path / "p" / PRESSES)[1]) == 3
+    assert fdvv(*probe).out == first.out
+    shown = fdvv("show", "p")
+    assert shown.status == 0
+    assert "probe mx-clear on twin (simulated)" in shown.out
+    assert "3 presses used, 0 not" in shown.out
+
+
+def test_show_tells_the_receipt_of_an_actuation(fdvv: Run) -> None:
+    fdvv("compensate", "mx-clear", *SHORT, "-o", "a.actuation.json")
+    shown = fdvv("show", "a.actuation.json")
+    assert shown.status == 0
+    assert "compensate mx-clear on twin (simulated)" in shown.out
+    assert "8 presses used, 0 not" in shown.out
+    assert fdvv("show", "a.actuation.json", "--json").json["settings"]["law"]["rounds"] == 1
+
+
+def test_a_board_without_a_force_sensor_is_not_learned_from(fdvv: Run) -> None:
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--device", "host")
+    assert ran.status == 1
+    assert "no force sensor in its settings" in ran.err
+    assert ran.err.count("\n") == 1
+
+
+def test_a_tight_pace_is_told_with_what_to_do(fdvv: Run) -> None:
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--pace-tolerance", "0.05", "--session", "s")
+    assert re.search(r"not used, \d+ mm/s, asked for \d+: press (slower|faster)", ran.err)
+
+
+def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text('[keycap_sensor]\nkind = "force"\n')
+    learn = ("compensate", "mx-clear", *SHORT, "--device", "host", "--rig", "rig.toml", "--session", "s")
+    whole = fdvv(*learn, "--json")
+    assert (whole.status, whole.err) == (0, "")
+    path = tmp_path / "s" / PRESSES
+    lines = path.read_bytes().splitlines(keepends=True)
+    # as if it had been killed in its sixth press
+    path.write_bytes(b"".join(lines[:6]) + lines[6][:100])
+    gone_on = fdvv(*learn)
+    assert gone_on.status == 0
+    assert "the last record is not whole and is left out; 5 presses before it are kept" in gone_on.err
+    receipt = fdvv("show", "s", "--json").json
+    assert (receipt["used"], len(receipt["runs"])) == (8, 2)
+    assert receipt["device"]["settings"]["force_gain_q14"] > 0
+    other = fdvv(*learn[:-4], "--session", "s", "--device", "twin")
+    assert "device." in other.err

@@ -1,0 +1,108 @@
+"""What a person sees of a session."""
+
+import io
+import re
+from collections.abc import Callable
+
+import pytest
+from rich.console import Console
+from rich.live import Live
+
+from fdvv.cli._session_view import LineView, TableView, told
+from fdvv.compensate import CurveOutcome
+from fdvv.model import Stroke
+from fdvv.workflow import Ask, PressDone, Standing
+
+ASK = Ask(100.0, 4.0, 3, 12)
+CURVES = tuple(CurveOutcome(stroke, 100.0, (9.0, 5.25), 2.5, 7.75, "") for stroke in Stroke)
+
+
+def event(done: int = 3, skipped: str = "", stage: str = "compensate") -> PressDone:
+    rows = Standing(50.0, 0, 6), Standing(100.0, 3, None, CURVES)
+    return PressDone(stage, 100.0, done, 12, None, skipped, 96.4, "moved it", lambda: rows)
+
+
+def table(person: bool) -> tuple[TableView, Live, io.StringIO]:
+    stream = io.StringIO()
+    live = Live(console=Console(file=stream, force_terminal=True, width=120), auto_refresh=False)
+    live.start()
+
+    def cue(stroke_s: float, draw: Callable[[str], None]) -> None:
+        draw(f"cue of {stroke_s * 1000:.0f} ms")
+
+    return TableView(person, live, cue), live, stream
+
+
+def plain(stream: io.StringIO) -> str:
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", stream.getvalue())
+
+
+def test_a_press_is_told_by_what_was_achieved_and_changed_or_why_it_was_not_used() -> None:
+    assert told(event()) == "3 of 12, 100 mm/s: achieved 96 mm/s; moved it"
+    assert told(event(2, "press slower")) == "2 of 12, 100 mm/s: not used, press slower"
+
+
+def test_a_person_without_a_terminal_gets_a_line_before_and_after_each_press(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    view = LineView(person=True, quiet=True)
+    view.ask(ASK)
+    view.done(event())
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines() == [
+        "press 3 of 12: 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "3 of 12, 100 mm/s: achieved 96 mm/s; moved it",
+    ]
+
+
+def test_simulated_presses_are_told_in_about_ten_lines_and_not_at_all_beside_a_document(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for quiet, lines in ((False, 12), (True, 0)):
+        view = LineView(person=False, quiet=quiet)
+        for done in range(1, 13):
+            view.ask(ASK)
+            view.done(event(done))
+        view.notice("goes on") if quiet else None
+        assert len(capsys.readouterr().err.splitlines()) == lines
+
+
+def test_the_table_has_a_row_per_velocity_with_what_is_known() -> None:
+    view, live, stream = table(person=False)
+    view.done(event())
+    live.stop()
+    text = plain(stream)
+    assert re.search(r"50 mm/s +0/6 +– +– +– +– +– +–", text)
+    assert re.search(r"100 mm/s +3 +5\.2 +2\.5 +7\.8 +5\.2 +2\.5 +7\.8", text)
+    assert "best mean" in text
+    assert "achieved 96 mm/s" in text
+
+
+def test_the_means_of_a_probe_are_called_medians() -> None:
+    view, live, stream = table(person=False)
+    view.done(event(stage="probe"))
+    live.stop()
+    assert "median mean" in plain(stream)
+
+
+def test_a_person_sees_the_cue_below_the_table_and_then_when_to_press() -> None:
+    view, live, stream = table(person=True)
+    view.ask(ASK)
+    live.stop()
+    text = plain(stream)
+    assert text.index("press 3 of 12: 100 mm/s") < text.index("cue of 40 ms") < text.index("now")
+
+
+def test_a_simulated_press_has_no_cue() -> None:
+    view, live, stream = table(person=False)
+    view.ask(ASK)
+    live.stop()
+    assert "cue" not in plain(stream)
+
+
+def test_a_notice_stands_above_the_table() -> None:
+    view, live, stream = table(person=False)
+    view.notice("goes on [with] it")
+    live.stop()
+    assert "goes on [with] it" in plain(stream)
