@@ -70,14 +70,20 @@ def plain(line: str) -> str:
     return " ".join(MILLISECONDS.sub("", line).split())
 
 
-def check(command: list[str], shown: list[str], folder: Path, environment: dict[str, str]) -> None:
+def check(
+    command: list[str],
+    shown: list[str],
+    folder: Path,
+    environment: dict[str, str],
+    compared: bool = False,
+) -> None:
     if command[0] in NOT_RUN:
         return
     assert command[0] == "fdvv"
     ran = run([sys.executable, "-m", *command], folder, environment)
     expected = 2 if shown and shown[0].startswith("fdvv: ") else 0
     assert ran.returncode == expected, f"{shlex.join(command)}: {ran.stderr}"
-    if command[1] in NOT_COMPARED:
+    if command[1] in NOT_COMPARED and not compared:
         return
     printed = [plain(line) for line in (ran.stdout + ran.stderr).splitlines()]
     for line in shown:
@@ -118,3 +124,26 @@ def test_a_new_program_goes_as_the_tutorial_shows(tmp_path: Path, environment: d
             assert text == printed, "the block after a program shows what it prints"
     assert (tmp_path / "shutter.fdvv-image").read_bytes().startswith(b"FDVP")
     assert ran_here >= {f"program {name}" for name in ("list", "make", "check", "show", "compile")}
+
+
+RIG = REPOSITORY / "docs" / "tutorials" / "compensate-a-rig.md"
+
+
+def test_compensating_a_rig_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    printed, ran_here = "", list[str]()
+    for language, text in blocks(RIG):
+        if language == "python":
+            ran = run([sys.executable, "-W", "error", "-c", text], tmp_path, environment)
+            assert (ran.returncode, ran.stderr) == (0, "")
+            printed = ran.stdout
+        elif language == "console":
+            for command, shown in steps(text):
+                assert shown, "what is shown here holds no figures of learning, so all of it is compared"
+                check(command, shown, tmp_path, environment, compared=True)
+                ran_here.append(command[1])
+        elif language == "":
+            assert text == printed, "the block after a program shows what it prints"
+    assert ran_here == ["compensate", "compensate", "compensate", "probe", "show"]
+    assert {p.name for p in (tmp_path / "clear.session").iterdir()} == set(
+        re.findall(r"^\| `(.*?\.jsonl?)` \|", RIG.read_text(), flags=re.MULTILINE)
+    )

@@ -11,7 +11,16 @@ import numpy as np
 import pytest
 
 from fdvv.compensate import Acceptance, GainSchedule, PaperLaw, PerCurve
-from fdvv.device import DeviceInfo, FaultReport, LibraryBoard, LinkedDevice, SimulatedPerson, TwinDevice
+from fdvv.device import (
+    DeviceInfo,
+    FaultReport,
+    Inputs,
+    LibraryBoard,
+    LinkedDevice,
+    ScriptedPerson,
+    SimulatedPerson,
+    TwinDevice,
+)
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.protocol import Fault
@@ -439,3 +448,18 @@ def test_a_board_is_told_from_another_by_its_number_and_settings(tmp_path: Path)
         board.write_settings(replace(board.settings, sliding_ticks=2))
         with pytest.raises(InputError, match=r"device\.settings\.sliding_ticks is 1 there and 2 now"):
             probe(board, MODEL, SURFACE, [50.0], 1, session=Session(tmp_path / "s"))
+
+
+def test_a_real_fault_of_the_firmware_is_cleared_and_its_press_made_again() -> None:
+    presses = list[int]()
+
+    def broken_wire(tick: int, inputs: Inputs) -> Inputs:
+        presses.extend([1] * (tick == 0))
+        return inputs._replace(lowest=0) if len(presses) == 2 and 60 < tick < 80 else inputs
+
+    with LinkedDevice(LibraryBoard(), ScriptedPerson(meddle=broken_wire)) as board:
+        result = probe(board, MODEL, SURFACE, [50.0], 3)
+        assert board.fault().fault is Fault.NONE
+    assert result.receipt.used == 3
+    assert [n.number for n in result.receipt.not_used] == [2]
+    assert "fell to zero force" in result.receipt.not_used[0].reason
