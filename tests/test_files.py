@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited, write_atomic
+from fdvv.files import read_limited, sync_folder, write_atomic
 
 
 def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
@@ -53,3 +53,9 @@ def test_a_small_file_is_read_and_a_larger_or_absent_one_refused_by_name(tmp_pat
         read_limited(path, 999_999, "pass another")
     with pytest.raises(InputError, match="No such file"):
         read_limited(tmp_path / "gone", 10, "pass another")
+
+
+def test_only_a_folder_that_is_there_can_be_forced_to_disk(tmp_path: Path) -> None:
+    sync_folder(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        sync_folder(tmp_path / "none")

@@ -16,7 +16,9 @@ import pytest
 
 from fdvv.device import LibraryBoard, LockstepPort, PressedDevice, ScriptedPlant
 from fdvv.errors import DeviceError
+from fdvv.model import Press
 from fdvv.protocol import Settings
+from fdvv.testing import ScriptedDevice
 from fdvv.workflow._session_log import PRESSES, PressLog, read_log
 
 from .conftest import Run
@@ -41,9 +43,12 @@ def wait_for(presses: int, path: Path) -> None:
     raise AssertionError(f"no {presses} presses in {path}")
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
+HOWS = [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("how", HOWS, ids=["kill -9", "Ctrl-C"])
 def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
-    tmp_path: Path, how: signal.Signals
+    fdvv: Run, tmp_path: Path, how: signal.Signals
 ) -> None:
     learn = ("compensate", "mx-clear", *LONG, "--session", "s", "-o", "a.actuation.json")
     path = tmp_path / "s" / PRESSES
@@ -61,10 +66,9 @@ def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
         assert last == f"fdvv: interrupted; {kept_in}"
     assert not (tmp_path / "a.actuation.json").exists()
 
-    going_on = started(*learn, folder=tmp_path)
-    _, told = going_on.communicate(timeout=50)
-    assert going_on.returncode == 0, told
-    assert f"the session in s, with {len(before)} of 48 presses, goes on" in told
+    going_on = fdvv(*learn)
+    assert going_on.status == 0, going_on.err
+    assert f"the session in s, with {len(before)} of 48 presses, goes on" in going_on.err
     # what was kept is there still, byte for byte
     assert path.read_bytes().startswith(kept[:end])
     receipt = json.loads((tmp_path / "a.actuation.json").read_text())["receipt"]
@@ -72,7 +76,34 @@ def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
     assert receipt["runs"][0]["seed"] != receipt["runs"][1]["seed"]
 
 
-def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(tmp_path: Path) -> None:
+def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Stopped(ScriptedDevice):
+        """Presses Ctrl-C at the third press, in the first run."""
+
+        left = 3
+
+        def press(self, velocity_mm_s: float) -> Press:
+            Stopped.left -= 1
+            if Stopped.left == 0:
+                raise KeyboardInterrupt
+            return super().press(velocity_mm_s)
+
+    monkeypatch.setattr("fdvv.workflow._session.open_device", lambda *_: Stopped())
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
+    told = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
+    assert (ran.status, ran.err, ran.out) == (130, told, "")
+    ran = fdvv("probe", "mx-clear", *SHORT[:4], "--session", "p", "--presses", "2")
+    assert ran.status == 0
+    Stopped.left = 2
+    lost = fdvv("probe", "mx-clear", *SHORT[:4], "--presses", "2")
+    assert lost.err.endswith(
+        "fdvv: interrupted; 1 press is lost; name a folder with --session to keep them\n"
+    )
+
+
+def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
+    fdvv: Run, tmp_path: Path
+) -> None:
     limit = 400_000
     learn = ("compensate", "mx-clear", *SHORT, "--session", "s")
 
@@ -86,9 +117,8 @@ def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_r
     _, before, end = read_log(tmp_path / "s" / PRESSES)
     assert end == (tmp_path / "s" / PRESSES).stat().st_size <= limit
     assert 0 < len(before) < 8
-    again = started(*learn, folder=tmp_path)
-    _, told = again.communicate(timeout=30)
-    assert (again.returncode, "goes on" in told) == (0, True)
+    again = fdvv(*learn)
+    assert (again.status, "goes on" in again.err) == (0, True)
     assert len(read_log(tmp_path / "s" / PRESSES)[1]) == 8
 
 
@@ -206,9 +236,10 @@ def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Pa
     lines = path.read_bytes().splitlines(keepends=True)
     # as if it had been killed in its sixth press
     path.write_bytes(b"".join(lines[:6]) + lines[6][:100])
-    gone_on = fdvv(*learn)
+    gone_on = fdvv(*learn, "--json")
     assert gone_on.status == 0
-    assert "the last record is not whole and is left out; 5 presses before it are kept" in gone_on.err
+    told = "the last record is not whole and is left out; 5 presses before it are kept"
+    assert gone_on.err == f"warning: s/{PRESSES}: {told}\n"
     receipt = fdvv("show", "s", "--json").json
     assert (receipt["used"], len(receipt["runs"])) == (8, 2)
     assert receipt["device"]["settings"]["force_gain_q14"] > 0

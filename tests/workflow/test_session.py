@@ -17,6 +17,7 @@ from fdvv.device import (
     Inputs,
     LibraryBoard,
     LinkedDevice,
+    Recorder,
     ScriptedPerson,
     SimulatedPerson,
     TwinDevice,
@@ -32,7 +33,7 @@ from fdvv.workflow._receipt import RECEIPT
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone
 from fdvv.workflow._session_log import PRESSES, read_log
-from fdvv.workflow._session_manifest import MANIFEST
+from fdvv.workflow._session_manifest import MANIFEST, plain
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 100.0]
@@ -463,3 +464,30 @@ def test_a_real_fault_of_the_firmware_is_cleared_and_its_press_made_again() -> N
     assert result.receipt.used == 3
     assert [n.number for n in result.receipt.not_used] == [2]
     assert "fell to zero force" in result.receipt.not_used[0].reason
+
+
+def test_a_recording_gives_what_the_device_gave_but_does_not_go_on(tmp_path: Path) -> None:
+    path = tmp_path / "hand.jsonl"
+    with Recorder(Hand(noise_cN=1.0, seed=2), path) as device:
+        first = compensate(device, MODEL, SPEEDS, LAW)
+    session = Session(tmp_path / "s")
+    again = compensate(session.open_device(f"replay:{path}"), MODEL, SPEEDS, LAW, session=session)
+    np.testing.assert_array_equal(again.surface.press_cN, first.surface.press_cN)
+    with pytest.raises(InputError, match="would repeat presses that are kept"):
+        session.open_device(f"replay:{path}")
+
+
+def test_settings_that_hold_arrays_are_told_apart_by_their_numbers() -> None:
+    table = np.zeros(2000)
+    other = table.copy()
+    other[1000] = 1.0
+    assert plain({"a": table, "b": np.float64(2)}) == {"a": table.tolist(), "b": 2.0}
+    assert plain({"a": table}) != plain({"a": other})
+
+
+def test_a_damaged_receipt_is_refused_in_one_line(tmp_path: Path) -> None:
+    learn(Hand(), tmp_path)
+    (tmp_path / RECEIPT).write_text('{"format": "fdvv-receipt", "version": 1}')
+    with pytest.raises(InputError, match=RECEIPT) as caught:
+        open_receipt(tmp_path)
+    assert "run the session's command again" in str(caught.value)

@@ -81,8 +81,8 @@ class LineView:
             click.echo(told(event), err=True)
 
     def notice(self, text: str) -> None:
-        """Tell it unless only a document is wanted."""
-        if not self._quiet:
+        """Tell it; where only a document is wanted, warnings alone."""
+        if not self._quiet or text.startswith("warning: "):
             click.echo(one_line(text), err=True)
 
 

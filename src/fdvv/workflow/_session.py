@@ -51,7 +51,13 @@ class Session:
     acceptance: Acceptance = field(default_factory=Acceptance)
 
     def open_device(self, name: str) -> Device:
-        """Open a device by name; a simulated one that goes on with a session draws fresh chance."""
+        """Open a device by name; a simulated one that goes on with a session draws fresh chance.
+
+        Raises InputError on a recording that would have to go on: it begins anew, with presses kept already.
+        """
+        if name.startswith("replay:") and _runs_of(self.folder):
+            reason = "a recording begins anew each time and would repeat presses that are kept"
+            raise InputError(self.folder, "session", reason, "name another folder")
         return open_device(name, self.rig, self.finger, self.run_seed() or 0)
 
     def run_seed(self) -> int | None:

@@ -135,22 +135,19 @@ class PressLog:
 
     def begin(self, run: Run) -> None:
         """Note that the session is begun, or gone on with."""
-        self._write({"run": msgspec.to_builtins(run)})
+        if self._file is not None:
+            self._write({"run": msgspec.to_builtins(run)})
         self.runs.append(run)
 
     def add(self, kept: Kept) -> None:
         """Keep a press."""
-        columns = {
-            "surface": pack_record(kept.surface),
-            "columns": pack_record(kept.press) if kept.press else None,
-        }
-        self._write({"press": {**msgspec.to_builtins(kept.entry), **columns}})
+        if self._file is not None:
+            self._write({"press": _packed(kept)})
         self.entries.append(kept.entry)
 
     def _write(self, record: dict[str, Any]) -> None:
         """Append a record and force it to the disk, whole or not at all."""
-        if self._file is None:
-            return
+        assert self._file is not None
         body = json.dumps(record, allow_nan=False).encode()
         line = b'{"crc32": %d, "record": %b}\n' % (zlib.crc32(body), body)
         end = os.fstat(self._file).st_size
@@ -181,6 +178,11 @@ def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
         else:
             entries.append(_kept(path, record["press"], len(entries) + 1).entry)
     return runs, entries, end
+
+
+def _packed(kept: Kept) -> dict[str, Any]:
+    columns = pack_record(kept.press) if kept.press else None
+    return {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
 
 
 def _locked(path: Path) -> int:

@@ -104,9 +104,14 @@ def plain(settings: Any) -> dict[str, Any]:
     """Write settings as JSON would give them back."""
     known = dataclasses.is_dataclass(settings) and not isinstance(settings, type)
     named = dataclasses.asdict(settings) if known else settings
-    found = json.loads(json.dumps(named, default=str))
+    found = json.loads(json.dumps(named, default=_plainer))
     assert isinstance(found, dict)
     return found
+
+
+def _plainer(value: Any) -> Any:
+    """Write what JSON does not know: an array as its numbers, anything else as its text."""
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else str(value)
 
 
 def digest(data: bytes) -> str:

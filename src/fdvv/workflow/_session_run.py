@@ -82,7 +82,7 @@ def run(device: Device, course: Course[S], state: S, log: PressLog) -> S:
     a row cannot be used, KeyboardInterrupt on Ctrl-C; both say how to go on, and the device is at zero force.
     """
     state = replayed(course, state, log)
-    for text in (*log.warnings, _standing_of(course, state, log)):
+    for text in (*(f"warning: {warning}" for warning in log.warnings), _standing_of(course, state, log)):
         if text:
             course.guide.notice(text)
     try:
