@@ -238,7 +238,7 @@ def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Pa
     path.write_bytes(b"".join(lines[:6]) + lines[6][:100])
     gone_on = fdvv(*learn, "--json")
     assert gone_on.status == 0
-    told = "the last record is not whole and is left out; 5 presses before it are kept"
+    told = "the last record is not whole and is left out; presses kept: 5"
     assert gone_on.err == f"warning: s/{PRESSES}: {told}\n"
     receipt = fdvv("show", "s", "--json").json
     assert (receipt["used"], len(receipt["runs"])) == (8, 2)

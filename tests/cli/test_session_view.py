@@ -91,7 +91,7 @@ def test_a_person_sees_the_cue_below_the_table_and_then_when_to_press() -> None:
     view.ask(ASK)
     live.stop()
     text = plain(stream)
-    assert text.index("press 3 of 12: 100 mm/s") < text.index("cue of 40 ms") < text.index("now")
+    assert text.index("press 3 of 12: 100 mm/s") < text.index("cue of 40 ms") < text.index("press now")
 
 
 def test_a_simulated_press_has_no_cue() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from fdvv.compensate import Acceptance, judge
 from fdvv.errors import ModelError
@@ -130,3 +131,18 @@ def test_too_few_samples_to_tell_the_speed_are_a_reason() -> None:
 def test_bounds_without_sense_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ModelError, match="ratios"):
         replace(Acceptance(), **wrong)  # type: ignore[arg-type] # the point of the test
+
+
+@given(arrays(np.float64, st.integers(2, 60), elements=st.floats(-1, 6) | st.just(np.nan)), st.floats(5, 500))
+def test_there_is_a_verdict_on_whatever_a_device_tells(x_mm: FloatArray, asked: float) -> None:
+    t = np.arange(x_mm.size) * 0.002
+    flags = np.arange(x_mm.size) % 3 == 0
+    press = Press(np.asarray(t, dtype=np.float64), x_mm, x_mm, asked, x_mm, x_mm, x_mm, flags, flags)
+    for true_position in (False, True):
+        verdict = judge(press, 4.0, true_position=true_position)
+        assert verdict.reason or np.isfinite(verdict.achieved_mm_s)
+
+
+def test_a_record_without_a_tick_says_so() -> None:
+    press = replace(plain(100.0), tick=np.zeros(plain(100.0).t_s.size, dtype=np.bool_))
+    assert "no samples" in judge(press, 4.0).reason

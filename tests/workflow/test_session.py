@@ -491,3 +491,20 @@ def test_a_damaged_receipt_is_refused_in_one_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=RECEIPT) as caught:
         open_receipt(tmp_path)
     assert "run the session's command again" in str(caught.value)
+
+
+def test_a_fault_that_was_there_before_is_cleared_with_a_word() -> None:
+    presses, notices = list[int](), list[str]()
+
+    def broken_wire(tick: int, inputs: Inputs) -> Inputs:
+        presses.extend([1] * (tick == 0))
+        return inputs._replace(lowest=0) if len(presses) == 1 and 60 < tick < 80 else inputs
+
+    with LinkedDevice(LibraryBoard(), ScriptedPerson(meddle=broken_wire)) as board:
+        board.upload(SURFACE, MODEL.travel_mm)
+        with pytest.raises(DeviceError, match="fell to zero force"):
+            board.press(50.0)
+        result = probe(board, MODEL, SURFACE, [50.0], 1, guide=Guide(notice=notices.append))
+    assert result.skipped == ()
+    assert len(notices) == 1
+    assert notices[0].startswith("warning: library host had fallen to zero force, position_low")

@@ -98,7 +98,7 @@ def test_a_record_cut_short_is_told_of_once(tmp_path: Path) -> None:
     path = tmp_path / PRESSES
     path.write_bytes(path.read_bytes()[:-5])
     log = PressLog(tmp_path)
-    told = "the last record is not whole and is left out; 2 presses before it are kept"
+    told = "the last record is not whole and is left out; presses kept: 2"
     assert log.warnings == [f"{path}: {told}"]
     log.close()
     log = PressLog(tmp_path)

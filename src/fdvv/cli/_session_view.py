@@ -98,7 +98,7 @@ class TableView:
         """Show a person the pace."""
         if self._person:
             self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
-            self._draw(asked(ask), "now")
+            self._draw(asked(ask), "press now")
 
     def done(self, event: PressDone) -> None:
         """Tell of a press; simulated ones come faster than anyone reads."""

@@ -77,6 +77,10 @@ def judge(
     """
     bounds = bounds or Acceptance()
     t_s, x_mm = (press.t_s, press.displacement_mm) if true_position else rig_columns(press)[:2]
+    if x_mm.size < 2 or not np.isfinite(x_mm).all():
+        return Verdict(
+            "the record holds no samples that can be used; check the position sensor", float("nan")
+        )
     reason = why_incomplete(x_mm, travel_mm)
     if reason:
         return Verdict(f"{reason}; press down to the stop, from the top", float("nan"))

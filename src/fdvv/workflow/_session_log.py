@@ -115,7 +115,7 @@ class PressLog:
         if end < path.stat().st_size:
             assert self._file is not None
             os.ftruncate(self._file, end)
-            kept = f"{len(self.entries)} presses before it are kept"
+            kept = f"presses kept: {len(self.entries)}"
             self.warnings.append(f"{path}: the last record is not whole and is left out; {kept}")
 
     def kept(self) -> Iterator[Kept]:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from types import FrameType
-from typing import Any, Generic, NoReturn, Protocol, TypeVar
+from typing import Any, Generic, NoReturn, Protocol, TypeVar, cast
 
 import numpy as np
 
 from fdvv.compensate import Count, Trial, Verdict
-from fdvv.device import Device
+from fdvv.device import Device, FaultReport, ProgramDevice
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model import Press
 from fdvv.protocol import Fault
+from fdvv.workflow._held_back import held_back
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Progress, Standing
 from fdvv.workflow._session_log import REMEDY, Entry, Kept, PressLog
 from fdvv.workflow._session_manifest import now
@@ -142,6 +139,10 @@ def _refuse(log: PressLog, kept: Kept, reason: str) -> NoReturn:
 def _pressed(device: Device, course: Course[S], state: S, log: PressLog) -> S:
     """Press until the plan is finished."""
     before, in_a_row = None, 0
+    if _faulted(device):
+        course.guide.notice(
+            f"warning: {device.info().name} had fallen to zero force, {_cleared(device)}; cleared"
+        )
     while (trial := course.plan.trial(state)) is not None:
         prepare(device, trial, course.travel_mm, before)
         count = course.plan.count(state)
@@ -150,14 +151,14 @@ def _pressed(device: Device, course: Course[S], state: S, log: PressLog) -> S:
         with held_back():
             entry, state = _taken(course, state, trial, (press, fault), log)
         _tell(course, state, entry, press)
-        # after a fault the device is given its program again
-        before = None if fault else trial
+        before = trial
+        if fault:
+            _cleared(device)
+            before = None  # it is given its program again
         in_a_row = 0 if entry.used else in_a_row + 1
         if in_a_row >= course.patience:
             name = device.info().name
             raise DeviceError(f"{name}: {in_a_row} presses in a row could not be used; the last {entry}")
-        if fault:
-            device.clear_fault()  # type: ignore[attr-defined] # it has told of one
     return state
 
 
@@ -177,6 +178,14 @@ def _faulted(device: Device) -> bool:
         return hasattr(device, "fault") and device.fault().fault is not Fault.NONE
     except DeviceError:
         return False
+
+
+def _cleared(device: Device) -> FaultReport:
+    """Clear the fault of a device that has told of one; give it. DeviceError while its cause lasts."""
+    board = cast(ProgramDevice, device)
+    report = board.fault()
+    board.clear_fault()
+    return report
 
 
 def _taken(
@@ -214,26 +223,6 @@ def _tell(course: Course[S], state: S, entry: Entry, press: Press | None) -> Non
             lambda: course.standing(state),
         )
     )
-
-
-@contextmanager
-def held_back() -> Iterator[None]:
-    """Hold Ctrl-C back until the block is left: a press that was made is kept."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-
-    def note(number: int, _frame: FrameType | None) -> None:
-        came.append(number)
-
-    before = signal.signal(signal.SIGINT, note)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came:
-        raise KeyboardInterrupt
 
 
 def _let_go(device: Any) -> None:
