@@ -92,6 +92,8 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: 
     ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
     told = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
     assert (ran.status, ran.err, ran.out) == (130, told, "")
+    shown = fdvv("show", "s").out.splitlines()
+    assert shown[-2:] == ["2 presses used, 0 not", "not finished; run the session's command again to go on"]
     ran = fdvv("probe", "mx-clear", *SHORT[:4], "--session", "p", "--presses", "2")
     assert ran.status == 0
     Stopped.left = 2

@@ -20,7 +20,7 @@ def print_receipt(found: dict[str, Any]) -> None:
     print_wrapped(f"method: {found['method']}")
     runs = counted(len(found["runs"]), "run")
     print_wrapped(
-        f"begun {found['begun']}, last press {found['finished']}, {found['pressing_s']:.0f} s of pressing "
+        f"begun {found['begun']}, last press {found['finished'] or '–'}, {found['pressing_s']:.0f} s of pressing "
         f"in {runs}"
     )
     made = ", ".join(f"{name} {version}" for name, version in found["runs"][-1]["versions"].items())
@@ -28,6 +28,9 @@ def print_receipt(found: dict[str, Any]) -> None:
     click.echo(f"made with {made}{seed}")
     print_wrapped(_rig(found["device"]))
     _print_presses(found)
+    if not found["curves"]:
+        click.echo("not finished; run the session's command again to go on")
+        return
     print_table(
         ["curve", "presses", "first cN", "last cN", "best cN", "mean cN", "max cN"],
         [
