@@ -103,6 +103,14 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: 
     )
 
 
+def test_a_session_killed_before_its_first_run_can_be_shown(fdvv: Run, tmp_path: Path) -> None:
+    fdvv("compensate", "mx-clear", *SHORT, "--session", "s")
+    (tmp_path / "s" / "receipt.json").unlink()
+    (tmp_path / "s" / PRESSES).write_bytes(b"")
+    shown = fdvv("show", "s")
+    assert (shown.status, shown.out.splitlines()[-2]) == (0, "0 presses used, 0 not")
+
+
 def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
     fdvv: Run, tmp_path: Path
 ) -> None:

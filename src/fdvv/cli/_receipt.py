@@ -18,14 +18,12 @@ def print_receipt(found: dict[str, Any]) -> None:
     told = " (simulated)" if found["simulated"] else ""
     click.echo(f"{found['task']} {found['model']['name']} on {found['device']['name']}{told}")
     print_wrapped(f"method: {found['method']}")
-    runs = counted(len(found["runs"]), "run")
-    print_wrapped(
-        f"begun {found['begun']}, last press {found['finished'] or '–'}, {found['pressing_s']:.0f} s of pressing "
-        f"in {runs}"
-    )
-    made = ", ".join(f"{name} {version}" for name, version in found["runs"][-1]["versions"].items())
-    seed = "" if found["seed"] is None else f"; seed {found['seed']}"
-    click.echo(f"made with {made}{seed}")
+    spent = f"{found['pressing_s']:.0f} s of pressing in {counted(len(found['runs']), 'run')}"
+    print_wrapped(f"begun {found['begun']}, last press {found['finished'] or '–'}, {spent}")
+    for run in found["runs"]:
+        made = ", ".join(f"{name} {version}" for name, version in run["versions"].items())
+        seed = "" if run["seed"] is None else f"; seed {run['seed']}"
+        click.echo(f"run of {run['started']} with {made}{seed}")
     print_wrapped(_rig(found["device"]))
     _print_presses(found)
     if not found["curves"]:
