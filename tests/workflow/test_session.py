@@ -468,7 +468,7 @@ def test_a_real_fault_of_the_firmware_is_cleared_and_its_press_made_again() -> N
 
 def test_a_recording_gives_what_the_device_gave_but_does_not_go_on(tmp_path: Path) -> None:
     path = tmp_path / "hand.jsonl"
-    with Recorder(Hand(noise_cN=1.0, seed=2), path) as device:
+    with Recorder(TwinDevice(seed=2), path) as device:
         first = compensate(device, MODEL, SPEEDS, LAW)
     session = Session(tmp_path / "s")
     again = compensate(session.open_device(f"replay:{path}"), MODEL, SPEEDS, LAW, session=session)

@@ -115,20 +115,22 @@ class Recorder:
 
     def stop(self) -> None:
         """Fall to zero force at once."""
-        self._programs().stop()
+        self._programs("stop").stop()
 
     def fault(self) -> FaultReport:
         """Tell the latched fault."""
-        return self._programs().fault()
+        return self._programs("fault").fault()
 
     def clear_fault(self) -> None:
         """Clear the latched fault."""
-        self._programs().clear_fault()
+        self._programs("clear_fault").clear_fault()
 
-    def _programs(self) -> ProgramDevice:
-        if not hasattr(self._device, "upload_program"):
-            raise DeviceError(f"{self.info().name}: runs tables of force only, no programs")
-        return self._device  # type: ignore[return-value] # it has them all, or none
+    def _programs(self, needed: str = "upload_program") -> ProgramDevice:
+        """Give the device as one that runs programs; DeviceError if it lacks what is needed of one."""
+        if not hasattr(self._device, needed):
+            lacks = "no programs" if needed == "upload_program" else f"has no {needed.replace('_', ' ')}"
+            raise DeviceError(f"{self.info().name}: runs tables of force only, {lacks}")
+        return self._device  # type: ignore[return-value] # it has what is needed
 
     def close(self) -> None:
         """End the session and let the device go."""
