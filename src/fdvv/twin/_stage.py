@@ -20,7 +20,8 @@ def stage_finger(push_N: float = 2.0) -> Finger:
     ``workflow.probe(device, model, surface, [0.5])``. Drive and frame are as stiff as the equations bear
     (5 N/mm), the tip yields 10 um to 1 N and does not relax, nothing varies from press to press and no muscle
     trembles; noise of the rig's own sensors stays. Its referent moves as every gesture does, on minimum
-    jerk, so at 0.5 mm/s on average the cap moves at up to 0.8 mm/s: as slow for drag, inertia and lag of any rig.
+    jerk, so at 0.5 mm/s on average the cap moves at up to 0.8 mm/s: still too slow for drag, inertia and lag
+    to count.
     """
     return Finger(
         Impedance(mass_kg=0.2, stiffness_N_m=5000.0, damping_N_s_m=100.0),
