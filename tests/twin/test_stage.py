@@ -52,7 +52,7 @@ def test_what_it_feels_of_a_rig_without_faults_is_the_command_and_the_friction()
 
 def test_it_holds_the_cap_on_a_falling_flank_that_a_finger_snaps_through() -> None:
     steep = ForceSurface(
-        np.arange(5) * 0.375,
+        np.linspace(0.0, 1.5, 5),
         np.array([50.0]),
         *(np.array([[60.0, 100.0, 20.0, 40.0, 60.0]]) for _ in range(2)),
     )
