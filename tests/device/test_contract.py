@@ -56,5 +56,5 @@ def test_presses_vary_in_pace_as_the_habit_of_the_finger_says() -> None:
 def test_a_speed_beyond_what_a_finger_does_is_refused_with_the_limits() -> None:
     device = TwinDevice()
     device.upload(plain_surface(), 4.0)
-    with pytest.raises(DeviceError, match="5 to 500 mm/s"):
+    with pytest.raises(DeviceError, match=r"0\.5 to 500 mm/s"):
         device.press(2000.0)

@@ -29,6 +29,30 @@ def test_the_shipped_rig_is_the_default_one_written_out() -> None:
     assert load_rig(DEFAULT) == Rig()
 
 
+def test_a_shipped_rig_or_finger_is_read_by_its_name() -> None:
+    assert load_rig("default") == Rig()
+    folder = DEFAULT.parents[1]
+    assert load_rig("paper") == load_rig(folder / "rigs" / "paper.toml") != Rig()
+    assert load_finger("paper") == load_finger(folder / "fingers" / "paper.toml") != Finger()
+
+
+def test_a_name_that_is_not_shipped_is_a_path() -> None:
+    with pytest.raises(InputError, match="nothing: whole file: cannot be read"):
+        load_rig("nothing")
+
+
+def test_every_number_of_the_papers_rig_and_finger_lies_in_its_plausible_range() -> None:
+    for record in (load_rig("paper"), load_finger("paper")):
+        for section in dataclasses.fields(record):
+            part = getattr(record, section.name)
+            for field in dataclasses.fields(part):
+                known = about(field)
+                if not known.choices:
+                    assert known.plausible is not None
+                    low, high = known.plausible
+                    assert low <= getattr(part, field.name) <= high, f"{section.name}.{field.name}"
+
+
 def test_every_parameter_is_told_with_its_range_and_source() -> None:
     for text in (rig_to_toml(Rig()), finger_to_toml(Finger())):
         lines = [line for line in text.splitlines() if "=" in line.split("#")[0]]

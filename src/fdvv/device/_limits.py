@@ -8,7 +8,8 @@ from fdvv.device._contract import DeviceInfo
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface
 
-SPEED_LIMITS_mm_s = (5.0, 500.0)
+SPEED_LIMITS_mm_s = (0.5, 500.0)
+"""From a machine that probes statically, as the paper's did, to more than a finger does."""
 
 
 def check_table(info: DeviceInfo, surface: ForceSurface, travel_mm: float) -> None:

@@ -25,6 +25,7 @@ from fdvv.twin._rig_senses import ForceSensor, KeycapSensor, PositionSensor
 from fdvv.twin._settings import settings_of
 from fdvv.twin._simulate import simulate, simulate_program
 from fdvv.twin._simulate_button import ButtonTrace, PressPlan, simulate_batch, simulate_button
+from fdvv.twin._stage import stage_finger
 from fdvv.twin._threads import in_threads
 from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._trace import Trace
@@ -98,5 +99,6 @@ __all__ = [
     "solve_button_pace",
     "solve_pace",
     "solve_program_pace",
+    "stage_finger",
     "vary",
 ]

@@ -21,7 +21,8 @@ SUNK_mm = 0.05
 """A cap that a weak table lets sink under the resting finger starts this much below where it rests."""
 TOLERANCE_ratio = 0.005
 ROUNDS = 12
-SHORTEST_s, LONGEST_s = 0.01, 20.0
+SHORTEST_s, LONGEST_s = 0.01, 40.0
+"""Of the referent's stroke; the longest takes a stage of 0.5 mm/s over the deepest stop."""
 
 
 def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, travel_mm: float) -> float:

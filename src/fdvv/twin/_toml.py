@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import tomllib
+from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -28,14 +29,25 @@ def finger_to_toml(finger: Finger) -> str:
     return _to_toml(finger, "A finger for the twin: impedance, pulp and habit.")
 
 
-def load_rig(path: Path | str) -> Rig:
-    """Read a rig; InputError names file, key, bound and remedy of the first thing that is wrong."""
-    return _load(Path(path), Rig)
+def load_rig(name: Path | str) -> Rig:
+    """Read a shipped rig by its name ("default", "paper"), or any by its path.
+
+    InputError names file, key, bound and remedy of the first thing that is wrong.
+    """
+    return _load_named(name, Rig)
 
 
-def load_finger(path: Path | str) -> Finger:
-    """Read a finger; InputError names file, key, bound and remedy of the first thing that is wrong."""
-    return _load(Path(path), Finger)
+def load_finger(name: Path | str) -> Finger:
+    """Read a shipped finger by its name ("paper"), or any by its path; InputError as load_rig."""
+    return _load_named(name, Finger)
+
+
+def _load_named(name: Path | str, kind: type[Record]) -> Record:
+    folder = resources.files("fdvv.twin").joinpath(f"{kind.__name__.lower()}s")
+    if isinstance(name, str) and name.isidentifier() and (shipped := folder / f"{name}.toml").is_file():
+        with resources.as_file(shipped) as path:
+            return _load(path, kind)
+    return _load(Path(name), kind)
 
 
 def _to_toml(record: Rig | Finger, title: str) -> str:
