@@ -1,4 +1,4 @@
-"""A rig in closed form for tests: a prescribed motion, finely stepped lags, nothing shared with what is tested."""
+"""A rig in closed form: a prescribed motion, finely stepped lags, nothing shared with what is tested."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.model import Press
+from fdvv.units import FloatArray
 
 FINE = 20
 """Steps per tick."""
@@ -33,7 +34,7 @@ class Plant:
     force_noise_cN: float = 0.0
     tick_s: float = 2.5e-4
 
-    def press(self, velocity_mm_s: float, seed: int = 0, scale: float = 1.0) -> Press:
+    def press(self, velocity_mm_s: float, seed: int = 0) -> Press:
         """Press down and back along cosines with a tremor, commanding waves over time."""
         random = np.random.default_rng((seed, round(velocity_mm_s)))
         step = self.tick_s / FINE
@@ -52,16 +53,19 @@ class Plant:
         nowhere = np.full(t[rows].size, np.nan)
         return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, felt, command[rows])
 
-    def _sense(self, t, x, v, a, command, step):  # type: ignore[no-untyped-def]
-        gain = np.polynomial.Polynomial(self.gain)(x)
+    def _sense(
+        self, t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray, command: FloatArray, step: float
+    ) -> tuple[FloatArray, FloatArray]:
+        gain = self.gain[0] + x * (self.gain[1] + x * self.gain[2])
         late = np.interp(t - self.command_delay_s, t, command)
         pushed = lagged(gain * late + 0.1 * self.back_emf_N_s_m * gain**2 * v, self.electric_lag_s, step)
         rest = 0.1 * self.viscous_N_s_m * v + self.friction_cN * np.sign(v) - self.weight_cN
         force = pushed + rest + 1e-4 * (self.mass_g + self.cone_g) * a
-        return lagged(x, self.position_lag_s, step), played(lagged(force, self.filter_s, step), self.half_play_cN)
+        reading = played(lagged(force, self.filter_s, step), self.half_play_cN)
+        return lagged(x, self.position_lag_s, step), reading
 
 
-def lagged(signal, lag_s, step_s):  # type: ignore[no-untyped-def]
+def lagged(signal: FloatArray, lag_s: float, step_s: float) -> FloatArray:
     """Follow a signal with a first-order lag, by the midpoint rule."""
     out, value = [], float(signal[0])
     ratio = step_s / lag_s
@@ -71,7 +75,7 @@ def lagged(signal, lag_s, step_s):  # type: ignore[no-untyped-def]
     return np.array(out)
 
 
-def played(signal, half):  # type: ignore[no-untyped-def]
+def played(signal: FloatArray, half: float) -> FloatArray:
     """Follow a signal with a play."""
     out, held = [], float(signal[0])
     for value in signal.tolist():

@@ -103,9 +103,16 @@ def columns(ticks: Ticks, numbers: FloatArray, stretch: FloatArray) -> FloatArra
 
 
 def braking(ticks: Ticks, numbers: FloatArray) -> FloatArray:
-    """Give gain^2 v through window and coil, cN per N s/m, (n,): the derivative of the integral of gain^2."""
+    """Give gain^2 v through window and coil, cN per N s/m, (n,): the derivative of the integral of gain^2.
+
+    The integral's place is expanded around the sensed one to second order in its lag.
+    """
     gain = np.polynomial.Polynomial(numbers[GAIN])
-    return _derived(ticks, _integral(gain * gain, ticks.sensed_mm), numbers)
+    bend = np.asarray((gain * gain).deriv()(ticks.sensed_mm), dtype=np.float64)
+    second = 0.5 * bend * (numbers[LAG] * ticks.motion[1]) ** 2
+    slope = DRAG_cN * through(windows(ticks.tick_s)[1], second)
+    first = _derived(ticks, _integral(gain * gain, ticks.sensed_mm), numbers)
+    return first + late(slope, numbers[ELECTRIC], ticks.tick_s)
 
 
 def braking_slopes(ticks: Ticks, numbers: FloatArray) -> FloatArray:

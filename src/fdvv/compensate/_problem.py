@@ -32,7 +32,7 @@ from fdvv.units import FloatArray
 STEPS, DAMPINGS = 4, 6
 SETTLED = 1e-3
 """A step that lowers the cost, in squared standard deviations, by less is the last."""
-FEWEST_windows = 60
+FEWEST_windows = 12
 SPACING_s = 7.5e-4
 """Between the windows that are looked at; closer ones tell the same."""
 LEAST_NOISE_cN = 0.2

@@ -68,8 +68,8 @@ class Ticks:
         return tuple(through(window, self.sensed_mm) for window in windows(self.tick_s))
 
     def ahead_mm(self, lag_s: float) -> FloatArray:
-        """Give where the cap truly was, its sensed place being lag_s old."""
-        return np.interp(self.t_s + lag_s, self.t_s, self.sensed_mm)
+        """Give where the cap truly was, its sensed place passing a first-order lag of lag_s."""
+        return self.motion[0] + lag_s * self.motion[1]
 
 
 def ticks_of(press: Press, name: str, tick_s: float | None = None) -> Ticks:
