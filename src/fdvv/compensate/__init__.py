@@ -3,6 +3,7 @@
 from fdvv.compensate._balance import Sensor
 from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.compensate._curve_state import Best, Learned, State
+from fdvv.compensate._drift import drifted
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._explain import explain
 from fdvv.compensate._gain import GainSchedule
@@ -42,6 +43,7 @@ __all__ = [
     "bin_force",
     "bump_kept_ratio",
     "dense_velocities",
+    "drifted",
     "error_cN",
     "explain",
     "grid_mm",

@@ -11,6 +11,7 @@ from fdvv.compensate._balance import (
     DELAY,
     ELECTRIC,
     FRICTION,
+    GAIN,
     LAG,
     MASS,
     NUMBERS,
@@ -20,7 +21,7 @@ from fdvv.compensate._balance import (
 )
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._prior import Prior
-from fdvv.compensate._problem import Problem
+from fdvv.compensate._problem import Problem, Run
 from fdvv.compensate._ticks import ticks_of
 from fdvv.errors import FitError
 from fdvv.model import Press
@@ -56,9 +57,6 @@ def _known(problem: Problem, numbers: FloatArray) -> KnownRig:
     _, matrix = problem.normal(numbers, runs)
     misses = problem.misses(numbers)
     white = np.concatenate([run.white @ misses[run.press][run.rows] for run in runs])
-    count = max(1, round(RESIDUAL_s / (problem.stride * problem.tick_s)))
-    box = np.full(count, 1.0 / count)
-    even = [np.convolve(misses[run.press][run.rows], box, "same") for run in runs]
     inflated = max(1.0, float(np.mean(white**2)))
     spread = problem.spread
     covariance = inflated * spread[:, np.newaxis] * np.linalg.inv(matrix) * spread
@@ -77,7 +75,7 @@ def _known(problem: Problem, numbers: FloatArray) -> KnownRig:
         play_cN=2.0 * float(numbers[PLAY]),
         position_noise_mm=problem.position_noise_mm,
         force_noise_cN=problem.force_noise_cN,
-        residual_cN=float(np.sqrt(np.mean(np.concatenate(even) ** 2))),
+        residual_cN=residual_cN(problem, numbers, runs),
         presses=len(problem.ticks),
         error={"gain": gain, **error},
     )
@@ -103,3 +101,23 @@ def _combined(covariance: FloatArray, middle_mm: float) -> tuple[float, dict[str
         "mass_g": of((MASS, 1.0)),
         "play_cN": of((PLAY, 2.0)),
     }
+
+
+def residual_cN(problem: Problem, numbers: FloatArray, runs: list[Run]) -> float:
+    """Give the rms of what is not explained, each a mean of RESIDUAL_s."""
+    misses = problem.misses(numbers)
+    count = max(1, round(RESIDUAL_s / (problem.stride * problem.tick_s)))
+    box = np.full(count, 1.0 / count)
+    even = [np.convolve(misses[run.press][run.rows], box, "same") for run in runs]
+    return float(np.sqrt(np.mean(np.concatenate(even) ** 2)))
+
+
+def numbers_of(known: KnownRig) -> FloatArray:
+    """Give a known rig as the vector of NUMBERS."""
+    found = np.zeros(len(NUMBERS))
+    found[GAIN] = known.gain
+    found[VISCOUS], found[BACK_EMF] = known.drag_N_s_m - known.back_emf_N_s_m, known.back_emf_N_s_m
+    found[FRICTION], found[WEIGHT], found[MASS] = known.friction_cN, known.weight_cN, known.mass_g
+    found[PLAY], found[LAG] = 0.5 * known.play_cN, known.position_lag_s
+    found[DELAY], found[ELECTRIC] = known.delay_s - known.electric_lag_s, known.electric_lag_s
+    return found
