@@ -27,11 +27,13 @@ from fdvv.compensate._ticks import ticks_of
 from fdvv.model import Press
 from fdvv.units import FloatArray
 
-SURE = 5.0
+SURE = 4.0
 """Standard deviations beyond which a change is told; presses are many."""
 MOST_changes = 3
 STRANGE_ratio, STRANGE_cN = 3.0, 2.0
 """A press is strange beyond this many times what the known rig left unexplained, and by this more."""
+SHARED_ratio = 0.25
+"""Of a standard error counts against a change: errors go together, and a press repeats most of them."""
 FREE = 1e6
 """Variance of a change that has been told, in squares of the prior's spread."""
 LEAST = {"gain": 0.03, "drag": 0.15, "friction": 1.5, "weight": 3.0, "mass": 2.0, "play": 2.0, "lag": 2e-4}
@@ -53,13 +55,14 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """What may change: its name and unit, along which numbers, from what value, the least that is told."""
+    """What may change: name and unit, along which numbers, from what value; least that is told, lowest."""
 
     name: str
     unit: str
     along: FloatArray
     was: float
     least: float
+    lowest: float = 0.0
 
 
 def drifted(
@@ -75,35 +78,47 @@ def drifted(
     problem.mean = numbers = numbers_of(known)
     runs = problem.runs(numbers)
     gradient, matrix = problem.normal(numbers, runs)
-    found = _found(known, problem.spread, gradient, matrix - np.eye(numbers.size))
-    if found:
-        return ", ".join(found)
-    left, usual = residual_cN(problem, numbers, runs), known.residual_cN
-    if left > max(STRANGE_ratio * usual, usual + STRANGE_cN):
-        return f"{left:.1f} cN rms unexplained, {usual:.1f} when the rig was identified; identify it again"
-    return ""
+    strange_cN = max(STRANGE_ratio * known.residual_cN, known.residual_cN + STRANGE_cN)
+    strange = residual_cN(problem, numbers, runs) > strange_cN
+    found = _found(known, problem.spread, gradient, matrix - np.eye(numbers.size), strange)
+    told = [_told(change, size) for change, size in found]
+    left = residual_cN(problem, numbers + sum(size * change.along for change, size in found), runs)
+    if left > strange_cN:
+        told.append(f"{left:.1f} cN rms unexplained, {known.residual_cN:.1f} before; identify the rig again")
+    return ", ".join(told)
 
 
-def _found(known: KnownRig, spread: FloatArray, gradient: FloatArray, matrix: FloatArray) -> list[str]:
-    """Find one change after the other, the surest first; all vectors in spreads of the prior."""
-    told: list[str] = []
-    changes, doubt = _changes(known), np.diag((_errors(known) / spread) ** 2)
-    while changes and len(told) < MOST_changes:
+def _found(
+    known: KnownRig, spread: FloatArray, gradient: FloatArray, matrix: FloatArray, strange: bool
+) -> list[tuple[_Change, float]]:
+    """Find one change with its size after the other, the surest first; vectors in spreads of the prior.
+
+    Of a strange press the likeliest change is told even if it is not sure.
+    """
+    found: list[tuple[_Change, float]] = []
+    changes, doubt = _changes(known), np.diag((SHARED_ratio * _errors(known) / spread) ** 2)
+    while len(found) < MOST_changes:
         shrunk = np.linalg.inv(np.eye(spread.size) + matrix @ doubt)
         slope, curve = shrunk @ gradient, shrunk @ matrix
-        sizes = []
-        for change in changes:
-            along = change.along / spread
-            weight = max(float(along @ curve @ along), 1e-12)
-            sizes.append((float(along @ slope) / np.sqrt(weight), float(along @ slope) / weight))
-        best = int(np.argmax([abs(sure) for sure, _ in sizes]))
-        (sure, size), change = sizes[best], changes.pop(best)
-        if abs(sure) < SURE:
+        sized = [(change, *_size(change.along / spread, slope, curve)) for change in changes]
+        possible = [one for one in sized if one[0].was + one[1] >= min(one[0].lowest, one[0].was)]
+        if not possible:
+            break
+        change, size, sure = max(possible, key=lambda one: one[2])
+        if sure < SURE and (found or not strange):
             break
         if abs(size) >= change.least:
-            told.append(_told(change, size))
+            found.append((change, size))
+        changes.remove(change)
         doubt = doubt + FREE * np.outer(change.along / spread, change.along / spread)
-    return told
+    return found
+
+
+def _size(along: FloatArray, slope: FloatArray, curve: FloatArray) -> tuple[float, float]:
+    """Give the size that explains most, and how many standard deviations it is."""
+    weight = max(float(along @ curve @ along), 1e-12)
+    size = float(along @ slope) / weight
+    return size, abs(size) * weight**0.5
 
 
 def _changes(known: KnownRig) -> list[_Change]:
@@ -120,10 +135,10 @@ def _changes(known: KnownRig) -> list[_Change]:
     coil = along((GAIN, numbers[GAIN]), (BACK_EMF, -numbers[BACK_EMF]))
     least_drag = max(LEAST["drag"] * known.drag_N_s_m, LEAST_drag_N_s_m)
     return [
-        _Change("gain", "", coil, 0.0, LEAST["gain"]),
+        _Change("gain", "", coil, 0.0, LEAST["gain"], -1.0),
         _Change("drag", "N s/m", along((VISCOUS, 1.0)), known.drag_N_s_m, least_drag),
         _Change("friction", "cN", along((FRICTION, 1.0)), known.friction_cN, LEAST["friction"]),
-        _Change("weight", "cN", along((WEIGHT, 1.0)), known.weight_cN, LEAST["weight"]),
+        _Change("weight", "cN", along((WEIGHT, 1.0)), known.weight_cN, LEAST["weight"], -np.inf),
         _Change("mass", "g", along((MASS, 1.0)), known.mass_g, LEAST["mass"]),
         _Change("play", "cN", along((PLAY, 0.5)), known.play_cN, LEAST["play"]),
         _Change("position lag", "ms", along((LAG, 1e-3)), 1e3 * known.position_lag_s, 1e3 * LEAST["lag"]),

@@ -36,7 +36,7 @@ FEWEST_windows = 12
 SPACING_s = 7.5e-4
 """Between the windows that are looked at; closer ones tell the same."""
 LEAST_NOISE_cN = 0.2
-FASTEST_Hz = 35.0
+FASTEST_Hz = 25.0
 """Above it windows count less and less: there the noise of the sensed position, which the controller passes
 on into its command, would be taken for an answer of the rig."""
 UNMODELLED_cN, UNMODELLED_s = 0.3, 0.006

@@ -14,7 +14,7 @@ from fdvv.testing._loop import (
 )
 from fdvv.testing._random_presses import random_inputs, random_settings
 from fdvv.testing._random_programs import random_image
-from fdvv.testing._rig_truth import draw_fast_rig, fits_firmware, missed_cN, rig_truth
+from fdvv.testing._rig_truth import draw_fast_rig, missed_cN, rig_truth
 from fdvv.testing._scripted import ScriptedDevice
 
 __all__ = [
@@ -32,7 +32,6 @@ __all__ = [
     "cycles",
     "draw_fast_rig",
     "felt",
-    "fits_firmware",
     "grainy_loop",
     "mean_response",
     "missed_cN",

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fdvv.compensate import KnownRig
-from fdvv.errors import ModelError
-from fdvv.twin import Finger, Rig, Trace, draw_finger, draw_rig, settings_of
+from fdvv.twin import Finger, Rig, Trace, draw_finger, draw_rig
 
 ROOM_mm = 0.05
 """To the stops, in what is judged."""
@@ -28,15 +27,6 @@ def draw_fast_rig(seed: int, drive: str) -> tuple[Rig, Finger]:
         coil=replace(rig.coil, drive=drive),
         mover=replace(rig.mover, gravity_m_s2=random.uniform(0.0, 9.81)),
     ), finger
-
-
-def fits_firmware(rig: Rig) -> bool:
-    """Tell whether the firmware can be told of this rig."""
-    try:
-        settings_of(rig)
-    except ModelError:
-        return False
-    return True
 
 
 def rig_truth(rig: Rig) -> KnownRig:
