@@ -1,15 +1,22 @@
 """Learning laws that find the command tables which make a rig feel like a model."""
 
+from fdvv.compensate._balance import Sensor
 from fdvv.compensate._bins import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.compensate._curve_state import Best, Learned, State
+from fdvv.compensate._drift import drifted
 from fdvv.compensate._error import error_cN
+from fdvv.compensate._explain import explain
 from fdvv.compensate._gain import GainSchedule
+from fdvv.compensate._identification_surface import identification_surface
+from fdvv.compensate._identify import identify
 from fdvv.compensate._judge import Acceptance, Verdict, judge
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import Count, CurveOutcome, Job, Method, Outcome, Trial
 from fdvv.compensate._observe import Delays, observe
 from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
+from fdvv.compensate._prior import Plausible, Prior
+from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
 
@@ -29,6 +36,9 @@ __all__ = [
     "Outcome",
     "PaperLaw",
     "PerCurve",
+    "Plausible",
+    "Prior",
+    "Sensor",
     "Span",
     "State",
     "Trial",
@@ -36,11 +46,19 @@ __all__ = [
     "bin_force",
     "bump_kept_ratio",
     "dense_velocities",
+    "drifted",
     "error_cN",
+    "explain",
     "grid_mm",
+    "identification_surface",
+    "identify",
     "judge",
+    "load_rig",
     "mean_speed_mm_s",
     "observe",
+    "rig_from_json",
+    "rig_to_json",
+    "save_rig",
     "smooth",
     "split_strokes",
     "why_incomplete",

@@ -14,6 +14,7 @@ from fdvv.testing._loop import (
 )
 from fdvv.testing._random_presses import random_inputs, random_settings
 from fdvv.testing._random_programs import random_image
+from fdvv.testing._rig_truth import draw_fast_rig, missed_cN, rig_truth
 from fdvv.testing._scripted import ScriptedDevice
 
 __all__ = [
@@ -29,9 +30,11 @@ __all__ = [
     "bare_loop",
     "coil_error_ratio",
     "cycles",
+    "draw_fast_rig",
     "felt",
     "grainy_loop",
     "mean_response",
+    "missed_cN",
     "onset_N_m",
     "plain_surface",
     "press_with",
@@ -39,6 +42,7 @@ __all__ = [
     "random_image",
     "random_inputs",
     "random_settings",
+    "rig_truth",
     "ripple_N",
     "snap",
     "ways",

@@ -1,0 +1,84 @@
+"""A rig in closed form: a prescribed motion, finely stepped lags, nothing shared with what is tested."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.model import Press
+from fdvv.units import FloatArray
+
+FINE = 20
+"""Steps per tick."""
+TRAVEL_mm = 4.0
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A rig's numbers, in the units of their names; noise is rms per tick."""
+
+    gain: tuple[float, float, float] = (0.85, 0.08, -0.012)
+    viscous_N_s_m: float = 0.4
+    back_emf_N_s_m: float = 4.0
+    friction_cN: float = 5.0
+    weight_cN: float = 18.0
+    mass_g: float = 20.0
+    cone_g: float = 2.0
+    half_play_cN: float = 0.0
+    position_lag_s: float = 7e-4
+    command_delay_s: float = 2e-4
+    electric_lag_s: float = 4e-4
+    filter_s: float = 3.33e-4
+    position_noise_mm: float = 0.0
+    force_noise_cN: float = 0.0
+    tick_s: float = 2.5e-4
+
+    def press(self, velocity_mm_s: float, seed: int = 0) -> Press:
+        """Press down and back along cosines with a tremor, commanding waves over time."""
+        random = np.random.default_rng((seed, round(velocity_mm_s)))
+        step = self.tick_s / FINE
+        stroke, rest = TRAVEL_mm / velocity_mm_s, 0.02
+        t = np.arange(0.0, 4 * rest + 2 * stroke, step)
+        down, up = np.clip((t - rest) / stroke, 0, 1), np.clip((t - 3 * rest - stroke) / stroke, 0, 1)
+        x = 0.5 * TRAVEL_mm * (np.cos(np.pi * up) - np.cos(np.pi * down))
+        shake = 0.1 * np.sin(np.pi * down) ** 2 * np.sin(np.pi * up / 2 + np.pi / 2) ** 2
+        x = x + (shake + 0.1 * np.sin(np.pi * up) ** 2) * np.sin(2 * np.pi * 45 * t)
+        v, a = np.gradient(x, step), np.gradient(np.gradient(x, step), step)
+        command = 70 + 12 * np.sin(2 * np.pi * 37 * t) + 9 * np.sin(2 * np.pi * 83 * t + velocity_mm_s)
+        sensed, force = self._sense(t, x, v, a, command, step)
+        rows = slice(None, None, FINE)
+        sensed = sensed[rows] + self.position_noise_mm * random.standard_normal(t[rows].size)
+        felt = force[rows] + self.force_noise_cN * random.standard_normal(t[rows].size)
+        nowhere = np.full(t[rows].size, np.nan)
+        return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, felt, command[rows])
+
+    def _sense(
+        self, t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray, command: FloatArray, step: float
+    ) -> tuple[FloatArray, FloatArray]:
+        gain = self.gain[0] + x * (self.gain[1] + x * self.gain[2])
+        late = np.interp(t - self.command_delay_s, t, command)
+        pushed = lagged(gain * late + 0.1 * self.back_emf_N_s_m * gain**2 * v, self.electric_lag_s, step)
+        rest = 0.1 * self.viscous_N_s_m * v + self.friction_cN * np.sign(v) - self.weight_cN
+        force = pushed + rest + 1e-4 * (self.mass_g + self.cone_g) * a
+        reading = played(lagged(force, self.filter_s, step), self.half_play_cN)
+        return lagged(x, self.position_lag_s, step), reading
+
+
+def lagged(signal: FloatArray, lag_s: float, step_s: float) -> FloatArray:
+    """Follow a signal with a first-order lag, by the midpoint rule."""
+    out, value = [], float(signal[0])
+    ratio = step_s / lag_s
+    for before, after in zip([signal[0], *signal[:-1].tolist()], signal.tolist(), strict=True):
+        value += ratio / (1 + ratio / 2) * (0.5 * (before + after) - value)
+        out.append(value)
+    return np.array(out)
+
+
+def played(signal: FloatArray, half: float) -> FloatArray:
+    """Follow a signal with a play."""
+    out, held = [], float(signal[0])
+    for value in signal.tolist():
+        held = min(max(held, value - half), value + half)
+        out.append(held)
+    return np.array(out)

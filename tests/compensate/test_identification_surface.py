@@ -1,0 +1,55 @@
+"""The surface that a rig is identified on is safe to press."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import grid_mm, identification_surface
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface, load_builtin
+from fdvv.units import FloatArray
+
+TARGETS = {
+    name: ForceSurface.of_model(load_builtin(name), [50, 200], 0.05) for name in ("mx-clear", "mx-red")
+}
+
+
+def tables(surface: ForceSurface) -> list[FloatArray]:
+    return [surface.press_cN, surface.release_cN]
+
+
+@pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
+def test_the_cap_is_held_up_and_the_limit_kept(target: ForceSurface) -> None:
+    surface = identification_surface(target, weight_cN=-60.0, limit_cN=60.0)
+    home = surface.displacement_mm <= 0.1
+    for table in tables(surface):
+        assert table[:, home].min() >= 50.0
+        assert table.max() <= 60.0
+    assert surface.velocity_mm_s.tolist() == target.velocity_mm_s.tolist()
+
+
+@pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
+def test_without_ripples_it_is_the_target_lifted_but_for_its_home(target: ForceSurface) -> None:
+    surface = identification_surface(target, weight_cN=20.0, ripple_cN=0.0)
+    for found, asked in zip(tables(surface), tables(target), strict=True):
+        np.testing.assert_allclose(found[:, 12:-2], asked[:, 12:-2] + 20.0, atol=3.0)
+
+
+def test_ripples_differ_between_strokes_and_have_no_steps() -> None:
+    row = np.full((1, 81), 60.0)
+    flat = ForceSurface(grid_mm(4.0, 0.05), np.array([50.0]), row, row)
+    surface = identification_surface(flat, ripple_cN=8.0)
+    press, release = (table[0] - 80.0 for table in tables(surface))
+    assert abs(np.corrcoef(press, release)[0, 1]) < 0.5
+    for ripple in (press, release):
+        assert 6.0 < np.abs(ripple).max() < 14.0
+        assert np.abs(np.diff(ripple)).max() < 8.0
+
+
+def test_a_limit_below_the_hold_and_ripples_below_none_are_refused() -> None:
+    target = TARGETS["mx-red"]
+    with pytest.raises(ModelError, match="got -1"):
+        identification_surface(target, ripple_cN=-1.0)
+    with pytest.raises(ModelError, match="a limit above 50 cN"):
+        identification_surface(target, limit_cN=40.0)
