@@ -19,6 +19,7 @@ from fdvv.compensate._prior import Plausible, Prior
 from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
+from fdvv.compensate._tuning import Tuning
 
 __all__ = [
     "RIG_DELAYS",
@@ -42,6 +43,7 @@ __all__ = [
     "Span",
     "State",
     "Trial",
+    "Tuning",
     "Verdict",
     "bin_force",
     "bump_kept_ratio",

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
+from fdvv.compensate._tuning import Tuning
 from fdvv.model import ForceSurface, Press, Stroke
 
 S = TypeVar("S")
+
+NOTHING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +31,11 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """What to do next: upload surface, have it pressed once at velocity_mm_s."""
+    """What to do next: upload surface under this tuning, have it pressed once at velocity_mm_s."""
 
     surface: ForceSurface
     velocity_mm_s: float
+    tuning: Tuning = NOTHING
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,7 @@ class Outcome:
     Attributes
     ----------
     surface : the actuation, one row per velocity of the job.
+    tuning : what the controller adds while it renders the surface.
     curves : one per stroke and velocity.
     presses : learned from.
     complete : the method did all it meant to; if not, the sentence says what stopped it.
@@ -70,6 +75,7 @@ class Outcome:
     presses: int
     complete: bool
     sentence: str
+    tuning: Tuning = NOTHING
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.compensate._per_curve import rig_columns
+from fdvv.compensate._judge import rig_columns
 from fdvv.errors import FitError
 from fdvv.model import Press
 from fdvv.units import FloatArray
