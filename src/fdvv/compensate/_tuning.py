@@ -1,4 +1,4 @@
-"""What a controller does by itself while it renders a table: look ahead, and push against the rig's own forces."""
+"""What a controller does by itself in every tick: look ahead, and push against the rig's own forces."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Tuning:
 
     Attributes
     ----------
-    bandwidth_Hz : of the filter; 0: no estimate, the table is read at the sensed displacement, nothing is added.
-    lead_s : from the age of the sensed place to the moment when the coil pushes: position lag, computing, half
+    bandwidth_Hz : of the filter; 0: the table is read at the sensed displacement and nothing is added.
+    lead_s : age of the sensed place when the coil pushes by it: position lag, computing, half
         a tick, and the coil's lag.
     brake_lead_s : the same without the coil's lag, which delays the braking it makes as well.
     drag_N_s_m : taken off the command per speed.
