@@ -8,13 +8,14 @@ from fdvv.device._contract import DeviceInfo
 from fdvv.device._limits import check_speed, check_table, check_travel
 from fdvv.errors import DeviceError, ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Mode, travel_mm_of
+from fdvv.protocol import Mode, Settings, travel_mm_of
 from fdvv.twin import (
     Finger,
     Rig,
     Trace,
     draw_noise,
     image_of,
+    settings_of,
     simulate_program,
     solve_program_pace,
     vary,
@@ -41,6 +42,11 @@ class TwinDevice:
         self._active: bytes | None = None
         self._paces: dict[float, float] = {}
         self._fresh: set[float] = set()
+
+    @property
+    def settings(self) -> Settings:
+        """Give the calibration and limits that its controller runs with; ModelError if it cannot hold them."""
+        return settings_of(self._rig)
 
     def info(self) -> DeviceInfo:
         """Tell who this is."""
