@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +83,9 @@ def feasible(
     from fdvv.workflow import device_settings, feasibility, open_model
 
     model, known = open_model(button), load_rig(rig_known)
-    session = open_session(folder, device, (seed, rig, finger), pace_ratio, beside(actuation, button, "feasible"))
+    session = open_session(
+        folder, device, (seed, rig, finger), pace_ratio, beside(actuation, button, "feasible")
+    )
     measured = _measure(session, device, model, actuation, velocities_mm_s, presses, as_json)
     with _opened(session, device) as found:
         settings, info = device_settings(found), found.info()
@@ -132,7 +134,11 @@ def _measure(
 
 def _print(document: dict[str, Any]) -> None:
     """Print a table of the curves, then the reasons, then the warmth."""
-    origin = f"rig known from {counted(document['rig_presses'], 'press')}" if document["rig_presses"] else "known rig"
+    origin = (
+        f"rig known from {counted(document['rig_presses'], 'press')}"
+        if document["rig_presses"]
+        else "known rig"
+    )
     print_wrapped(f"{document['model']} on {document['device']}, {origin}; computed, not pressed")
     print_table(COLUMNS, [_row(c) for c in document["curves"]])
     for curve in document["curves"]:
@@ -142,7 +148,9 @@ def _print(document: dict[str, Any]) -> None:
         print_wrapped(_warmth(dose))
     if any(c["measured"] for c in document["curves"]) and document["simulated"]:
         click.echo("measured: simulated")
-    print_wrapped("expected cN: estimated mean error after compensation; margin: stable stiffness over the curve's")
+    print_wrapped(
+        "expected cN: estimated mean error after compensation; margin: stable stiffness over the curve's"
+    )
 
 
 def _name(curve: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from fdvv.compensate._feasible_error import ExpectedError, acceleration_spread_m
 from fdvv.compensate._feasible_force import Reach, needed_cN, reach, rendered_cN
 from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._feasible_motion import Motion, minimum_jerk
-from fdvv.compensate._feasible_verdict import FollowVerdict, Following, follow_verdict
+from fdvv.compensate._feasible_verdict import Following, FollowVerdict, follow_verdict
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from fdvv.compensate._feasible_force import Reach
+from fdvv.compensate._feasible_force import BoolArray, Reach
 from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._stability import BUZZES, SPAN_mm, Stability
 from fdvv.compensate._thermal import ThermalDose
@@ -34,7 +34,7 @@ class Following(StrEnum):
 
 @dataclass(frozen=True)
 class Hindrance:
-    """One reason why a rig does not follow, with number, place and remedy. cannot : it alone spoils the curve."""
+    """One reason why a rig does not follow: number, place, remedy; cannot : it alone spoils the curve."""
 
     cannot: bool
     reason: str
@@ -52,17 +52,23 @@ class FollowVerdict:
 
 
 def follow_verdict(
-    reached: Reach, limits: RigLimits, stable: Stability, dose: ThermalDose, travel_limit_mm: float | None = None
+    reached: Reach,
+    limits: RigLimits,
+    stable: Stability,
+    dose: ThermalDose,
+    travel_limit_mm: float | None = None,
 ) -> FollowVerdict:
     """Judge one curve by everything that is known of it."""
     found = [*_force(reached, limits), *_bump(reached), *_stability(stable), *_warmth(dose)]
     travel_mm = float(reached.displacement_mm[-1])
     if travel_limit_mm is not None and travel_mm > travel_limit_mm:
-        told = f"its travel is {travel_mm:g} mm, the stop sets {travel_limit_mm:g} at most: shorten the button"
+        told = (
+            f"its travel is {travel_mm:g} mm, the stop sets {travel_limit_mm:g} at most: shorten the button"
+        )
         found.append(Hindrance(True, told))
     if not found and reached.missed_cN > MISSED_cN:
-        told = f"holding and lag smear {reached.missed_cN:.1f} cN of it on average: press slower, or a faster loop"
-        found.append(Hindrance(False, told))
+        told = f"holding and lag smear {reached.missed_cN:.1f} cN of it on average"
+        found.append(Hindrance(False, f"{told}: press slower, or a faster loop"))
     found.sort(key=lambda hindrance: not hindrance.cannot)
     worst = Following.FOLLOWS if not found else Following.CANNOT if found[0].cannot else Following.PARTLY
     return FollowVerdict(worst, tuple(h.reason for h in found))
@@ -85,7 +91,8 @@ def _force(reached: Reach, limits: RigLimits) -> Iterator[Hindrance]:
         yield Hindrance(
             grave,
             f"changes faster than {limits.slew_cN_tick:.0f} cN per tick {_between(x, reached.slewed)}: "
-            f"up to {lost[reached.slewed].max():.0f} cN are missing; soften the flank there, or raise the slew limit",
+            f"up to {lost[reached.slewed].max():.0f} cN are missing; soften the flank there, or raise the "
+            "slew limit",
         )
 
 
@@ -115,8 +122,8 @@ def _stability(stable: Stability) -> Iterator[Hindrance]:
         yield Hindrance(
             False,
             f"may buzz under a finger that pauses: release lies {stable.step_cN:.0f} cN below press at "
-            f"{stable.step_mm:.2f} mm, quiet up to {stable.step_limit_cN:.0f}: narrow the gap, or lengthen the "
-            "reversal distance",
+            f"{stable.step_mm:.2f} mm, quiet up to {stable.step_limit_cN:.0f}: narrow the gap, or "
+            "lengthen the reversal distance",
         )
 
 
@@ -137,7 +144,11 @@ def _warmth(dose: ThermalDose) -> Iterator[Hindrance]:
         )
 
 
-def _between(displacement_mm: FloatArray, rows: FloatArray) -> str:
-    places = displacement_mm[rows]
-    low, high = float(places.min()), float(places.max())
-    return f"between {low:.2f} and {high:.2f} mm" if high > low else f"at {low:.2f} mm"
+def _between(displacement_mm: FloatArray, rows: BoolArray) -> str:
+    """Name the ranges where rows, (n,) bool, hold."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(int)))
+    spans = [(float(displacement_mm[a]), float(displacement_mm[b - 1])) for a, b in edges.reshape(-1, 2)]
+    told = [
+        f"between {low:.2f} and {high:.2f} mm" if high > low else f"at {low:.2f} mm" for low, high in spans
+    ]
+    return " and ".join(told)

@@ -45,7 +45,7 @@ class Stability:
     slope : the curve's steepest rise and fall.
     passive_cN_mm : below it no finger at all can make the loop swing (Colgate-Brown with delay).
     grain_cN_mm : below it friction swallows what the sensor's grain feeds in (Abbott-Okamura).
-    alone_cN_mm, finger_cN_mm : exact onset of swinging, without and with the nominal finger, at the steepest rise.
+    alone_cN_mm, finger_cN_mm : exact onset of swinging at the steepest rise, without and with a finger.
     step_cN, step_mm : largest excess of press over release, and where; 0 where only one curve is judged.
     step_limit_cN : largest such step on which a finger that is nudged comes to rest.
     """
@@ -71,7 +71,7 @@ class Stability:
 
     @property
     def holds(self) -> str:
-        """Name the strongest that can be said: passive, stable alone, stable with a finger, may buzz, buzzes."""
+        """Name the most that can be said, from "passive for every finger" down to "buzzes"."""
         rise = self.slope.rise_cN_mm
         if min(self.margin, self.step_margin) < 1:
             return "buzzes" if self.margin < BUZZES else "may buzz"
@@ -88,17 +88,19 @@ class Stability:
 def passive_limit_N_m(known: KnownRig, tick_s: float, displacement_mm: float) -> float:
     """Give the stiffness up to which the loop takes energy from any finger: b / (T/2 + t_d).
 
-    b is the drag at that place, t_d what the chain adds to half a tick of holding: computing, the coil's lag, the
-    sensed position's age. Without delay it is Colgate and Brown's b > K T/2 + |B| (1994, no damping B
-    rendered): K < 2 b / T; with it Diolaiti et al. 2006, Colonnese and Okamura 2015, to first order in the delay.
+    b is the drag at that place, t_d what the chain adds to half a tick of holding: computing, the coil's lag,
+    the sensed position's age. Without delay it is Colgate and Brown's b > K T/2 + |B| (1994; no damping B is
+    rendered): K < 2 b / T. With delay it is the rule to first order in it (Diolaiti et al. 2006); that the
+    coil's part of the drag lags too makes it optimistic.
     """
     late_s = max(0.5 * tick_s, known.delay_s) + known.position_lag_s
     return max(0.0, float(known.drag_at(np.array(displacement_mm)))) / late_s
 
 
 def grain_limit_N_m(known: KnownRig, limits: RigLimits, displacement_mm: float) -> float:
-    """Give min(2 b / T, 2 f / grain): above it the grain of the position feeds in more than drag and friction
-    take. Source: Abbott and Okamura 2005; one reading's grain, though a mean of noisy readings has a finer one.
+    """Give min(2 b / T, 2 f / grain): above it the position's grain feeds in more than drag, friction take.
+
+    Source: Abbott and Okamura 2005. The grain is one reading's; a mean of noisy readings has a finer one.
     """
     drag = max(0.0, float(known.drag_at(np.array(displacement_mm))))
     return min(2 * drag / limits.tick_s, 1e-2 * 2 * known.friction_cN / (1e-3 * limits.grain_mm))
@@ -123,11 +125,12 @@ def steepest(displacement_mm: FloatArray, force_cN: FloatArray) -> Slope:
 def step_limit_cN(loop: SampledLoop, stiffness_N_m: float, reversal_mm: float, friction_cN: float) -> float:
     """Give the largest step between press and release on which a finger can rest without buzz.
 
-    A cap that comes back by the reversal distance r is given the other table: a relay of height step / 2, which
-    for a swing of amplitude A switches an angle theta after each extreme, 1 + cos theta = r / A. Its
-    describing function is N = 4 (step / 2) / (pi A) exp(j (pi/2 - theta)); a swing stands where N + K = 1 / P, P the
-    response of the place seen to a commanded force. The smallest step with a solution is the limit, but a
-    step that friction holds by itself, 2 f, is always quiet. Such a swing needs a nudge to begin. Source: Gelb and Vander Velde 1968, one harmonic only.
+    A cap that comes back by the reversal distance r is given the other table: a relay of height step / 2,
+    which for a swing of amplitude A switches an angle theta after each extreme, 1 + cos theta = r / A. Its
+    describing function is N = 4 (step / 2) / (pi A) exp(j (pi/2 - theta)); a swing stands where
+    N + K = 1 / P, P the response of the place seen to a commanded force. The smallest step with a solution is the limit; a
+    step that friction holds by itself, 2 f, is always quiet. One harmonic only, and such a swing needs a
+    nudge to begin. Source: Gelb and Vander Velde 1968, for this relay.
     """
     # P is negative at rest: a force that pushes out moves the place seen, counted inward, back
     wanted = 1 / loop.response(OMEGA_1_s) - stiffness_N_m
@@ -149,8 +152,8 @@ def stability(
     """Judge a curve, (n,) over rising places, at its steepest rise and at its largest step.
 
     over_cN : the press curve above a release, (n,) on the same places: judges the step between them too.
-    finger : who holds the cap; a nominal one if None. A steep fall is no buzz: the cap snaps through there, as
-    it does on the button (Slope tells how steep). Raises ModelError where the rig or the curve cannot be judged.
+    finger : who holds the cap; a nominal one if None. A steep fall is no buzz: the cap snaps through there,
+    as it does on the button (Slope tells how steep). Raises ModelError on a rig or curve that cannot be.
     """
     slope, hand, tick_s = steepest(displacement_mm, force_cN), finger or NominalFinger(), limits.tick_s
     place, held_cN = slope.rise_mm, slope.rise_cN
@@ -160,11 +163,17 @@ def stability(
     bounds = passive_limit_N_m(known, tick_s, place), grain_limit_N_m(known, limits, place), alone, onset
     over = force_cN if over_cN is None else over_cN
     step, step_mm, quiet = _step(known, limits, displacement_mm, over, force_cN, hand)
-    return Stability(slope, *(cN_mm_PER_N_m * b for b in bounds), step, step_mm, quiet)
+    passive, grain, bare, hand_on = (cN_mm_PER_N_m * bound for bound in bounds)
+    return Stability(slope, passive, grain, bare, hand_on, step, step_mm, quiet)
 
 
 def _step(
-    known: KnownRig, limits: RigLimits, x: FloatArray, over_cN: FloatArray, under_cN: FloatArray, finger: NominalFinger
+    known: KnownRig,
+    limits: RigLimits,
+    x: FloatArray,
+    over_cN: FloatArray,
+    under_cN: FloatArray,
+    finger: NominalFinger,
 ) -> tuple[float, float, float]:
     """Give the largest step between two curves, where it is, and the largest that is quiet there."""
     step, middle = over_cN - under_cN, 0.5 * (over_cN + under_cN)

@@ -18,6 +18,7 @@ from fdvv.units import FloatArray
 SHORTEST_s = 1e-5
 """A lag that is shorter, or none, is taken as this long: far below a tick, and no division by 0."""
 LEAST_kg = 5e-4
+Steps = tuple[FloatArray, FloatArray, FloatArray, int]
 PLACE, SPEED, COIL, SEEN, FINGER, FINGER_SPEED, ARM = range(7)
 
 
@@ -25,8 +26,8 @@ PLACE, SPEED, COIL, SEEN, FINGER, FINGER_SPEED, ARM = range(7)
 class NominalFinger:
     """A finger that holds a cap down: mass on a spring and damper, behind a pulp that stiffens with force.
 
-    The pulp is F = scale (exp(exponent depth) - 1) with a part that relaxes in relax_s; linear about the force
-    held. Figures: middle of the ranges of Hajian and Howe 1997 and Pawluk and Howe 1999 as the twin has them.
+    The pulp is F = scale (exp(exponent depth) - 1), a part of it relaxing in relax_s; linear about the force
+    held. Figures: middle of the ranges of Hajian and Howe 1997 and Pawluk and Howe 1999, as the twin has.
     """
 
     mass_kg: float = 0.007
@@ -71,7 +72,9 @@ class SampledLoop:
 
     def __post_init__(self) -> None:
         if self.mass_kg < LEAST_kg:
-            raise ModelError(f"the known rig's mass of {1e3 * self.mass_kg:.2g} g cannot be; identify it again")
+            raise ModelError(
+                f"the known rig's mass of {1e3 * self.mass_kg:.2g} g cannot be; identify it again"
+            )
 
     @classmethod
     def of_known(
@@ -125,7 +128,7 @@ class SampledLoop:
         out[COIL] = 1 / self.lag_s
         return out
 
-    def steps(self) -> tuple[FloatArray, FloatArray, FloatArray, int]:
+    def steps(self) -> Steps:
         """Give (over a tick, effect of the older command, of the newer one, whole ticks of delay)."""
         whole = int(self.compute_s / self.tick_s + 1e-9)
         old_s = max(0.0, self.compute_s - whole * self.tick_s)
@@ -153,7 +156,7 @@ def _held(rates: FloatArray, push: FloatArray, span_s: float) -> tuple[FloatArra
     return out[:n, :n], out[:n, n]
 
 
-def tick_matrix(loop: SampledLoop, stiffness_N_m: float, steps: tuple[FloatArray, ...] | None = None) -> FloatArray:
+def tick_matrix(loop: SampledLoop, stiffness_N_m: float, steps: Steps | None = None) -> FloatArray:
     """Map state and pending commands, newest first, from one tick to the next, for a table of constant slope.
 
     steps : loop.steps(), if it is known already.
@@ -174,20 +177,20 @@ def tick_matrix(loop: SampledLoop, stiffness_N_m: float, steps: tuple[FloatArray
     return out
 
 
-def spectral_radius(loop: SampledLoop, stiffness_N_m: float) -> float:
+def spectral_radius(loop: SampledLoop, stiffness_N_m: float, steps: Steps | None = None) -> float:
     """Give the size of the largest eigenvalue of one tick: above 1 the loop swings up."""
-    return float(np.abs(np.linalg.eigvals(tick_matrix(loop, stiffness_N_m))).max())
+    values: FloatArray = np.abs(np.linalg.eigvals(tick_matrix(loop, stiffness_N_m, steps)))
+    return float(values.max())
 
 
-def stiffness_limit_N_m(loop: SampledLoop, least: float = 1.0, most: float = 1e6) -> float:
+def stiffness_limit_N_m(loop: SampledLoop, least_N_m: float = 1.0, most_N_m: float = 1e6) -> float:
     """Give the stiffness at which the largest eigenvalue of one tick reaches 1, by bisection.
 
-    Exact for the linear loop; without a stable stiffness above least, least.
+    Exact for the linear loop; without a stable stiffness above least_N_m, that.
     """
     steps = loop.steps()
-    low, high = least, most
+    low, high = least_N_m, most_N_m
     for _ in range(36):
         middle = math.sqrt(low * high)
-        radius = float(np.abs(np.linalg.eigvals(tick_matrix(loop, middle, steps))).max())
-        low, high = (low, middle) if radius > 1 else (middle, high)
+        low, high = (low, middle) if spectral_radius(loop, middle, steps) > 1 else (middle, high)
     return low

@@ -45,7 +45,7 @@ class TwinDevice:
 
     @property
     def settings(self) -> Settings:
-        """Give the calibration and limits that its controller runs with; ModelError if it cannot hold them."""
+        """Give calibration and limits of its controller; ModelError if the firmware cannot hold them."""
         return settings_of(self._rig)
 
     def info(self) -> DeviceInfo:

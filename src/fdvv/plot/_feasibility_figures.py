@@ -20,7 +20,7 @@ INTENDED: Any = {"color": style.INK, "linestyle": (0, (1, 1.2)), "linewidth": 1.
 ACHIEVABLE: Any = {"color": style.PALETTE[0], "linewidth": 1.6}
 MEASURED: Any = {"color": style.PALETTE[1], "linewidth": 1.4}
 CUT: Any = {"color": style.PALETTE[5], "alpha": 0.25, "linewidth": 0.0}
-LINE_LENGTH, MOST_LINES = 62, 3
+LINE_LENGTH, MOST_LINES, TEXT_pt = 70, 3, 8.0
 
 
 @style.in_house_style
@@ -33,7 +33,9 @@ def plot_feasibility(curves: Sequence[FeasibleCurve], title: str = "") -> Any:
     """
     cells = {(c.velocity_mm_s, c.stroke): c for c in curves}
     if not cells or len(cells) != len(curves):
-        raise ModelError(f"a grid needs one curve per velocity and stroke, got {len(curves)} for {len(cells)}")
+        raise ModelError(
+            f"a grid needs one curve per velocity and stroke, got {len(curves)} for {len(cells)}"
+        )
     rows = sorted({v for v, _ in cells})
     columns = [s for s in Stroke if any(stroke is s for _, stroke in cells)]
     fig = style.new_figure(5.0 * len(columns) + 0.3, 2.9 * len(rows) + 0.7)
@@ -55,18 +57,27 @@ def _draw_cell(ax: Axes, curve: FeasibleCurve | None) -> None:
     x = curve.displacement_mm
     shown = [curve.intended_cN, curve.achievable_cN]
     if curve.band is not None and curve.band_mm is not None:
-        ax.fill_between(curve.band_mm, curve.band.low_cN, curve.band.high_cN, color=MEASURED["color"], alpha=0.22)
+        ax.fill_between(
+            curve.band_mm, curve.band.low_cN, curve.band.high_cN, color=MEASURED["color"], alpha=0.22
+        )
         ax.plot(curve.band_mm, curve.band.mean_cN, **MEASURED)
         shown += [curve.band.low_cN, curve.band.high_cN]
     ax.plot(x, curve.achievable_cN, **ACHIEVABLE)
     ax.plot(x, curve.intended_cN, **INTENDED)
     ax.set_ylim(*style.limits_around(*shown))
     ax.fill_between(x, 0, 1, where=curve.cut.tolist(), transform=ax.get_xaxis_transform(), **CUT)
-    style.set_titles(ax, f"{curve.stroke}, {style.velocity_text(curve.velocity_mm_s)}\n", curve.simulated)
-    lines = textwrap.wrap(curve.verdict, LINE_LENGTH)
-    text = "\n".join(lines[:MOST_LINES]) + (" …" if len(lines) > MOST_LINES else "")
-    ax.text(0.0, 1.01, text, transform=ax.transAxes, fontsize=8.0, color=style.QUIET, va="bottom")
-    ax.title.set_visible(True)
+    _titles(ax, curve)
+
+
+def _titles(ax: Axes, curve: FeasibleCurve) -> None:
+    """Write stroke and speed, and between them and the axes the verdict."""
+    lines = textwrap.wrap(curve.verdict, LINE_LENGTH, max_lines=MOST_LINES, placeholder=" …")
+    room: Any = {"xytext": (0.0, 4.0), "textcoords": "offset points", "va": "bottom", "fontsize": TEXT_pt}
+    ax.annotate("\n".join(lines), (0.0, 1.0), xycoords="axes fraction", color=style.QUIET, **room)
+    title = f"{curve.stroke}, {style.velocity_text(curve.velocity_mm_s)}"
+    style.set_titles(ax, title, curve.simulated)
+    # the distance of one title is that of all three
+    ax.set_title(title, loc="left", pad=8.0 + 1.25 * TEXT_pt * len(lines))
 
 
 def _legend(axes: Any, curves: Sequence[FeasibleCurve], title: str) -> None:

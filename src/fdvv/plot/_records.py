@@ -1,10 +1,11 @@
-"""What the figures need that no other room's record holds: rendered and feasible curves, histories of errors."""
+"""What figures need that no other room's record holds: rendered and feasible curves, histories of errors."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model import Stroke
@@ -106,7 +107,7 @@ class FeasibleCurve:
     displacement_mm: FloatArray
     intended_cN: FloatArray
     achievable_cN: FloatArray
-    cut: FloatArray
+    cut: npt.NDArray[np.bool_]
     verdict: str = ""
     band_mm: FloatArray | None = None
     band: RenderedBand | None = None
@@ -117,6 +118,8 @@ class FeasibleCurve:
         shape = self.displacement_mm.shape
         for name in ("intended_cN", "achievable_cN", "cut"):
             if getattr(self, name).shape != shape:
-                raise ModelError(f"{name} must match displacement_mm, got {getattr(self, name).shape} and {shape}")
+                raise ModelError(
+                    f"{name} must match displacement_mm, got {getattr(self, name).shape} and {shape}"
+                )
         if self.band is not None and (self.band_mm is None or self.band.mean_cN.shape != self.band_mm.shape):
             raise ModelError("a measured band needs its places, one each")
