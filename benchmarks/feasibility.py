@@ -38,12 +38,14 @@ from fdvv.workflow import compensate, feasibility, probe
 
 SEEDS = range(400, 420)
 BUTTONS = ("mx-clear", "mx-brown", "mx-blue", "mx-red", "mx-black", "rubber-dome")
-RATIOS = np.geomspace(0.25, 4.0, 17)
+RATIOS = np.geomspace(0.25, 16.0, 25)
 """Stiffness, or step, over what the bound says."""
 CUTS = (0.7, 0.9, 1.1, 1.3)
 """Force limit over the largest command that a curve needs."""
 MIDDLE_mm, TRAVEL_mm, HELD_cN, GENTLE_N_m = 2.0, 4.0, 60.0, 100.0
 SPEED_mm_s = 100.0
+STILL_mm, RELAY_mm = 0.01, 0.05
+"""Swings that count; those of a step between strokes are no smaller than half the reversal distance."""
 
 
 @dataclass(frozen=True)
@@ -84,22 +86,24 @@ def straight(drawn: Drawn, stiffness_N_m: float, step_cN: float) -> ForceSurface
     return table(drawn, x, middle + 0.5 * step_cN, middle - 0.5 * step_cN)
 
 
-def onset_ratio(drawn: Drawn, surface: Callable[[float], ForceSurface]) -> float:
+def onset_ratio(drawn: Drawn, surface: Callable[[float], ForceSurface], still_mm: float) -> float:
     """Give the least of RATIOS whose table swings; infinite if none does."""
     for ratio in RATIOS:
-        if swings_held(drawn.rig, drawn.finger, surface(float(ratio)), TRAVEL_mm, MIDDLE_mm, HELD_cN):
+        made = surface(float(ratio))
+        if swings_held(drawn.rig, drawn.finger, made, TRAVEL_mm, MIDDLE_mm, HELD_cN, still_mm):
             return float(ratio)
     return float("inf")
 
 
 def onsets(drawn: Drawn) -> tuple[float, float]:
     """Give where a rise and where a step between strokes begin to swing, over what was told."""
-    loop = SampledLoop.of_known(drawn.known, drawn.limits.tick_s, MIDDLE_mm, NominalFinger(), HELD_cN)
+    finger, known = NominalFinger(), drawn.known
+    loop = SampledLoop.of_known(known, drawn.limits.tick_s, MIDDLE_mm, finger, HELD_cN)
     rise = stiffness_limit_N_m(loop)
-    step = step_limit_cN(loop, GENTLE_N_m, drawn.limits.reversal_mm, drawn.known.friction_cN)
+    step = step_limit_cN(finger, HELD_cN, GENTLE_N_m, drawn.limits.reversal_mm, known.friction_cN)
     return (
-        onset_ratio(drawn, lambda ratio: straight(drawn, ratio * rise, 0.0)),
-        onset_ratio(drawn, lambda ratio: straight(drawn, GENTLE_N_m, ratio * step)),
+        onset_ratio(drawn, lambda ratio: straight(drawn, ratio * rise, 0.0), STILL_mm),
+        onset_ratio(drawn, lambda ratio: straight(drawn, GENTLE_N_m, ratio * step), RELAY_mm),
     )
 
 
@@ -113,9 +117,9 @@ def held_button(drawn: Drawn, model: FDVVModel) -> tuple[bool, bool]:
     ]
     coarse = grid_mm(model.travel_mm, 0.05)
     surface = table(drawn, coarse, *(np.interp(coarse, x, f) for f in (press, release)))
-    places = [(j.slope.rise_mm, j.slope.rise_cN) for j in judged]
+    places = [(j.slope.rise_mm, j.slope.rise_cN, STILL_mm) for j in judged]
     at = judged[1].step_mm
-    places.append((at, float(np.interp(at, x, 0.5 * (press + release)))))
+    places.append((at, float(np.interp(at, x, 0.5 * (press + release))), RELAY_mm))
     swings = any(swings_held(drawn.rig, drawn.finger, surface, model.travel_mm, *place) for place in places)
     return not any("buzz" in j.holds for j in judged), not swings
 

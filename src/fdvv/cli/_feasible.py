@@ -134,23 +134,17 @@ def _measure(
 
 def _print(document: dict[str, Any]) -> None:
     """Print a table of the curves, then the reasons, then the warmth."""
-    origin = (
-        f"rig known from {counted(document['rig_presses'], 'press')}"
-        if document["rig_presses"]
-        else "known rig"
-    )
-    print_wrapped(f"{document['model']} on {document['device']}, {origin}; computed, not pressed")
+    simulated = " (simulated)" if document["simulated"] else ""
+    known = f"rig known from {counted(document['rig_presses'], 'press')}"
+    print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
     print_table(COLUMNS, [_row(c) for c in document["curves"]])
     for curve in document["curves"]:
         for reason in curve["reasons"]:
             print_wrapped(f"{_name(curve)}: {reason}")
     for dose in document["thermal"]:
         print_wrapped(_warmth(dose))
-    if any(c["measured"] for c in document["curves"]) and document["simulated"]:
-        click.echo("measured: simulated")
-    print_wrapped(
-        "expected cN: estimated mean error after compensation; margin: stable stiffness over the curve's"
-    )
+    click.echo("margin: stiffness, or step between strokes, that the loop bears, over the curve's")
+    click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
 
 def _name(curve: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.compensate._feasible_force import BoolArray, Reach
 from fdvv.compensate._feasible_limits import RigLimits
-from fdvv.compensate._stability import BUZZES, SPAN_mm, Stability
+from fdvv.compensate._stability import BUZZES, ENOUGH, SPAN_mm, Stability
 from fdvv.compensate._thermal import ThermalDose
 from fdvv.units import FloatArray
 
@@ -110,7 +110,7 @@ def _bump(reached: Reach) -> Iterator[Hindrance]:
 def _stability(stable: Stability) -> Iterator[Hindrance]:
     """Tell what the sampled loop does not bear."""
     slope = stable.slope
-    if stable.margin < 1:
+    if stable.margin < ENOUGH:
         how = "buzzes" if stable.margin < BUZZES else "may buzz"
         near = f"between {max(0.0, slope.rise_mm - SPAN_mm):.2f} and {slope.rise_mm + SPAN_mm:.2f} mm"
         yield Hindrance(

@@ -19,9 +19,9 @@ SPAN_mm = 0.05
 """Slopes are those of the force averaged over this length, the step of a table."""
 END_mm = 0.1
 """Next to either end of the travel a stop carries the cap."""
-BUZZES = 0.5
-"""Below this margin a curve buzzes; from there to 1 it may: friction can hold what the linear loop cannot."""
-OMEGA_1_s = np.geomspace(20.0, 1e4, 400)
+ENOUGH, BUZZES = 1.2, 0.5
+"""From the first margin on a curve is quiet, below the second it buzzes. Between them decide fingers that
+differ from the nominal one, and friction, which can hold what the linear loop cannot."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Stability:
     grain_cN_mm : below it friction swallows what the sensor's grain feeds in (Abbott-Okamura).
     alone_cN_mm, finger_cN_mm : exact onset of swinging at the steepest rise, without and with a finger.
     step_cN, step_mm : largest excess of press over release, and where; 0 where only one curve is judged.
-    step_limit_cN : largest such step on which a finger that is nudged comes to rest.
+    step_limit_cN : up to it a finger that rests on the step is quiet, whatever nudges it.
     """
 
     slope: Slope
@@ -73,7 +73,7 @@ class Stability:
     def holds(self) -> str:
         """Name the most that can be said, from "passive for every finger" down to "buzzes"."""
         rise = self.slope.rise_cN_mm
-        if min(self.margin, self.step_margin) < 1:
+        if self.margin < ENOUGH or self.step_margin < 1:
             return "buzzes" if self.margin < BUZZES else "may buzz"
         if rise <= min(self.passive_cN_mm, self.grain_cN_mm):
             return "passive for every finger"
@@ -122,23 +122,18 @@ def steepest(displacement_mm: FloatArray, force_cN: FloatArray) -> Slope:
     return Slope(rise, float(x[up]), float(f[up]), fall, float(x[down]), float(f[down]))
 
 
-def step_limit_cN(loop: SampledLoop, stiffness_N_m: float, reversal_mm: float, friction_cN: float) -> float:
-    """Give the largest step between press and release on which a finger can rest without buzz.
+def step_limit_cN(
+    finger: NominalFinger, held_cN: float, stiffness_N_m: float, reversal_mm: float, friction_cN: float
+) -> float:
+    """Give the step between press and release up to which a resting finger is quiet, whatever nudges it.
 
-    A cap that comes back by the reversal distance r is given the other table: a relay of height step / 2,
-    which for a swing of amplitude A switches an angle theta after each extreme, 1 + cos theta = r / A. Its
-    describing function is N = 4 (step / 2) / (pi A) exp(j (pi/2 - theta)); a swing stands where
-    N + K = 1 / P, P the response of the place seen to a commanded force. The smallest step with a solution is the limit; a
-    step that friction holds by itself, 2 f, is always quiet. One harmonic only, and such a swing needs a
-    nudge to begin. Source: Gelb and Vander Velde 1968, for this relay.
+    A cap that comes back by the reversal distance is given the other table. Under the press table it comes to
+    rest higher, under the release table lower, (step - 2 friction) / (K finger + K) apart. While that is less
+    than the reversal distance, neither rest calls for the other table: 2 friction + reversal (K finger + K).
+    Beyond it the cap can hunt between both; whether it does depends on drag and inertia.
     """
-    # P is negative at rest: a force that pushes out moves the place seen, counted inward, back
-    wanted = 1 / loop.response(OMEGA_1_s) - stiffness_N_m
-    theta = 0.5 * np.pi - np.angle(wanted)
-    reachable = (wanted.real > 0) & (theta < 0.999 * np.pi)
-    size = np.abs(wanted) * np.pi * 1e-3 * reversal_mm / (4 * (1 + np.cos(theta)))
-    smallest = float(size[reachable].min()) if reachable.any() else np.inf
-    return max(200 * smallest, 2 * friction_cN)
+    held_N_m = finger.static_N_m(held_cN) + stiffness_N_m
+    return 2 * friction_cN + cN_mm_PER_N_m * reversal_mm * held_N_m
 
 
 def stability(
@@ -179,8 +174,7 @@ def _step(
     step, middle = over_cN - under_cN, 0.5 * (over_cN + under_cN)
     free = (x >= x[0] + END_mm) & (x <= x[-1] - END_mm)
     at = int(np.argmax(np.where(free, step, -np.inf)))
-    loop = SampledLoop.of_known(known, limits.tick_s, float(x[at]), finger, float(middle[at]))
     # where both fall the cap snaps through: none of it is held
-    flank = 10 * max(0.0, float(np.gradient(running_mean(x, middle, SPAN_mm), x)[at]))
-    quiet = step_limit_cN(loop, flank, limits.reversal_mm, known.friction_cN)
+    flank_N_m = max(0.0, float(np.gradient(running_mean(x, middle, SPAN_mm), x)[at])) / cN_mm_PER_N_m
+    quiet = step_limit_cN(finger, float(middle[at]), flank_N_m, limits.reversal_mm, known.friction_cN)
     return max(0.0, float(step[at])), float(x[at]), quiet

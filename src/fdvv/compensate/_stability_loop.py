@@ -136,14 +136,6 @@ class SampledLoop:
         second, newer = _held(self.rates, self.push, self.tick_s - old_s)
         return second @ first, second @ older, newer, whole
 
-    def response(self, omega_1_s: FloatArray) -> FloatArray:
-        """Give the place seen per commanded force in m/N, complex, (n,): holding counts as half a tick."""
-        rates, push = self.rates, self.push
-        eye = np.eye(rates.shape[0])
-        solved = np.array([np.linalg.solve(1j * w * eye - rates, push)[SEEN] for w in omega_1_s])
-        held = np.sinc(0.5 * omega_1_s * self.tick_s / np.pi)
-        return np.asarray(solved * held * np.exp(-1j * omega_1_s * (self.compute_s + 0.5 * self.tick_s)))
-
 
 def _held(rates: FloatArray, push: FloatArray, span_s: float) -> tuple[FloatArray, FloatArray]:
     """Give the transition over a span and the effect of a force held in it."""

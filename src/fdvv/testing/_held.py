@@ -12,7 +12,6 @@ from fdvv.twin import Finger, Rig, plan, silence, simulate
 NUDGE_s = 0.02
 """The finger comes so quickly that the cap arrives with a swing."""
 HOLD_s = 0.7
-STILL_mm = 0.01
 
 
 def held_swings_mm(
@@ -35,8 +34,14 @@ def held_swings_mm(
 
 
 def swings_held(
-    rig: Rig, finger: Finger, surface: ForceSurface, travel_mm: float, place_mm: float, force_cN: float
+    rig: Rig,
+    finger: Finger,
+    surface: ForceSurface,
+    travel_mm: float,
+    place_mm: float,
+    force_cN: float,
+    still_mm: float = 0.01,
 ) -> bool:
-    """Tell whether a held cap goes on swinging: by more than 0.01 mm, and without dying away."""
+    """Tell whether a held cap goes on swinging: by more than still_mm, and without dying away."""
     before, after = held_swings_mm(rig, finger, surface, travel_mm, place_mm, force_cN)
-    return after > max(STILL_mm, 0.7 * before)
+    return min(before, after) > still_mm and after > 0.7 * before
