@@ -145,30 +145,35 @@ def saturates(drawn: Drawn, model: FDVVModel, cut: float) -> tuple[bool, bool]:
     return said, bool(trace.saturated[trace.displacement_mm > 0.05].any())
 
 
-def error_left(drawn: Drawn, model: FDVVModel) -> list[tuple[float, float, float]]:
-    """Learn a button with the paper's law; give (speed, error expected, error on fresh presses) per curve."""
+def learned_button(drawn: Drawn, model: FDVVModel) -> list[tuple[float, ...]]:
+    """Learn a button with the paper's law; per curve: speed, error told and found, command told and learned.
+
+    Errors are those of fresh presses; commands the largest of either sign, where a probe judges.
+    """
     speeds = (50.0, 100.0, 150.0, 200.0)
     learned = compensate(TwinDevice(drawn.rig, drawn.finger, drawn.seed), model, speeds, PaperLaw(rounds=2))
     fresh = TwinDevice(drawn.rig, drawn.finger, drawn.seed + 5000)
     found = probe(fresh, model, learned.surface, speeds, 8)
     told = feasibility(model, drawn.known, settings_of(drawn.rig), speeds, found)
-    return [
-        (c.velocity_mm_s, c.expected.mean_cN, float(np.median(c.measured.mean_errors_cN)))
-        for c in told.curves
-        if c.measured
-    ]
+    rows: list[tuple[float, ...]] = []
+    for curve in told.curves:
+        assert curve.measured
+        reached, error_cN = curve.reached, float(np.median(curve.measured.mean_errors_cN))
+        place_mm = reached.displacement_mm[reached.judged]
+        row = learned.surface.table_cN(curve.stroke)[speeds.index(curve.velocity_mm_s)]
+        command_cN = np.interp(place_mm, learned.surface.displacement_mm, row)
+        largest = [float(np.abs(c).max()) for c in (reached.command_cN[reached.judged], command_cN)]
+        rows.append((curve.velocity_mm_s, curve.expected.mean_cN, error_cN, *largest))
+    return rows
 
 
 def agreement(title: str, pairs: list[tuple[bool, bool]], good: str, bad: str) -> str:
     """Count what was told against what happened."""
-    counts = {
-        (said, was): sum(p == (said, was) for p in pairs) for said in (True, False) for was in (True, False)
-    }
-    agree = counts[True, True] + counts[False, False]
-    return (
-        f"{title}: {agree} of {len(pairs)} agree; told {good}, was {bad}: {counts[True, False]}; "
-        f"told {bad}, was {good}: {counts[False, True]}"
-    )
+    parts = []
+    for said, word, other in ((True, good, bad), (False, bad, good)):
+        happened = [was for told, was in pairs if told is said]
+        parts.append(f"told {word} {len(happened)}, of them {sum(w is not said for w in happened)} {other}")
+    return f"{title}: {'; '.join(parts)}"
 
 
 def spread(title: str, ratios: list[float]) -> str:
@@ -193,20 +198,26 @@ def main(seeds: range = SEEDS) -> None:
     )
     cuts = [saturates(d, models[d.seed % len(models)], cut) for d in rigs for cut in CUTS]
     print(agreement("saturation", cuts, "cut", "uncut"))
-    left: list[tuple[float, float, float]] = []
+    rows: list[tuple[float, ...]] = []
     for drawn in rigs:
         try:
-            left += error_left(drawn, models[0])
+            rows += learned_button(drawn, models[0])
         except DeviceError:
-            print(f"seed {drawn.seed}: too many presses in a row could not be used, no error judged")
-    for speed in sorted({row[0] for row in left}):
-        rows = np.array([row[1:] for row in left if row[0] == speed])
-        expected, found = np.median(rows, axis=0)
-        ratio = np.percentile(rows[:, 1] / rows[:, 0], [5, 50, 95])
-        print(
-            f"error at {speed:g} mm/s: expected {expected:.1f} cN, after the paper's law {found:.1f} "
-            f"(medians of {len(rows)}); ratio {ratio[1]:.2f} (5 to 95 %: {ratio[0]:.2f} to {ratio[2]:.2f})"
+            print(f"seed {drawn.seed}: too many presses in a row could not be used, nothing learned")
+    for speed in sorted({row[0] for row in rows}):
+        print(against(speed, np.array([row[1:] for row in rows if row[0] == speed])))
+
+
+def against(speed_mm_s: float, rows: FloatArray) -> str:
+    """Hold what was told of error and command at one speed, (n, 4), against what was found."""
+    parts = [f"{speed_mm_s:g} mm/s, {len(rows)} curves"]
+    for name, told, found in (("error", *rows.T[:2]), ("largest command", *rows.T[2:])):
+        low, middle, high = np.percentile(found / told, [5, 50, 95])
+        parts.append(
+            f"{name} told {np.median(told):.1f} cN, learned {np.median(found):.1f} cN, "
+            f"ratio {middle:.2f} (5 to 95 %: {low:.2f} to {high:.2f})"
         )
+    return "; ".join(parts)
 
 
 if __name__ == "__main__":

@@ -94,7 +94,7 @@ def test_a_rise_is_held_against_the_onset(onset: float, following: Following, to
 def test_a_step_between_strokes_is_a_reason_but_never_forbids() -> None:
     verdict = judged(stable=replace(STABLE, step_cN=90.0))
     assert verdict.following is Following.PARTLY
-    assert "release lies 90 cN below press at 1.70 mm, quiet up to 20" in verdict.reasons[0]
+    assert "release lies 90 cN below press at 1.70 mm, surely quiet up to 20" in verdict.reasons[0]
 
 
 def test_warmth_is_told_in_presses_a_minute_and_seconds_held() -> None:

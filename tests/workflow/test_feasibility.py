@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import Following, KnownRig, NominalFinger, SampledLoop, stiffness_limit_N_m
+from fdvv.compensate import Following, KnownRig, Motion, NominalFinger, SampledLoop, stiffness_limit_N_m
 from fdvv.device import DeviceInfo, TwinDevice, open_device
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model import FDVVModel, ForceSurface, Stroke, load_builtin, remove_curve
@@ -112,6 +112,20 @@ def test_a_travel_beyond_the_device_is_refused_by_its_verdict(
     report = feasibility(model, known, settings_of(rig), [50.0], info=short)
     assert all(c.verdict.following is Following.CANNOT for c in report.curves)
     assert report.device_name == "short"
+
+
+def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(
+    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+) -> None:
+    rig, _, known = drawn
+    lasts_s = model.travel_mm / 200.0
+    t = np.linspace(0.0, lasts_s, 800)
+    even = Motion(Stroke.PRESS, t, 200.0 * t, np.full(800, 200.0), np.zeros(800))
+    report = feasibility(model, known, settings_of(rig), [200.0], motions={(Stroke.PRESS, 200.0): even})
+    press = report.curves[0].reached
+    opposed = known.opposing_cN(np.full(401, 200.0), np.zeros(401), press.displacement_mm)
+    wanted = (press.intended_cN - opposed) / known.gain_at(press.displacement_mm)
+    np.testing.assert_allclose(press.command_cN, wanted, atol=0.05)
 
 
 def test_bad_speeds_and_a_model_without_a_press_are_refused(

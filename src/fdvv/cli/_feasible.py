@@ -135,7 +135,8 @@ def _measure(
 def _print(document: dict[str, Any]) -> None:
     """Print a table of the curves, then the reasons, then the warmth."""
     simulated = " (simulated)" if document["simulated"] else ""
-    known = f"rig known from {counted(document['rig_presses'], 'press')}"
+    presses = document["rig_presses"]
+    known = f"rig known from {counted(presses, 'press')}" if presses else "rig known from its file alone"
     print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
     print_table(COLUMNS, [_row(c) for c in document["curves"]])
     for curve in document["curves"]:
@@ -143,7 +144,7 @@ def _print(document: dict[str, Any]) -> None:
             print_wrapped(f"{_name(curve)}: {reason}")
     for dose in document["thermal"]:
         print_wrapped(_warmth(dose))
-    click.echo("margin: stiffness, or step between strokes, that the loop bears, over the curve's")
+    click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
     click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
 
@@ -153,12 +154,11 @@ def _name(curve: dict[str, Any]) -> str:
 
 def _row(curve: dict[str, Any]) -> list[str]:
     kept, measured = curve["bump_kept_ratio"], curve["measured"]
-    stable = curve["stability"]
     return [
         _name(curve),
         number(curve["largest_command_cN"], 0),
         "–" if kept is None else f"{100 * kept:.0f} %",
-        number(min(stable["margin"], stable["step_margin"], 99.0), 1),
+        number(min(curve["stability"]["margin"], 99.0), 1),
         number(curve["expected_error"]["mean_cN"], 1),
         number(measured and measured["mean_error_cN"], 1),
         curve["verdict"],

@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.compensate._feasible_force import BoolArray, Reach
 from fdvv.compensate._feasible_limits import RigLimits
-from fdvv.compensate._stability import BUZZES, ENOUGH, SPAN_mm, Stability
+from fdvv.compensate._stability import BUZZES, ENOUGH, HUNTS, SPAN_mm, Stability
 from fdvv.compensate._thermal import ThermalDose
 from fdvv.units import FloatArray
 
@@ -118,11 +118,11 @@ def _stability(stable: Stability) -> Iterator[Hindrance]:
             f"{how} under a finger: it rises by {slope.rise_cN_mm:.0f} cN/mm, stable up to "
             f"{stable.finger_cN_mm:.0f}: shorten the loop, or soften the rise {near}",
         )
-    if stable.step_margin < 1:
+    if stable.step_margin < HUNTS:
         yield Hindrance(
             False,
             f"may buzz under a finger that pauses: release lies {stable.step_cN:.0f} cN below press at "
-            f"{stable.step_mm:.2f} mm, quiet up to {stable.step_limit_cN:.0f}: narrow the gap, or "
+            f"{stable.step_mm:.2f} mm, surely quiet up to {stable.step_limit_cN:.0f}: narrow the gap, or "
             "lengthen the reversal distance",
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -160,19 +160,22 @@ def feasibility(
     measured: ProbeResult | None = None,
     info: DeviceInfo | None = None,
     finger: NominalFinger | None = None,
+    motions: Mapping[tuple[Stroke, float], Motion] | None = None,
 ) -> FeasibilityReport:
     """Tell for every stroke and speed whether a known rig can render a model, and why not.
 
     known : as identified from presses (fdvv.compensate.identify), or load_rig of its file.
     settings : of the device (device_settings). info : its name and deepest stop.
     measured : presses of a probe at some of these speeds. finger : who holds the cap still.
+    motions : how the cap really goes, by stroke and speed, where that is known; else minimum jerk.
     Raises InputError on speeds that cannot be, ModelError on a rig that cannot be or a model without a press.
     """
     speeds = check_speeds(velocities_mm_s)
     if not model.of(Stroke.PRESS):
         raise ModelError(f"{model.name}: it has no press curve; merge one into it")
     limits = RigLimits.of_settings(settings)
-    rows = [_at_speed(model, known, limits, v, measured, info, finger) for v in speeds]
+    case = _Case(model, known, limits, measured, info, finger, motions or {})
+    rows = [_at_speed(case, speed) for speed in speeds]
     doses = tuple(dose for dose, _ in rows)
     curves = tuple(curves[i] for i in range(len(Stroke)) for _, curves in rows)
     simulated = bool(info and info.simulated) or bool(measured and measured.simulated)
@@ -182,30 +185,41 @@ def feasibility(
     )
 
 
-def _at_speed(
-    model: FDVVModel,
-    known: KnownRig,
-    limits: RigLimits,
-    speed_mm_s: float,
-    measured: ProbeResult | None,
-    info: DeviceInfo | None,
-    finger: NominalFinger | None,
-) -> tuple[ThermalDose, list[CurveFeasibility]]:
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """All that does not change from speed to speed."""
+
+    model: FDVVModel
+    known: KnownRig
+    limits: RigLimits
+    measured: ProbeResult | None
+    info: DeviceInfo | None
+    finger: NominalFinger | None
+    motions: Mapping[tuple[Stroke, float], Motion]
+
+    def motion(self, stroke: Stroke, speed_mm_s: float) -> Motion:
+        """Give the motion that is known, else one of minimum jerk."""
+        known = self.motions.get((stroke, speed_mm_s))
+        return known or minimum_jerk(stroke, self.model.travel_mm, speed_mm_s, self.limits.tick_s)
+
+
+def _at_speed(case: _Case, speed_mm_s: float) -> tuple[ThermalDose, list[CurveFeasibility]]:
     """Judge press and release at one speed."""
-    x = np.linspace(0.0, model.travel_mm, 1 + max(2, round(model.travel_mm / STEP_mm)))
-    forces = _forces(model, x, speed_mm_s)
-    motions = [minimum_jerk(stroke, model.travel_mm, speed_mm_s, limits.tick_s) for stroke in Stroke]
-    dose = _dose(known, limits, x, forces, motions)
+    travel_mm = case.model.travel_mm
+    x = np.linspace(0.0, travel_mm, 1 + max(2, round(travel_mm / STEP_mm)))
+    forces = _forces(case.model, x, speed_mm_s)
+    motions = [case.motion(stroke, speed_mm_s) for stroke in Stroke]
+    dose = _dose(case.known, case.limits, x, forces, motions)
     curves = []
     for stroke, force, motion in zip(Stroke, forces, motions, strict=True):
-        reached = reach(known, limits, motion, x, force)
+        reached = reach(case.known, case.limits, motion, x, force)
         # the step between the strokes is told once, with the release
         over = forces[0] if stroke is Stroke.RELEASE else None
-        stable = stability(known, limits, x, force, over, finger)
-        stop_mm = info.travel_limit_mm if info else None
-        verdict = follow_verdict(reached, limits, stable, dose, stop_mm)
-        expected = expected_error(known, reached, motion, speed_mm_s)
-        found = _measured(measured, stroke, speed_mm_s)
+        stable = stability(case.known, case.limits, x, force, over, case.finger)
+        stop_mm = case.info.travel_limit_mm if case.info else None
+        verdict = follow_verdict(reached, case.limits, stable, dose, stop_mm)
+        expected = expected_error(case.known, reached, motion, speed_mm_s)
+        found = _measured(case.measured, stroke, speed_mm_s)
         curves.append(CurveFeasibility(stroke, speed_mm_s, verdict, reached, stable, expected, found))
     return dose, curves
 
