@@ -11,6 +11,7 @@ from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
+from fdvv.compensate._tuned import HOLDS_cN, tuned_paper_law
 
 __all__ = [
     "RIG_DELAYS",
@@ -19,6 +20,7 @@ __all__ = [
     "CurveOutcome",
     "Delays",
     "GainSchedule",
+    "HOLDS_cN",
     "Job",
     "JobState",
     "KnownRig",
@@ -39,5 +41,6 @@ __all__ = [
     "observe",
     "smooth",
     "split_strokes",
+    "tuned_paper_law",
     "why_incomplete",
 ]
