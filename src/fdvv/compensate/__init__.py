@@ -19,6 +19,7 @@ from fdvv.compensate._prior import Plausible, Prior
 from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
+from fdvv.compensate._tuned import HOLDS_cN, tuned_paper_law
 from fdvv.compensate._tuning import Tuning
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "CurveOutcome",
     "Delays",
     "GainSchedule",
+    "HOLDS_cN",
     "Job",
     "JobState",
     "KnownRig",
@@ -63,5 +65,6 @@ __all__ = [
     "save_rig",
     "smooth",
     "split_strokes",
+    "tuned_paper_law",
     "why_incomplete",
 ]
