@@ -6,6 +6,7 @@ from fdvv.compensate._curve_state import Best, Learned, State
 from fdvv.compensate._drift import drifted
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._explain import explain
+from fdvv.compensate._foresee import NominalFinger
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
@@ -16,7 +17,10 @@ from fdvv.compensate._observe import Delays, observe
 from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
 from fdvv.compensate._prior import Plausible, Prior
+from fdvv.compensate._rig_aware import RigAware, RigState
 from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
+from fdvv.compensate._rig_learning import Learning
+from fdvv.compensate._rig_memory import RigMemory
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
 from fdvv.compensate._tuned import HOLDS_cN, tuned_paper_law
@@ -35,12 +39,17 @@ __all__ = [
     "JobState",
     "KnownRig",
     "Learned",
+    "Learning",
     "Method",
+    "NominalFinger",
     "Outcome",
     "PaperLaw",
     "PerCurve",
     "Plausible",
     "Prior",
+    "RigAware",
+    "RigMemory",
+    "RigState",
     "Sensor",
     "Span",
     "State",

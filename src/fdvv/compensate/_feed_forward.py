@@ -79,7 +79,7 @@ def wanted_cN(
 
 
 def unrepeatable_cN(known: KnownRig, speed_mm_s: float) -> float:
-    """Give by how much the need of two presses at one asked speed differs, rms, as far as a table can tell."""
+    """Give by how much two presses at one asked speed differ in what they need of a table, rms."""
     inertia = cN_PER_g_m_s2 * known.mass_g * float(np.interp(speed_mm_s, SPREAD_mm_s, SPREAD_m_s2))
     drag = DRAG_cN * known.drag_N_s_m * PACE_ratio * speed_mm_s
     return float(np.sqrt(known.residual_cN**2 + inertia**2 + drag**2 + 1.0))

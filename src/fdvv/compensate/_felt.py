@@ -1,4 +1,4 @@
-"""What one press on a known rig tells: motion, force on the finger, and the part of it the rig made by itself."""
+"""What one press on a known rig tells: motion, force on the finger, and what of it the rig made by itself."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from fdvv.compensate._balance import Sensor
 from fdvv.compensate._known_rig import KnownRig, cN_PER_g_m_s2
-from fdvv.compensate._strokes import mean_speed_mm_s, split_strokes
+from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes
 from fdvv.compensate._ticks import through, ticks_of, windows
 from fdvv.model import Press
 from fdvv.units import FloatArray
@@ -47,19 +47,17 @@ def passes(press: Press, travel_mm: float, known: KnownRig, sensor: Sensor) -> t
     a = a / 1000.0
     felt = _felt_cN(ticks.force_cN, ticks.tick_s, known.play_cN, sensor) - cN_PER_g_m_s2 * sensor.cone_g * a
     own = felt - known.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
-    down, up = (
-        Pass(
-            *(column[span.rows] for column in (x, v, a, felt, own)),
-            tick_s=ticks.tick_s,
-            speed_mm_s=mean_speed_mm_s(ticks.t_s, x, span),
-        )
-        for span in split_strokes(x, travel_mm)
-    )
-    return down, up
+
+    def between(span: Span) -> Pass:
+        rows, speed = span.rows, mean_speed_mm_s(ticks.t_s, x, span)
+        return Pass(x[rows], v[rows], a[rows], felt[rows], own[rows], ticks.tick_s, speed)
+
+    down, up = split_strokes(x, travel_mm)
+    return between(down), between(up)
 
 
 def _felt_cN(reading_cN: FloatArray, tick_s: float, play_cN: float, sensor: Sensor) -> FloatArray:
-    """Undo the sensor's filter, and the half of its play by which a changing force is ahead of the reading."""
+    """Undo the sensor's filter, and the half of its play by which a changing force is ahead of it."""
     even, slope = (through(window, reading_cN) for window in windows(tick_s)[:2])
     ahead = 0.5 * play_cN * np.clip(slope / TURN_cN_s, -1.0, 1.0)
     return np.asarray(even + sensor.filter_s * slope + ahead)

@@ -1,4 +1,4 @@
-"""Compensation that knows the rig: identify, feed forward, learn what is left; zero presses where both are known."""
+"""Compensation that knows its rig: identify it, feed forward, learn only what is left."""
 
 from __future__ import annotations
 
@@ -7,162 +7,224 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fdvv.compensate._balance import Sensor
-from fdvv.compensate._bins import bin_force
-from fdvv.compensate._explain import explain
-from fdvv.compensate._feed_forward import (
-    HOME_mm,
-    LIFT_cN,
-    command_cN,
-    inertia_cN,
-    tuning_of,
-    unrepeatable_cN,
-    wanted_cN,
-)
-from fdvv.compensate._felt import Pass, passes
-from fdvv.compensate._foresee import NominalFinger, foresee
+from fdvv.compensate._explain import explain as explain_rig
+from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN, tuning_of, unrepeatable_cN
+from fdvv.compensate._felt import passes
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
 from fdvv.compensate._known_rig import KnownRig
-from fdvv.compensate._method import NOTHING, Count, CurveOutcome, Job, Outcome, Trial
-from fdvv.compensate._shared_table import SharedTable
+from fdvv.compensate._method import NOTHING, Count, Job, Outcome, Trial
+from fdvv.compensate._rig_learning import Felt, Learning, Pair, believed, felt_off, learn_stroke
+from fdvv.compensate._rig_memory import RigMemory
+from fdvv.compensate._rig_outcome import curves_of, kept_rows
+from fdvv.compensate._tuning import Tuning
 from fdvv.errors import FitError, ModelError
-from fdvv.model import ForceSurface, Press, Stroke
+from fdvv.model import ForceSurface, Press
 from fdvv.units import FloatArray
 
-Pair = tuple[SharedTable, SharedTable]
-
-
-@dataclass(frozen=True, eq=False)
-class Try:
-    """One press as the rig felt it: at which of the job's speeds, on which rows, and how far off, press, release."""
-
-    at: int
-    rows_cN: tuple[FloatArray, FloatArray]
-    mean_cN: tuple[float, float]
-    max_cN: tuple[float, float]
+ANY_PACE_ratio = 1.0
+"""A rig is known from presses of any pace."""
 
 
 @dataclass(frozen=True, eq=False)
 class RigState:
-    """Where it stands.
+    """Where a job stands.
 
     Attributes
     ----------
-    known : the rig, once identified. tables : what is learned beyond it, press and release.
-    unknown : presses made before the rig was known. tries : presses made on tables of a known rig.
+    known : the rig, once identified, or as it was known before.
+    tables : what is learned beyond it, press and release; None while the rig is unknown.
+    unknown : presses made before the rig was known.
+    felt : per speed of the job, each press made on a table for the known rig: press and release.
     told : what the last press changed.
     """
 
     job: Job
+    felt: tuple[tuple[tuple[Felt, Felt], ...], ...]
     known: KnownRig | None = None
     tables: Pair | None = None
     unknown: tuple[Press, ...] = ()
-    tries: tuple[Try, ...] = ()
     told: str = ""
+
+    @property
+    def rig(self) -> tuple[KnownRig, Pair]:
+        """Give rig and tables; ModelError while they are unknown."""
+        if self.known is None or self.tables is None:
+            raise ModelError("the rig is not known yet")
+        return self.known, self.tables
 
 
 @dataclass(frozen=True)
 class RigAware:
-    """Settings of the method.
+    """Settings of the method; docs/explanation/compensation.md tells it.
 
     Attributes
     ----------
-    rounds : presses per speed once the rig is known.
-    known, learned : of an earlier job on this rig; then nothing is identified, and with 0 rounds nothing pressed.
-    sensor : of the finger. finger : a nominal one.
-    bandwidth_Hz : of the controller's look-ahead. friction_mm_s : speed from which friction is taken off whole.
+    rounds : presses per speed once the rig is known; with a memory 0 are enough.
+    memory : of an earlier job on this rig: then nothing is identified.
+    meet : presses to know a rig by, at the job's speeds in turn; meet_most : when they tell too little.
+    sensor : of the finger.
+    bandwidth_Hz : of the controller's look-ahead. friction_mm_s : speed from which friction is fed whole.
+    learning : how presses enter the tables. bin_mm : step of the tables.
     """
 
-    rounds: int = 2
-    known: KnownRig | None = None
-    learned: Pair | None = None
+    rounds: int = 3
+    memory: RigMemory | None = None
+    meet: int = 4
+    meet_most: int = 8
     sensor: Sensor = field(default_factory=Sensor)
-    finger: NominalFinger = field(default_factory=NominalFinger)
     bandwidth_Hz: float = 100.0
     friction_mm_s: float = 10.0
+    learning: Learning = field(default_factory=Learning)
     bin_mm: float = 0.05
-    common_cN: float = 4.0
-    alone_ratio: float = 0.3
-    fading: float = 0.9
-    smoothing_mm: float = 0.06
-    smoothing_s: float = 8e-4
-    trust: float = 0.7
 
-    name = "rig-aware"
+    def __post_init__(self) -> None:
+        if self.rounds < 0 or not 1 <= self.meet <= self.meet_most:
+            raise ModelError(f"needs no rounds below 0, and 1 <= meet <= meet_most, got {self}")
+        if not (self.bandwidth_Hz > 0 and self.friction_mm_s > 0 and self.bin_mm > 0):
+            raise ModelError(f"bandwidth_Hz, friction_mm_s and bin_mm must be above 0, got {self}")
+
+    @property
+    def name(self) -> str:
+        """Name the method."""
+        met = "a rig known before" if self.memory else f"a rig identified from {self.meet} presses"
+        return f"rig-aware: {met}, look-ahead and feed-forward, {self.rounds} rounds of learning what is left"
 
     def init(self, job: Job) -> RigState:
-        state = RigState(job, self.known)
-        return state if self.known is None else replace(state, tables=self._tables(job, self.known))
+        """Begin a job; with a memory, from what is known."""
+        state = RigState(job, ((),) * job.target.velocity_mm_s.size)
+        if self.memory is None:
+            return state
+        known, target = self.memory.known, job.target
+        fresh = believed(job, known, self.learning)
+        rows = self.memory.rows_cN(target.displacement_mm, target.velocity_mm_s, job.travel_mm)
+        # what was learned holds for this button up to what a speed has for itself
+        alone = np.diag(fresh.covariance_cN2) * self.learning.alone_ratio**2
+        press, release = (replace(fresh, rows_cN=r, covariance_cN2=np.diag(alone)) for r in rows)
+        return replace(state, known=known, tables=(press, release))
 
     def trial(self, state: RigState) -> Trial | None:
+        """Press to know the rig, then the speed with the fewest presses; None when finished."""
         speeds = state.job.target.velocity_mm_s
         if state.known is None:
             surface = identification_surface(state.job.target, limit_cN=state.job.force_limit_cN)
-            return Trial(surface, float(speeds[len(state.unknown) % speeds.size]))
-        if len(state.tries) >= self.rounds * speeds.size:
+            speed = float(speeds[len(state.unknown) % speeds.size])
+            return Trial(surface, speed, pace_ratio=ANY_PACE_ratio)
+        at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
+        if len(state.felt[at]) >= self.rounds:
             return None
-        at = len(state.tries) % speeds.size
-        return Trial(self.surface(state), float(speeds[at]), self.tuning(state))
-
-    def tuning(self, state):
-        if state.known is None: return NOTHING
-        return tuning_of(state.known, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
+        return Trial(self._surface(state, state.rig[1]), float(speeds[at]), self._tuning(state))
 
     def step(self, press: Press, state: RigState) -> RigState:
+        """Know the rig, or learn from a press on it. ModelError on a press that tells nothing."""
         if state.known is None:
             return self._meet(press, state)
-        return self._learn(press, state)
+        speeds = state.job.target.velocity_mm_s
+        at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
+        pair, tables = self._learn(press, state, at)
+        felt = (*state.felt[:at], (*state.felt[at], pair), *state.felt[at + 1 :])
+        after = replace(state, felt=felt, tables=tables)
+        return replace(after, told=self._told(state, after, at))
 
-    def _meet(self, press, state):
+    def explain(self, state: RigState) -> str:
+        """Tell what the last press changed; empty before the first."""
+        return state.told
+
+    def count(self, state: RigState) -> Count:
+        """Count presses; those to know the rig by belong to the speeds they are asked at."""
+        size = state.job.target.velocity_mm_s.size
+        meet = 0 if self.memory else max(self.meet, len(state.unknown) + (state.known is None))
+        first = [meet // size + (i < meet % size) for i in range(size)]
+        made = len(state.unknown) + sum(map(len, state.felt))
+        return Count(made, meet + size * self.rounds, tuple(n + self.rounds for n in first))
+
+    def done(self, state: RigState) -> Outcome:
+        """Give the tables, for every speed and stroke the best that was pressed if the last got worse."""
+        made = self.count(state).made
+        if state.known is None:
+            return Outcome(state.job.target, (), made, False, f"{made} presses, the rig is not known yet")
+        _, tables = state.rig
+        complete = self.trial(state) is None
+        sentence = explain_rig(state.known, 0.5 * state.job.travel_mm)
+        surface = self._surface(state, kept_rows(tables, state.felt))
+        curves = curves_of(state.job, state.felt, self.memory)
+        return Outcome(surface, curves, made, complete, sentence, self._tuning(state))
+
+    def remembered(self, state: RigState) -> RigMemory:
+        """Give what the rig has taught, for other buttons. ModelError while it is unknown."""
+        known, tables = state.rig
+        press, release = (table.rows_cN for table in kept_rows(tables, state.felt))
+        target, job = state.job.target, state.job
+        errors = np.array([[c.mean_error_cN for c in curves_of(job, state.felt, self.memory)]])
+        errors = np.nan_to_num(errors.reshape(2, -1), nan=known.residual_cN)
+        residual = ForceSurface(target.displacement_mm, target.velocity_mm_s, press, release)
+        return RigMemory(known, residual, job.travel_mm, errors)
+
+    def _meet(self, press: Press, state: RigState) -> RigState:
+        """Keep a press of an unknown rig; identify it once they are enough, and learn from them all."""
         unknown = (*state.unknown, press)
-        need = max(4, state.job.target.velocity_mm_s.size)
-        if len(unknown) < need:
-            return replace(state, unknown=unknown, told=f"press {len(unknown)} of {need} to know the rig by")
-        known = identify(unknown, state.job.travel_mm)
-        state = replace(state, known=known, unknown=unknown, told=explain(known))
-        tables = self._tables(state.job, known)
-        for p in unknown:
-            tables = self._taken(p, replace(state, tables=tables))[0]
-        return replace(state, tables=tables)
+        if len(unknown) < self.meet:
+            told = f"{len(unknown)} of {self.meet} presses to know the rig by"
+            return replace(state, unknown=unknown, told=told)
+        try:
+            known = identify(unknown, state.job.travel_mm)
+        except FitError as error:
+            if len(unknown) >= self.meet_most:
+                raise ModelError(f"the rig cannot be identified: {error}") from error
+            return replace(state, unknown=unknown, told=f"one more press is needed: {error}")
+        table = believed(state.job, known, self.learning)
+        met = replace(state, known=known, unknown=unknown, tables=(table, table))
+        speeds = state.job.target.velocity_mm_s
+        for i, one in enumerate(unknown):
+            met = replace(met, tables=self._learn(one, met, i % speeds.size)[1])
+        return replace(met, told=explain_rig(known, 0.5 * state.job.travel_mm))
 
-    def _learn(self, press, state):
-        tables, tried = self._taken(press, state)
-        return replace(state, tables=tables, tries=(*state.tries, tried), told="")
+    def _learn(self, press: Press, state: RigState, at: int) -> tuple[tuple[Felt, Felt], Pair]:
+        """Tell how a press made for speed number ``at`` felt, and take it into the tables."""
+        known, tables = state.rig
+        job, rig = state.job, (known, self._tuning(state))
+        targets = (job.target.press_cN[at], job.target.release_cN[at])
+        strokes = passes(press, job.travel_mm, known, self.sensor)
+        each = tuple(zip(tables, strokes, targets, strict=True))
+        down, up = (felt_off(stroke, force, table, at, job.travel_mm) for table, stroke, force in each)
+        press_table, release_table = (
+            learn_stroke(table, stroke, force, at, rig, self.learning) for table, stroke, force in each
+        )
+        return (down, up), (press_table, release_table)
 
-    def _tables(self, job, known):
-        if self.learned is not None: return self.learned
-        speeds = job.target.velocity_mm_s
-        inertia = inertia_cN(known, speeds)
-        one = SharedTable.believed(job.target.displacement_mm, speeds, self.common_cN, inertia, 1.0 + self.alone_ratio * inertia)
-        return one, one
+    def _tuning(self, state: RigState) -> Tuning:
+        if state.known is None:
+            return NOTHING
+        return tuning_of(state.known, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
 
-    def _taken(self, press, state):
-        job, known = state.job, state.known
-        grid = job.target.displacement_mm
-        speeds = job.target.velocity_mm_s
-        at = int(np.argmin(np.abs(speeds - press.velocity_mm_s)))
-        tuning = tuning_of(known, job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
-        new, means, maxs = [], [], []
-        for table, stroke, target in zip(state.tables, passes(press, job.travel_mm, known, self.sensor), (job.target.press_cN[at], job.target.release_cN[at]), strict=True):
-            change = foresee(stroke, target, grid, self.finger)
-            change = tuple(self.trust * c for c in change)
-            x, more = wanted_cN(known, tuning, stroke, change, (grid, target))
-            seen = bin_force(x, more, grid)
-            felt = bin_force(stroke.displacement_mm, stroke.felt_cN, grid)
-            off = np.abs(felt - target)[(grid > 0.3) & (grid < job.travel_mm - 0.1)]
-            means.append(float(np.nanmean(off))); maxs.append(float(np.nanmax(off)))
-            v = float(speeds[at])
-            new.append(table.learned(seen, v, unrepeatable_cN(known, v), self.smoothing_mm + self.smoothing_s * v, self.fading))
-        rows = tuple(t.rows_cN[at] for t in state.tables)
-        return tuple(new), Try(at, rows, tuple(means), tuple(maxs))
-
-    def surface(self, state):
-        target, known = state.job.target, state.known
+    def _surface(self, state: RigState, tables: Pair) -> ForceSurface:
+        """Make the commands: what the numbers ask for, what was learned, the cap held up at its home."""
+        known, target, limit = state.rig[0], state.job.target, state.job.force_limit_cN
         grid = target.displacement_mm
-        limit = state.job.force_limit_cN
-        tabs = []
-        for force, table in zip((target.press_cN, target.release_cN), state.tables, strict=True):
-            command = command_cN(known, grid, force) + np.stack([table.at(v) for v in target.velocity_mm_s])
-            command = np.where(grid <= HOME_mm, np.maximum(command, (LIFT_cN + known.weight_cN) / known.gain_at(grid)), command)
-            tabs.append(np.clip(command, -limit, limit))
-        return ForceSurface(grid, target.velocity_mm_s, *tabs)
+        lift = (LIFT_cN + known.weight_cN) / known.gain_at(grid)
+
+        def rows(force_cN: FloatArray, learned_cN: FloatArray) -> FloatArray:
+            command = command_cN(known, grid, force_cN) + learned_cN
+            return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
+
+        press, release = tables
+        return ForceSurface(
+            grid,
+            target.velocity_mm_s,
+            rows(target.press_cN, press.rows_cN),
+            rows(target.release_cN, release.rows_cN),
+        )
+
+    def _told(self, before: RigState, after: RigState, at: int) -> str:
+        known, tables = after.rig
+        speed = float(after.job.target.velocity_mm_s[at])
+        down, up = after.felt[at][-1]
+        moved = [
+            float(np.abs(new.rows_cN[at] - old.rows_cN[at]).max())
+            for new, old in zip(tables, before.rig[1], strict=True)
+        ]
+        return (
+            f"felt {down.mean_cN:.1f} cN off on the press, {up.mean_cN:.1f} on the release; moved them by up "
+            f"to {moved[0]:.1f} and {moved[1]:.1f} cN; two such presses differ by about "
+            f"{unrepeatable_cN(known, speed):.1f} cN"
+        )

@@ -13,14 +13,17 @@ from fdvv.units import FloatArray
 BEYOND_ratio = 0.3
 """So far beyond the outer speeds a press is still told apart from one at them."""
 
+GATE = 2.0
+"""What is more surprising than so many standard deviations is a bounce or a slip, and counts as this many."""
+
 
 @dataclass(frozen=True, eq=False)
 class SharedTable:
     """What is believed of a table, one row per speed.
 
-    Rows are believed alike: an error of calibration is in all of them, one of inertia grows with the square of
-    speed, and little is left that one row has alone. So a press at one speed corrects the others, by as much as
-    that belief allows, and a row that many presses have told moves little more.
+    Rows are believed alike: an error of calibration is in all of them, one of inertia grows with the square
+    of speed, and little is left that one row has alone. So a press at one speed corrects the others, by as
+    much as that belief allows, and a row that many presses have told moves little more.
 
     Attributes
     ----------
@@ -44,8 +47,7 @@ class SharedTable:
         alone_cN: FloatArray,
     ) -> SharedTable:
         """Begin at 0; spreads: common to all rows, of inertia at each speed, and of each row alone, (s,)."""
-        inertia, alone = np.broadcast_to(inertia_cN, speeds_mm_s.shape), np.asarray(alone_cN)
-        covariance = common_cN**2 + np.outer(inertia, inertia) + np.diag(np.broadcast_to(alone, inertia.shape) ** 2)
+        covariance = common_cN**2 + np.outer(inertia_cN, inertia_cN) + np.diag(alone_cN**2)
         return cls(grid_mm, speeds_mm_s, np.zeros((speeds_mm_s.size, grid_mm.size)), covariance)
 
     def shares(self, speed_mm_s: float) -> FloatArray:
@@ -78,8 +80,11 @@ class SharedTable:
         shares = self.shares(speed_mm_s)
         covariance = self.covariance_cN2 / fading
         spread = covariance @ shares
-        weights = spread / (shares @ spread + noise_cN**2)
-        surprise = np.interp(np.arange(seen_cN.size), told, (seen_cN - self.at(speed_mm_s))[told])
+        expected = float(shares @ spread + noise_cN**2)
+        weights = spread / expected
+        gate = GATE * np.sqrt(expected)
+        surprise = np.clip((seen_cN - self.at(speed_mm_s))[told], -gate, gate)
+        surprise = np.interp(np.arange(seen_cN.size), told, surprise)
         surprise = smooth(surprise, sigma_mm, float(self.grid_mm[1] - self.grid_mm[0]))
         return replace(
             self,

@@ -126,7 +126,7 @@ def _course(method: Method[Any], job: Job, log: PressLog, session: Session) -> C
         "compensate",
         method,
         job.travel_mm,
-        lambda press: judge(press, job.travel_mm, session.acceptance),
+        lambda press, pace_ratio: judge(press, job.travel_mm, session.acceptance.at_pace(pace_ratio)),
         session.acceptance.patience,
         lambda state: standings(job, method.count(state), log, method.done(state).curves),
     )
