@@ -270,8 +270,7 @@ def pressed_again_and_again() -> PressedDevice:
         meddle=lambda tick, inputs: inputs._replace(force_counts=2048 + tick % 64),
     )  # fmt: skip
     device = PressedDevice(LockstepPort(LibraryBoard(), plant, FELT.tick_us))
-    device.client.write_settings(FELT)
-    device.settings = FELT
+    device.configure(FELT)
     return device
 
 

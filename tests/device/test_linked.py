@@ -142,7 +142,7 @@ def test_ctrl_c_in_a_press_disarms() -> None:
 def test_other_settings_are_used_and_want_a_new_upload() -> None:
     device = linked()
     device.upload(plain_surface(), 4.0)
-    device.write_settings(Settings(tick_us=500, force_limit_cN64=50 * 64))
+    device.configure(Settings(tick_us=500, force_limit_cN64=50 * 64))
     assert device.info().force_limit_cN == 50
     assert device.info().tick_s == 0.0005
     with pytest.raises(DeviceError, match="press before upload"):

@@ -110,7 +110,7 @@ def test_a_hanging_controller_is_reset_with_the_bridge_off_and_says_why(emulated
 
 @pytest.mark.parametrize(("tick_us", "reads"), [(500, 25), (1000, 25), (250, 10)])
 def test_the_tick_follows_the_settings(emulated: LinkedDevice, tick_us: int, reads: int) -> None:
-    emulated.write_settings(Settings(tick_us=tick_us, reads=reads, position_gain_q14=20000))
+    emulated.configure(Settings(tick_us=tick_us, reads=reads, position_gain_q14=20000))
     emulator = board_of(emulated).emulator
     emulator.run_ticks(4)
     assert (emulator.tick_us, emulator.reads) == (tick_us, reads)

@@ -103,6 +103,7 @@ def probe(
     learning starts from: the model's own force). Errors are in true displacement, median over the
     presses. Use another --seed than for learning.
     """
+    from fdvv.compensate import Tuning
     from fdvv.workflow import load_actuation, open_model, uncompensated
     from fdvv.workflow import probe as judge
 
@@ -115,7 +116,10 @@ def probe(
     session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
     with guided(session, device, as_json) as (found, view, guide):
         surface = learned.surface if learned else uncompensated(found, model, velocities_mm_s)
-        result = judge(found, model, surface, velocities_mm_s, presses, view.done, method, session, guide)
+        tuning = learned.outcome.tuning if learned else Tuning()
+        result = judge(
+            found, model, surface, velocities_mm_s, presses, view.done, method, session, guide, tuning
+        )
     document = {**result.to_dict(), **_receipt(result)}
     _print(document, as_json)
     worst = max(document["curves"], key=lambda c: c["mean_error_cN"])

@@ -17,6 +17,7 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._tuning import settings_with
 
 __all__ = [
     "Ask",
@@ -65,6 +66,7 @@ __all__ = [
     "probe",
     "program_image",
     "save_actuation",
+    "settings_with",
     "summarise",
     "uncompensated",
 ]

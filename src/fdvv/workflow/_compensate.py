@@ -171,7 +171,7 @@ def check_force_sensor(device: Device, truth_counts: bool = False) -> None:
 
     truth_counts : a simulated rig will do, as its true force is known. Raises DeviceError.
     """
-    if not isinstance(device, Remote) or device.settings.force_gain_q14:
+    if not isinstance(device, Remote) or device.settings().force_gain_q14:
         return
     info = device.info()
     if not (truth_counts and info.simulated):
