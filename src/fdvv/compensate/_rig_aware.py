@@ -22,8 +22,8 @@ from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
 from fdvv.units import FloatArray
 
-ANY_PACE_ratio = 1.0
-"""A rig is known from presses of any pace."""
+ANY_PACE_ratio, LOOSE_PACE_ratio = 1.0, 0.6
+"""A rig is known from presses of any pace; on a heavy one that is not learned yet no person can keep it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class RigAware:
     meet: int = 4
     meet_most: int = 8
     sensor: Sensor = field(default_factory=Sensor)
-    bandwidth_Hz: float = 100.0
+    bandwidth_Hz: float = 120.0
     friction_mm_s: float = 10.0
     learning: Learning = field(default_factory=Learning)
     bin_mm: float = 0.05
@@ -113,7 +113,9 @@ class RigAware:
         at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
         if len(state.felt[at]) >= self.rounds:
             return None
-        return Trial(self._surface(state, state.rig[1]), float(speeds[at]), self._tuning(state))
+        return Trial(
+            self._surface(state, state.rig[1]), float(speeds[at]), self._tuning(state), LOOSE_PACE_ratio
+        )
 
     def step(self, press: Press, state: RigState) -> RigState:
         """Know the rig, or learn from a press on it. ModelError on a press that tells nothing."""
