@@ -38,14 +38,14 @@ static FDVV_SELDOM fdvv_ratio over(fdvv_ratio one, uint32_t value)
     return fdvv_ratio_product(one, fdvv_ratio_inverse(fdvv_ratio_of(value)));
 }
 
-/* With q = 1 - p for a triple pole at p: 1 - p^3 = q (3 - 3 q + q^2), 1.5 q^2 (2 - q), q^3. */
+/* With q = 1 - p for a triple pole at p: 1 - p^3 = q (3 - 3 q + q^2), 1.5 q^2 (2 - q), q^3 / 2. */
 static void find_gains(fdvv_predictor *predictor, uint32_t q_q16)
 {
     fdvv_ratio q = ratio_of(q_q16), square = times(q, q);
     uint32_t inner_q16 = 3 * 65536u - 3 * q_q16 + (q_q16 * q_q16 >> 16);
     predictor->place_gain = gain_of(times(q, ratio_of(inner_q16)), 32 + 6);
     predictor->step_gain = gain_of(times(square, ratio_of(3 * (131072u - q_q16))), 49 + 6);
-    predictor->bend_gain = gain_of(times(square, q), 48);
+    predictor->bend_gain = gain_of(times(square, q), 49);
 }
 
 FDVV_SELDOM void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_settings *settings)
@@ -78,7 +78,7 @@ static void predict(fdvv_predictor *predictor)
     predictor->step_q10 = fdvv_clamp(predictor->step_q10 + ((bend_q16 + 16) >> 5), -limit_q10, limit_q10);
 }
 
-/* |beyond_q16| is below 2^30, and so is what each gain, 1, 1.5 and 1 at most, makes of it: sums are below 2^31. */
+/* |beyond_q16| is below 2^30 and the gains below 1, 1.5 and 0.5, the first two less 2^6: sums stay below 2^31. */
 static void correct(fdvv_predictor *predictor, int32_t beyond_q16)
 {
     int32_t step_q10 = predictor->step_q10 + scaled(beyond_q16, predictor->step_gain);

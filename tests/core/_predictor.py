@@ -46,7 +46,7 @@ class Predictor:
         self.gains = (
             (times(q, 3 * 2**16 - 3 * q + q * q // 2**16), 32),
             (times(q, q, 3 * (2**17 - q)), 49),
-            (times(q, q, q), 48 - 6),
+            (times(q, q, q), 49 - 6),
         )
         lead, brake = times(s.lead_us, tick) or 0, times(s.brake_lead_us, tick) or 0
         drag = times(s.drag_q13, 1000, tick) or 0
