@@ -19,10 +19,10 @@ typedef struct {
     int32_t bend_q16;        /* half the acceleration, um16 per tick^2 */
     int32_t step_limit_q10;  /* 4.096 m/s */
     int32_t bend_limit_q16;  /* 1953 m/s^2 */
-    fdvv_ratio place_gain, step_gain, bend_gain; /* of what is sensed beyond what was predicted */
+    /* ratios whose shift is 16 less, 0 to 29 */
+    fdvv_ratio place_gain, step_gain, bend_gain; /* of what is sensed beyond what was predicted, q16 */
     fdvv_ratio lead_step, lead_bend;             /* to um16 ahead */
-    fdvv_ratio brake_bend;                       /* to velocity added */
-    fdvv_ratio drag, friction;                   /* velocity to cN64 */
+    fdvv_ratio drag_step, drag_bend, friction;   /* to cN64 */
 } fdvv_predictor;
 
 /* Forget every place. */
