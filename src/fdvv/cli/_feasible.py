@@ -80,7 +80,7 @@ def feasible(
         click.echo(NO_RIG)
         return
     from fdvv.compensate import load_rig
-    from fdvv.workflow import device_settings, feasibility, open_model
+    from fdvv.workflow import feasibility, open_model
 
     model, known = open_model(button), load_rig(rig_known)
     session = open_session(
@@ -88,7 +88,7 @@ def feasible(
     )
     measured = _measure(session, device, model, actuation, velocities_mm_s, presses, as_json)
     with _opened(session, device) as found:
-        settings, info = device_settings(found), found.info()
+        settings, info = found.settings(), found.info()
     report = feasibility(model, known, settings, velocities_mm_s, measured, info)
     if figure:
         from fdvv.plot import plot_feasibility

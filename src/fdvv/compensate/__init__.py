@@ -23,7 +23,14 @@ from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
 from fdvv.compensate._prior import Plausible, Prior
 from fdvv.compensate._rig_aware import RigAware, RigState
-from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
+from fdvv.compensate._rig_file import (
+    load_memory,
+    load_rig,
+    memory_from_json,
+    rig_from_json,
+    rig_to_json,
+    save_rig,
+)
 from fdvv.compensate._rig_learning import Learning
 from fdvv.compensate._rig_memory import RigMemory
 from fdvv.compensate._stability import (
@@ -104,8 +111,10 @@ __all__ = [
     "identification_surface",
     "identify",
     "judge",
+    "load_memory",
     "load_rig",
     "mean_speed_mm_s",
+    "memory_from_json",
     "minimum_jerk",
     "needed_cN",
     "observe",

@@ -16,7 +16,7 @@ from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import NOTHING, Count, Job, Outcome, Trial
 from fdvv.compensate._rig_learning import Felt, Learning, Pair, believed, felt_off, learn_stroke
 from fdvv.compensate._rig_memory import RigMemory
-from fdvv.compensate._rig_outcome import curves_of, kept_rows
+from fdvv.compensate._rig_outcome import curves_of, held_up, kept_rows
 from fdvv.compensate._tuning import Tuning
 from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
@@ -88,7 +88,8 @@ class RigAware:
     def name(self) -> str:
         """Name the method."""
         met = "a rig known before" if self.memory else f"a rig identified from {self.meet} presses"
-        return f"rig-aware: {met}, look-ahead and feed-forward, {self.rounds} rounds of learning what is left"
+        rounds = "1 round" if self.rounds == 1 else f"{self.rounds} rounds"
+        return f"rig-aware: {met}, look-ahead and feed-forward, {rounds} of learning what is left"
 
     def init(self, job: Job) -> RigState:
         """Begin a job; with a memory, from what is known."""
@@ -144,7 +145,8 @@ class RigAware:
         """Give the tables, for every speed and stroke the best that was pressed if the last got worse."""
         made = self.count(state).made
         if state.known is None:
-            return Outcome(state.job.target, (), made, False, f"{made} presses, the rig is not known yet")
+            start = held_up(state.job)
+            return Outcome(start, (), made, False, f"{made} presses, the rig is not known yet")
         _, tables = state.rig
         complete = self.trial(state) is None
         sentence = explain_rig(state.known, 0.5 * state.job.travel_mm)
@@ -186,7 +188,10 @@ class RigAware:
         known, tables = state.rig
         job, rig = state.job, (known, self._tuning(state))
         targets = (job.target.press_cN[at], job.target.release_cN[at])
-        strokes = passes(press, job.travel_mm, known, self.sensor)
+        try:
+            strokes = passes(press, job.travel_mm, known, self.sensor)
+        except FitError as error:
+            raise ModelError(str(error)) from error
         each = tuple(zip(tables, strokes, targets, strict=True))
         down, up = (felt_off(stroke, force, table, at, job.travel_mm) for table, stroke, force in each)
         press_table, release_table = (

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from fdvv.compensate._method import CurveOutcome, Job
+from fdvv.compensate._paper import PaperLaw
 from fdvv.compensate._rig_learning import Felt, Pair
 from fdvv.compensate._rig_memory import RigMemory
 from fdvv.compensate._shared_table import SharedTable
-from fdvv.model import Stroke
+from fdvv.model import ForceSurface, Stroke
 
 WORSE_ratio = 1.5
 """A last press this much worse than the best one of its speed says that learning went astray there: chance
@@ -18,6 +19,18 @@ alone, with presses as different as people make them, seldom does."""
 
 Presses = tuple[tuple[tuple[Felt, Felt], ...], ...]
 """Per speed, each press on a known rig: press and release."""
+
+
+def held_up(job: Job) -> ForceSurface:
+    """Give the target as it is, with the least command that holds up a cap of unknown weight: the same start
+    as the paper's law has.
+    """
+    target, limit = job.target, job.force_limit_cN
+    press, release = (
+        np.clip(np.maximum(rows, PaperLaw.hold_cN), -limit, limit)
+        for rows in (target.press_cN, target.release_cN)
+    )
+    return ForceSurface(target.displacement_mm, target.velocity_mm_s, press, release)
 
 
 def kept_rows(tables: Pair, felt: Presses) -> Pair:

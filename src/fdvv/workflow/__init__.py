@@ -9,7 +9,6 @@ from fdvv.workflow._devices import open_device
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
-    device_settings,
     feasibility,
     feasible_curves,
 )
@@ -54,7 +53,6 @@ __all__ = [
     "compensate",
     "demo",
     "demo_report",
-    "device_settings",
     "fd_only",
     "feasibility",
     "feasible_curves",
