@@ -121,8 +121,11 @@ def measure(machine: Machine, core: Core, inputs: RecordArray) -> list[int]:
 
 def dearest(settings: Settings) -> Settings:
     """Let every part of a tick that settings can make dearer be so."""
-    return replace(
+    felt = replace(
         settings, fewest_samples=16, sliding_ticks=32, force_gain_q14=settings.force_gain_q14 or 4000
+    )
+    return replace(
+        felt, predictor_q16=6000, lead_us=4000, brake_lead_us=2500, drag_q13=10000, friction_cN64=400
     )
 
 

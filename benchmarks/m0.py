@@ -40,7 +40,7 @@ def run_load(
 ) -> Load:
     """Upload a full program and press it, again and again, for at least so many ticks."""
     device = LinkedDevice(EmulatedBoard(elf), ScriptedPerson(3))
-    device.write_settings(settings)
+    device.configure(settings)
     board = device.port.board
     assert isinstance(board, EmulatedBoard)
     start, latencies_us, turn = board.emulator.tick, list[float](), 0

@@ -24,7 +24,7 @@ void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings)
     core->settings = *settings;
     fdvv_supervisor_settings(&core->supervisor, &core->settings);
     core->announced_mm_s16 = settings->announced_mm_s16;
-    core->command_cN64 = 0;
+    core->command_cN64 = core->resistance_cN64 = 0;
     /* duty per force at 1 mV of supply */
     core->drive = fdvv_ratio_product(fdvv_ratio_of((uint32_t)settings->duty_gain_q16),
                                      fdvv_ratio_of(settings->nominal_supply_mV));
@@ -32,6 +32,7 @@ void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings)
     core->stop_us = stop_pulse_us(settings, core->image);
     fdvv_position_init(&core->position);
     fdvv_velocity_init(&core->velocity, settings);
+    fdvv_predictor_init(&core->predictor, settings);
     fdvv_machine_init(&core->machine, settings);
 }
 
@@ -87,6 +88,14 @@ static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q1
     return *duty_q15 != duty ? FDVV_TICK_FLAG_LIMITED : 0;
 }
 
+/* What is taken off the command in this tick, no more than a command. */
+static int16_t resistance_cN64(const fdvv_predictor *predictor)
+{
+    if (!predictor->on)
+        return 0;
+    return (int16_t)fdvv_clamp(fdvv_predictor_resistance_cN64(predictor), -INT16_MAX, INT16_MAX);
+}
+
 /* One tick of a program; gives the flags it sets. */
 static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elapsed_ticks, int32_t limit_cN64,
                       fdvv_outputs *outputs)
@@ -100,10 +109,14 @@ static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elaps
     moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
     moment.events = core->events;
     moment.announced_mm_s16 = core->announced_mm_s16;
-    moment.command_cN64 = core->command_cN64;
+    /* a fade leads from what the program wanted; what is taken off is no part of it */
+    moment.command_cN64 =
+        (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
+    moment.ahead_um16 = core->predictor.on ? fdvv_predictor_ahead_um16(&core->predictor) : core->position.um16;
+    core->resistance_cN64 = resistance_cN64(&core->predictor);
     fdvv_machine_tick(machine, core->image, &moment);
     state = machine->now;
-    flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment), limit_cN64);
+    flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment) - core->resistance_cN64, limit_cN64);
     flags |= drive(core, inputs->supply_mV, &outputs->duty_q15);
     outputs->enable = 1;
     outputs->slot = machine->slot;
@@ -122,7 +135,7 @@ static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elaps
 static void rest(fdvv_core *core, fdvv_outputs *outputs)
 {
     fdvv_machine_stop(&core->machine);
-    core->command_cN64 = 0;
+    core->command_cN64 = core->resistance_cN64 = 0;
     outputs->duty_q15 = 0;
     outputs->enable = 0;
     outputs->slot = FDVV_NONE;
@@ -148,6 +161,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     uint8_t flags = 0;
     fdvv_position_tick(&core->position, settings, inputs->sum);
     fdvv_velocity_tick(&core->velocity, settings, &core->position, elapsed_ticks);
+    fdvv_predictor_tick(&core->predictor, core->position.um16, elapsed_ticks);
     fdvv_supervisor_check(supervisor, settings, inputs, core->position.um16, force_cN64, core->command_cN64,
                           core->machine.state);
     limit_cN64 = fdvv_supervisor_limit_cN64(supervisor, settings);

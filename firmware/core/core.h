@@ -5,11 +5,13 @@
 #include "image.h"
 #include "machine.h"
 #include "position.h"
+#include "predictor.h"
 #include "supervisor.h"
 #include "velocity.h"
 
 typedef struct {
     int16_t command_cN64;    /* of the last tick */
+    int16_t resistance_cN64; /* taken off it then */
     uint16_t announced_mm_s16;
     uint16_t stop_us;        /* servo pulse for the program's travel */
     fdvv_ratio drive;        /* duty per force, times the supply in mV */
@@ -20,6 +22,7 @@ typedef struct {
     fdvv_supervisor supervisor;
     fdvv_position position;
     fdvv_velocity velocity;
+    fdvv_predictor predictor;
 } fdvv_core;
 
 /* Start with checked settings (fdvv_settings_check), no program, mode boot. */

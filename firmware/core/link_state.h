@@ -16,7 +16,8 @@ enum { FDVV_CHECK_NONE, FDVV_CHECK_COMMIT, FDVV_CHECK_ACTIVE };
 
 /* fewer than a frame may hold: stuffing must fit between two ticks of a Cortex-M0+ */
 #define FDVV_BATCH_RECORDS 4
-#define FDVV_REPLY_BYTES 80      /* largest reply: settings */
+#define FDVV_REPLY_BYTES 96      /* largest reply: settings */
+typedef char fdvv_settings_fit_a_reply[sizeof(fdvv_settings) <= FDVV_REPLY_BYTES ? 1 : -1];
 #define FDVV_REPLY_ROOM (FDVV_REPLY_BYTES + 6)
 #define FDVV_KEPT_ROOM (FDVV_REPLY_ROOM + 32) /* telemetry leaves it free for a reply and two notices */
 

@@ -259,7 +259,7 @@ int16_t fdvv_machine_force_cN64(const fdvv_machine *machine, const uint8_t *imag
     const fdvv_state *state = machine->now;
     const fdvv_surface *surface =
         fdvv_image_surface(image, moment->position->release ? state->release_surface : state->press_surface);
-    int32_t force_cN64 = fdvv_surface_force_cN64(surface, image, moment->position->um16,
+    int32_t force_cN64 = fdvv_surface_force_cN64(surface, image, moment->ahead_um16,
                                                  chosen_velocity_mm_s16(machine, moment));
     int32_t bias_cN64 = state->bias_cN64;
     if (state->bias_ms)

@@ -12,7 +12,8 @@ typedef struct {
     uint32_t elapsed_us;
     uint32_t events;           /* host events since the last tick, a bit each */
     uint16_t announced_mm_s16;
-    int16_t command_cN64;      /* of the last tick */
+    int16_t command_cN64;      /* of the last tick, before drag and friction were taken off */
+    int32_t ahead_um16;        /* where the cap will be when the coil pushes: the surface is looked up there */
 } fdvv_moment;
 
 typedef struct {

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #define FDVV_PROTOCOL_VERSION 1
-#define FDVV_PROTOCOL_HASH 0x9151a5c9u
+#define FDVV_PROTOCOL_HASH 0xef2d1201u
 
 #define FDVV_FRAME_BYTES 232 /* largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254 */
 #define FDVV_DATA_BYTES 192 /* image bytes in one data message, a multiple of 4 */
@@ -190,12 +190,19 @@ typedef struct {
     uint16_t vibration_latency_us; /* us; 0 to 30000; command to first motion of the exciter; the paper's 7000 */
     int16_t stop_us_mm; /* us/mm; -1000 to 1000; servo pulse per travel */
     uint16_t stop_zero_us; /* us; 400 to 2600; servo pulse at travel 0 */
+    uint16_t predictor_q16; /* 0 to 65535; 1 - exp(-2 pi bandwidth tick) of the filter that looks ahead; 0: nothing looks ahead, and drag and friction are not taken off */
+    uint16_t lead_us; /* us; 0 to 20000; the surface is read where the cap will be after so long */
+    uint16_t brake_lead_us; /* us; 0 to 20000; the same for the speed that drag goes by */
+    uint16_t drag_q13; /* cN64 per mm_s16; 0 to 49152; taken off the command per speed; the largest is 15 N s/m */
+    uint16_t friction_cN64; /* cN64; 0 to 6400; taken off the command in the direction of motion */
+    uint16_t friction_mm_s16; /* mm_s16; 64 to 16000; speed from which on friction counts in full, below it in proportion */
+    uint32_t spare; /* the settings are sixteen bytes times a whole number: their checksum takes four words at a time */
     uint8_t reads; /* 1 to 64; converter readings summed per tick; the paper's 25 */
     uint8_t sliding_ticks; /* 1 to 32; ticks of an additional sliding mean; 25 is the paper's literal reading */
     uint8_t fewest_samples; /* 3 to 16; samples that a velocity needs; the paper's 3 */
     uint8_t continuous_samples; /* 3 to 32; samples of the continuous estimate */
 } fdvv_settings;
-typedef char fdvv_settings_has_80_bytes[sizeof(fdvv_settings) == 80 ? 1 : -1];
+typedef char fdvv_settings_has_96_bytes[sizeof(fdvv_settings) == 96 ? 1 : -1];
 #define FDVV_SETTINGS_RANGES(X) \
     X(position_gain_q14, -65535, 65535) \
     X(position_offset_um16, -400000, 400000) \
@@ -227,6 +234,12 @@ typedef char fdvv_settings_has_80_bytes[sizeof(fdvv_settings) == 80 ? 1 : -1];
     X(vibration_latency_us, 0, 30000) \
     X(stop_us_mm, -1000, 1000) \
     X(stop_zero_us, 400, 2600) \
+    X(lead_us, 0, 20000) \
+    X(brake_lead_us, 0, 20000) \
+    X(drag_q13, 0, 49152) \
+    X(friction_cN64, 0, 6400) \
+    X(friction_mm_s16, 64, 16000) \
+    X(spare, 0, 0) \
     X(reads, 1, 64) \
     X(sliding_ticks, 1, 32) \
     X(fewest_samples, 3, 16) \
@@ -265,6 +278,13 @@ enum {
     FDVV_SETTINGS_FIELD_vibration_latency_us,
     FDVV_SETTINGS_FIELD_stop_us_mm,
     FDVV_SETTINGS_FIELD_stop_zero_us,
+    FDVV_SETTINGS_FIELD_predictor_q16,
+    FDVV_SETTINGS_FIELD_lead_us,
+    FDVV_SETTINGS_FIELD_brake_lead_us,
+    FDVV_SETTINGS_FIELD_drag_q13,
+    FDVV_SETTINGS_FIELD_friction_cN64,
+    FDVV_SETTINGS_FIELD_friction_mm_s16,
+    FDVV_SETTINGS_FIELD_spare,
     FDVV_SETTINGS_FIELD_reads,
     FDVV_SETTINGS_FIELD_sliding_ticks,
     FDVV_SETTINGS_FIELD_fewest_samples,
@@ -675,8 +695,8 @@ typedef char fdvv_key_request_has_12_bytes[sizeof(fdvv_key_request) == 12 ? 1 : 
 #define FDVV_MESSAGES(X) \
     X(HELLO, 0x01, 8, 36) \
     X(PING, 0x02, 4, 16) \
-    X(READ_SETTINGS, 0x03, 0, 80) \
-    X(WRITE_SETTINGS, 0x04, 80, 0) \
+    X(READ_SETTINGS, 0x03, 0, 96) \
+    X(WRITE_SETTINGS, 0x04, 96, 0) \
     X(BEGIN, 0x05, 8, 0) \
     X(DATA, 0x06, 196, 4) \
     X(COMMIT, 0x07, 0, 0) \
@@ -755,6 +775,13 @@ enum {
         1000, /* vibration_latency_us */ \
         150, /* stop_us_mm */ \
         1000, /* stop_zero_us */ \
+        0, /* predictor_q16 */ \
+        0, /* lead_us */ \
+        0, /* brake_lead_us */ \
+        0, /* drag_q13 */ \
+        0, /* friction_cN64 */ \
+        160, /* friction_mm_s16 */ \
+        0, /* spare */ \
         25, /* reads */ \
         1, /* sliding_ticks */ \
         3, /* fewest_samples */ \

@@ -12,6 +12,7 @@ from fdvv.protocol import NONE, Condition, Mode, Settings, State, Stroke, TickFl
 
 from ._arithmetic import ONE, Ratio, blend, clamp, inverse, part, product, ratio_of, scale
 from ._motion import PRESS, RELEASE, Position, Velocity
+from ._predictor import Predictor
 from ._program import Program
 
 
@@ -122,13 +123,13 @@ class Machine:
             return ONE
         return part(self.time_us, whole_ms * 1000)
 
-    def force_cN64(self, position: Position, velocity: int) -> int:
+    def force_cN64(self, position: Position, ahead: int, velocity: int) -> int:
         s = self.now()
         surface = s.press_surface if position.stroke == PRESS else s.release_surface
         bias = s.bias_cN64
         if s.bias_ms:
             bias = blend(s.bias_cN64, s.bias_end_cN64, self.progress(s.bias_ms))
-        wanted = self.program.force_cN64(surface, position.um16, velocity) + bias
+        wanted = self.program.force_cN64(surface, ahead, velocity) + bias
         wanted = clamp(wanted, -32767, 32767)
         return blend(self.from_cN64, wanted, self.progress(s.fade_ms)) if s.fade_ms else wanted
 
@@ -155,10 +156,12 @@ class Reference:
     program: Program
     announced: int = 0
     command: int = 0
+    resistance: int = 0
     events: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.position, self.velocity = Position(self.settings), Velocity(self.settings)
+        self.predictor = Predictor(self.settings)
         self.machine = Machine(self.settings, self.program)
         self.announced = self.settings.announced_mm_s16
 
@@ -167,12 +170,14 @@ class Reference:
         s, elapsed = self.settings, max(inputs["elapsed_ticks"], 1)
         self.position.tick(inputs["sum"])
         self.velocity.tick(self.position, elapsed)
+        self.predictor.tick(self.position.um16, elapsed)
         out = {"duty_q15": 0, "enable": 0, "slot": NONE, "key": 0}
         flags = 0
         if mode == Mode.ARMED:
             out, flags = self.render(inputs, elapsed)
         else:
-            self.machine.running, self.command, self.machine.offers = False, 0, set()
+            self.machine.running, self.machine.offers = False, set()
+            self.command = self.resistance = 0
         self.events = set()
         flags |= TickFlag.RELEASE * (self.position.stroke == RELEASE) | TickFlag.LATE * (elapsed > 1)
         pulse = abs(s.stop_us_mm * self.program.head.travel_um16) + 8000
@@ -192,9 +197,11 @@ class Reference:
 
     def render(self, inputs: dict[str, int], elapsed: int) -> tuple[dict[str, int], int]:
         m = self.machine
-        slot = m.tick(self.position, self.velocity, self.announced, Tick(elapsed, self.events, self.command))
-        wanted = m.force_cN64(self.position, m.chosen(self.velocity, self.announced))
-        flags = self.limit(wanted)
+        before = clamp(self.command + self.resistance, -32767, 32767)
+        slot = m.tick(self.position, self.velocity, self.announced, Tick(elapsed, self.events, before))
+        wanted = m.force_cN64(self.position, self.ahead(), m.chosen(self.velocity, self.announced))
+        self.resistance = clamp(self.predictor.resistance_cN64(), -32767, 32767) if self.predictor.on else 0
+        flags = self.limit(wanted - self.resistance)
         duty = self.duty(inputs["supply_mV"])
         cut = clamp(duty, -self.settings.duty_limit_q15, self.settings.duty_limit_q15)
         state = m.now()
@@ -206,6 +213,9 @@ class Reference:
         flags |= TickFlag.LIMITED * (cut != duty) | TickFlag.KEY_DOWN * (state.key != 0)
         flags |= TickFlag.VIBRATED * (slot != NONE) | TickFlag.VELOCITY_KNOWN * known
         return {"duty_q15": cut, "enable": 1, "slot": slot, "key": state.key}, flags
+
+    def ahead(self) -> int:
+        return self.predictor.ahead_um16() if self.predictor.on else self.position.um16
 
     def limit(self, wanted: int) -> int:
         """Limit, then slew; the limit does not fall here."""

@@ -46,7 +46,7 @@ def test_prose_does_not_change_the_hash_and_a_range_does() -> None:
 
 def test_the_header_compiles_alone(tmp_path: Path) -> None:
     probe = tmp_path / "probe.c"
-    probe.write_text('#include "protocol.h"\nint main(void) { return sizeof(fdvv_settings) != 80; }\n')
+    probe.write_text('#include "protocol.h"\nint main(void) { return sizeof(fdvv_settings) != 96; }\n')
     program = tmp_path / "probe"
     flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'firmware' / 'core'}"]
     subprocess.run(["cc", *flags, "-o", program, probe], check=True)
@@ -55,7 +55,7 @@ def test_the_header_compiles_alone(tmp_path: Path) -> None:
 
 def test_default_settings_pack_and_unpack_to_themselves() -> None:
     settings = protocol.Settings()
-    assert len(settings.pack()) == protocol.Settings.length_bytes() == 80
+    assert len(settings.pack()) == protocol.Settings.length_bytes() == 96
     assert protocol.Settings.unpack(settings.pack()) == settings
 
 
@@ -65,8 +65,8 @@ def test_a_number_out_of_range_is_refused_by_name() -> None:
 
 
 def test_too_few_bytes_are_refused() -> None:
-    with pytest.raises(ModelError, match="80 bytes, got 79"):
-        protocol.Settings.unpack(bytes(79))
+    with pytest.raises(ModelError, match="96 bytes, got 95"):
+        protocol.Settings.unpack(bytes(95))
 
 
 def test_every_request_fits_a_frame() -> None:

@@ -10,13 +10,12 @@ import pytest
 
 from fdvv.compensate import Following, KnownRig, Motion, NominalFinger, SampledLoop, stiffness_limit_N_m
 from fdvv.device import DeviceInfo, TwinDevice, open_device
-from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.errors import InputError, ModelError
 from fdvv.model import FDVVModel, ForceSurface, Stroke, load_builtin, remove_curve
-from fdvv.testing import ScriptedDevice, draw_fast_rig, rig_truth, swings_held
+from fdvv.testing import draw_fast_rig, rig_truth, swings_held
 from fdvv.twin import Finger, Rig, settings_of
 from fdvv.workflow import (
     FeasibilityReport,
-    device_settings,
     fd_only,
     feasibility,
     feasible_curves,
@@ -140,14 +139,12 @@ def test_bad_speeds_and_a_model_without_a_press_are_refused(
 
 def test_devices_with_the_firmware_in_them_tell_their_settings(drawn: tuple[Rig, Finger, KnownRig]) -> None:
     rig, finger, _ = drawn
-    assert device_settings(TwinDevice(rig, finger)) == settings_of(rig)
+    assert TwinDevice(rig, finger).settings() == settings_of(rig)
     host = open_device("host", rig, finger)
     try:
-        assert device_settings(host) == settings_of(rig)
+        assert host.settings() == settings_of(rig)
     finally:
         host.close()  # type: ignore[attr-defined]
-    with pytest.raises(DeviceError, match="tells no settings"):
-        device_settings(ScriptedDevice())
 
 
 def test_what_presses_measured_stands_beside_what_was_computed(
@@ -156,7 +153,7 @@ def test_what_presses_measured_stands_beside_what_was_computed(
     rig, finger, known = drawn
     device = TwinDevice(rig, finger, 3)
     found = probe(device, model, uncompensated(device, model, [50.0]), [50.0], 2)
-    report = feasibility(model, known, device.settings, [50.0, 100.0], found, device.info())
+    report = feasibility(model, known, device.settings(), [50.0, 100.0], found, device.info())
     told = [curve.measured for curve in report.curves]
     assert told[0] is found.curves[0]
     assert told[2] is found.curves[1]

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from fdvv.workflow import ProbeResult, Session
 
 NO_RIG = (
-    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: press it on "
-    "fdvv.compensate.identification_surface, then save_rig(identify(presses, travel_mm), FILE)"
+    "fdvv feasible needs --rig-known FILE.rig.json, what presses have told of this rig: fdvv compensate of any "
+    "button writes it with --save-rig FILE.rig.json"
 )
 COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 
@@ -39,7 +39,7 @@ COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measure
 @click.option(
     "--rig-known",
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="*.rig.json of this rig, as identified from its presses.",
+    help="*.rig.json of this rig, as fdvv compensate --save-rig writes it.",
 )
 @session_options
 @click.option(
@@ -80,7 +80,7 @@ def feasible(
         click.echo(NO_RIG)
         return
     from fdvv.compensate import load_rig
-    from fdvv.workflow import device_settings, feasibility, open_model
+    from fdvv.workflow import feasibility, open_model
 
     model, known = open_model(button), load_rig(rig_known)
     session = open_session(
@@ -88,7 +88,7 @@ def feasible(
     )
     measured = _measure(session, device, model, actuation, velocities_mm_s, presses, as_json)
     with _opened(session, device) as found:
-        settings, info = device_settings(found), found.info()
+        settings, info = found.settings(), found.info()
     report = feasibility(model, known, settings, velocities_mm_s, measured, info)
     if figure:
         from fdvv.plot import plot_feasibility

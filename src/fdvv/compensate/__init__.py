@@ -11,6 +11,7 @@ from fdvv.compensate._feasible_force import Reach, needed_cN, reach, rendered_cN
 from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._feasible_motion import Motion, minimum_jerk
 from fdvv.compensate._feasible_verdict import Following, FollowVerdict, follow_verdict
+from fdvv.compensate._foresee import FingerJoint
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
@@ -21,7 +22,17 @@ from fdvv.compensate._observe import Delays, observe
 from fdvv.compensate._paper import RIG_DELAYS, PaperLaw
 from fdvv.compensate._per_curve import JobState, PerCurve
 from fdvv.compensate._prior import Plausible, Prior
-from fdvv.compensate._rig_file import load_rig, rig_from_json, rig_to_json, save_rig
+from fdvv.compensate._rig_aware import RigAware, RigState
+from fdvv.compensate._rig_file import (
+    load_memory,
+    load_rig,
+    memory_from_json,
+    rig_from_json,
+    rig_to_json,
+    save_rig,
+)
+from fdvv.compensate._rig_learning import Learning
+from fdvv.compensate._rig_memory import RigMemory
 from fdvv.compensate._stability import (
     Slope,
     Stability,
@@ -41,6 +52,7 @@ from fdvv.compensate._stability_loop import (
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.compensate._tables import dense_velocities
 from fdvv.compensate._thermal import ThermalDose, held_until_s, rise_K, thermal_dose
+from fdvv.compensate._tuned import HOLDS_cN, tuned_paper_law
 from fdvv.compensate._tuning import Tuning
 
 __all__ = [
@@ -51,13 +63,16 @@ __all__ = [
     "CurveOutcome",
     "Delays",
     "ExpectedError",
+    "FingerJoint",
     "FollowVerdict",
     "Following",
     "GainSchedule",
+    "HOLDS_cN",
     "Job",
     "JobState",
     "KnownRig",
     "Learned",
+    "Learning",
     "Method",
     "Motion",
     "NominalFinger",
@@ -67,7 +82,10 @@ __all__ = [
     "Plausible",
     "Prior",
     "Reach",
+    "RigAware",
     "RigLimits",
+    "RigMemory",
+    "RigState",
     "SampledLoop",
     "Sensor",
     "Slope",
@@ -93,8 +111,10 @@ __all__ = [
     "identification_surface",
     "identify",
     "judge",
+    "load_memory",
     "load_rig",
     "mean_speed_mm_s",
+    "memory_from_json",
     "minimum_jerk",
     "needed_cN",
     "observe",
@@ -114,5 +134,6 @@ __all__ = [
     "stiffness_limit_N_m",
     "thermal_dose",
     "tick_matrix",
+    "tuned_paper_law",
     "why_incomplete",
 ]

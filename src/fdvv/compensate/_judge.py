@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,10 @@ class Acceptance:
         parts = (self.pace_ratio, self.paused_ratio, self.saturated_ratio)
         if not (all(0 < part <= 1 for part in parts) and self.lifted_mm > 0 and self.patience >= 1):
             raise ModelError(f"ratios must be in 0..1, lifted_mm above 0, patience at least 1, got {self}")
+
+    def at_pace(self, pace_ratio: float | None) -> Acceptance:
+        """Give the bounds with another one for the pace; the same for None."""
+        return self if pace_ratio is None else replace(self, pace_ratio=pace_ratio)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Fault
+from fdvv.protocol import Fault, Settings
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,23 @@ class Device(Protocol):
         """Tell who this is."""
         ...
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give calibration and limits as the device holds them."""
+        ...
+
+    def configure(self, settings: Settings) -> None:
+        """Replace calibration and limits, whole or not at all; upload again afterwards.
+
+        Raises DeviceError with the device's reason.
+        """
+        ...
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop, whole or not at all.
 
         The surface holds actuation as force (cN) in the device's own coordinates: what the motor is
-        told to push with. Raises DeviceError on a table beyond the limits.
+        told to push with. Its row is that of the velocity decided in the press; of the announced one,
+        which is the one asked for, if paced. Raises DeviceError on a table beyond the limits.
         """
         ...
 

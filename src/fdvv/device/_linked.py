@@ -31,8 +31,8 @@ class LinkedDevice(Remote):
         self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))
-            if self.settings != person.settings:
-                self.write_settings(person.settings)
+            if self.settings() != person.settings:
+                self.configure(person.settings)
         except BaseException:
             self.port.close()
             raise
@@ -47,10 +47,9 @@ class LinkedDevice(Remote):
         name, kind = super().info().name, self.port.board.name
         return name if name == kind else f"{kind} {name}"
 
-    def write_settings(self, settings: Settings) -> None:
-        """Replace calibration and limits; the device forgets its program."""
-        self.client.write_settings(settings)
-        self.settings, self.travel_mm = settings, None
+    def configure(self, settings: Settings) -> None:
+        """Replace calibration and limits, whole or not at all; the device forgets its program."""
+        super().configure(settings)
         self.port.tick_us = settings.tick_us
         self.port.connect(self._person.rest(settings))
 
@@ -63,13 +62,13 @@ class LinkedDevice(Remote):
         try:
             self.client.arm()
             self._listen(self._person.settle_s)
-            plant = self._person.press(self.image, velocity_mm_s, self.settings)
+            plant = self._person.press(self.image, velocity_mm_s, self._settings)
             self.port.connect(plant)
-            self._listen(plant.ticks * self.settings.tick_us * 1e-6)
+            self._listen(plant.ticks * self._settings.tick_us * 1e-6)
             ticks, truth = np.array(self.port.ticks), plant.record()
         finally:
             self.stop()
-            self.port.connect(self._person.rest(self.settings))
+            self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
         return self._joined(truth, ticks, velocity_mm_s)
 

@@ -73,8 +73,8 @@ class PressedDevice(Remote):
         )
 
     def _record(self, told: TickColumns, velocity_mm_s: float) -> Press:
-        t_s = (told.tick - told.tick[0]) * self.settings.tick_us * 1e-6
-        force_cN = told.force_cN if self.settings.force_gain_q14 else told.commanded_cN
+        t_s = (told.tick - told.tick[0]) * self._settings.tick_us * 1e-6
+        force_cN = told.force_cN if self._settings.force_gain_q14 else told.commanded_cN
         return Press(
             t_s,
             told.displacement_mm,

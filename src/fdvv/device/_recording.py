@@ -1,7 +1,8 @@
 """Sessions on file: a line of JSON for everything that a device was told or gave.
 
-The first line is ``{"fdvv": "session", "format": 1, "info": {…}}``; then, in order, ``{"upload": {…}}``,
-``{"program": "base64"}``, ``{"press": {…}}`` and ``{"error": {…}}``. Columns are base64 of zlib of
+The first line is ``{"fdvv": "session", "format": 1, "info": {…}, "settings": {…}}``; then, in order,
+``{"settings": {…}}``, ``{"upload": {…}}``, ``{"program": "base64"}``, ``{"press": {…}}`` and
+``{"error": {…}}``. An upload holds ``"paced": true`` where it was. Columns are base64 of zlib of
 little-endian 64-bit floats, or of bytes for flags. Every line is on the disk before the next begins; a last
 line that was cut short is left out when the file is read.
 """
@@ -23,6 +24,7 @@ import numpy as np
 from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import ForceSurface, Press
+from fdvv.protocol import Settings
 
 FORMAT = 1
 T = TypeVar("T")
@@ -75,7 +77,8 @@ class Recorder:
         self._file = self._path.open("a", encoding="ascii")
         if self._path.stat().st_size and not self._path.read_bytes().endswith(b"\n"):
             self._file.write("\n")  # of a session that was cut short
-        self._write({"fdvv": "session", "format": FORMAT, "info": dataclasses.asdict(device.info())})
+        told = {"info": dataclasses.asdict(device.info()), "settings": dataclasses.asdict(device.settings())}
+        self._write({"fdvv": "session", "format": FORMAT, **told})
 
     def _write(self, line: dict[str, Any]) -> None:
         self._file.write(json.dumps(line) + "\n")
@@ -97,10 +100,18 @@ class Recorder:
         """Tell who this is."""
         return self._device.info()
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give calibration and limits."""
+        return self._device.settings()
+
+    def configure(self, settings: Settings) -> None:
+        """Configure and write down."""
+        self._kept(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Upload and write down."""
-        line = {"upload": {"surface": pack_record(surface), "travel_mm": travel_mm}}
-        self._kept(lambda: self._device.upload(surface, travel_mm), line)
+        told = {"surface": pack_record(surface), "travel_mm": travel_mm, **({"paced": True} if paced else {})}
+        self._kept(lambda: self._device.upload(surface, travel_mm, paced), {"upload": told})
 
     def upload_program(self, image: bytes) -> None:
         """Upload and write down."""

@@ -21,20 +21,19 @@ class Remote:
     Attributes
     ----------
     client : the connection.
-    settings : the device's, as read on opening.
     travel_mm, image : of the active program as uploaded here; None and empty before.
     """
 
     def __init__(self, client: Client) -> None:
         self.client = client
-        self.settings: Settings = client.read_settings()
+        self._settings = client.read_settings()
         self.travel_mm: float | None = None
         self.image = b""
         self._closed = False
 
     def info(self) -> DeviceInfo:
         """Tell who this is."""
-        hello, settings = self.client.hello, self.settings
+        hello, settings = self.client.hello, self._settings
         return DeviceInfo(
             hello.name.rstrip(b"\0").decode("ascii", "replace"),
             bool(hello.board_flags & (BoardFlag.SIMULATED | BoardFlag.EMULATED)),
@@ -43,10 +42,22 @@ class Remote:
             settings.tick_us * 1e-6,
         )
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give calibration and limits, as read on opening or written since."""
+        return self._settings
+
+    def configure(self, settings: Settings) -> None:
+        """Replace calibration and limits, whole or not at all; the device forgets its program.
+
+        Raises DeviceError with the device's reason, one of which is that it is rendering.
+        """
+        self.client.write_settings(settings)
+        self._settings, self.travel_mm = settings, None
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop; DeviceError beyond the limits."""
         check_table(self.info(), surface, travel_mm)
-        self.upload_program(surface_image(surface, travel_mm))
+        self.upload_program(surface_image(surface, travel_mm, paced))
 
     def upload_program(self, image: bytes) -> None:
         """Make a program the active one, whole or not at all; DeviceError with the device's reason."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from fdvv.device._limits import check_speed, check_table
 from fdvv.device._recording import read_session, unpack_press, unpack_surface
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Fault
+from fdvv.protocol import Fault, Settings
 
 
 class ReplayDevice:
@@ -28,15 +29,28 @@ class ReplayDevice:
         head, *self._lines = read_session(path)
         self._path, self._place, self._active = Path(path), 0, False
         self._info = DeviceInfo(**head["info"])
+        # a recording from before settings were written down: the default ones, at its tick
+        self._settings = Settings(**head.get("settings", {"tick_us": round(1e6 * self._info.tick_s)}))
 
     def info(self) -> DeviceInfo:
         """Tell whose session this was."""
         return self._info
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give what the recorded device held at this place of its session."""
+        return self._settings
+
+    def configure(self, settings: Settings) -> None:
+        """Find these settings in what follows; DeviceError if they were not written then."""
+        self._find(
+            "settings", lambda found: found == dataclasses.asdict(settings), "a device with such settings"
+        )
+        self._settings, self._active = settings, False
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Find this table in what follows; DeviceError if it was not uploaded then."""
         check_table(self._info, surface, travel_mm)
-        self._find("upload", lambda found: _same(found, surface, travel_mm), "this table")
+        self._find("upload", lambda found: _same(found, surface, travel_mm, paced), "this table")
 
     def upload_program(self, image: bytes) -> None:
         """Find this program in what follows; DeviceError if it was not uploaded then."""
@@ -85,8 +99,9 @@ class ReplayDevice:
         """Do nothing."""
 
 
-def _same(found: dict[str, Any], surface: ForceSurface, travel_mm: float) -> bool:
+def _same(found: dict[str, Any], surface: ForceSurface, travel_mm: float, paced: bool) -> bool:
     then = unpack_surface(found["surface"])
     names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
     pairs = [(getattr(then, name), getattr(surface, name)) for name in names]
-    return bool(found["travel_mm"] == travel_mm and all(np.array_equal(a, b) for a, b in pairs))
+    same = found["travel_mm"] == travel_mm and found.get("paced", False) == paced
+    return bool(same and all(np.array_equal(a, b) for a, b in pairs))

@@ -27,7 +27,7 @@ class SimulatedPerson:
     def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
         self._plant = RigPlant(rig, finger, seed)
         self._random = np.random.default_rng(seed)
-        self._paces: dict[tuple[bytes, float], float] = {}
+        self._paces: dict[tuple[bytes, float, Settings], float] = {}
         self._ticks = 0
         self.settle_s = SETTLE_s
         self.settings: Settings = settings_of(self._plant.rig)
@@ -44,7 +44,7 @@ class SimulatedPerson:
     def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> SimulatedPerson:
         """Begin a press at about this speed; what happened before it is forgotten."""
         travel_m, speed_m_s = float(m_from_mm(travel_mm_of(image))), float(m_from_mm(velocity_mm_s))
-        pace_s = self._pace_s(image, velocity_mm_s)
+        pace_s = self._pace_s(image, velocity_mm_s, settings)
         gesture = vary(self._plant.finger, travel_m, pace_s, speed_m_s, self._random)
         self._plant.load(image)
         self._plant.record()
@@ -52,10 +52,12 @@ class SimulatedPerson:
         self._ticks = math.ceil(gesture.duration_s / (settings.tick_us * 1e-6))
         return self
 
-    def _pace_s(self, image: bytes, velocity_mm_s: float) -> float:
-        key = image, velocity_mm_s
+    def _pace_s(self, image: bytes, velocity_mm_s: float, settings: Settings) -> float:
+        key = image, velocity_mm_s, settings
         if key not in self._paces:
-            self._paces[key] = solve_program_pace(self._plant.rig, self._plant.finger, image, velocity_mm_s)
+            self._paces[key] = solve_program_pace(
+                self._plant.rig, self._plant.finger, image, velocity_mm_s, settings=settings
+            )
         return self._paces[key]
 
     def record(self) -> Trace:

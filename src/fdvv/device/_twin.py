@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from fdvv.core import Core
 from fdvv.device._contract import DeviceInfo
 from fdvv.device._limits import check_speed, check_table, check_travel
 from fdvv.errors import DeviceError, ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Mode, Settings, travel_mm_of
+from fdvv.protocol import CN64_PER_cN, Mode, Settings, travel_mm_of
 from fdvv.twin import (
     Finger,
     Rig,
@@ -20,7 +21,7 @@ from fdvv.twin import (
     solve_program_pace,
     vary,
 )
-from fdvv.units import cN_from_N, m_from_mm, mm_from_m
+from fdvv.units import m_from_mm, mm_from_m
 
 
 class TwinDevice:
@@ -38,30 +39,45 @@ class TwinDevice:
 
     def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
         self._rig, self._finger = rig or Rig(), finger or Finger()
+        self._settings = settings_of(self._rig)
         self._random = np.random.default_rng(seed)
         self._active: bytes | None = None
         self._paces: dict[float, float] = {}
         self._fresh: set[float] = set()
 
-    @property
-    def settings(self) -> Settings:
-        """Give calibration and limits of its controller; ModelError if the firmware cannot hold them."""
-        return settings_of(self._rig)
-
     def info(self) -> DeviceInfo:
         """Tell who this is."""
         control, stops = self._rig.controller, self._rig.stops
-        limits = cN_from_N(control.force_limit_N), mm_from_m(stops.travel_limit_m)
+        limits = self._settings.force_limit_cN64 / CN64_PER_cN, mm_from_m(stops.travel_limit_m)
         return DeviceInfo("twin", True, *limits, control.tick_s)
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give calibration and limits: those of the rig until others were configured."""
+        return self._settings
+
+    def configure(self, settings: Settings) -> None:
+        """Replace calibration and limits, and forget the table; DeviceError if the firmware refuses them.
+
+        The rig reads its sensor as it did: tick_us and reads stay what they are.
+        """
+        for name in ("tick_us", "reads"):
+            if getattr(settings, name) != getattr(self._settings, name):
+                kept, asked = getattr(self._settings, name), getattr(settings, name)
+                raise DeviceError(f"twin: {name} is {kept} in this rig and cannot be {asked}")
+        try:
+            Core(settings)
+        except ModelError as error:
+            raise DeviceError(f"twin: {error}") from error
+        self._settings, self._active = settings, None
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop; DeviceError beyond the limits.
 
         The table is rounded to 1/64 cN and, if it has more places than a device holds, sampled to fit.
         """
         check_table(self.info(), surface, travel_mm)
         try:
-            self._activate(image_of(surface, travel_mm).image)
+            self._activate(image_of(surface, travel_mm, paced=paced).image)
         except ModelError as error:
             raise DeviceError(f"twin: {error}; upload a coarser or smoother table") from error
 
@@ -83,7 +99,9 @@ class TwinDevice:
         travel_m, speed_m_s = m_from_mm(travel_mm_of(self._active)), m_from_mm(velocity_mm_s)
         gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
         noise = draw_noise(self._rig, self._finger, gesture, self._random)
-        trace = simulate_program(self._rig, self._finger, gesture, self._active, noise, velocity_mm_s)
+        trace = simulate_program(
+            self._rig, self._finger, gesture, self._active, noise, velocity_mm_s, settings=self._settings
+        )
         if (trace.mode == Mode.FAULT).any():
             raise DeviceError(
                 f"twin: the supervisor let go after {trace.t_s[np.argmax(trace.mode == Mode.FAULT)]:.3f} s; "
@@ -100,7 +118,7 @@ class TwinDevice:
         if velocity_mm_s not in self._fresh:
             guess = self._paces.get(velocity_mm_s)
             self._paces[velocity_mm_s] = solve_program_pace(
-                self._rig, self._finger, image, velocity_mm_s, guess
+                self._rig, self._finger, image, velocity_mm_s, guess, self._settings
             )
             self._fresh.add(velocity_mm_s)
         return self._paces[velocity_mm_s]

@@ -11,7 +11,7 @@ from typing import ClassVar
 from fdvv.protocol._record import Limits, Record
 
 VERSION = 1
-HASH = 0x9151A5C9
+HASH = 0xEF2D1201
 
 FRAME_BYTES = 232
 """Largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254."""
@@ -231,7 +231,7 @@ REQUEST_BYTES = {
     Message.HELLO: 8,
     Message.PING: 4,
     Message.READ_SETTINGS: 0,
-    Message.WRITE_SETTINGS: 80,
+    Message.WRITE_SETTINGS: 96,
     Message.BEGIN: 8,
     Message.DATA: 196,
     Message.COMMIT: 0,
@@ -255,7 +255,7 @@ REQUEST_BYTES = {
 REPLY_BYTES = {
     Message.HELLO: 36,
     Message.PING: 16,
-    Message.READ_SETTINGS: 80,
+    Message.READ_SETTINGS: 96,
     Message.WRITE_SETTINGS: 0,
     Message.BEGIN: 0,
     Message.DATA: 4,
@@ -316,13 +316,20 @@ class Settings(Record):
     vibration_latency_us : us; 0 to 30000; command to first motion of the exciter; the paper's 7000
     stop_us_mm : us/mm; -1000 to 1000; servo pulse per travel
     stop_zero_us : us; 400 to 2600; servo pulse at travel 0
+    predictor_q16 : 0 to 65535; 1 - exp(-2 pi bandwidth tick) of the filter that looks ahead; 0: nothing looks ahead, and drag and friction are not taken off
+    lead_us : us; 0 to 20000; the surface is read where the cap will be after so long
+    brake_lead_us : us; 0 to 20000; the same for the speed that drag goes by
+    drag_q13 : cN64 per mm_s16; 0 to 49152; taken off the command per speed; the largest is 15 N s/m
+    friction_cN64 : cN64; 0 to 6400; taken off the command in the direction of motion
+    friction_mm_s16 : mm_s16; 64 to 16000; speed from which on friction counts in full, below it in proportion
+    spare : the settings are sixteen bytes times a whole number: their checksum takes four words at a time
     reads : 1 to 64; converter readings summed per tick; the paper's 25
     sliding_ticks : 1 to 32; ticks of an additional sliding mean; 25 is the paper's literal reading
     fewest_samples : 3 to 16; samples that a velocity needs; the paper's 3
     continuous_samples : 3 to 32; samples of the continuous estimate
     """
 
-    FORMAT: ClassVar[str] = "<iiiiiIHHHHHHHhhHHHHHHHHHhHHHHHhHBBBB"
+    FORMAT: ClassVar[str] = "<iiiiiIHHHHHHHhhHHHHHHHHHhHHHHHhHHHHHHHIBBBB"
     LIMITS: ClassVar[Limits] = {
         "position_gain_q14": (-65535, 65535),
         "position_offset_um16": (-400000, 400000),
@@ -356,6 +363,13 @@ class Settings(Record):
         "vibration_latency_us": (0, 30000),
         "stop_us_mm": (-1000, 1000),
         "stop_zero_us": (400, 2600),
+        "predictor_q16": (0, 65535),
+        "lead_us": (0, 20000),
+        "brake_lead_us": (0, 20000),
+        "drag_q13": (0, 49152),
+        "friction_cN64": (0, 6400),
+        "friction_mm_s16": (64, 16000),
+        "spare": (0, 0),
         "reads": (1, 64),
         "sliding_ticks": (1, 32),
         "fewest_samples": (3, 16),
@@ -394,6 +408,13 @@ class Settings(Record):
     vibration_latency_us: int = 1000
     stop_us_mm: int = 150
     stop_zero_us: int = 1000
+    predictor_q16: int = 0
+    lead_us: int = 0
+    brake_lead_us: int = 0
+    drag_q13: int = 0
+    friction_cN64: int = 0
+    friction_mm_s16: int = 160
+    spare: int = 0
     reads: int = 25
     sliding_ticks: int = 1
     fewest_samples: int = 3

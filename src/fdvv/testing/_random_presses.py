@@ -5,6 +5,8 @@ Everything is drawn from the generator that is passed in, so that a seed names a
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
@@ -32,7 +34,7 @@ def random_settings(rng: Generator) -> Settings:
     start = integer(rng, 800, 20000)
     top = integer(rng, -2000, 20000) + gain_q14 * 4095 * reads // 2**14
     turned = rng.random() < 0.3
-    return Settings(
+    plain = Settings(
         position_gain_q14=-gain_q14 if turned else gain_q14,
         position_offset_um16=top if turned else -integer(rng, 2000, 20000),
         duty_gain_q16=integer(rng, 64, 65535),
@@ -62,6 +64,23 @@ def random_settings(rng: Generator) -> Settings:
         sliding_ticks=sometimes(rng, 0.6, 1, integer(rng, 2, 32)),
         fewest_samples=integer(rng, 3, 16),
         continuous_samples=integer(rng, 3, 32),
+    )
+    # from a generator of its own, so that what else a seed names does not hang on it
+    own = rng.spawn(1)[0]
+    return plain if own.random() < 0.4 else random_tuning(own, plain)
+
+
+def random_tuning(rng: Generator, settings: Settings) -> Settings:
+    """Draw a filter of 20 to 2000 Hz, half the time with leads, drag and friction of any size."""
+    bandwidth_Hz = float(np.exp(rng.uniform(np.log(20.0), np.log(2000.0))))
+    return replace(
+        settings,
+        predictor_q16=round((1 - np.exp(-2e-6 * np.pi * bandwidth_Hz * settings.tick_us)) * 2**16),
+        lead_us=sometimes(rng, 0.5, integer(rng, 0, 5000), integer(rng, 0, 20000)),
+        brake_lead_us=integer(rng, 0, 20000),
+        drag_q13=sometimes(rng, 0.3, 0, integer(rng, 0, 49152)),
+        friction_cN64=sometimes(rng, 0.3, 0, integer(rng, 0, 6400)),
+        friction_mm_s16=sometimes(rng, 0.5, 160, integer(rng, 64, 16000)),
     )
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from fdvv.core import Core
 from fdvv.device import DeviceInfo
-from fdvv.errors import DeviceError
+from fdvv.errors import DeviceError, ModelError
 from fdvv.model import ForceSurface, Press, Stroke
+from fdvv.protocol import Settings
 from fdvv.units import FloatArray
 
 PERIOD_s = 1e-4
@@ -24,7 +26,8 @@ class ScriptedDevice:
     """A cap that moves at constant speed and feels gain * command + offset + drag * velocity + noise.
 
     Down at the asked speed, a dwell of 20 ms at the stop, up at the same speed. The table is read at the
-    sensed displacement of the last tick and at the asked speed.
+    sensed displacement of the last tick and at the asked speed, paced or not. Settings are kept, but only
+    the limits given here count.
 
     Parameters
     ----------
@@ -51,6 +54,7 @@ class ScriptedDevice:
         self._gain, self._offset_cN, self._drag_cN_s_mm = gain, offset_cN, drag_cN_s_mm
         self._noise_cN, self._noise_mm, self._pace_spread_ratio = noise_cN, noise_mm, pace_spread_ratio
         self._info = DeviceInfo("scripted", True, force_limit_cN, travel_limit_mm, PERIOD_s * TICKS)
+        self._settings = Settings(tick_us=round(1e6 * self._info.tick_s))
         self._random = np.random.default_rng(seed)
         self._active: tuple[ForceSurface, float] | None = None
 
@@ -58,7 +62,21 @@ class ScriptedDevice:
         """Tell who this is."""
         return self._info
 
-    def upload(self, surface: ForceSurface, travel_mm: float) -> None:
+    def settings(self) -> Settings:
+        """Give what was configured last."""
+        return self._settings
+
+    def configure(self, settings: Settings) -> None:
+        """Keep settings; DeviceError if the tick is another, or a device would refuse them."""
+        if settings.tick_us != self._settings.tick_us:
+            raise DeviceError(f"scripted: ticks every {self._settings.tick_us} us, not {settings.tick_us} us")
+        try:
+            Core(settings)
+        except ModelError as error:
+            raise DeviceError(f"scripted: {error}") from error
+        self._settings, self._active = settings, None
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table; DeviceError beyond the limits."""
         limit = self._info.force_limit_cN
         largest = max(float(np.abs(t).max()) for t in (surface.press_cN, surface.release_cN))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from fdvv.protocol import Settings
 from fdvv.twin._finger import Finger
 from fdvv.twin._gesture import Gesture
 from fdvv.twin._noise import Noise
@@ -16,7 +17,7 @@ from fdvv.twin._trace import Trace
 
 @dataclass(frozen=True, eq=False)
 class RigPress:
-    """One press to simulate; image is a program as the firmware holds it (image_of)."""
+    """One press to simulate; image and settings are what the firmware holds (settings_of(rig) if None)."""
 
     rig: Rig
     finger: Finger
@@ -24,11 +25,18 @@ class RigPress:
     image: bytes
     noise: Noise
     announced_mm_s: float
+    settings: Settings | None = None
 
     def simulate(self) -> Trace:
         """Simulate it."""
         return simulate_program(
-            self.rig, self.finger, self.gesture, self.image, self.noise, self.announced_mm_s
+            self.rig,
+            self.finger,
+            self.gesture,
+            self.image,
+            self.noise,
+            self.announced_mm_s,
+            settings=self.settings,
         )
 
 

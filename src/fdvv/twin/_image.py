@@ -48,9 +48,15 @@ class TableImage:
 
 
 def image_of(
-    surface: ForceSurface, travel_mm: float, vibrations: Sequence[Vibration] = (), slots: Sequence[Slot] = ()
+    surface: ForceSurface,
+    travel_mm: float,
+    vibrations: Sequence[Vibration] = (),
+    slots: Sequence[Slot] = (),
+    paced: bool = False,
 ) -> TableImage:
     """Make the program that renders a table as it is, and plays these sines at these displacements.
+
+    paced : the announced velocity chooses the row, else the one decided in the press.
 
     Columns stay where they are if their step is a whole number of 1/16 um and all fit; else the table is
     sampled anew, as finely as fits. ModelError if that changes it by more than 0.1 cN, or if its numbers are
@@ -75,7 +81,9 @@ def image_of(
             f"the table would change by {error:.3g} cN to fit a device; {columns} places at most fit"
             f" {surface.velocity_mm_s.size} velocities"
         )
-    return TableImage(_pack(surface, travel_mm, (start, step, columns), held, [*vibrations, *slots]), error)
+    source = VelocitySource.ANNOUNCED if paced else VelocitySource.DECIDED
+    grid = start, step, columns
+    return TableImage(_pack(surface, travel_mm, grid, held, [*vibrations, *slots], source), error)
 
 
 def _grid(surface: ForceSurface) -> tuple[int, int, int]:
@@ -117,6 +125,7 @@ def _pack(
     grid: tuple[int, int, int],
     held: list[FloatArray],
     events: Sequence[Vibration | Slot],
+    source: VelocitySource,
 ) -> bytes:
     start, step, columns = grid
     rows = surface.velocity_mm_s.size
@@ -125,7 +134,7 @@ def _pack(
     speeds = np.round(MM_S16_PER_mm_s * surface.velocity_mm_s).astype("<u2").tobytes()
     forces = [table.astype("<i2").tobytes() for table in held]
     places = [fixed + len(speeds) + i * len(forces[0]) for i in (0, 1)]
-    parts = [_state().pack()]
+    parts = [_state(source).pack()]
     parts += [
         Surface(
             start_um16=start, step_um16=step, columns=columns, rows=rows, velocities_at=fixed, forces_at=at
@@ -137,11 +146,11 @@ def _pack(
     return _sealed(body, round(UM16_PER_mm * travel_mm), events)
 
 
-def _state() -> State:
+def _state(source: VelocitySource) -> State:
     return State(
         press_surface=0,
         release_surface=1,
-        velocity_source=VelocitySource.DECIDED,
+        velocity_source=source,
         key=0,
         first_transition=0,
         transitions=0,

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from fdvv.model import ForceSurface
-from fdvv.protocol import travel_mm_of
+from fdvv.protocol import Settings, travel_mm_of
 from fdvv.twin._finger import Finger
-from fdvv.twin._gesture import Gesture, plan
+from fdvv.twin._gesture import plan
 from fdvv.twin._image import image_of
 from fdvv.twin._noise import silence
 from fdvv.twin._rig import Rig
@@ -65,14 +65,21 @@ def solve_pace(
 
 
 def solve_program_pace(
-    rig: Rig, finger: Finger, image: bytes, velocity_mm_s: float, guess_s: float | None = None
+    rig: Rig,
+    finger: Finger,
+    image: bytes,
+    velocity_mm_s: float,
+    guess_s: float | None = None,
+    settings: Settings | None = None,
 ) -> float:
-    """Find the same for a program (its image, protocol/fdvv.toml)."""
+    """Find the same for a program (its image, protocol/fdvv.toml) under settings as simulate_program()'s."""
     travel_mm = travel_mm_of(image)
 
     def miss(log_s: float) -> float:
         gesture = plan(finger, float(m_from_mm(travel_mm)), math.exp(log_s))
-        speed = _speed(rig, finger, gesture, image, travel_mm, velocity_mm_s)
+        noise = silence(rig, gesture)
+        trace = simulate_program(rig, finger, gesture, image, noise, velocity_mm_s, settings=settings)
+        speed = mean_speed_mm_s(trace.t_s, trace.displacement_mm, travel_mm)
         return math.log(speed / velocity_mm_s) if speed else -1.0
 
     a = math.log(guess_s or 2.0 * travel_mm / velocity_mm_s)
@@ -89,10 +96,3 @@ def solve_program_pace(
         slope = min(slope, -0.2)
         a, miss_a, b = b, miss_b, b - float(np.clip(miss_b / slope, -0.7, 0.7))
     return math.exp(best[1])
-
-
-def _speed(
-    rig: Rig, finger: Finger, gesture: Gesture, image: bytes, travel_mm: float, velocity_mm_s: float
-) -> float:
-    trace = simulate_program(rig, finger, gesture, image, silence(rig, gesture), velocity_mm_s)
-    return mean_speed_mm_s(trace.t_s, trace.displacement_mm, travel_mm)

@@ -8,6 +8,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface
+from fdvv.protocol import Settings
 from fdvv.twin._finger import Finger
 from fdvv.twin._flatten import STEP_s, grid_of, plant_of
 from fdvv.twin._gesture import Gesture
@@ -54,8 +55,12 @@ def simulate_program(
     announced_mm_s: float,
     step_s: float = STEP_s,
     audit: bool = False,
+    settings: Settings | None = None,
 ) -> Trace:
-    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it), as simulate() does."""
+    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it), as simulate() does.
+
+    settings : what the firmware was told of the rig; settings_of(rig) if None.
+    """
     n = settle_ticks(rig) + count_ticks(rig, gesture)
     if noise.force_N.size != n:
         raise ModelError(f"noise must last {n} ticks, got {noise.force_N.size}")
@@ -64,7 +69,7 @@ def simulate_program(
     rows = run(
         plant,
         grid,
-        settings_of(rig),
+        settings or settings_of(rig),
         image,
         gesture,
         noise,

@@ -9,7 +9,6 @@ from fdvv.workflow._devices import open_device
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
-    device_settings,
     feasibility,
     feasible_curves,
 )
@@ -24,6 +23,7 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._tuning import settings_with
 
 __all__ = [
     "Ask",
@@ -53,7 +53,6 @@ __all__ = [
     "compensate",
     "demo",
     "demo_report",
-    "device_settings",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -77,6 +76,7 @@ __all__ = [
     "probe",
     "program_image",
     "save_actuation",
+    "settings_with",
     "summarise",
     "uncompensated",
 ]

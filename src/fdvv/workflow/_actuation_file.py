@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 import numpy as np
 
-from fdvv.compensate import CurveOutcome, Outcome
+from fdvv.compensate import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
 from fdvv.files import write_atomic
 from fdvv.model import ForceSurface, Stroke
@@ -55,6 +56,7 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     explanation: str
     simulated: bool
     receipt: Receipt | None = None
+    tuning: dict[str, float | bool] = {}
 
 
 def save_actuation(result: CompensationResult, path: Path | str) -> None:
@@ -67,6 +69,7 @@ def save_actuation(result: CompensationResult, path: Path | str) -> None:
         **result.to_dict(),
         "travel_mm": result.travel_mm,
         **{name: getattr(surface, name).tolist() for name in columns},
+        "tuning": asdict(result.outcome.tuning),
         "receipt": result.receipt.to_dict() if result.receipt else None,
     }
     write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")
@@ -116,6 +119,15 @@ def _result(record: ActuationRecord) -> CompensationResult:
         )
         for c in record.curves
     )
-    outcome = Outcome(surface, curves, record.presses - len(record.skipped), True, record.explanation)
+    learned = record.presses - len(record.skipped)
+    outcome = Outcome(surface, curves, learned, True, record.explanation, _tuning(record.tuning))
     names = record.method, record.model, record.device, record.travel_mm
     return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)
+
+
+def _tuning(found: dict[str, float | bool]) -> Tuning:
+    """Give the tuning of a file; one that names none has none. ModelError on an unknown name."""
+    unknown = sorted(set(found) - {f.name for f in fields(Tuning)})
+    if unknown:
+        raise ModelError(f"unknown field {unknown[0]!r} - at `$.tuning`")
+    return msgspec.convert(found, Tuning)

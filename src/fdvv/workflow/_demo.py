@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from fdvv.compensate import Tuning
 from fdvv.device import Device
 from fdvv.model import CurveFit, FDVVModel, FitMethod, fit_curve, load_builtin, scan_sizes
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
@@ -157,7 +158,14 @@ def _judge(
     """Probe a rendering; every one meets the same person, that is, the same seed."""
     surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
     return probe(
-        device, button, surface, VELOCITIES_mm_s, PROBE_PRESSES, _told(stage, f"probing {label}"), label
+        device,
+        button,
+        surface,
+        VELOCITIES_mm_s,
+        PROBE_PRESSES,
+        _told(stage, f"probing {label}"),
+        label,
+        tuning=learned.outcome.tuning if learned else Tuning(),
     )
 
 

@@ -27,8 +27,8 @@ from fdvv.compensate import (
     stability,
     thermal_dose,
 )
-from fdvv.device import Device, DeviceInfo, Remote, TwinDevice
-from fdvv.errors import DeviceError, ModelError
+from fdvv.device import DeviceInfo
+from fdvv.errors import ModelError
 from fdvv.model import FDVVModel, Stroke
 from fdvv.plot import FeasibleCurve, RenderedBand
 from fdvv.protocol import Settings
@@ -145,13 +145,6 @@ def _drawn(curve: CurveFeasibility, simulated: bool) -> FeasibleCurve:
     )
 
 
-def device_settings(device: Device) -> Settings:
-    """Give the calibration and limits that a device runs with. Raises DeviceError if it does not tell."""
-    if isinstance(device, Remote | TwinDevice):
-        return device.settings
-    raise DeviceError(f"{device.info().name}: it tells no settings; name a device with the firmware in it")
-
-
 def feasibility(
     model: FDVVModel,
     known: KnownRig,
@@ -165,7 +158,7 @@ def feasibility(
     """Tell for every stroke and speed whether a known rig can render a model, and why not.
 
     known : as identified from presses (fdvv.compensate.identify), or load_rig of its file.
-    settings : of the device (device_settings). info : its name and deepest stop.
+    settings : of the device (Device.settings). info : its name and deepest stop.
     measured : presses of a probe at some of these speeds. finger : who holds the cap still.
     motions : how the cap really goes, by stroke and speed, where that is known; else minimum jerk.
     Raises InputError on speeds that cannot be, ModelError on a rig that cannot be or a model without a press.

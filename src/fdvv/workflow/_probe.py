@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from fdvv.compensate import judge
+from fdvv.compensate import Tuning, judge
 from fdvv.device import Device
 from fdvv.model import FDVVModel, ForceSurface, Stroke, reading_order
 from fdvv.workflow._compensate import check_force_sensor, check_speeds
 from fdvv.workflow._probe_curve import FROM_mm, ProbeCurve, STOP_GUARD_mm, judged_curves
-from fdvv.workflow._probe_plan import Found, ProbePlan
+from fdvv.workflow._probe_plan import NOTHING, Found, ProbePlan
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Guide, Progress, Standing
@@ -78,21 +78,25 @@ def probe(
     method: str = "as uploaded",
     session: Session | None = None,
     guide: Guide | None = None,
+    tuning: Tuning = NOTHING,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and hold the felt force against the model.
 
     presses : per velocity, usable ones. The force on the finger is binned on the true displacement of
     the cap and held against the model at the speed that was asked for. A press that cannot be used is not
     judged but counted, with its reason; being at its limit is the rig's own doing and is judged.
-    progress, session, guide : as in ``compensate``.
+    progress, session, guide : as in ``compensate``. tuning : of the controller, as it was learned with the
+    surface; the device keeps it afterwards.
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
     """
     session = session or Session()
     check_force_sensor(device, truth_counts=True)
-    plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses)
-    settings = {"presses": presses, "surface_sha256": table_digest(surface)}
+    plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses, tuning)
+    settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
+    if tuning != NOTHING:
+        settings["tuning"] = asdict(tuning)
     manifest = make_manifest(
         "probe", device, model, plan.velocities_mm_s, (method, settings), (session.seed, session.parts)
     )
@@ -112,7 +116,7 @@ def _course(plan: ProbePlan, model: FDVVModel, session: Session) -> Course[Found
         "probe",
         plan,
         model.travel_mm,
-        lambda press: judge(press, model.travel_mm, bounds, true_position=True),
+        lambda press, _pace_ratio: judge(press, model.travel_mm, bounds, true_position=True),
         bounds.patience,
         lambda found: _standings(model, plan, found),
     )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.compensate import Count, Trial
+from fdvv.compensate import Count, Trial, Tuning
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press
+
+NOTHING = Tuning()
 
 Found = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan."""
@@ -14,11 +16,12 @@ Found = tuple[tuple[Press, ...], ...]
 
 @dataclass(frozen=True, eq=False)
 class ProbePlan:
-    """So many presses of one surface at every velocity, one velocity after the other."""
+    """So many presses of one surface under one tuning at every velocity, one velocity after the other."""
 
     surface: ForceSurface
     velocities_mm_s: tuple[float, ...]
     presses: int
+    tuning: Tuning = NOTHING
 
     def init(self) -> Found:
         """Begin."""
@@ -27,7 +30,7 @@ class ProbePlan:
     def trial(self, found: Found) -> Trial | None:
         """Press the first velocity that lacks presses; None when none does."""
         at = self._at(found)
-        return None if at is None else Trial(self.surface, self.velocities_mm_s[at])
+        return None if at is None else Trial(self.surface, self.velocities_mm_s[at], self.tuning)
 
     def step(self, press: Press, found: Found) -> Found:
         """Add a press to those of the velocity that was asked for. ModelError if none was."""

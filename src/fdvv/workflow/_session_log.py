@@ -13,18 +13,20 @@ import json
 import os
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from fdvv.compensate import Tuning
 from fdvv.device import pack_record, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.files import sync_folder
 from fdvv.model import ForceSurface, Press
 
 PRESSES = "presses.jsonl"
+NOTHING = Tuning()
 REMEDY = "begin a new session in another folder"
 
 
@@ -65,11 +67,15 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """A press as it was kept; without columns if the device faulted before it could tell of it."""
+    """A press as it was kept; without columns if the device faulted before it could tell of it.
+
+    tuning : of the controller; on file only where it does something.
+    """
 
     entry: Entry
     surface: ForceSurface
     press: Press | None
+    tuning: Tuning = NOTHING
 
 
 class Line(msgspec.Struct, forbid_unknown_fields=True):
@@ -182,7 +188,9 @@ def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
 
 def _packed(kept: Kept) -> dict[str, Any]:
     columns = pack_record(kept.press) if kept.press else None
-    return {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
+    tuning = {} if kept.tuning == NOTHING else {"tuning": asdict(kept.tuning)}
+    found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
+    return found | tuning
 
 
 def _locked(path: Path) -> int:
@@ -235,10 +243,11 @@ def _kept(path: Path, found: dict[str, Any], number: int) -> Kept:
     """Read a press that must bear this number."""
     try:
         surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
+        tuning = Tuning(**found.pop("tuning", {}))
         entry = msgspec.convert(found, Entry)
         if entry.number != number:
             raise ValueError(f"bears the number {entry.number}")
-        return Kept(entry, surface, unpack_press(columns) if columns else None)
+        return Kept(entry, surface, unpack_press(columns) if columns else None, tuning)
     except (ValueError, TypeError, KeyError, AttributeError, zlib.error) as error:
         raise _damaged(path, f"press {number}", str(error)) from error
 

@@ -19,6 +19,7 @@ from fdvv.device import Device, Remote
 from fdvv.documents import Kind, pretty, read_document
 from fdvv.files import read_limited
 from fdvv.model import FDVVModel, ForceSurface, model_to_json
+from fdvv.workflow._tuning import TUNED
 
 MANIFEST = "session.json"
 KIND = Kind("fdvv-session", 1, "a session", "name the folder of a session, or one that is new or empty")
@@ -91,12 +92,13 @@ def make_manifest(
 
 
 def identity(device: Device) -> dict[str, Any]:
-    """Tell what distinguishes a device from others."""
+    """Tell what distinguishes a device from others; what a session itself configures does not."""
     found: dict[str, Any] = dataclasses.asdict(device.info())
     if isinstance(device, Remote):
         hello = device.client.hello
         found |= {"serial": hello.serial, "firmware": hello.firmware, "protocol": hello.hash}
-        found["settings"] = dataclasses.asdict(device.settings)
+        settings = dataclasses.asdict(device.settings())
+        found["settings"] = {name: value for name, value in settings.items() if name not in TUNED}
     return found
 
 

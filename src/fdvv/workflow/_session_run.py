@@ -17,6 +17,7 @@ from fdvv.workflow._held_back import held_back
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Progress, Standing
 from fdvv.workflow._session_log import REMEDY, Entry, Kept, PressLog
 from fdvv.workflow._session_manifest import now
+from fdvv.workflow._tuning import tune
 
 S = TypeVar("S")
 
@@ -51,7 +52,8 @@ class Course(Generic[S]):
     Attributes
     ----------
     stage : "compensate" or "probe".
-    judge : tells whether a press may be used; patience : so many in a row that may not end the session.
+    judge : tells whether a press may be used, by a trial's own bound of pace unless that is None.
+    patience : so many in a row that may not end the session.
     standing : how far every velocity is.
     progress : called after every press; guide : before it, and with notices.
     """
@@ -59,7 +61,7 @@ class Course(Generic[S]):
     stage: str
     plan: Plan[S]
     travel_mm: float
-    judge: Callable[[Press], Verdict]
+    judge: Callable[[Press, float | None], Verdict]
     patience: int
     standing: Callable[[S], tuple[Standing, ...]]
     progress: Progress = lambda _done: None
@@ -67,9 +69,15 @@ class Course(Generic[S]):
 
 
 def prepare(device: Device, trial: Trial, travel_mm: float, before: Trial | None) -> None:
-    """Put a trial on the device; before is the one that is on it, of which only what differs is replaced."""
-    if before is None or before.surface is not trial.surface:
-        device.upload(trial.surface, travel_mm)
+    """Put a trial on the device; before is the one that is on it, of which only what differs is replaced.
+
+    Settings are written before the table, only if the tuning changes them; they stay when the session ends.
+    """
+    fresh = before is None or before.surface is not trial.surface
+    if before is None or before.tuning != trial.tuning:
+        fresh |= tune(device, trial.tuning) or before is None or before.tuning.paced != trial.tuning.paced
+    if fresh:
+        device.upload(trial.surface, travel_mm, trial.tuning.paced)
 
 
 def run(device: Device, course: Course[S], state: S, log: PressLog) -> S:
@@ -102,7 +110,7 @@ def replayed(course: Course[S], state: S, log: PressLog) -> S:
             continue
         trial = course.plan.trial(state)
         if trial is None or kept.press is None or not _same(trial, kept):
-            _refuse(log, kept, "was made on another table than this method asks for")
+            _refuse(log, kept, "was made on another table or tuning than this method asks for")
         try:
             state = course.plan.step(kept.press, state)
         except ModelError as error:
@@ -123,8 +131,8 @@ def _standing_of(course: Course[S], state: S, log: PressLog) -> str:
 
 
 def _same(trial: Trial, kept: Kept) -> bool:
-    """Tell whether a press was asked for, and made, on the tables of a trial."""
-    if trial.velocity_mm_s != kept.entry.velocity_mm_s:
+    """Tell whether a press was asked for, and made, on the tables and under the tuning of a trial."""
+    if trial.velocity_mm_s != kept.entry.velocity_mm_s or trial.tuning != kept.tuning:
         return False
     names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
     pairs = [(getattr(trial.surface, name), getattr(kept.surface, name)) for name in names]
@@ -193,7 +201,7 @@ def _taken(
 ) -> tuple[Entry, S]:
     """Judge a press, keep it, and use it if it may be used."""
     press, reason = made
-    verdict = Verdict(reason, float("nan")) if press is None else course.judge(press)
+    verdict = Verdict(reason, float("nan")) if press is None else course.judge(press, trial.pace_ratio)
     reason, after = verdict.reason, state
     if press is not None and not reason:
         try:
@@ -202,7 +210,7 @@ def _taken(
             reason = str(error)
     achieved = verdict.achieved_mm_s if np.isfinite(verdict.achieved_mm_s) else None
     entry = Entry(len(log.entries) + 1, trial.velocity_mm_s, reason, achieved, now())
-    log.add(Kept(entry, trial.surface, press))
+    log.add(Kept(entry, trial.surface, press, trial.tuning))
     return entry, after
 
 
