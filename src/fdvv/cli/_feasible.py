@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from fdvv.workflow import ProbeResult, Session
 
 NO_RIG = (
-    "fdvv feasible needs --rig-known FILE.rig.json, what presses have told of this rig: fdvv compensate of any "
-    "button writes it with --save-rig FILE.rig.json"
+    "fdvv feasible needs --rig-known FILE.rig.json, what presses have told of this rig: fdvv compensate of "
+    "any button writes it with --save-rig FILE.rig.json"
 )
 COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 

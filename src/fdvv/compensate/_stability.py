@@ -18,7 +18,7 @@ cN_mm_PER_N_m = 0.1
 SPAN_mm = 0.05
 """Slopes are those of the force averaged over this length, the step of a table."""
 HUNTS = 0.55
-"""A step whose margin is below this may hunt: on three of four rigs drag and friction quieten a smaller one
+"""A step whose margin is below this may hunt: on most rigs drag and friction quieten a smaller one
 (simulated, seeds 300 to 329 of the benchmark)."""
 END_mm = 0.1
 """Next to either end of the travel a stop carries the cap."""
