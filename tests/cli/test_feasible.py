@@ -59,7 +59,9 @@ def test_a_learned_table_is_pressed_and_drawn_with_the_rest(
 ) -> None:
     learned, figure = tmp_path / "a.actuation.json", tmp_path / "a.svg"
     where = (*known[2:], "--velocity", "60")
-    fdvv("compensate", "mx-red", *where, "--rounds", "1", "--presses", "2", "-o", learned)
+    fdvv(
+        "compensate", "mx-red", *where, "--method", "paper", "--rounds", "1", "--presses", "2", "-o", learned
+    )
     ran = fdvv(
         *("feasible", "mx-red", *known, "--velocity", "60"),
         *("--actuation", learned, "--presses", "2", "--seed", "9", "--figure", figure, "--json"),

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from fdvv.workflow import ProbeResult, Session
 
 NO_RIG = (
-    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: press it on "
-    "fdvv.compensate.identification_surface, then save_rig(identify(presses, travel_mm), FILE)"
+    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: identify it with "
+    "fdvv compensate BUTTON --save-rig FILE.rig.json"
 )
 COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 
@@ -128,7 +128,8 @@ def _measure(
     learned = load_actuation(actuation)
     with guided(session, device, as_json) as (found, view, guide):
         return probe(
-            found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method, session, guide
+            *(found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method),
+            *(session, guide, learned.outcome.tuning),
         )
 
 
