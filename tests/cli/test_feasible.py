@@ -59,7 +59,9 @@ def test_a_learned_table_is_pressed_and_drawn_with_the_rest(
 ) -> None:
     learned, figure = tmp_path / "a.actuation.json", tmp_path / "a.svg"
     where = (*known[2:], "--velocity", "60")
-    fdvv("compensate", "mx-red", *where, "--rounds", "1", "--presses", "2", "-o", learned)
+    fdvv(
+        "compensate", "mx-red", *where, "--method", "paper", "--rounds", "1", "--presses", "2", "-o", learned
+    )
     ran = fdvv(
         *("feasible", "mx-red", *known, "--velocity", "60"),
         *("--actuation", learned, "--presses", "2", "--seed", "9", "--figure", figure, "--json"),
@@ -75,7 +77,7 @@ def test_without_a_known_rig_one_line_tells_how_to_get_it(fdvv: Run) -> None:
     assert ran.status == 0
     assert len(ran.out.splitlines()) == 1
     assert "--rig-known" in ran.out
-    assert "--save-rig" in ran.out
+    assert "identify" in ran.out
 
 
 def test_a_rig_file_that_is_none_is_refused_in_one_line(fdvv: Run, tmp_path: Path) -> None:

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from fdvv.workflow import ProbeResult, Session
 
 NO_RIG = (
-    "fdvv feasible needs --rig-known FILE.rig.json, what presses have told of this rig: fdvv compensate of "
-    "any button writes it with --save-rig FILE.rig.json"
+    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: identify it with "
+    "fdvv compensate BUTTON --save-rig FILE.rig.json"
 )
 COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 
@@ -128,7 +128,8 @@ def _measure(
     learned = load_actuation(actuation)
     with guided(session, device, as_json) as (found, view, guide):
         return probe(
-            found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method, session, guide
+            *(found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method),
+            *(session, guide, learned.outcome.tuning),
         )
 
 
