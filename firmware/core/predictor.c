@@ -88,11 +88,9 @@ static void correct(fdvv_predictor *predictor, int32_t beyond_q16)
     predictor->bend_q16 = fdvv_clamp(bend_q16, -predictor->bend_limit_q16, predictor->bend_limit_q16);
 }
 
-void fdvv_predictor_tick(fdvv_predictor *predictor, int32_t um16, uint16_t elapsed_ticks)
+__attribute__((noinline)) void fdvv_predictor_tick(fdvv_predictor *predictor, int32_t um16, uint16_t elapsed_ticks)
 {
     int32_t sensed_q10 = um16 * 1024, beyond_q10 = INT32_MAX;
-    if (!predictor->on)
-        return;
     if (predictor->known && elapsed_ticks <= FDVV_PREDICTED_TICKS) {
         for (; elapsed_ticks; elapsed_ticks--)
             predict(predictor);

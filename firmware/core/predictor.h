@@ -28,13 +28,14 @@ typedef struct {
 /* Forget every place. */
 void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_settings *settings);
 
-/* Take this tick's place, within 662,144 um16, elapsed_ticks (at least 1) after the last. */
+/* Take this tick's place, within 662,144 um16, elapsed_ticks (at least 1) after the last. This and what follows:
+ * only if on. */
 void fdvv_predictor_tick(fdvv_predictor *predictor, int32_t um16, uint16_t elapsed_ticks);
 
-/* Place of the cap lead_us from now. Only if on. */
+/* Place of the cap lead_us from now. */
 int32_t fdvv_predictor_ahead_um16(const fdvv_predictor *predictor);
 
-/* Drag and friction, positive downward. Only if on. */
+/* Drag and friction, positive downward. */
 int32_t fdvv_predictor_resistance_cN64(const fdvv_predictor *predictor);
 
 #endif
