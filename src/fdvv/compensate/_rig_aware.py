@@ -210,16 +210,20 @@ class RigAware:
         grid = target.displacement_mm
         lift = (LIFT_cN + known.weight_cN) / known.gain_at(grid)
 
-        def rows(force_cN: FloatArray, learned_cN: FloatArray) -> FloatArray:
-            command = command_cN(known, grid, force_cN) + learned_cN
+        # what the controller takes off by speed is not whole yet in a slow stroke
+        slow = np.clip(1.0 - target.velocity_mm_s / self.friction_mm_s, 0.0, 1.0)[:, np.newaxis]
+        rub = slow * known.friction_cN / known.gain_at(grid)
+
+        def rows(force_cN: FloatArray, learned_cN: FloatArray, down: float) -> FloatArray:
+            command = command_cN(known, grid, force_cN) - down * rub + learned_cN
             return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
 
         press, release = tables
         return ForceSurface(
             grid,
             target.velocity_mm_s,
-            rows(target.press_cN, press.rows_cN),
-            rows(target.release_cN, release.rows_cN),
+            rows(target.press_cN, press.rows_cN, 1.0),
+            rows(target.release_cN, release.rows_cN, -1.0),
         )
 
     def _told(self, before: RigState, after: RigState, at: int) -> str:
