@@ -162,7 +162,7 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
         ],
     )
     if not document["presses"]:
-        click.echo("nothing was pressed: the mean is what to expect from what the rig has taught")
+        click.echo("nothing was pressed: the mean is what was left on the button that taught the rig")
     if document["skipped"]:
         count, last = counted(len(document["skipped"]), "press"), document["skipped"][-1]
         print_warnings([f"{count} skipped; the last: {last}"])

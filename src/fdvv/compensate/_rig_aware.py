@@ -9,7 +9,7 @@ import numpy as np
 from fdvv.compensate._balance import Sensor
 from fdvv.compensate._explain import explain as explain_rig
 from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN, tuning_of, unrepeatable_cN
-from fdvv.compensate._felt import passes
+from fdvv.compensate._felt import Pass, passes
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
 from fdvv.compensate._known_rig import KnownRig
@@ -22,8 +22,10 @@ from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
 from fdvv.units import FloatArray
 
-ANY_PACE_ratio, LOOSE_PACE_ratio = 1.0, 0.6
+ANY_PACE_ratio, LOOSE_PACE_ratio = float("inf"), 0.6
 """A rig is known from presses of any pace; on a heavy one that is not learned yet no person can keep it."""
+STRAY_ratio = 0.5
+"""A press this far off the pace asked for tells the rig, but not what the tables of its speed need."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +126,7 @@ class RigAware:
             return self._meet(press, state)
         speeds = state.job.target.velocity_mm_s
         at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
-        pair, tables = self._learn(press, state, at)
+        pair, tables = self._learn(self._passes(press, state), state, at)
         felt = (*state.felt[:at], (*state.felt[at], pair), *state.felt[at + 1 :])
         after = replace(state, felt=felt, tables=tables)
         return replace(after, told=self._told(state, after, at))
@@ -180,18 +182,31 @@ class RigAware:
         met = replace(state, known=known, unknown=unknown, tables=(table, table))
         speeds = state.job.target.velocity_mm_s
         for i, one in enumerate(unknown):
-            met = replace(met, tables=self._learn(one, met, i % speeds.size)[1])
+            met = replace(met, tables=self._from_meeting(one, met, i % speeds.size))
         return replace(met, told=explain_rig(known, 0.5 * state.job.travel_mm))
 
-    def _learn(self, press: Press, state: RigState, at: int) -> tuple[tuple[Felt, Felt], Pair]:
+    def _from_meeting(self, press: Press, state: RigState, at: int) -> Pair:
+        """Take a press made before the rig was known into the tables, if it tells what they need."""
+        asked = float(state.job.target.velocity_mm_s[at])
+        try:
+            strokes = self._passes(press, state)
+            if abs(strokes[0].speed_mm_s - asked) <= STRAY_ratio * asked:
+                return self._learn(strokes, state, at)[1]
+        except ModelError:
+            pass  # it told the rig, that is enough
+        return state.rig[1]
+
+    def _passes(self, press: Press, state: RigState) -> tuple[Pass, Pass]:
+        try:
+            return passes(press, state.job.travel_mm, state.rig[0], self.sensor)
+        except FitError as error:
+            raise ModelError(str(error)) from error
+
+    def _learn(self, strokes: tuple[Pass, Pass], state: RigState, at: int) -> tuple[tuple[Felt, Felt], Pair]:
         """Tell how a press made for speed number ``at`` felt, and take it into the tables."""
         known, tables = state.rig
         job, rig = state.job, (known, self._tuning(state))
         targets = (job.target.press_cN[at], job.target.release_cN[at])
-        try:
-            strokes = passes(press, job.travel_mm, known, self.sensor)
-        except FitError as error:
-            raise ModelError(str(error)) from error
         each = tuple(zip(tables, strokes, targets, strict=True))
         down, up = (felt_off(stroke, force, table, at, job.travel_mm) for table, stroke, force in each)
         press_table, release_table = (

@@ -64,7 +64,8 @@ def curves_of(job: Job, felt: Presses, memory: RigMemory | None) -> tuple[CurveO
 def _curve(stroke: Stroke, speed_mm_s: float, made: list[Felt], expected_cN: float) -> CurveOutcome:
     if not made:
         known = np.isfinite(expected_cN)
-        told = f"{expected_cN:.1f} cN expected, from what the rig has taught" if known else "not pressed"
+        left = f"{expected_cN:.1f} cN expected: what was left on the button that taught the rig"
+        told = left if known else "not pressed"
         return CurveOutcome(stroke, speed_mm_s, (), expected_cN, float("nan"), told)
     errors = tuple(one.error_cN for one in made)
     best = min(made, key=lambda one: one.error_cN)
