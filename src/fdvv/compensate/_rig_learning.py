@@ -42,10 +42,10 @@ class Learning:
 
     common_cN: float = 4.0
     alone_ratio: float = 0.3
-    fading: float = 0.9
+    fading: float = 0.7
     smoothing_mm: float = 0.06
     smoothing_s: float = 8e-4
-    trust: float = 0.7
+    trust: float = 0.6
     finger: FingerJoint = field(default_factory=FingerJoint)
 
     def __post_init__(self) -> None:
