@@ -143,7 +143,7 @@ def test_compensating_a_rig_goes_as_the_tutorial_shows(tmp_path: Path, environme
                 ran_here.append(command[1])
         elif language == "":
             assert text == printed, "the block after a program shows what it prints"
-    assert ran_here == ["compensate", "compensate", "compensate", "probe", "show"]
+    assert ran_here == ["compensate", "compensate", "compensate", "probe", "compensate", "show"]
     assert {p.name for p in (tmp_path / "clear.session").iterdir()} == set(
         re.findall(r"^\| `(.*?\.jsonl?)` \|", RIG.read_text(), flags=re.MULTILINE)
     )

@@ -188,7 +188,7 @@ def test_unknown_figures_are_null_in_json(fdvv: Run) -> None:
 
 def test_compensate_and_probe_report_errors_per_curve_and_say_simulated(fdvv: Run) -> None:
     short = ("--velocity", "50", "--json")
-    learn = ("compensate", "mx-red", *short, "--rounds", "1", "--presses", "8", "-o", "red.actuation.json")
+    learn = ("compensate", "mx-red", *short, "--rounds", "1", "-o", "red.actuation.json")
     learned, judged = (
         fdvv(*learn),
         fdvv("probe", "mx-red", "red.actuation.json", *short, "--presses", "2", "--seed", "3"),

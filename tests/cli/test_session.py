@@ -23,8 +23,10 @@ from fdvv.workflow._session_log import PRESSES, PressLog, read_log
 
 from .conftest import Run
 
-SHORT = ("--velocity", "50", "--velocity", "100", "--rounds", "1", "--presses", "4")
-LONG = ("--velocity", "50", "--velocity", "200", "--rounds", "2", "--presses", "12")
+PAPER = ("--method", "paper")
+SERIAL = ("--device", "serial:/dev/rig", *PAPER)
+SHORT = ("--velocity", "50", "--velocity", "100", "--rounds", "1", "--presses", "4", *PAPER)
+LONG = ("--velocity", "50", "--velocity", "200", "--rounds", "2", "--presses", "12", *PAPER)
 FDVV = (sys.executable, "-m", "fdvv")
 
 
@@ -284,7 +286,7 @@ def test_a_person_is_asked_and_answered_press_by_press_and_nothing_of_it_is_lost
         return opened[-1]
 
     monkeypatch.setattr("fdvv.workflow._session.open_device", open_device)
-    ask = ("compensate", "mx-clear", "--velocity", "100", "--rounds", "1", "--device", "serial:/dev/rig")
+    ask = ("compensate", "mx-clear", "--velocity", "100", "--rounds", "1", *SERIAL)
     ran = fdvv(*ask, "--presses", "3", "--json")
     assert ran.status == 0
     lines = ran.err.splitlines()

@@ -21,11 +21,11 @@ def tables(surface: ForceSurface) -> list[FloatArray]:
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
 def test_the_cap_is_held_up_and_the_limit_kept(target: ForceSurface) -> None:
-    surface = identification_surface(target, weight_cN=-60.0, limit_cN=60.0)
+    surface = identification_surface(target, weight_cN=-60.0, limit_cN=90.0)
     home = surface.displacement_mm <= 0.1
     for table in tables(surface):
-        assert table[:, home].min() >= 50.0
-        assert table.max() <= 60.0
+        assert table[:, home].min() >= 80.0
+        assert table.max() <= 90.0
     assert surface.velocity_mm_s.tolist() == target.velocity_mm_s.tolist()
 
 
@@ -51,5 +51,5 @@ def test_a_limit_below_the_hold_and_ripples_below_none_are_refused() -> None:
     target = TARGETS["mx-red"]
     with pytest.raises(ModelError, match="got -1"):
         identification_surface(target, ripple_cN=-1.0)
-    with pytest.raises(ModelError, match="a limit above 50 cN"):
+    with pytest.raises(ModelError, match="a limit above 80 cN"):
         identification_surface(target, limit_cN=40.0)

@@ -55,6 +55,7 @@ def test_too_fast_and_too_slow_say_the_figures_and_what_to_do() -> None:
 def test_the_tolerance_of_the_pace_is_a_setting() -> None:
     assert judge(plain(138.0), 4.0, Acceptance(pace_ratio=0.5)).reason == ""
     assert "slower" in judge(plain(120.0), 4.0, Acceptance(pace_ratio=0.1)).reason
+    assert judge(plain(350.0), 4.0, Acceptance().at_pace(float("inf"))).reason == ""
 
 
 def test_a_press_that_stops_short_has_no_speed_and_says_where_it_stopped() -> None:
@@ -126,7 +127,13 @@ def test_too_few_samples_to_tell_the_speed_are_a_reason() -> None:
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"pace_ratio": 0.0}, {"pace_ratio": 1.1}, {"lifted_mm": 0.0}, {"paused_ratio": -1.0}, {"patience": 0}],
+    [
+        {"pace_ratio": 0.0},
+        {"saturated_ratio": 1.1},
+        {"lifted_mm": 0.0},
+        {"paused_ratio": -1.0},
+        {"patience": 0},
+    ],
 )
 def test_bounds_without_sense_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ModelError, match="ratios"):

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from fdvv.cli._method_options import law_of, method_options
 from fdvv.cli._output import (
     Finite,
     check_output,
@@ -24,11 +25,7 @@ from fdvv.cli._session_options import beside, guided, open_session, session_opti
 @click.command()
 @click.argument("button")
 @session_options
-@click.option("--rounds", type=click.IntRange(1, 20), default=4, show_default=True, help="Runs averaged.")
-@click.option(
-    "--presses", type=click.IntRange(1, 100), default=12, show_default=True, help="Per round and velocity."
-)
-@click.option("--literal", is_flag=True, help="The law exactly as printed, without additions.")
+@method_options
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The *.actuation.json to write.")
 @json_option
 def compensate(
@@ -40,27 +37,31 @@ def compensate(
     velocities_mm_s: tuple[float, ...],
     folder: Path | None,
     pace_ratio: float,
-    rounds: int,
-    presses: int,
-    literal: bool,
+    save_rig: Path | None,
     output: Path | None,
     as_json: bool,
+    **asked: Any,
 ) -> None:
     """Learn the actuation that makes a rig feel like a model.
 
-    BUTTON is a built-in, a *.fdvv.json file or a measured file. The paper's iterative law presses until
-    its rounds are done; its errors are those the rig measured while it learned. Judge with fdvv probe.
+    BUTTON is a built-in, a *.fdvv.json file or a measured file. The method rig-aware identifies the rig from
+    a few presses, lets the controller look ahead and push against the rig's own forces, and learns what is
+    left; paper is the iterative law of the paper. Errors are those the rig measured while it learned. Judge
+    with fdvv probe.
+
+    What a rig has taught is kept with --save-rig. --rig-known begins another button, or an edited one, from
+    there: nothing is identified, and with --rounds 0 nothing is pressed at all.
 
     Ctrl-C stops the device; the same command goes on with a session where it stopped. A press that cannot
     be used, because it stopped short, paused or missed its speed, is told with the reason and made again.
     """
     check_output(output, ".actuation.json")
-    from fdvv.compensate import PaperLaw
+    check_output(save_rig, ".rig.json")
+    law = law_of(**asked, save_rig=save_rig)
+    from fdvv.compensate import save_rig as keep
     from fdvv.workflow import compensate as learn
     from fdvv.workflow import open_model, save_actuation
 
-    make = PaperLaw.literal if literal else PaperLaw
-    law = make(rounds=rounds, presses_per_round=presses)
     model = open_model(button)
     default = beside(output, button, "session")
     session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
@@ -68,9 +69,12 @@ def compensate(
         result = learn(found, model, velocities_mm_s, law, view.done, session, guide)
     if output:
         save_actuation(result, output)
+    if save_rig and result.memory:
+        keep(result.memory, save_rig)
     _print({**result.to_dict(), **_receipt(result)}, as_json)
-    if output and not as_json:
-        click.echo(f"written to {output}")
+    for path in (output, save_rig):
+        if path and not as_json:
+            click.echo(f"written to {path}")
 
 
 @click.command()
@@ -157,6 +161,8 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
             for c in document["curves"]
         ],
     )
+    if not document["presses"]:
+        click.echo("nothing was pressed: the mean is what was left on the button that taught the rig")
     if document["skipped"]:
         count, last = counted(len(document["skipped"]), "press"), document["skipped"][-1]
         print_warnings([f"{count} skipped; the last: {last}"])

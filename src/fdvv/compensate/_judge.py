@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class Acceptance:
     ----------
     pace_ratio : largest distance of the achieved mean speed from the one asked for, as a part of it. People
         who follow a pace spread by 0.08 to 0.15; three such deviations of a habit of 0.12 are still used.
+        Infinite: any pace.
     lifted_mm : largest way back on the way down. A finger that presses through goes back by 0.01 mm.
     paused_ratio : largest part of the stroke's time spent within a sixteenth of the travel; a press in one
         go, slow where it begins, spends up to a quarter.
@@ -40,9 +41,14 @@ class Acceptance:
     patience: int = 10
 
     def __post_init__(self) -> None:
-        parts = (self.pace_ratio, self.paused_ratio, self.saturated_ratio)
-        if not (all(0 < part <= 1 for part in parts) and self.lifted_mm > 0 and self.patience >= 1):
-            raise ModelError(f"ratios must be in 0..1, lifted_mm above 0, patience at least 1, got {self}")
+        parts, above = (self.paused_ratio, self.saturated_ratio), (self.pace_ratio, self.lifted_mm)
+        if not (all(0 < p <= 1 for p in parts) and all(p > 0 for p in above) and self.patience >= 1):
+            told = "other ratios in 0..1, patience at least 1"
+            raise ModelError(f"pace_ratio and lifted_mm must be above 0, {told}, got {self}")
+
+    def at_pace(self, pace_ratio: float | None) -> Acceptance:
+        """Give the bounds with another one for the pace; the same for None."""
+        return self if pace_ratio is None else replace(self, pace_ratio=pace_ratio)
 
 
 @dataclass(frozen=True)

@@ -100,6 +100,22 @@ class KnownRig:
         inertia = cN_PER_g_m_s2 * (self.mass_g - late_g) * acceleration_m_s2
         return np.asarray(DRAG_cN * drag * velocity_mm_s + rub - self.weight_cN + inertia)
 
+    def coil_cN(
+        self,
+        t_s: FloatArray,
+        displacement_mm: FloatArray,
+        velocity_mm_s: FloatArray,
+        commanded_cN: FloatArray,
+    ) -> FloatArray:
+        """Give the force of the coil, its braking included, (n,) as every column, on even times.
+
+        commanded_cN : as decided at t_s; straight between ticks, their holding counts in delay_s.
+        """
+        pushed = np.interp(t_s - self.delay_s + self.electric_lag_s, t_s, commanded_cN)
+        emf = DRAG_cN * self.back_emf_N_s_m * self.gain_at(displacement_mm) ** 2
+        coil = self.gain_at(displacement_mm) * pushed + emf * velocity_mm_s
+        return late(coil, self.electric_lag_s, float(t_s[1] - t_s[0]))
+
     def felt_cN(
         self,
         t_s: FloatArray,
@@ -108,14 +124,8 @@ class KnownRig:
         acceleration_m_s2: FloatArray,
         commanded_cN: FloatArray,
     ) -> FloatArray:
-        """Give the force on the finger between the stops, (n,) as every column, on even times.
-
-        commanded_cN : as decided at t_s; straight between ticks, their holding counts in delay_s.
-        """
-        pushed = np.interp(t_s - self.delay_s + self.electric_lag_s, t_s, commanded_cN)
-        emf = DRAG_cN * self.back_emf_N_s_m * self.gain_at(displacement_mm) ** 2
-        coil = self.gain_at(displacement_mm) * pushed + emf * velocity_mm_s
+        """Give the force on the finger between the stops, (n,) as every column; commanded_cN as coil_cN()."""
+        coil = self.coil_cN(t_s, displacement_mm, velocity_mm_s, commanded_cN)
         viscous = DRAG_cN * (self.drag_N_s_m - self.back_emf_N_s_m) * velocity_mm_s
         rest = viscous + self.friction_cN * np.sign(velocity_mm_s) - self.weight_cN
-        inertia = cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2
-        return late(coil, self.electric_lag_s, float(t_s[1] - t_s[0])) + rest + inertia
+        return coil + rest + cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2

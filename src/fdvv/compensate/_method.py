@@ -31,11 +31,15 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """What to do next: upload surface under this tuning, have it pressed once at velocity_mm_s."""
+    """What to do next: upload surface under this tuning, have it pressed once at velocity_mm_s.
+
+    pace_ratio : how far off the asked speed the press may be, as a part of it; None: as the session has it.
+    """
 
     surface: ForceSurface
     velocity_mm_s: float
     tuning: Tuning = NOTHING
+    pace_ratio: float | None = None
 
 
 @dataclass(frozen=True)

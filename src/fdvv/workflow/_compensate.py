@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fdvv.compensate import Count, CurveOutcome, Job, Method, Outcome, PaperLaw, PerCurve, judge
+from fdvv.compensate import Count, CurveOutcome, Job, Method, Outcome, PaperLaw, PerCurve, RigMemory, judge
 from fdvv.device import Device, Remote
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import FDVVModel, ForceSurface
+from fdvv.workflow._known_before import drift_told, remembered
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Guide, Progress, Standing
@@ -31,6 +33,7 @@ class CompensationResult:
     skipped : the presses that could not be used, each with its reason.
     simulated : the presses came from the twin.
     receipt : how it came about; None of files of version 1.
+    memory : what the rig has taught, for other buttons; None of a method that keeps none, and of files.
     """
 
     method: str
@@ -41,6 +44,7 @@ class CompensationResult:
     skipped: tuple[str, ...]
     simulated: bool
     receipt: Receipt | None = None
+    memory: RigMemory | None = None
 
     @property
     def surface(self) -> ForceSurface:
@@ -75,10 +79,14 @@ def _curve_dict(curve: CurveOutcome) -> dict[str, Any]:
         "stroke": str(curve.stroke),
         "velocity_mm_s": curve.velocity_mm_s,
         "error_cN": list(curve.error_cN),
-        "mean_error_cN": curve.mean_error_cN,
-        "max_error_cN": curve.max_error_cN,
+        "mean_error_cN": _known(curve.mean_error_cN),
+        "max_error_cN": _known(curve.max_error_cN),
         "explanation": curve.sentence,
     }
+
+
+def _known(error_cN: float) -> float | None:
+    return error_cN if math.isfinite(error_cN) else None
 
 
 def compensate(
@@ -100,8 +108,10 @@ def compensate(
     that cannot be learned at and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
     method, session = _method(law), session or Session()
-    check_force_sensor(device)
     job = _job(device, model, velocities_mm_s, method)
+    start = method.init(job)
+    if method.trial(start) is not None:
+        check_force_sensor(device)
     speeds = job.target.velocity_mm_s.tolist()
     manifest = make_manifest(
         "compensate", device, model, speeds, (method.name, method), (session.seed, session.parts)
@@ -109,7 +119,9 @@ def compensate(
     with session.begun(manifest) as log:
         course = _course(method, job, log, session)
         course = replace(course, progress=progress or course.progress, guide=guide or course.guide)
-        outcome = method.done(run(device, course, method.init(job), log))
+        course = replace(course, progress=drift_told(method, course, log))
+        state = run(device, course, start, log)
+        outcome = method.done(state)
         if not outcome.complete:
             raise DeviceError(f"{device.info().name}: {outcome.sentence}")
         receipt = make_receipt(manifest, log.runs, log.entries, outcome.curves)
@@ -118,7 +130,8 @@ def compensate(
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm
-    return CompensationResult(*names, outcome, skipped, info.simulated, receipt)
+    memory = remembered(method, state)
+    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, memory)
 
 
 def _course(method: Method[Any], job: Job, log: PressLog, session: Session) -> Course[Any]:
@@ -126,7 +139,7 @@ def _course(method: Method[Any], job: Job, log: PressLog, session: Session) -> C
         "compensate",
         method,
         job.travel_mm,
-        lambda press: judge(press, job.travel_mm, session.acceptance),
+        lambda press, pace_ratio: judge(press, job.travel_mm, session.acceptance.at_pace(pace_ratio)),
         session.acceptance.patience,
         lambda state: standings(job, method.count(state), log, method.done(state).curves),
     )

@@ -116,7 +116,7 @@ def _course(plan: ProbePlan, model: FDVVModel, session: Session) -> Course[Found
         "probe",
         plan,
         model.travel_mm,
-        lambda press: judge(press, model.travel_mm, bounds, true_position=True),
+        lambda press, _pace_ratio: judge(press, model.travel_mm, bounds, true_position=True),
         bounds.patience,
         lambda found: _standings(model, plan, found),
     )

@@ -52,7 +52,8 @@ class Course(Generic[S]):
     Attributes
     ----------
     stage : "compensate" or "probe".
-    judge : tells whether a press may be used; patience : so many in a row that may not end the session.
+    judge : tells whether a press may be used, by a trial's own bound of pace unless that is None.
+    patience : so many in a row that may not end the session.
     standing : how far every velocity is.
     progress : called after every press; guide : before it, and with notices.
     """
@@ -60,7 +61,7 @@ class Course(Generic[S]):
     stage: str
     plan: Plan[S]
     travel_mm: float
-    judge: Callable[[Press], Verdict]
+    judge: Callable[[Press, float | None], Verdict]
     patience: int
     standing: Callable[[S], tuple[Standing, ...]]
     progress: Progress = lambda _done: None
@@ -200,7 +201,7 @@ def _taken(
 ) -> tuple[Entry, S]:
     """Judge a press, keep it, and use it if it may be used."""
     press, reason = made
-    verdict = Verdict(reason, float("nan")) if press is None else course.judge(press)
+    verdict = Verdict(reason, float("nan")) if press is None else course.judge(press, trial.pace_ratio)
     reason, after = verdict.reason, state
     if press is not None and not reason:
         try:
