@@ -17,7 +17,7 @@ typedef struct {
     int32_t place_q10;
     int32_t step_q10;        /* velocity, um16 per tick */
     int32_t bend_q16;        /* half the acceleration, um16 per tick^2 */
-    int32_t step_limit_q10;  /* 4.096 m/s */
+    int32_t step_limit_q10;  /* 4 m/s */
     int32_t bend_limit_q16;  /* 1953 m/s^2 */
     /* ratios whose shift is 16 less, 0 to 29 */
     fdvv_ratio place_gain, step_gain, bend_gain; /* of what is sensed beyond what was predicted, q16 */
