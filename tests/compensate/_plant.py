@@ -9,7 +9,7 @@ import numpy as np
 from fdvv.model import Press
 from fdvv.units import FloatArray
 
-FINE = 20
+FINE = 10
 """Steps per tick."""
 TRAVEL_mm = 4.0
 
