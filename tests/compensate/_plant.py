@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.compensate import KnownRig
 from fdvv.model import Press
 from fdvv.units import FloatArray
 
@@ -34,35 +35,64 @@ class Plant:
     force_noise_cN: float = 0.0
     tick_s: float = 2.5e-4
 
-    def press(self, velocity_mm_s: float, seed: int = 0) -> Press:
-        """Press down and back along cosines with a tremor, commanding waves over time."""
-        random = np.random.default_rng((seed, round(velocity_mm_s)))
+    def motion(self, velocity_mm_s: float, tremor_mm: float = 0.1) -> tuple[FloatArray, ...]:
+        """Give time, place, speed and acceleration (mm, s), finely: down and back along cosines."""
         step = self.tick_s / FINE
         stroke, rest = TRAVEL_mm / velocity_mm_s, 0.02
         t = np.arange(0.0, 4 * rest + 2 * stroke, step)
         down, up = np.clip((t - rest) / stroke, 0, 1), np.clip((t - 3 * rest - stroke) / stroke, 0, 1)
         x = 0.5 * TRAVEL_mm * (np.cos(np.pi * up) - np.cos(np.pi * down))
-        shake = 0.1 * np.sin(np.pi * down) ** 2 * np.sin(np.pi * up / 2 + np.pi / 2) ** 2
-        x = x + (shake + 0.1 * np.sin(np.pi * up) ** 2) * np.sin(2 * np.pi * 45 * t)
-        v, a = np.gradient(x, step), np.gradient(np.gradient(x, step), step)
+        shake = np.sin(np.pi * down) ** 2 * np.sin(np.pi * up / 2 + np.pi / 2) ** 2
+        x = x + tremor_mm * (shake + np.sin(np.pi * up) ** 2) * np.sin(2 * np.pi * 45 * t)
+        v = np.gradient(x, step)
+        return t, x, v, np.gradient(v, step)
+
+    def press(self, velocity_mm_s: float, seed: int = 0) -> Press:
+        """Press with a tremor, commanding waves over time."""
+        t, *motion = self.motion(velocity_mm_s)
         command = 70 + 12 * np.sin(2 * np.pi * 37 * t) + 9 * np.sin(2 * np.pi * 83 * t + velocity_mm_s)
-        sensed, force = self._sense(t, x, v, a, command, step)
-        rows = slice(None, None, FINE)
-        sensed = sensed[rows] + self.position_noise_mm * random.standard_normal(t[rows].size)
-        felt = force[rows] + self.force_noise_cN * random.standard_normal(t[rows].size)
-        nowhere = np.full(t[rows].size, np.nan)
+        return self.pressed(velocity_mm_s, (t, *motion), command, seed)
+
+    def pressed(
+        self, velocity_mm_s: float, motion: tuple[FloatArray, ...], command: FloatArray, seed: int = 0
+    ) -> Press:
+        """Give the record of a motion under a command, both finely over time."""
+        random = np.random.default_rng((seed, round(velocity_mm_s)))
+        t, x, _, a = motion
+        step, rows = self.tick_s / FINE, slice(None, None, FINE)
+        force = sum(self.forces_cN(motion, command)) + 1e-4 * self.cone_g * a
+        reading = played(lagged(force, self.filter_s, step), self.half_play_cN)
+        sensed = lagged(x, self.position_lag_s, step)[rows]
+        sensed = sensed + self.position_noise_mm * random.standard_normal(sensed.size)
+        felt = reading[rows] + self.force_noise_cN * random.standard_normal(sensed.size)
+        nowhere = np.full(sensed.size, np.nan)
         return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, felt, command[rows])
 
-    def _sense(
-        self, t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray, command: FloatArray, step: float
-    ) -> tuple[FloatArray, FloatArray]:
+    def forces_cN(self, motion: tuple[FloatArray, ...], command: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give the coil's force on the finger, its braking included, and what the rig makes by itself."""
+        t, x, v, a = motion
         gain = self.gain[0] + x * (self.gain[1] + x * self.gain[2])
         late = np.interp(t - self.command_delay_s, t, command)
-        pushed = lagged(gain * late + 0.1 * self.back_emf_N_s_m * gain**2 * v, self.electric_lag_s, step)
-        rest = 0.1 * self.viscous_N_s_m * v + self.friction_cN * np.sign(v) - self.weight_cN
-        force = pushed + rest + 1e-4 * (self.mass_g + self.cone_g) * a
-        reading = played(lagged(force, self.filter_s, step), self.half_play_cN)
-        return lagged(x, self.position_lag_s, step), reading
+        step = self.tick_s / FINE
+        coil = lagged(gain * late + 0.1 * self.back_emf_N_s_m * gain**2 * v, self.electric_lag_s, step)
+        own = 0.1 * self.viscous_N_s_m * v + self.friction_cN * np.sign(v) - self.weight_cN
+        return coil, own + 1e-4 * self.mass_g * a
+
+
+def known_of(plant: Plant) -> KnownRig:
+    """Tell what identification would, had it no error."""
+    return KnownRig(
+        plant.gain,
+        plant.command_delay_s + plant.electric_lag_s,
+        plant.electric_lag_s,
+        plant.position_lag_s,
+        plant.viscous_N_s_m + plant.back_emf_N_s_m,
+        plant.back_emf_N_s_m,
+        plant.friction_cN,
+        plant.weight_cN,
+        plant.mass_g,
+        2 * plant.half_play_cN,
+    )
 
 
 def lagged(signal: FloatArray, lag_s: float, step_s: float) -> FloatArray:

@@ -21,7 +21,7 @@ from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.testing import draw_fast_rig, missed_cN, rig_truth
 
-from ._plant import Plant, TRAVEL_mm
+from ._plant import Plant, TRAVEL_mm, known_of
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 FREE = {
@@ -44,24 +44,9 @@ def presses_of(plant: Plant) -> list[Press]:
     return [plant.press(v, seed) for seed, v in enumerate(SPEEDS_mm_s)]
 
 
-def as_known(plant: Plant) -> KnownRig:
-    return KnownRig(
-        plant.gain,
-        plant.command_delay_s + plant.electric_lag_s,
-        plant.electric_lag_s,
-        plant.position_lag_s,
-        plant.viscous_N_s_m + plant.back_emf_N_s_m,
-        plant.back_emf_N_s_m,
-        plant.friction_cN,
-        plant.weight_cN,
-        plant.mass_g,
-        2 * plant.half_play_cN,
-    )
-
-
 def compare(known: KnownRig, plant: Plant) -> dict[str, float]:
     """Give what was missed, by name, with the gain at mid travel."""
-    true, middle = as_known(plant), np.array(0.5 * TRAVEL_mm)
+    true, middle = known_of(plant), np.array(0.5 * TRAVEL_mm)
     names = [name for name in known.error if name != "gain"]
     missed = {name: getattr(known, name) - getattr(true, name) for name in names}
     return {**missed, "gain": float(known.gain_at(middle) - true.gain_at(middle))}

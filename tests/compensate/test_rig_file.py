@@ -1,16 +1,27 @@
-"""A known rig survives its file to the bit; a broken file gives one line."""
+"""A known rig, and what it has taught, survive their file to the bit; a broken file gives one line."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.compensate import KnownRig, load_rig, rig_from_json, rig_to_json, save_rig
+from fdvv.compensate import (
+    KnownRig,
+    RigMemory,
+    load_memory,
+    load_rig,
+    memory_from_json,
+    rig_from_json,
+    rig_to_json,
+    save_rig,
+)
 from fdvv.errors import InputError
+from fdvv.model import ForceSurface
 
 NUMBER = st.floats(-1e6, 1e6)
 
@@ -56,3 +67,73 @@ def test_a_broken_file_is_told_in_one_line(change: dict[str, object], says: str)
 def test_a_missing_file_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="check the path"):
         load_rig(tmp_path / "none.rig.json")
+
+
+def memory(seed: int = 0) -> RigMemory:
+    random = np.random.default_rng(seed)
+    tables = random.normal(size=(2, 3, 81))
+    residual = ForceSurface(
+        0.05 * np.arange(81, dtype=np.float64), np.array([50.0, 100.0, 150.0]), tables[0], tables[1]
+    )
+    return RigMemory(KnownRig(gain=(0.9, 0.07, -0.01)), residual, 4.0, random.uniform(1, 5, (2, 3)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_was_taught_comes_back_to_the_bit(tmp_path: Path, seed: int) -> None:
+    saved = memory(seed)
+    save_rig(saved, tmp_path / "a.rig.json")
+    again = load_memory(tmp_path / "a.rig.json")
+    assert again.known == saved.known == load_rig(tmp_path / "a.rig.json")
+    assert again.travel_mm == saved.travel_mm
+    np.testing.assert_array_equal(again.error_cN, saved.error_cN)
+    for name in ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN"):
+        np.testing.assert_array_equal(getattr(again.residual, name), getattr(saved.residual, name))
+
+
+def test_a_rigs_numbers_alone_have_taught_nothing(tmp_path: Path) -> None:
+    save_rig(KnownRig(), tmp_path / "a.rig.json")
+    with pytest.raises(InputError, match=r"\$\.learned: holds the rig's numbers.*--save-rig") as told:
+        load_memory(tmp_path / "a.rig.json")
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"press_cN": [[1.0]]}, r"\$\.learned: tables must be"),
+        ({"press_cN": [[1.0], [1.0, 2.0]]}, r"\$\.learned: "),
+        ({"error_cN": [[1.0], [2.0]]}, "finite errors"),
+        ({"error_cN": [[1.0]]}, r"\$\.learned\.error_cN"),
+        ({"travel_mm": 0.0}, "travel above 0"),
+        ({"velocity_mm_s": [1.0, 1.0, 2.0]}, "rise strictly"),
+        ({"velocity_mm_s": "fast"}, r"\$\.learned\.velocity_mm_s"),
+        ({"surprise": 1}, "unknown field `surprise`"),
+    ],
+)
+def test_damage_in_what_was_taught_is_told_in_one_line(change: dict[str, object], says: str) -> None:
+    document = json.loads(rig_to_json(memory()))
+    document["learned"] |= change
+    for read in (memory_from_json, rig_from_json):
+        with pytest.raises(InputError, match=says) as told:
+            read(json.dumps(document), "a.rig.json")
+        assert str(told.value).startswith("a.rig.json: ")
+        assert "\n" not in str(told.value)
+
+
+def test_a_cut_file_is_told_and_a_failed_write_leaves_the_old_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.rig.json"
+    save_rig(memory(), path)
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="not valid JSON"):
+        memory_from_json(before[:1000])
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    with pytest.raises(OSError, match="No space"):
+        save_rig(memory(1), path)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.rig.json"]

@@ -89,5 +89,5 @@ class SharedTable:
         return replace(
             self,
             rows_cN=self.rows_cN + np.outer(weights, surprise),
-            covariance_cN2=covariance - np.outer(weights, spread),
+            covariance_cN2=covariance - np.outer(spread, spread) / expected,
         )

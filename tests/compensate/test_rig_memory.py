@@ -1,0 +1,53 @@
+"""What a rig has taught, asked for other places, speeds and travels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import KnownRig, RigMemory
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface
+
+GRID_mm = np.arange(81, dtype=np.float64) * 0.05
+SPEEDS_mm_s = np.array([50.0, 100.0, 200.0])
+ROWS_cN = SPEEDS_mm_s[:, np.newaxis] ** 2 * 1e-4 + GRID_mm
+MEMORY = RigMemory(
+    KnownRig(mass_g=12.0),
+    ForceSurface(GRID_mm, SPEEDS_mm_s, ROWS_cN, -ROWS_cN),
+    4.0,
+    np.array([[1.0, 2.0, 5.0], [2.0, 3.0, 6.0]]),
+)
+
+
+def test_on_its_own_grid_and_speeds_it_is_what_was_learned() -> None:
+    press, release = MEMORY.rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
+    np.testing.assert_allclose(press, ROWS_cN)
+    np.testing.assert_allclose(release, -ROWS_cN)
+    np.testing.assert_array_equal(MEMORY.expected_cN(SPEEDS_mm_s), MEMORY.error_cN)
+
+
+def test_between_speeds_it_is_straight_in_their_square_and_holds_outside() -> None:
+    press, _ = MEMORY.rows_cN(GRID_mm, np.array([20.0, 150.0, 400.0]), 4.0)
+    np.testing.assert_allclose(press[1], 150.0**2 * 1e-4 + GRID_mm)
+    np.testing.assert_allclose(press[[0, 2]], ROWS_cN[[0, 2]])
+    expected = MEMORY.expected_cN(np.array([20.0, np.hypot(50.0, 100.0) / np.sqrt(2), 400.0]))
+    np.testing.assert_allclose(expected, [[1.0, 1.5, 5.0], [2.0, 2.5, 6.0]])
+
+
+def test_on_another_travel_places_are_scaled() -> None:
+    grid = np.arange(61, dtype=np.float64) * 0.05
+    press, _ = MEMORY.rows_cN(grid, SPEEDS_mm_s[:1], 3.0)
+    np.testing.assert_allclose(press[0], 0.25 + grid * 4.0 / 3.0)
+
+
+def test_a_rig_met_at_one_speed_gives_its_row_at_every_speed() -> None:
+    one = ForceSurface(GRID_mm, SPEEDS_mm_s[:1], ROWS_cN[:1], ROWS_cN[:1])
+    press, _ = RigMemory(KnownRig(), one, 4.0, np.ones((2, 1))).rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
+    np.testing.assert_allclose(press, np.repeat(ROWS_cN[:1], 3, axis=0))
+
+
+@pytest.mark.parametrize("error_cN", [np.ones((2, 2)), np.ones(3), np.full((2, 3), np.nan)])
+def test_errors_that_do_not_fit_its_speeds_are_refused(error_cN: np.ndarray) -> None:
+    with pytest.raises(ModelError, match=r"needs \(2, 3\) finite errors"):
+        RigMemory(KnownRig(), MEMORY.residual, 4.0, error_cN)
