@@ -126,6 +126,11 @@ def dearest(settings: Settings) -> Settings:
     )
 
 
+def looking_ahead(settings: Settings, ahead: bool) -> Settings:
+    """Turn the predictor on or off."""
+    return replace(settings, predictor_q16=(settings.predictor_q16 or 6000) if ahead else 0)
+
+
 def full_image(transitions: int, vibrations: int, settings: Settings) -> bytes:
     """Give a program of one state with so many transitions that never hold, and vibrations."""
     rng, most_cN64 = np.random.default_rng(0), settings.force_limit_cN64 // 2
@@ -142,14 +147,17 @@ def full_image(transitions: int, vibrations: int, settings: Settings) -> bytes:
 
 
 def random_cycles(
-    built: tuple[bytes, dict[str, int]], cases: int, ticks: int, waits: int = NO_WAIT
+    built: tuple[bytes, dict[str, int]], cases: int, ticks: int, waits: int = NO_WAIT, ahead: bool = True
 ) -> list[int]:
-    """Give the cycles of ticks of random rigs and programs, every other rig the dearest of its kind."""
+    """Give the cycles of ticks of random rigs and programs, every other rig the dearest of its kind.
+
+    ahead : the controller looks ahead.
+    """
     found = []
     for seed in range(cases):
         rng = np.random.default_rng(seed)
         settings = random_settings(rng)
-        settings = dearest(settings) if seed % 2 else settings
+        settings = looking_ahead(dearest(settings) if seed % 2 else settings, ahead)
         image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
         found += measure(Machine(*built, settings, image, waits), Core(settings, image), inputs)
     return found
@@ -158,7 +166,7 @@ def random_cycles(
 def full_cycles(built: tuple[bytes, dict[str, int]], transitions: int, vibrations: int) -> list[int]:
     """Give the cycles of ticks of a program with so many transitions and vibrations."""
     rng = np.random.default_rng(1)
-    settings = dearest(random_settings(rng))
+    settings = looking_ahead(dearest(random_settings(rng)), True)
     image, inputs = full_image(transitions, vibrations, settings), random_inputs(rng, 1000, settings)
     return measure(Machine(*built, settings, image), Core(settings, image), inputs)
 
@@ -169,8 +177,9 @@ def tell(optimise: str, cases: int, ticks: int) -> None:
         built = build(Path(folder), optimise)
     print(f"core, emulated, {optimise}: {len(built[0])} bytes, {cases * ticks} random ticks")
     for waits, name in ((NO_WAIT, "no wait states"), (CACHED, "flash waits")):
-        found = random_cycles(built, cases, ticks, waits)
-        print(f"  {name}: median {np.median(found):.0f}, worst {max(found)} cycles")
+        for ahead, told in ((False, ""), (True, ", looking ahead")):
+            found = random_cycles(built, cases, ticks, waits, ahead)
+            print(f"  {name}{told}: median {np.median(found):.0f}, worst {max(found)} cycles")
     few, many, full = (full_cycles(built, *counts) for counts in ((0, 0), (48, 0), (48, 32)))
     print(f"  a transition that does not hold: {(np.median(many) - np.median(few)) / 48:.0f} cycles")
     print(f"  a state with 48 of them, 32 vibrations: worst {max(full)} cycles")

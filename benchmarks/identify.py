@@ -1,8 +1,9 @@
 """How well do four presses tell a rig? Simulated; some minutes.
 
-Run as ``python -m benchmarks.identify``, or with the first and the last seed. Rigs and fingers drawn at
-random over their plausible ranges, loop of 4 kHz; one press each at 50, 100, 150 and 200 mm/s on the
-identification surface, judged on four fresh presses of the plain model, lifted. MX Clear and MX Red in turn.
+Run as ``python -m benchmarks.identify``, or with the first and the last seed, or with these and the amplitude
+of the ripples in cN. Rigs and fingers drawn at random over their plausible ranges, loop of 4 kHz; one press
+each at 50, 100, 150 and 200 mm/s on the identification surface, judged on four fresh presses of the plain
+model, lifted. MX Clear and MX Red in turn.
 Forces and their numbers are in the units of the finger's sensor, so its error of calibration is not counted.
 Rigs are left out whose coil is weaker than the firmware can be told, or too stiff for the twin's steps.
 """
@@ -86,20 +87,20 @@ class Judged:
     spent_s: float
 
 
-def judge(seed: int, drive: str) -> Judged | None:
+def judge(seed: int, drive: str, ripple_cN: float) -> Judged | None:
     """Identify one rig and hold it against its truth; None if it cannot be pressed."""
     rig, finger = draw_fast_rig(seed, drive)
     try:
-        return held_against_truth(seed, rig, finger)
+        return held_against_truth(seed, rig, finger, ripple_cN)
     except ModelError:
         return None
 
 
-def held_against_truth(seed: int, rig: Rig, finger: Finger) -> Judged:
+def held_against_truth(seed: int, rig: Rig, finger: Finger, ripple_cN: float) -> Judged:
     button = load_builtin(BUTTONS[seed % 2])
     target = ForceSurface.of_model(button, SPEEDS_mm_s, 0.05)
     device = TwinDevice(rig, finger, seed)
-    device.upload(identification_surface(target), button.travel_mm)
+    device.upload(identification_surface(target, ripple_cN=ripple_cN), button.travel_mm)
     presses = [device.press(v) for v in SPEEDS_mm_s]
     begun = time.perf_counter()
     known = identify(presses, button.travel_mm)
@@ -135,8 +136,9 @@ def table(judged: list[Judged], drive: str) -> Iterator[str]:
 
 def main() -> None:
     first, last = (int(a) for a in sys.argv[1:3]) if len(sys.argv) > 2 else (SEEDS[0], SEEDS[-1])
+    ripple_cN = float(sys.argv[3]) if len(sys.argv) > 3 else 8.0
     for drive in ("voltage", "current"):
-        tried = (judge(seed, drive) for seed in range(first, last + 1))
+        tried = (judge(seed, drive, ripple_cN) for seed in range(first, last + 1))
         print("\n".join(table([one for one in tried if one], drive)), flush=True)
 
 

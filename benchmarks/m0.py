@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -57,10 +57,13 @@ def run_load(
 
 
 def rate_settings(tick_us: int, reads: int) -> Settings:
-    """Give the default settings with another tick, the gain made up for another number of readings."""
+    """Give settings that look ahead at another tick, the gain made up for another number of readings."""
     usual = Settings()
     gain_q14 = round(usual.position_gain_q14 * usual.reads / reads)
-    return Settings(tick_us=tick_us, reads=reads, position_gain_q14=gain_q14)
+    plain = Settings(tick_us=tick_us, reads=reads, position_gain_q14=gain_q14)
+    return replace(
+        plain, predictor_q16=9000, lead_us=2000, brake_lead_us=1500, drag_q13=500, friction_cN64=100
+    )
 
 
 def tell_speed() -> None:

@@ -10,6 +10,9 @@ typedef char fdvv_right_shifts_keep_the_sign[(-1 >> 1) == -1 ? 1 : -1];
 
 #define FDVV_ONE_Q15 32768
 
+/* Runs once per change of settings: small rather than quick. */
+#define FDVV_SELDOM __attribute__((cold, noinline))
+
 /* mantissa / 2^shift; the mantissa has its highest bit set */
 typedef struct {
     uint16_t mantissa;

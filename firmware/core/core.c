@@ -88,12 +88,18 @@ static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q1
     return *duty_q15 != duty ? FDVV_TICK_FLAG_LIMITED : 0;
 }
 
-/* What is taken off the command in this tick, no more than a command. */
-static int16_t resistance_cN64(const fdvv_predictor *predictor)
+/* Where the surface is looked up, and what is taken off its force; a fade leads from what the program wanted. */
+static void look_ahead(fdvv_core *core, fdvv_moment *moment)
 {
-    if (!predictor->on)
-        return 0;
-    return (int16_t)fdvv_clamp(fdvv_predictor_resistance_cN64(predictor), -INT16_MAX, INT16_MAX);
+    int32_t resistance_cN64;
+    moment->ahead_um16 = core->position.um16;
+    moment->command_cN64 = core->command_cN64;
+    if (!core->predictor.on)
+        return;
+    moment->ahead_um16 = fdvv_predictor_ahead_um16(&core->predictor);
+    moment->command_cN64 = (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
+    resistance_cN64 = fdvv_predictor_resistance_cN64(&core->predictor);
+    core->resistance_cN64 = (int16_t)fdvv_clamp(resistance_cN64, -INT16_MAX, INT16_MAX);
 }
 
 /* One tick of a program; gives the flags it sets. */
@@ -109,11 +115,7 @@ static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elaps
     moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
     moment.events = core->events;
     moment.announced_mm_s16 = core->announced_mm_s16;
-    /* a fade leads from what the program wanted; what is taken off is no part of it */
-    moment.command_cN64 =
-        (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
-    moment.ahead_um16 = core->predictor.on ? fdvv_predictor_ahead_um16(&core->predictor) : core->position.um16;
-    core->resistance_cN64 = resistance_cN64(&core->predictor);
+    look_ahead(core, &moment);
     fdvv_machine_tick(machine, core->image, &moment);
     state = machine->now;
     flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment) - core->resistance_cN64, limit_cN64);
@@ -161,7 +163,8 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     uint8_t flags = 0;
     fdvv_position_tick(&core->position, settings, inputs->sum);
     fdvv_velocity_tick(&core->velocity, settings, &core->position, elapsed_ticks);
-    fdvv_predictor_tick(&core->predictor, core->position.um16, elapsed_ticks);
+    if (core->predictor.on)
+        fdvv_predictor_tick(&core->predictor, core->position.um16, elapsed_ticks);
     fdvv_supervisor_check(supervisor, settings, inputs, core->position.um16, force_cN64, core->command_cN64,
                           core->machine.state);
     limit_cN64 = fdvv_supervisor_limit_cN64(supervisor, settings);

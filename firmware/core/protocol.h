@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #define FDVV_PROTOCOL_VERSION 1
-#define FDVV_PROTOCOL_HASH 0x41db7b66u
+#define FDVV_PROTOCOL_HASH 0xef2d1201u
 
 #define FDVV_FRAME_BYTES 232 /* largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254 */
 #define FDVV_DATA_BYTES 192 /* image bytes in one data message, a multiple of 4 */
@@ -195,7 +195,7 @@ typedef struct {
     uint16_t brake_lead_us; /* us; 0 to 20000; the same for the speed that drag goes by */
     uint16_t drag_q13; /* cN64 per mm_s16; 0 to 49152; taken off the command per speed; the largest is 15 N s/m */
     uint16_t friction_cN64; /* cN64; 0 to 6400; taken off the command in the direction of motion */
-    uint16_t friction_mm_s16; /* mm_s16; 16 to 16000; speed from which on friction counts in full, below it in proportion */
+    uint16_t friction_mm_s16; /* mm_s16; 64 to 16000; speed from which on friction counts in full, below it in proportion */
     uint32_t spare; /* the settings are sixteen bytes times a whole number: their checksum takes four words at a time */
     uint8_t reads; /* 1 to 64; converter readings summed per tick; the paper's 25 */
     uint8_t sliding_ticks; /* 1 to 32; ticks of an additional sliding mean; 25 is the paper's literal reading */
@@ -238,7 +238,7 @@ typedef char fdvv_settings_has_96_bytes[sizeof(fdvv_settings) == 96 ? 1 : -1];
     X(brake_lead_us, 0, 20000) \
     X(drag_q13, 0, 49152) \
     X(friction_cN64, 0, 6400) \
-    X(friction_mm_s16, 16, 16000) \
+    X(friction_mm_s16, 64, 16000) \
     X(spare, 0, 0) \
     X(reads, 1, 64) \
     X(sliding_ticks, 1, 32) \

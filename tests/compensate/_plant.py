@@ -10,7 +10,7 @@ from fdvv.compensate import KnownRig
 from fdvv.model import Press
 from fdvv.units import FloatArray
 
-FINE = 20
+FINE = 10
 """Steps per tick."""
 TRAVEL_mm = 4.0
 

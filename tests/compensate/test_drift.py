@@ -23,7 +23,7 @@ def known() -> KnownRig:
 
 @pytest.mark.parametrize("velocity_mm_s", SPEEDS_mm_s)
 def test_a_press_of_the_same_rig_says_nothing(known: KnownRig, velocity_mm_s: float) -> None:
-    for seed in range(100, 105):
+    for seed in range(100, 103):
         assert drifted(known, RIG.press(velocity_mm_s, seed), TRAVEL_mm) == ""
 
 

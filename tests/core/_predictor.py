@@ -6,24 +6,28 @@ from dataclasses import dataclass
 
 from fdvv.protocol import Settings
 
-from ._arithmetic import Ratio, clamp, inverse, product, ratio_of, scale
+from ._arithmetic import Ratio, clamp, inverse, product, ratio_of
 
-NOTHING = Ratio(0, 100)
 FURTHEST = 16000
 
 
-def shifted(ratio: Ratio, right: int) -> Ratio:
-    return Ratio(ratio.mantissa, ratio.shift + right)
-
-
-def times(*factors: int | Ratio) -> Ratio:
-    """Multiply from left to right, each product cut; nothing if a factor is 0."""
-    if 0 in factors or NOTHING in factors:
-        return NOTHING
+def times(*factors: int | Ratio) -> Ratio | None:
+    """Multiply from left to right, each product cut; None if a factor is 0."""
+    if 0 in factors:
+        return None
     first, *rest = (ratio_of(f) if isinstance(f, int) else f for f in factors)
     for factor in rest:
         first = product(first, factor)
     return first
+
+
+def scaled(value: int, ratio: Ratio | None, right: int) -> int:
+    """Give value * ratio / 2^right to the nearest, halves up, after 16 bits of the product were cut."""
+    if ratio is None or ratio.shift + right > 45:
+        return 0
+    top, shift = value * ratio.mantissa >> 16, ratio.shift + right - 16
+    assert shift >= 0
+    return (2 * top + 2**shift) >> (shift + 1) if shift else top
 
 
 @dataclass
@@ -39,19 +43,20 @@ class Predictor:
         s = self.settings
         q, tick = s.predictor_q16, inverse(ratio_of(s.tick_us))
         self.on = q > 0
-        q_ratio = times(shifted(ratio_of(q), 16)) if q else NOTHING
         self.gains = (
-            times(q_ratio, shifted(ratio_of(3 * 2**16 - 3 * q + q * q // 2**16), 16)),
-            times(q_ratio, q_ratio, shifted(ratio_of(3 * (2**17 - q)), 17)),
-            shifted(times(q_ratio, q_ratio, q_ratio), -6),
+            (times(q, 3 * 2**16 - 3 * q + q * q // 2**16), 32),
+            (times(q, q, 3 * (2**17 - q)), 49),
+            (times(q, q, q), 49 - 6),
         )
-        lead = times(s.lead_us, tick)
-        per_ms = times(1000, tick)
-        self.lead_step, self.lead_bend = shifted(lead, 10), shifted(times(lead, lead), 16)
-        self.brake_bend = shifted(times(s.brake_lead_us, tick), 5)
-        self.drag = shifted(times(s.drag_q13, per_ms), 23)
-        slope = times(s.friction_cN64, inverse(ratio_of(s.friction_mm_s16)))
-        self.friction = shifted(times(slope, per_ms), 10)
+        lead, brake = times(s.lead_us, tick) or 0, times(s.brake_lead_us, tick) or 0
+        drag = times(s.drag_q13, 1000, tick) or 0
+        slope = times(s.friction_cN64, inverse(ratio_of(s.friction_mm_s16))) or 0
+        self.lead_step, self.lead_bend = times(lead), times(lead, lead)
+        self.drag_step, self.drag_bend, self.friction = (
+            times(drag),
+            times(drag, brake),
+            times(slope, 1000, tick),
+        )
         self.fastest, self.strongest = s.tick_us * 2**16, s.tick_us**2 * 2**10
 
     def tick(self, um16: int, elapsed: int) -> None:
@@ -69,7 +74,7 @@ class Predictor:
         beyond = um16 * 1024 - self.place
         if abs(beyond) > FURTHEST * 1024:
             return False
-        place, step, bend = (scale(beyond, gain) for gain in self.gains)
+        place, step, bend = (scaled(64 * beyond, gain, 6 + right) for gain, right in self.gains)
         self.place += place
         self.step = clamp(self.step + step, -self.fastest, self.fastest)
         self.bend = clamp(self.bend + bend, -self.strongest, self.strongest)
@@ -77,11 +82,10 @@ class Predictor:
 
     def ahead_um16(self) -> int:
         assert self.place is not None
-        lead = scale(self.step, self.lead_step) + scale(self.bend, self.lead_bend)
+        lead = scaled(self.step, self.lead_step, 10) + scaled(self.bend, self.lead_bend, 16)
         return (self.place + 512) // 1024 + clamp(lead, -FURTHEST, FURTHEST)
 
     def resistance_cN64(self) -> int:
-        s = self.settings
-        step = clamp(self.step + scale(self.bend, self.brake_bend), -self.fastest, self.fastest)
-        friction = clamp(scale(self.step, self.friction), -s.friction_cN64, s.friction_cN64)
-        return scale(step, self.drag) + friction
+        most = self.settings.friction_cN64
+        drag = scaled(self.step, self.drag_step, 23) + scaled(self.bend, self.drag_bend, 28)
+        return drag + clamp(scaled(self.step, self.friction, 10), -most, most)

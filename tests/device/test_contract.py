@@ -1,10 +1,23 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fdvv.device import Device, TwinDevice
 from fdvv.errors import DeviceError
+from fdvv.model import ForceSurface
 from fdvv.testing import DeviceConformance, ScriptedDevice, plain_surface
-from fdvv.twin import mean_speed_mm_s
+from fdvv.twin import (
+    Finger,
+    Rig,
+    image_of,
+    mean_speed_mm_s,
+    plan,
+    settings_of,
+    silence,
+    simulate_program,
+    solve_program_pace,
+)
 
 
 class TestScriptedDevice(DeviceConformance):
@@ -58,3 +71,63 @@ def test_a_speed_beyond_what_a_finger_does_is_refused_with_the_limits() -> None:
     device.upload(plain_surface(), 4.0)
     with pytest.raises(DeviceError, match=r"0\.5 to 500 mm/s"):
         device.press(2000.0)
+
+
+DRAG = {"predictor_q16": 30000, "lead_us": 1000, "brake_lead_us": 1000, "drag_q13": 3000}
+
+
+def test_the_twin_configured_as_it_is_gives_the_same_bits() -> None:
+    presses = []
+    for again in (False, True):
+        device = TwinDevice(seed=3)
+        if again:
+            device.configure(device.settings())
+        device.upload(plain_surface(), 4.0)
+        presses.append(device.press(100.0).force_cN.tobytes())
+    assert presses[0] == presses[1]
+
+
+def test_what_the_twin_is_configured_with_is_at_work() -> None:
+    device = TwinDevice(seed=3)
+    device.configure(replace(device.settings(), **DRAG))
+    device.upload(plain_surface(), 4.0)
+    press = device.press(200.0)
+    bottom = int(np.argmax(press.displacement_mm > 3.9))
+    assert press.commanded_cN is not None
+    # 3000 / 8192 cN64 per mm_s16 at some 200 mm/s are 18 cN
+    down = (press.displacement_mm > 1) & (np.arange(press.t_s.size) < bottom)
+    taken = plain_surface().press_cN[0, 20] - np.median(press.commanded_cN[down])
+    assert 9 < taken < 32
+
+
+def test_the_pace_is_found_under_what_is_configured() -> None:
+    rig, finger, image = Rig(), Finger(), image_of(plain_surface(), 4.0).image
+    told = replace(settings_of(rig), **DRAG)
+    speeds = []
+    for settings in (told, None):
+        gesture = plan(finger, 4e-3, solve_program_pace(rig, finger, image, 100.0, settings=settings))
+        trace = simulate_program(rig, finger, gesture, image, silence(rig, gesture), 100.0, settings=told)
+        speeds.append(mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0))
+    assert speeds[0] == pytest.approx(100, rel=0.01)
+    assert abs(speeds[1] - 100) > 2
+
+
+def test_a_tick_that_is_not_the_rigs_is_refused() -> None:
+    device = TwinDevice()
+    with pytest.raises(DeviceError, match="tick_us is 1000 in this rig and cannot be 500"):
+        device.configure(replace(device.settings(), tick_us=500))
+
+
+def test_a_paced_table_goes_by_the_announced_speed_and_another_by_the_decided_one() -> None:
+    x = np.linspace(0.0, 4.0, 41)
+    # steeper than a hand is steady: a row of its own for every speed
+    table = np.repeat([[20.0], [30.0], [40.0]], 41, axis=1)
+    surface = ForceSurface(x, np.array([80.0, 100.0, 120.0]), table, table)
+    commands = {}
+    for paced in (True, False):
+        device = TwinDevice(seed=5)
+        device.upload(surface, 4.0, paced)
+        found = [device.press(100.0).commanded_cN for _ in range(4)]
+        commands[paced] = np.concatenate([c for c in found if c is not None])
+    np.testing.assert_allclose(commands[True], 30.0, atol=0.02)
+    assert np.ptp(commands[False]) > 2

@@ -7,6 +7,7 @@ import signal
 import struct
 import subprocess
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,13 @@ from fdvv.protocol import (
 )
 from fdvv.testing import ProgramConformance, plain_surface
 
+AHEAD = {
+    "predictor_q16": 6000,
+    "lead_us": 3000,
+    "brake_lead_us": 2000,
+    "drag_q13": 3000,
+    "friction_cN64": 300,
+}
 PROGRAM = Path(_native.__file__).with_name("fdvv-host")
 
 
@@ -73,6 +81,10 @@ def test_the_host_program_and_the_library_do_the_same_in_every_tick() -> None:
         with LinkedDevice(board, ScriptedPerson(3)) as device:
             device.upload(plain_surface(), 4.0)
             presses.append([device.press(v) for v in (50.0, 100.0, 300.0)])
+            device.configure(replace(device.settings(), **AHEAD))
+            device.upload(plain_surface(), 4.0)
+            presses[-1].append(device.press(100.0))
+    assert presses[0][1].force_cN.tobytes() != presses[0][3].force_cN.tobytes()
     for one, other in zip(*presses, strict=True):
         assert one.sensed_mm is not None
         assert other.sensed_mm is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,9 @@ from tests.device.rigs import PROGRAMS, linked
 
 from fdvv.device import Device, Recorder, ReplayDevice, read_session
 from fdvv.errors import DeviceError, InputError
+from fdvv.protocol import Settings
 from fdvv.testing import DeviceConformance, ScriptedDevice, plain_surface
+from fdvv.testing._conformance import other_settings
 
 
 def session(path: Path) -> Path:
@@ -29,7 +32,13 @@ def session(path: Path) -> Path:
 class TestReplay(DeviceConformance):
     @pytest.fixture(autouse=True)
     def _recorded(self, tmp_path: Path) -> None:
-        self.path = session(tmp_path / "session.fdvv-session")
+        self.path = tmp_path / "session.fdvv-session"
+        with Recorder(linked(5), self.path) as device:
+            device.configure(other_settings(device))
+            for paced in (False, True):
+                device.upload(plain_surface(), 4.0, paced)
+                for speed in (100.0, 100.0):
+                    device.press(speed)
 
     def make(self) -> Device:
         return ReplayDevice(self.path)
@@ -117,3 +126,20 @@ def test_another_file_is_refused_in_one_line(tmp_path: Path, content: bytes) -> 
     with pytest.raises(InputError) as caught:
         ReplayDevice(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_recording_without_settings_is_read_with_the_default_ones_at_its_tick(tmp_path: Path) -> None:
+    path = session(tmp_path / "s")
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    del lines[0]["settings"]
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    replay = ReplayDevice(path)
+    assert replay.settings() == Settings(tick_us=250)
+    replay.upload(plain_surface(), 4.0)
+    assert replay.press(100.0).simulated
+
+
+def test_a_table_that_was_not_paced_then_is_not_found(tmp_path: Path) -> None:
+    replay = ReplayDevice(session(tmp_path / "s"))
+    with pytest.raises(DeviceError, match="this table is not in the rest"):
+        replay.upload(plain_surface(), 4.0, paced=True)

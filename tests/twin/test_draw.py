@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.twin import Finger, Rig, draw_finger, draw_rig
+from fdvv.errors import ModelError
+from fdvv.twin import Coil, Finger, Rig, draw_finger, draw_rig
 from fdvv.twin._quantity import about
 
 
@@ -50,3 +51,15 @@ def test_what_a_builder_chooses_is_kept() -> None:
     assert drawn.coil.supply_V == Rig().coil.supply_V
     assert drawn.controller.tick_s == Rig().controller.tick_s
     assert draw_finger(np.random.default_rng(1)).habit.lift_m == Finger().habit.lift_m
+
+
+def test_no_drawn_coil_loses_its_inductance_within_the_stroke() -> None:
+    for seed in range(300):
+        coil = draw_rig(np.random.default_rng(seed)).coil
+        ends = np.array([0.0, coil.stroke_m]) - coil.centre_m
+        assert (coil.inductance_H + coil.reluctance_H_m * ends).min() >= 0.24 * coil.inductance_H
+
+
+def test_a_coil_whose_inductance_would_turn_negative_is_refused() -> None:
+    with pytest.raises(ModelError, match="stays above 0 over the stroke"):
+        Coil(inductance_H=5e-4, reluctance_H_m=0.3)

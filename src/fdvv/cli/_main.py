@@ -18,6 +18,10 @@ COMMANDS = {
     "compensate": ("fdvv.cli._compensate", "Learn the actuation that makes a rig feel like a model."),
     "demo": ("fdvv.cli._demo", "Run the whole chain on the simulated rig and write a report."),
     "device": ("fdvv.cli._device", "Work with a device: list, info, selftest, monitor, upload, press."),
+    "feasible": (
+        "fdvv.cli._feasible",
+        "Tell whether a rig can render a button, and why not, before any upload.",
+    ),
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),

@@ -10,7 +10,7 @@ from fdvv.compensate._tuning import Tuning
 from fdvv.units import FloatArray
 
 HOME_mm = 0.1
-LIFT_cN = 30.0
+LIFT_cN = 50.0
 """Least force in the first 0.1 mm: a table of displacement cannot tell a resting cap from a moving one."""
 
 TYPICAL_m_s2, TYPICAL_mm_s = 14.0, 200.0

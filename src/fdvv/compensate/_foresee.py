@@ -14,7 +14,7 @@ LONGEST_STEP_s = 2.5e-4
 
 
 @dataclass(frozen=True)
-class NominalFinger:
+class FingerJoint:
     """A finger about its joint as mass, spring and damper: any finger, not the one that presses.
 
     The middle of the ranges of Hajian and Howe (1997, as recalled), with the sensor it wears. It need not be
@@ -31,7 +31,7 @@ class NominalFinger:
 
 
 def foresee(
-    stroke: Pass, target_cN: FloatArray, grid_mm: FloatArray, finger: NominalFinger
+    stroke: Pass, target_cN: FloatArray, grid_mm: FloatArray, finger: FingerJoint
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Give by how much place (mm), speed (mm/s) and acceleration (m/s2) change, (n,) as the stroke's rows.
 

@@ -22,8 +22,8 @@ from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
 from fdvv.units import FloatArray
 
-ANY_PACE_ratio = float("inf")
-"""A rig is known from presses of any pace."""
+ANY_PACE_ratio, LOOSE_PACE_ratio = float("inf"), 0.6
+"""A rig is known from presses of any pace; on a heavy one that is not learned yet no person can keep it."""
 STRAY_ratio = 0.5
 """A press this far off the pace asked for tells the rig, but not what the tables of its speed need."""
 
@@ -75,7 +75,7 @@ class RigAware:
     meet: int = 4
     meet_most: int = 8
     sensor: Sensor = field(default_factory=Sensor)
-    bandwidth_Hz: float = 100.0
+    bandwidth_Hz: float = 120.0
     friction_mm_s: float = 10.0
     learning: Learning = field(default_factory=Learning)
     bin_mm: float = 0.05
@@ -116,7 +116,9 @@ class RigAware:
         at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
         if len(state.felt[at]) >= self.rounds:
             return None
-        return Trial(self._surface(state, state.rig[1]), float(speeds[at]), self._tuning(state))
+        return Trial(
+            self._surface(state, state.rig[1]), float(speeds[at]), self._tuning(state), LOOSE_PACE_ratio
+        )
 
     def step(self, press: Press, state: RigState) -> RigState:
         """Know the rig, or learn from a press on it. ModelError on a press that tells nothing."""
@@ -223,16 +225,20 @@ class RigAware:
         grid = target.displacement_mm
         lift = (LIFT_cN + known.weight_cN) / known.gain_at(grid)
 
-        def rows(force_cN: FloatArray, learned_cN: FloatArray) -> FloatArray:
-            command = command_cN(known, grid, force_cN) + learned_cN
+        # what the controller takes off by speed is not whole yet in a slow stroke
+        slow = np.clip(1.0 - target.velocity_mm_s / self.friction_mm_s, 0.0, 1.0)[:, np.newaxis]
+        rub = slow * known.friction_cN / known.gain_at(grid)
+
+        def rows(force_cN: FloatArray, learned_cN: FloatArray, down: float) -> FloatArray:
+            command = command_cN(known, grid, force_cN) - down * rub + learned_cN
             return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
 
         press, release = tables
         return ForceSurface(
             grid,
             target.velocity_mm_s,
-            rows(target.press_cN, press.rows_cN),
-            rows(target.release_cN, release.rows_cN),
+            rows(target.press_cN, press.rows_cN, 1.0),
+            rows(target.release_cN, release.rows_cN, -1.0),
         )
 
     def _told(self, before: RigState, after: RigState, at: int) -> str:

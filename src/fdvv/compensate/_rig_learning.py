@@ -10,7 +10,7 @@ from fdvv.compensate._bins import bin_force
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._feed_forward import inertia_cN, unrepeatable_cN, wanted_cN
 from fdvv.compensate._felt import Pass
-from fdvv.compensate._foresee import NominalFinger, foresee
+from fdvv.compensate._foresee import FingerJoint, foresee
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import Job
 from fdvv.compensate._shared_table import SharedTable
@@ -42,11 +42,11 @@ class Learning:
 
     common_cN: float = 4.0
     alone_ratio: float = 0.3
-    fading: float = 0.9
+    fading: float = 0.7
     smoothing_mm: float = 0.06
     smoothing_s: float = 8e-4
-    trust: float = 0.7
-    finger: NominalFinger = field(default_factory=NominalFinger)
+    trust: float = 0.6
+    finger: FingerJoint = field(default_factory=FingerJoint)
 
     def __post_init__(self) -> None:
         parts = (self.fading, self.trust, self.alone_ratio)

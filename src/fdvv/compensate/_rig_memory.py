@@ -50,9 +50,18 @@ class RigMemory:
 
     def expected_cN(self, speeds_mm_s: FloatArray) -> FloatArray:
         """Give the mean error to expect at other speeds, (2, s)."""
-        return np.stack([self._between(row[:, np.newaxis], speeds_mm_s)[:, 0] for row in self.error_cN])
+        own = self.residual.velocity_mm_s
+        return np.stack([np.interp(speeds_mm_s, own, row) for row in self.error_cN])
 
     def _between(self, rows: FloatArray, speeds_mm_s: FloatArray) -> FloatArray:
-        """Interpolate rows, (s, n), to other speeds, straight in their square; end rows hold outside."""
-        squares = self.residual.velocity_mm_s**2
-        return np.stack([np.interp(speeds_mm_s**2, squares, column) for column in rows.T], axis=1)
+        """Take rows, (s, n), to other speeds, straight in their square; the last one holds.
+
+        Below the slowest they go to one level at rest, where there is no inertia that varies over places: the
+        middle of what remains when the first two rows are drawn on to speed 0.
+        """
+        squares, wanted = self.residual.velocity_mm_s**2, speeds_mm_s**2
+        if squares.size > 1 and wanted.min() < squares[0]:
+            still = np.median(rows[0] - (rows[1] - rows[0]) * squares[0] / (squares[1] - squares[0]))
+            rows = np.vstack([np.full(rows.shape[1], still), rows])
+            squares = np.concatenate([[0.0], squares])
+        return np.stack([np.interp(wanted, squares, column) for column in rows.T], axis=1)

@@ -1,7 +1,7 @@
 """What a button should feel like: curves, vibration, models, landmarks, fits and files."""
 
 from fdvv.model._builtin import builtin_names, load_builtin
-from fdvv.model._bump import Bump, find_bump
+from fdvv.model._bump import Bump, find_bump, running_mean
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke, reading_order
 from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm, first_loaded
@@ -67,6 +67,7 @@ __all__ = [
     "model_to_json",
     "reading_order",
     "remove_curve",
+    "running_mean",
     "save_model",
     "scan_sizes",
     "schema",

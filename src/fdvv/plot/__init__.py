@@ -1,8 +1,9 @@
 """Figures and reports from records; needs the optional extra ``plot`` (matplotlib) for figures."""
 
+from fdvv.plot._feasibility_figures import plot_feasibility
 from fdvv.plot._fit_figures import plot_fit, plot_scan
 from fdvv.plot._model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
-from fdvv.plot._records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.plot._records import ErrorHistory, FeasibleCurve, RenderedBand, RenderedCurve
 from fdvv.plot._rendering_figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
 from fdvv.plot._report import Section, Table, render_html, write_report
 from fdvv.plot._style import house_style
@@ -10,6 +11,7 @@ from fdvv.plot._svg import figure_of, figure_png, figure_svg
 
 __all__ = [
     "ErrorHistory",
+    "FeasibleCurve",
     "PAPER_ERROR_cN",
     "RenderedBand",
     "RenderedCurve",
@@ -21,6 +23,7 @@ __all__ = [
     "house_style",
     "plot_comparison",
     "plot_convergence",
+    "plot_feasibility",
     "plot_fit",
     "plot_model",
     "plot_rendering",

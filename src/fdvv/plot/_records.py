@@ -1,10 +1,11 @@
-"""What the figures need that no other room's record holds: a rendered curve and a history of errors."""
+"""What figures need that no other room's record holds: rendered and feasible curves, histories of errors."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model import Stroke
@@ -84,3 +85,41 @@ class ErrorHistory:
         object.__setattr__(self, "error_cN", np.array(self.error_cN, dtype=np.float64))
         if self.error_cN.ndim != 1 or self.error_cN.size < 1:
             raise ModelError(f"error_cN must be one column, got shape {self.error_cN.shape}")
+
+
+@dataclass(frozen=True, eq=False)
+class FeasibleCurve:
+    """One stroke at one velocity as a rig could render it.
+
+    Attributes
+    ----------
+    displacement_mm, intended_cN, achievable_cN : (n,), places strictly rising.
+    cut : (n,) bool, where a limit cuts the command.
+    verdict : in words, below the title.
+    band_mm, band : what presses measured, on places of its own; None if nobody pressed.
+    simulated : the presses come from the twin.
+
+    Raises ModelError on columns of different length.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    displacement_mm: FloatArray
+    intended_cN: FloatArray
+    achievable_cN: FloatArray
+    cut: npt.NDArray[np.bool_]
+    verdict: str = ""
+    band_mm: FloatArray | None = None
+    band: RenderedBand | None = None
+    simulated: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stroke", Stroke(self.stroke))
+        shape = self.displacement_mm.shape
+        for name in ("intended_cN", "achievable_cN", "cut"):
+            if getattr(self, name).shape != shape:
+                raise ModelError(
+                    f"{name} must match displacement_mm, got {getattr(self, name).shape} and {shape}"
+                )
+        if self.band is not None and (self.band_mm is None or self.band.mean_cN.shape != self.band_mm.shape):
+            raise ModelError("a measured band needs its places, one each")

@@ -11,7 +11,7 @@ from typing import ClassVar
 from fdvv.protocol._record import Limits, Record
 
 VERSION = 1
-HASH = 0x41DB7B66
+HASH = 0xEF2D1201
 
 FRAME_BYTES = 232
 """Largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254."""
@@ -321,7 +321,7 @@ class Settings(Record):
     brake_lead_us : us; 0 to 20000; the same for the speed that drag goes by
     drag_q13 : cN64 per mm_s16; 0 to 49152; taken off the command per speed; the largest is 15 N s/m
     friction_cN64 : cN64; 0 to 6400; taken off the command in the direction of motion
-    friction_mm_s16 : mm_s16; 16 to 16000; speed from which on friction counts in full, below it in proportion
+    friction_mm_s16 : mm_s16; 64 to 16000; speed from which on friction counts in full, below it in proportion
     spare : the settings are sixteen bytes times a whole number: their checksum takes four words at a time
     reads : 1 to 64; converter readings summed per tick; the paper's 25
     sliding_ticks : 1 to 32; ticks of an additional sliding mean; 25 is the paper's literal reading
@@ -368,7 +368,7 @@ class Settings(Record):
         "brake_lead_us": (0, 20000),
         "drag_q13": (0, 49152),
         "friction_cN64": (0, 6400),
-        "friction_mm_s16": (16, 16000),
+        "friction_mm_s16": (64, 16000),
         "spare": (0, 0),
         "reads": (1, 64),
         "sliding_ticks": (1, 32),

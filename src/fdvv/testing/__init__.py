@@ -3,6 +3,7 @@
 from fdvv.testing._closed_forms import coil_error_ratio, mean_response, ripple_N
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
 from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
+from fdvv.testing._held import held_swings_mm, swings_held
 from fdvv.testing._loop import (
     AWAY,
     LinearLoop,
@@ -33,6 +34,7 @@ __all__ = [
     "draw_fast_rig",
     "felt",
     "grainy_loop",
+    "held_swings_mm",
     "mean_response",
     "missed_cN",
     "onset_N_m",
@@ -45,5 +47,6 @@ __all__ = [
     "rig_truth",
     "ripple_N",
     "snap",
+    "swings_held",
     "ways",
 ]

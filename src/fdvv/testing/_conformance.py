@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from fdvv.device import Device, ProgramDevice, surface_image
 from fdvv.errors import DeviceError
 from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Fault
+from fdvv.protocol import Fault, Settings
 
 
 def plain_surface(force_cN: float = 40.0, travel_mm: float = 4.0) -> ForceSurface:
@@ -74,6 +75,32 @@ class DeviceConformance:
         self.pressed(device)
         for speed in (0.0, -50.0, float("nan")):
             refused(partial(device.press, speed))
+
+    def test_settings_are_written_whole_and_want_a_new_upload(self) -> None:
+        """What was configured is what is read, and a press needs a table again."""
+        device = self.make()
+        device.configure(other_settings(device))
+        assert device.settings().lead_us == other_settings(self.make()).lead_us
+        refused(lambda: device.press(self.speed_mm_s))
+        assert self.pressed(device).displacement_mm.max() > 0.98 * self.travel_mm
+
+    def test_settings_at_odds_with_each_other_are_refused_and_the_old_ones_stay(self) -> None:
+        """Whole or not at all; the table stays too."""
+        device = self.make()
+        before = device.settings()
+        self.pressed(device)
+        refused(partial(device.configure, replace(before, window_start_um16=9000, window_end_um16=8000)))
+        assert device.settings() == before
+        device.press(self.speed_mm_s)
+
+    def test_a_paced_table_is_pressed_like_any_other(self) -> None:
+        """Its row is that of the speed asked for."""
+        device = self.make()
+        surface = plain_surface(travel_mm=self.travel_mm)
+        device.upload(surface, self.travel_mm, paced=True)
+        press = device.press(self.speed_mm_s)
+        assert press.commanded_cN is not None
+        assert 35 < np.median(press.commanded_cN) < 65
 
     def test_a_press_goes_down_and_comes_back(self) -> None:
         """One stroke pair, from rest to the stop and back."""
@@ -155,6 +182,11 @@ class ProgramConformance(DeviceConformance):
         device.close()
         device.close()
         refused(lambda: device.press(self.speed_mm_s))
+
+
+def other_settings(device: Device) -> Settings:
+    """Give a device's settings with another look ahead, which nothing makes use of."""
+    return replace(device.settings(), lead_us=1234)
 
 
 def refused(call: Callable[[], object]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from fdvv.twin._finger import Finger
 from fdvv.twin._quantity import About, about
 from fdvv.twin._rig import Rig
+from fdvv.twin._rig_moves import Coil
 
 Record = TypeVar("Record")
 
@@ -32,10 +33,16 @@ def draw_parts(record: Record, random: np.random.Generator) -> Record:
 
 
 def draw_section(section: Record, random: np.random.Generator) -> Record:
-    """Draw one section: words and choices of the builder stay as they are."""
+    """Draw one section: words and choices of the builder stay as they are.
+
+    A coil of little inductance gets no slope that would turn it negative within the stroke.
+    """
     whole: Any = section
     fields = [f for f in dataclasses.fields(whole) if _uncertain(about(f))]
     drawn = {f.name: _draw(about(f), f.type in (int, "int"), random) for f in fields}
+    if isinstance(section, Coil):
+        flat = dataclasses.replace(section, **{**drawn, "reluctance_H_m": 0.0})  # type: ignore[arg-type]
+        drawn["reluctance_H_m"] = min(drawn["reluctance_H_m"], flat.steepest_H_m)
     return dataclasses.replace(whole, **drawn)  # type: ignore[no-any-return]
 
 

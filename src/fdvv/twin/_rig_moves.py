@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fdvv.errors import ModelError
 from fdvv.twin._quantity import check, choice, quantity
 
 
@@ -70,6 +71,16 @@ class Coil:
 
     def __post_init__(self) -> None:
         check(self)
+        if abs(self.reluctance_H_m) > self.steepest_H_m:
+            raise ModelError(
+                f"Coil: reluctance_H_m must be within {self.steepest_H_m:g} H/m, so that an inductance of "
+                f"{self.inductance_H:g} H stays above 0 over the stroke, got {self.reluctance_H_m:g}"
+            )
+
+    @property
+    def steepest_H_m(self) -> float:
+        """Give the slope at which a quarter of the inductance is left at the farther end of the stroke."""
+        return 0.75 * self.inductance_H / max(abs(self.centre_m), abs(self.stroke_m - self.centre_m))
 
 
 @dataclass(frozen=True)

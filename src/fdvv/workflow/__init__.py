@@ -6,6 +6,12 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
+from fdvv.workflow._feasibility import (
+    CurveFeasibility,
+    FeasibilityReport,
+    feasibility,
+    feasible_curves,
+)
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
@@ -24,8 +30,10 @@ __all__ = [
     "ButtonPress",
     "Comparison",
     "CompensationResult",
+    "CurveFeasibility",
     "DemoResult",
     "Difference",
+    "FeasibilityReport",
     "FitSettings",
     "FolderButton",
     "FolderFit",
@@ -46,6 +54,8 @@ __all__ = [
     "demo",
     "demo_report",
     "fd_only",
+    "feasibility",
+    "feasible_curves",
     "fit_file",
     "fit_files",
     "fit_folder",

@@ -12,13 +12,14 @@ from fdvv.device import Device
 from fdvv.model import FDVVModel, ForceSurface, Stroke, reading_order
 from fdvv.workflow._compensate import check_force_sensor, check_speeds
 from fdvv.workflow._probe_curve import FROM_mm, ProbeCurve, STOP_GUARD_mm, judged_curves
-from fdvv.workflow._probe_plan import NOTHING, Found, ProbePlan
+from fdvv.workflow._probe_plan import Found, ProbePlan
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Guide, Progress, Standing
 from fdvv.workflow._session_log import PressLog
 from fdvv.workflow._session_manifest import Manifest, make_manifest, table_digest
 from fdvv.workflow._session_run import Course, run
+from fdvv.workflow._tuning import NOTHING
 
 
 @dataclass(frozen=True, eq=False)

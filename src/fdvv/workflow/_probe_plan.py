@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from fdvv.compensate import Count, Trial, Tuning
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press
-
-NOTHING = Tuning()
+from fdvv.workflow._tuning import NOTHING
 
 Found = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan."""

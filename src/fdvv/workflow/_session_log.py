@@ -24,9 +24,9 @@ from fdvv.device import pack_record, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.files import sync_folder
 from fdvv.model import ForceSurface, Press
+from fdvv.workflow._tuning import NOTHING
 
 PRESSES = "presses.jsonl"
-NOTHING = Tuning()
 REMEDY = "begin a new session in another folder"
 
 

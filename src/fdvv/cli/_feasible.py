@@ -1,0 +1,174 @@
+"""fdvv feasible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._output import (
+    FIGURES,
+    check_output,
+    counted,
+    json_option,
+    number,
+    print_json,
+    print_table,
+    print_wrapped,
+    save_figure,
+)
+from fdvv.cli._session_options import beside, guided, open_session, session_options
+
+if TYPE_CHECKING:
+    from fdvv.device import Device
+    from fdvv.model import FDVVModel
+    from fdvv.workflow import ProbeResult, Session
+
+NO_RIG = (
+    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: identify it with "
+    "fdvv compensate BUTTON --save-rig FILE.rig.json"
+)
+COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
+
+
+@click.command()
+@click.argument("button")
+@click.option(
+    "--rig-known",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="*.rig.json of this rig, as fdvv compensate --save-rig writes it.",
+)
+@session_options
+@click.option(
+    "--actuation",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Press this *.actuation.json on the device too, and show what was measured.",
+)
+@click.option(
+    "--presses", type=click.IntRange(1, 200), default=5, show_default=True, help="Per velocity, to measure."
+)
+@click.option(
+    "--figure", type=click.Path(path_type=Path), help="Draw every curve into this .svg, .png or .pdf."
+)
+@json_option
+def feasible(
+    button: str,
+    rig_known: Path | None,
+    device: str,
+    rig: Path | None,
+    finger: Path | None,
+    seed: int,
+    velocities_mm_s: tuple[float, ...],
+    folder: Path | None,
+    pace_ratio: float,
+    actuation: Path | None,
+    presses: int,
+    figure: Path | None,
+    as_json: bool,
+) -> None:
+    """Tell whether a rig can render a button, and why not, before any upload.
+
+    BUTTON is a built-in, a *.fdvv.json file or a measured file. For every stroke and speed: the force that
+    is intended, the one this rig can reach within its limits, its lag and its loop, and the error to expect
+    after compensation, an estimate. The device is asked for its settings only, unless --actuation is named.
+    """
+    check_output(figure, *FIGURES)
+    if rig_known is None:
+        click.echo(NO_RIG)
+        return
+    from fdvv.compensate import load_rig
+    from fdvv.workflow import feasibility, open_model
+
+    model, known = open_model(button), load_rig(rig_known)
+    session = open_session(
+        folder, device, (seed, rig, finger), pace_ratio, beside(actuation, button, "feasible")
+    )
+    measured = _measure(session, device, model, actuation, velocities_mm_s, presses, as_json)
+    with _opened(session, device) as found:
+        settings, info = found.settings(), found.info()
+    report = feasibility(model, known, settings, velocities_mm_s, measured, info)
+    if figure:
+        from fdvv.plot import plot_feasibility
+        from fdvv.workflow import feasible_curves
+
+        save_figure(plot_feasibility(feasible_curves(report), title=model.name)[0, 0].figure, figure)
+    if as_json:
+        print_json(report.to_dict())
+    else:
+        _print(report.to_dict())
+
+
+@contextmanager
+def _opened(session: Session, device: str) -> Iterator[Device]:
+    found = session.open_device(device)
+    try:
+        yield found
+    finally:
+        if hasattr(found, "close"):
+            found.close()
+
+
+def _measure(
+    session: Session,
+    device: str,
+    model: FDVVModel,
+    actuation: Path | None,
+    velocities_mm_s: tuple[float, ...],
+    presses: int,
+    as_json: bool,
+) -> ProbeResult | None:
+    """Probe a learned table on the device; None if there is none."""
+    if actuation is None:
+        return None
+    from fdvv.workflow import load_actuation, probe
+
+    learned = load_actuation(actuation)
+    with guided(session, device, as_json) as (found, view, guide):
+        return probe(
+            *(found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method),
+            *(session, guide, learned.outcome.tuning),
+        )
+
+
+def _print(document: dict[str, Any]) -> None:
+    """Print a table of the curves, then the reasons, then the warmth."""
+    simulated = " (simulated)" if document["simulated"] else ""
+    presses = document["rig_presses"]
+    known = f"rig known from {counted(presses, 'press')}" if presses else "rig known from its file alone"
+    print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
+    print_table(COLUMNS, [_row(c) for c in document["curves"]])
+    for curve in document["curves"]:
+        for reason in curve["reasons"]:
+            print_wrapped(f"{_name(curve)}: {reason}")
+    for dose in document["thermal"]:
+        print_wrapped(_warmth(dose))
+    click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
+    click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
+
+
+def _name(curve: dict[str, Any]) -> str:
+    return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"
+
+
+def _row(curve: dict[str, Any]) -> list[str]:
+    kept, measured = curve["bump_kept_ratio"], curve["measured"]
+    return [
+        _name(curve),
+        number(curve["largest_command_cN"], 0),
+        "–" if kept is None else f"{100 * kept:.0f} %",
+        number(min(curve["stability"]["margin"], 99.0), 1),
+        number(curve["expected_error"]["mean_cN"], 1),
+        number(measured and measured["mean_error_cN"], 1),
+        curve["verdict"],
+    ]
+
+
+def _warmth(dose: dict[str, Any]) -> str:
+    often, held = dose["presses_per_min"], dose["held_s"]
+    pressed = "at no pace" if often is None else f"beyond {often:.0f} presses a minute"
+    down = "not when held down" if held is None else f"after {held:.0f} s held down"
+    rms = f"{dose['rms_cN']:.0f} cN rms over a press"
+    return f"warmth at {dose['velocity_mm_s']:g} mm/s: {rms}; derates {pressed}, {down}"
