@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fdvv.compensate import NominalFinger
 from fdvv.compensate._felt import Pass
-from fdvv.compensate._foresee import foresee
+from fdvv.compensate._foresee import FingerJoint, foresee
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
 GRID_mm = np.linspace(0.0, 4.0, 81)
-FINGER = NominalFinger()
+FINGER = FingerJoint()
 
 
 def stroke(excess_cN: FloatArray, target_cN: FloatArray, tick_s: float, speed_mm_s: float = 100.0) -> Pass:
@@ -24,7 +23,7 @@ def stroke(excess_cN: FloatArray, target_cN: FloatArray, tick_s: float, speed_mm
     return Pass(x, v, a, felt, np.zeros(x.size), tick_s, speed_mm_s)
 
 
-def solved(one: Pass, target_cN: FloatArray, finger: NominalFinger) -> FloatArray:
+def solved(one: Pass, target_cN: FloatArray, finger: FingerJoint) -> FloatArray:
     """Solve m q'' + b q' + k q = felt - target(x + q), in SI; give (q, q', q'') in mm, mm/s, m/s2."""
     t = one.tick_s * np.arange(1, one.felt_cN.size + 1)
     mass, damping, stiffness = 1e-3 * finger.mass_g, finger.damping_N_s_m, finger.stiffness_N_m
@@ -43,12 +42,12 @@ def wave(count: int, tick_s: float) -> FloatArray:
     return np.asarray(15.0 * np.sin(2 * np.pi * 30.0 * tick_s * np.arange(count)))
 
 
-FINGERS = [FINGER, NominalFinger(4.0, 2.0, 300.0), NominalFinger(16.0, 0.0, 1200.0)]
+FINGERS = [FINGER, FingerJoint(4.0, 2.0, 300.0), FingerJoint(16.0, 0.0, 1200.0)]
 
 
 @pytest.mark.parametrize("finger", FINGERS, ids=["nominal", "light", "heavy, undamped"])
 @pytest.mark.parametrize("slope_cN_mm", [0.0, 10.0, -30.0])
-def test_it_solves_the_equation_it_states(finger: NominalFinger, slope_cN_mm: float) -> None:
+def test_it_solves_the_equation_it_states(finger: FingerJoint, slope_cN_mm: float) -> None:
     target, tick_s = 60.0 + slope_cN_mm * GRID_mm, 2.5e-5
     one = stroke(wave(1400, tick_s), target, tick_s)
     for mine, true in zip(foresee(one, target, GRID_mm, finger), solved(one, target, finger), strict=True):
@@ -90,4 +89,4 @@ def test_a_constant_excess_ends_at_what_the_springs_give(slope_cN_mm: float) -> 
 @pytest.mark.parametrize("wrong", [{"mass_g": 0.0}, {"damping_N_s_m": -1.0}, {"stiffness_N_m": -1.0}])
 def test_a_finger_without_sense_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ModelError, match="mass above 0"):
-        NominalFinger(**wrong)
+        FingerJoint(**wrong)

@@ -10,6 +10,7 @@ import pytest
 
 from fdvv.compensate import Count, Job, KnownRig, RigAware, RigMemory, RigState, Trial, Tuning, identify
 from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN
+from fdvv.compensate._rig_aware import LOOSE_PACE_ratio
 from fdvv.compensate._rig_learning import Felt
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
@@ -48,7 +49,7 @@ def states() -> list[RigState]:
 def test_a_job_takes_four_presses_and_the_rounds_at_every_speed(states: list[RigState]) -> None:
     trials = [trial for state in states if (trial := METHOD.trial(state))]
     assert [t.velocity_mm_s for t in trials] == [50, 100, 200, 50, *[50, 100, 200] * 2]
-    assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [None] * 6
+    assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [LOOSE_PACE_ratio] * 6
     assert [t.tuning == Tuning() for t in trials] == [True] * 4 + [False] * 6
     assert len(states) == 11
 
@@ -137,6 +138,24 @@ def test_the_cap_is_held_up_at_home_and_the_limit_is_kept() -> None:
     np.testing.assert_allclose(surface.press_cN[:, home], np.tile(lift, (3, 1)))
     low = replace(JOB, force_limit_cN=90.0)
     assert np.abs(method.done(method.init(low)).surface.press_cN).max() == 90.0
+
+
+def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_does_not() -> None:
+    known = known_of(PLANT)
+    method = RigAware(rounds=0, memory=memory_of(known))
+    job = replace(JOB, target=ForceSurface.of_model(MODEL, [5.0, 20.0]))
+    surface, grid = method.done(method.init(job)).surface, TARGET.displacement_mm
+    beyond, part = grid > HOME_mm, np.array([[0.5], [0.0]])
+    for table, force, sign in (
+        (surface.press_cN, job.target.press_cN, 1.0),
+        (surface.release_cN, job.target.release_cN, -1.0),
+    ):
+        rub = command_cN(known, grid, force) - table
+        np.testing.assert_allclose(
+            (rub * known.gain_at(grid))[:, beyond],
+            np.broadcast_to(sign * part * known.friction_cN, rub[:, beyond].shape),
+            atol=1e-9,
+        )
 
 
 def test_what_was_taught_begins_the_next_job(states: list[RigState]) -> None:

@@ -213,7 +213,7 @@ def test_the_boards_own_program_learns_to_the_end(tmp_path: Path) -> None:
     assert result.receipt is not None
     assert result.receipt.used == 6
     # the tuning is on the board
-    assert {kept.tuning.bandwidth_Hz for kept in kept_of(tmp_path / "s")[4:]} == {100.0}
+    assert {kept.tuning.bandwidth_Hz for kept in kept_of(tmp_path / "s")[4:]} == {RigAware().bandwidth_Hz}
 
 
 def kept_of(folder: Path) -> list[Any]:
