@@ -59,7 +59,7 @@ class Learned:
         return judged_cN(self.rig, self.finger, model, surface, Tuning())
 
 
-@pytest.fixture(scope="module", params=[203, 206])
+@pytest.fixture(scope="module", params=[203, pytest.param(206, marks=pytest.mark.slow)])
 def learned(request: pytest.FixtureRequest) -> Learned:
     rig, finger = light_rig(request.param)
     return Learned(rig, finger, compensate(TwinDevice(rig, finger, 1), MODEL, SPEEDS, RigAware()))
@@ -163,7 +163,10 @@ def whole() -> CompensationResult:
     return run(PressByPress(*light_rig(203)), None)
 
 
-@pytest.mark.parametrize("stop_at", [3, 5, 7], ids=["meeting the rig", "first on it", "learning"])
+STOPS = [3, pytest.param(5, marks=pytest.mark.slow), 7]
+
+
+@pytest.mark.parametrize("stop_at", STOPS, ids=["meeting the rig", "first on it", "learning"])
 def test_a_session_that_was_stopped_goes_on_to_the_result_of_one_that_was_not(
     whole: CompensationResult, tmp_path: Path, stop_at: int
 ) -> None:
@@ -185,6 +188,15 @@ def test_a_session_that_was_stopped_goes_on_to_the_result_of_one_that_was_not(
     assert whole.memory is not None
     assert again.memory.known == whole.memory.known
     np.testing.assert_array_equal(again.memory.residual.press_cN, whole.memory.residual.press_cN)
+
+
+def test_a_session_that_goes_on_does_not_tell_again_what_changed(learned: Learned, tmp_path: Path) -> None:
+    worn = replace(learned.rig, mover=replace(learned.rig.mover, mass_kg=0.030))
+    session = Session(tmp_path / "s")
+    with pytest.raises(KeyboardInterrupt):
+        notices_of(PressByPress(worn, learned.finger, stop_at=3), learned.memory, session)
+    told = notices_of(PressByPress(worn, learned.finger, done=2), learned.memory, session)
+    assert [text.endswith("goes on") for text in told] == [True]
 
 
 def test_a_session_with_another_memory_is_another_session(learned: Learned, tmp_path: Path) -> None:
