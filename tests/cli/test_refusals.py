@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from tests.cli.conftest import Run, tactile_csv
 
+from fdvv.compensate import KnownRig, save_rig
+
 OUT = ("-o", "new.fdvv.json")
 MERGE, ASSIGN = ("--name", "x", *OUT), ("--stroke", "press", *OUT)
 
@@ -49,6 +51,7 @@ def bad(tmp_path: Path) -> Path:
         (tmp_path / f"{name}.fdvv.json").write_text(json.dumps({**record, **change}))
     (tmp_path / "cut.actuation.json").write_text('{"format": "fdvv-actuation", "version": 1, "meth')
     (tmp_path / "rig.toml").write_text("this is no toml\n")
+    save_rig(KnownRig(), tmp_path / "good.rig.json")
     return tmp_path
 
 
@@ -109,6 +112,23 @@ REFUSED = {
     "a missing rig": (("compensate", "mx-blue", "--rig", "gone.toml"), "'gone.toml' does not exist"),
     "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "rig.toml: TOML"),
     "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),
+    "the paper's presses for another method": (
+        ("compensate", "mx-blue", "--presses", "3"), "--presses: option: belongs to the method paper"),
+    "the paper's law printed by another method": (
+        ("compensate", "mx-blue", "--literal"), "--literal: option: belongs to the method paper"),
+    "no rounds of the paper's law": (
+        ("compensate", "mx-blue", "--method", "paper", "--rounds", "0"), "belongs to the method rig-aware"),
+    "a rig known to the paper's law": (
+        ("compensate", "mx-blue", "--method", "paper", "--rig-known", "good.rig.json"), "--rig-known"),
+    "a rig kept by the paper's law": (
+        ("compensate", "mx-blue", "--method", "paper", "--save-rig", "x.rig.json"), "--save-rig: option"),
+    "a rig that has taught nothing": (
+        ("compensate", "mx-blue", "--rig-known", "good.rig.json"), "good.rig.json: $.learned: holds"),
+    "a model as a rig": (("compensate", "mx-blue", "--rig-known", "good.fdvv.json"), "not a known rig"),
+    "a rig that is gone": (("compensate", "mx-blue", "--rig-known", "gone.rig.json"), "does not exist"),
+    "a rig saved below a file": (
+        ("compensate", "mx-blue", "--save-rig", "good.csv/x.rig.json"), "good.csv: output: is a file"),
+    "a rig saved as text": (("compensate", "mx-blue", "--save-rig", "rig.txt"), "end it in .rig.json"),
     "actuation below a file": (
         ("compensate", "mx-blue", "-o", "good.csv/x.actuation.json"), "good.csv: output: is a file"),
     "a model as actuation": (("probe", "mx-blue", "good.fdvv.json"), "expected 'fdvv-actuation'"),

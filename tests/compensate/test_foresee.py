@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fdvv.compensate import FingerJoint
 from fdvv.compensate._felt import Pass
-from fdvv.compensate._foresee import foresee
+from fdvv.compensate._foresee import FingerJoint, foresee
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 

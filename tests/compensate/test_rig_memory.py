@@ -27,11 +27,21 @@ def test_on_its_own_grid_and_speeds_it_is_what_was_learned() -> None:
     np.testing.assert_array_equal(MEMORY.expected_cN(SPEEDS_mm_s), MEMORY.error_cN)
 
 
-def test_between_speeds_it_is_straight_in_their_square_and_holds_outside() -> None:
-    press, _ = MEMORY.rows_cN(GRID_mm, np.array([20.0, 150.0, 400.0]), 4.0)
-    np.testing.assert_allclose(press[1], 150.0**2 * 1e-4 + GRID_mm)
-    np.testing.assert_allclose(press[[0, 2]], ROWS_cN[[0, 2]])
-    expected = MEMORY.expected_cN(np.array([20.0, np.hypot(50.0, 100.0) / np.sqrt(2), 400.0]))
+def test_between_speeds_it_is_straight_in_their_square_and_the_last_row_holds() -> None:
+    press, _ = MEMORY.rows_cN(GRID_mm, np.array([150.0, 400.0]), 4.0)
+    np.testing.assert_allclose(press[0], 150.0**2 * 1e-4 + GRID_mm)
+    np.testing.assert_allclose(press[1], ROWS_cN[2])
+
+
+def test_below_the_slowest_it_goes_to_one_level_at_rest() -> None:
+    press, _ = MEMORY.rows_cN(GRID_mm, np.array([1e-3, 20.0]), 4.0)
+    # drawn on to speed 0 the rows leave the grid's own places, 2 in the middle
+    np.testing.assert_allclose(press[0], 2.0, atol=1e-6)
+    np.testing.assert_allclose(press[1], 0.84 * 2.0 + 0.16 * ROWS_cN[0])
+
+
+def test_the_error_to_expect_is_straight_between_speeds_and_holds_outside() -> None:
+    expected = MEMORY.expected_cN(np.array([20.0, 75.0, 400.0]))
     np.testing.assert_allclose(expected, [[1.0, 1.5, 5.0], [2.0, 2.5, 6.0]])
 
 

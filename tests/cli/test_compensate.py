@@ -1,0 +1,105 @@
+"""fdvv compensate on a rig that is met once: learn, keep the rig, render other buttons."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from fdvv.compensate import RigAware, load_memory, load_rig, save_rig
+from fdvv.workflow import load_actuation
+
+from .conftest import Run
+
+SHORT = ("--velocity", "50", "--velocity", "100")
+LEARN = ("compensate", "mx-clear", *SHORT, "--rounds", "1", "--save-rig", "bench.rig.json")
+AT_ONCE = ("compensate", "mx-red", *SHORT, "--rig-known", "bench.rig.json", "--rounds", "0")
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Give the file of a rig that was met once."""
+    from fdvv.device import TwinDevice
+    from fdvv.model import load_builtin
+    from fdvv.workflow import compensate
+
+    path = tmp_path_factory.mktemp("rig") / "bench.rig.json"
+    learned = compensate(TwinDevice(seed=0), load_builtin("mx-clear"), [50.0, 100.0], RigAware(rounds=1))
+    assert learned.memory is not None
+    save_rig(learned.memory, path)
+    return path.read_bytes()
+
+
+def test_a_rig_is_identified_learned_on_and_kept(fdvv: Run, tmp_path: Path, taught: bytes) -> None:
+    ran = fdvv(*LEARN, "-o", "clear.actuation.json")
+    assert ran.status == 0
+    lines = ran.out.splitlines()
+    assert lines[0] == "mx-clear on twin (simulated), 6 presses"
+    assert lines[1].startswith("method: rig-aware: a rig identified from 4 presses")
+    assert lines[-2:] == ["written to clear.actuation.json", "written to bench.rig.json"]
+    assert "1 of 4 presses to know the rig by" in ran.err
+    assert re.search(r"drag \d\.\d \+- \d\.\d N s/m", ran.err)
+    assert (tmp_path / "bench.rig.json").read_bytes() == taught
+    memory = load_memory(tmp_path / "bench.rig.json")
+    assert memory.known == load_rig(tmp_path / "bench.rig.json")
+    assert memory.known.presses == 4
+    assert (
+        load_actuation(tmp_path / "clear.actuation.json").outcome.tuning.bandwidth_Hz
+        == RigAware().bandwidth_Hz
+    )
+
+
+def test_another_button_is_rendered_at_once_and_its_expected_errors_are_told(
+    fdvv: Run, tmp_path: Path, taught: bytes
+) -> None:
+    (tmp_path / "bench.rig.json").write_bytes(taught)
+    ran = fdvv(*AT_ONCE, "-o", "red.actuation.json")
+    assert (ran.status, ran.err) == (0, "")
+    lines = ran.out.splitlines()
+    assert lines[0] == "mx-red on twin (simulated), 0 presses"
+    rows = [line for line in lines if line.startswith(("press ", "release "))]
+    assert len(rows) == 4
+    assert all(re.search(r"–\s+–\s+\d\.\d\d\s+–$", row) for row in rows)
+    assert "nothing was pressed: the mean is what was left on the button that taught the rig" in lines
+    expected = [c.mean_error_cN for c in load_actuation(tmp_path / "red.actuation.json").outcome.curves]
+    memory = load_memory(tmp_path / "bench.rig.json")
+    assert expected == memory.error_cN.ravel().tolist()
+    document = fdvv(*AT_ONCE, "--json").json
+    assert document["presses"] == document["receipt"]["used"] == 0
+    assert [c["max_error_cN"] for c in document["curves"]] == [None] * 4
+    judged = fdvv("probe", "mx-red", "red.actuation.json", *SHORT, "--presses", "2", "--seed", "5", "--json")
+    plain = fdvv("probe", "mx-red", *SHORT, "--presses", "2", "--seed", "5", "--json")
+    means = [[c["mean_error_cN"] for c in ran.json["curves"]] for ran in (judged, plain)]
+    assert sum(means[0]) < 0.5 * sum(means[1])
+
+
+def test_a_known_rig_that_changed_is_told_also_beside_a_document(
+    fdvv: Run, tmp_path: Path, taught: bytes
+) -> None:
+    (tmp_path / "bench.rig.json").write_bytes(taught)
+    (tmp_path / "rig.toml").write_text("[mover]\nmass_kg = 0.045\n")
+    ran = fdvv(*AT_ONCE[:-1], "1", "--rig", "rig.toml", "--json")
+    assert ran.status == 0
+    assert ran.json["presses"] >= 2
+    assert ran.err.startswith("warning: the rig is not as it was known: ")
+    assert ran.err.count("\n") == 1
+    same = fdvv(*AT_ONCE[:-1], "1", "--seed", "8", "--json")
+    assert (same.status, same.err) == (0, "")
+
+
+def test_a_rig_can_be_met_without_learning_on_it(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--rounds", "0", "--save-rig", "new.rig.json", "--json")
+    assert ran.status == 0
+    assert ran.json["presses"] == 4
+    assert load_memory(tmp_path / "new.rig.json").known.presses == 4
+
+
+def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:
+    paper = ("compensate", "mx-clear", "--velocity", "50", "--method", "paper", "--presses", "2")
+    ran = fdvv(*paper, "--rounds", "1", "--json")
+    assert ran.json["receipt"]["used"] == 2
+    assert ran.json["receipt"]["settings"]["law"]["rounds"] == 1
+    literal = fdvv(*paper, "--rounds", "2", "--literal", "--json").json
+    assert literal["method"] != ran.json["method"]
+    assert literal["receipt"]["used"] == 4

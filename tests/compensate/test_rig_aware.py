@@ -1,0 +1,250 @@
+"""The method keeps the protocol on presses of a plant in closed form, and changes no state it was given."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import Count, Job, KnownRig, RigAware, RigMemory, RigState, Trial, Tuning, identify
+from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN
+from fdvv.compensate._rig_aware import LOOSE_PACE_ratio
+from fdvv.compensate._rig_learning import Felt
+from fdvv.errors import ModelError
+from fdvv.model import ForceSurface, Press, load_builtin
+
+from ._plant import Plant, TRAVEL_mm, known_of
+
+MODEL = load_builtin("mx-clear")
+SPEEDS_mm_s = np.array([50.0, 100.0, 200.0])
+TARGET = ForceSurface.of_model(MODEL, SPEEDS_mm_s)
+JOB = Job(TARGET, TRAVEL_mm, 440.0)
+PLANT = Plant(position_noise_mm=0.003, force_noise_cN=0.3, half_play_cN=0.5)
+METHOD = RigAware(rounds=2)
+
+
+def memory_of(known: KnownRig, rows_cN: float = 0.0) -> RigMemory:
+    rows = np.full(TARGET.press_cN.shape, rows_cN)
+    residual = ForceSurface(TARGET.displacement_mm, SPEEDS_mm_s, rows, -rows)
+    return RigMemory(known, residual, TRAVEL_mm, np.full((2, 3), 2.0))
+
+
+def pressed(method: RigAware, state: RigState, seed: int) -> RigState:
+    trial = method.trial(state)
+    assert trial is not None
+    return method.step(PLANT.press(trial.velocity_mm_s, seed), state)
+
+
+@pytest.fixture(scope="module")
+def states() -> list[RigState]:
+    """Give the state after every press of a whole job."""
+    found = [METHOD.init(JOB)]
+    while METHOD.trial(found[-1]) is not None:
+        found.append(pressed(METHOD, found[-1], len(found)))
+    return found
+
+
+def test_a_job_takes_four_presses_and_the_rounds_at_every_speed(states: list[RigState]) -> None:
+    trials = [trial for state in states if (trial := METHOD.trial(state))]
+    assert [t.velocity_mm_s for t in trials] == [50, 100, 200, 50, *[50, 100, 200] * 2]
+    assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [LOOSE_PACE_ratio] * 6
+    assert [t.tuning == Tuning() for t in trials] == [True] * 4 + [False] * 6
+    assert len(states) == 11
+
+
+def test_the_count_is_that_of_the_presses_throughout(states: list[RigState]) -> None:
+    for made, state in enumerate(states):
+        assert METHOD.count(state) == Count(made, 10, (4, 3, 3))
+
+
+def test_done_works_at_any_time_and_is_complete_at_the_end_alone(states: list[RigState]) -> None:
+    outcomes = [METHOD.done(state) for state in states]
+    assert [o.complete for o in outcomes] == [False] * 10 + [True]
+    assert [o.presses for o in outcomes] == list(range(11))
+    for outcome in outcomes:
+        assert outcome.surface.press_cN.shape == TARGET.press_cN.shape
+        assert np.abs(outcome.surface.press_cN).max() <= 440.0
+        assert outcome.sentence
+    assert [len(o.curves) for o in outcomes] == [0] * 4 + [6] * 7
+    assert outcomes[-1].tuning.bandwidth_Hz == METHOD.bandwidth_Hz
+
+
+def test_every_press_is_explained(states: list[RigState]) -> None:
+    told = [METHOD.explain(state) for state in states]
+    assert told[:3] == ["", "1 of 4 presses to know the rig by", "2 of 4 presses to know the rig by"]
+    assert "from 4 presses" in told[4]
+    assert all(text.startswith("felt ") and "moved them by up to" in text for text in told[5:])
+    assert not any("\n" in text for text in told)
+
+
+def test_a_state_is_never_changed_and_a_step_repeats_itself(states: list[RigState]) -> None:
+    with pytest.raises(FrozenInstanceError):
+        states[0].told = "other"  # type: ignore[misc] # the point of the test
+    for made in (3, 6):
+        before, tables = states[made], states[made].tables
+        rows = tables[0].rows_cN.copy() if tables else None
+        again = pressed(METHOD, before, made + 1)
+        assert again.told == states[made + 1].told
+        assert tables is before.tables
+        if rows is not None and tables is not None:
+            np.testing.assert_array_equal(tables[0].rows_cN, rows)
+
+
+def test_the_rig_is_that_of_identification_from_the_same_presses(states: list[RigState]) -> None:
+    speeds = [50.0, 100.0, 200.0, 50.0]
+    assert states[4].known == identify([PLANT.press(v, k + 1) for k, v in enumerate(speeds)], TRAVEL_mm)
+    assert states[-1].known is states[4].known
+
+
+def test_a_memory_gives_tables_without_a_press() -> None:
+    known = known_of(PLANT)
+    method = RigAware(rounds=0, memory=memory_of(known, 3.0))
+    state = method.init(JOB)
+    assert method.trial(state) is None
+    assert method.count(state) == Count(0, 0, (0, 0, 0))
+    outcome = method.done(state)
+    assert outcome.complete
+    beyond = TARGET.displacement_mm > HOME_mm
+    for table, target, more in (
+        (outcome.surface.press_cN, TARGET.press_cN, 3.0),
+        (outcome.surface.release_cN, TARGET.release_cN, -3.0),
+    ):
+        told = command_cN(known, TARGET.displacement_mm, target) + more
+        np.testing.assert_allclose(table[:, beyond], told[:, beyond])
+    assert [c.mean_error_cN for c in outcome.curves] == [2.0] * 6
+    with_presses = replace(method, rounds=1)
+    assert with_presses.count(with_presses.init(JOB)) == Count(0, 3, (1, 1, 1))
+
+
+def test_an_edited_button_moves_the_tables_by_the_edit_over_the_gain() -> None:
+    known = known_of(PLANT)
+    method = RigAware(rounds=0, memory=memory_of(known, 3.0))
+    bump = 10.0 * np.exp(-(((TARGET.displacement_mm - 2.0) / 0.3) ** 2))
+    edited = replace(JOB, target=replace(TARGET, press_cN=TARGET.press_cN + bump))
+    before, after = (method.done(method.init(job)).surface for job in (JOB, edited))
+    moved, more = after.press_cN - before.press_cN, bump / known.gain_at(TARGET.displacement_mm)
+    np.testing.assert_allclose(moved, np.tile(more, (3, 1)), atol=1e-9)
+    np.testing.assert_array_equal(after.release_cN, before.release_cN)
+
+
+def test_the_cap_is_held_up_at_home_and_the_limit_is_kept() -> None:
+    known = known_of(PLANT)
+    method = RigAware(rounds=0, memory=memory_of(known, -300.0))
+    surface = method.done(method.init(JOB)).surface
+    home = TARGET.displacement_mm <= HOME_mm
+    lift = (LIFT_cN + known.weight_cN) / known.gain_at(TARGET.displacement_mm[home])
+    np.testing.assert_allclose(surface.press_cN[:, home], np.tile(lift, (3, 1)))
+    low = replace(JOB, force_limit_cN=90.0)
+    assert np.abs(method.done(method.init(low)).surface.press_cN).max() == 90.0
+
+
+def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_does_not() -> None:
+    known = known_of(PLANT)
+    method = RigAware(rounds=0, memory=memory_of(known))
+    job = replace(JOB, target=ForceSurface.of_model(MODEL, [5.0, 20.0]))
+    surface, grid = method.done(method.init(job)).surface, TARGET.displacement_mm
+    beyond, part = grid > HOME_mm, np.array([[0.5], [0.0]])
+    for table, force, sign in (
+        (surface.press_cN, job.target.press_cN, 1.0),
+        (surface.release_cN, job.target.release_cN, -1.0),
+    ):
+        rub = command_cN(known, grid, force) - table
+        np.testing.assert_allclose(
+            (rub * known.gain_at(grid))[:, beyond],
+            np.broadcast_to(sign * part * known.friction_cN, rub[:, beyond].shape),
+            atol=1e-9,
+        )
+
+
+def test_what_was_taught_begins_the_next_job(states: list[RigState]) -> None:
+    memory = METHOD.remembered(states[-1])
+    end = METHOD.done(states[-1])
+    again = RigAware(rounds=0, memory=memory)
+    np.testing.assert_allclose(again.done(again.init(JOB)).surface.press_cN, end.surface.press_cN)
+    expected = [c.mean_error_cN for c in again.done(again.init(JOB)).curves]
+    assert expected == pytest.approx([c.mean_error_cN for c in end.curves])
+    with pytest.raises(ModelError, match="not known yet"):
+        METHOD.remembered(states[2])
+
+
+def test_after_a_press_that_went_astray_the_best_row_is_given_and_remembered() -> None:
+    method = RigAware(memory=memory_of(known_of(PLANT)))
+    start = method.init(JOB)
+    count = TARGET.displacement_mm.size
+    good, bad = Felt(2.0, 1.0, 4.0, np.full(count, 7.0)), Felt(9.0, 6.0, 20.0, np.full(count, -50.0))
+    state = replace(start, felt=(((good, good), (bad, good)), ((good, good),), ()))
+    plain, kept = method.done(start).surface, method.done(state).surface
+    beyond = TARGET.displacement_mm > HOME_mm
+    np.testing.assert_allclose((kept.press_cN - plain.press_cN)[0, beyond], 7.0)
+    np.testing.assert_array_equal(kept.press_cN[1:], plain.press_cN[1:])
+    np.testing.assert_array_equal(kept.release_cN, plain.release_cN)
+    np.testing.assert_array_equal(method.remembered(state).residual.press_cN[0], 7.0)
+    assert method.done(state).curves[0].mean_error_cN == 1.0
+
+
+def cut(press: Press, rows: slice) -> Press:
+    names = ("t_s", "displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN")
+    return replace(press, **{name: getattr(press, name)[rows] for name in names})
+
+
+TELL_NOTHING: dict[str, Any] = {
+    "too few ticks": lambda press: cut(press, slice(0, 30)),
+    "not finite": lambda press: replace(press, sensed_cN=np.full(press.t_s.size, np.nan)),
+    "no command": lambda press: replace(press, commanded_cN=None),
+}
+
+
+@pytest.mark.parametrize("spoilt", TELL_NOTHING.values(), ids=TELL_NOTHING)
+def test_a_press_that_tells_nothing_is_refused_in_one_line_and_changes_nothing(spoilt: Any) -> None:
+    method = RigAware(memory=memory_of(known_of(PLANT)))
+    state = method.init(JOB)
+    with pytest.raises(ModelError) as told:
+        method.step(spoilt(PLANT.press(50.0)), state)
+    assert "\n" not in str(told.value)
+    assert method.trial(state) is not None
+
+
+def test_more_presses_are_asked_for_while_a_rig_cannot_be_known_and_the_last_is_refused() -> None:
+    method, state = RigAware(meet=2, meet_most=4), RigAware().init(JOB)
+    still = PLANT.press(50.0)
+    assert still.sensed_mm is not None
+    still = replace(still, sensed_mm=np.zeros(still.t_s.size))
+    for made in (1, 2, 3):
+        state = method.step(still, state)
+        assert method.count(state).made == made
+        assert isinstance(method.trial(state), Trial)
+    assert "one more press is needed" in method.explain(state)
+    with pytest.raises(ModelError, match="cannot be identified"):
+        method.step(still, state)
+
+
+def test_a_press_far_off_its_pace_tells_the_rig_but_not_the_tables() -> None:
+    def met(asked_mm_s: float) -> RigState:
+        method, job = RigAware(meet=2), replace(JOB, target=ForceSurface.of_model(MODEL, [asked_mm_s]))
+        state = method.init(job)
+        for seed in (1, 2):
+            state = method.step(PLANT.press(150.0, seed), state)
+        return state
+
+    on, off = met(150.0), met(50.0)
+    assert on.known == off.known
+    assert np.abs(on.rig[1][0].rows_cN).max() > 0.5
+    np.testing.assert_array_equal(off.rig[1][0].rows_cN, 0.0)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"rounds": -1}, {"meet": 0}, {"meet": 5, "meet_most": 4}, {"bandwidth_Hz": 0.0}, {"bin_mm": 0.0}],
+)
+def test_settings_without_sense_are_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(ModelError):
+        RigAware(**wrong)
+
+
+def test_the_name_says_what_is_done() -> None:
+    assert "identified from 4 presses" in METHOD.name
+    assert "2 rounds of learning" in METHOD.name
+    assert "known before" in RigAware(1, memory_of(KnownRig())).name
+    assert "1 round of learning" in RigAware(1, memory_of(KnownRig())).name
