@@ -26,6 +26,7 @@ def test_the_wheel_holds_all_it_needs_and_works_without_the_repository(tmp_path:
         "_native/fdvv-host",
         "model/builtin/mx-clear.fdvv.json",
         "twin/rigs/default.toml",
+        "twin/rigs/light.toml",
         "twin/rigs/paper.toml",
         "twin/fingers/paper.toml",
         "py.typed",

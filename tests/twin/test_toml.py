@@ -11,7 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fdvv.twin
+from fdvv.device import TwinDevice
 from fdvv.errors import InputError, ModelError
+from fdvv.model import ForceSurface, load_builtin
 from fdvv.twin import Controller, Finger, Mover, Rig, finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._quantity import about
 
@@ -34,6 +36,17 @@ def test_a_shipped_rig_or_finger_is_read_by_its_name() -> None:
     folder = DEFAULT.parents[1]
     assert load_rig("paper") == load_rig(folder / "rigs" / "paper.toml") != Rig()
     assert load_finger("paper") == load_finger(folder / "fingers" / "paper.toml") != Finger()
+
+
+def test_the_light_rig_renders_a_press_in_the_time_its_firmware_has() -> None:
+    rig = load_rig("light")
+    assert rig.coil.drive == "current"
+    assert rig.mover.mass_kg == 0.006
+    device = TwinDevice(rig, seed=1)
+    device.upload(ForceSurface.of_model(load_builtin("mx-red"), [100.0]), 4.0)
+    press = device.press(100.0)
+    assert device.info().tick_s == 1e-4
+    assert press.displacement_mm.max() > 3.9
 
 
 def test_a_name_that_is_not_shipped_is_a_path() -> None:

@@ -8,19 +8,18 @@ import numpy as np
 
 from fdvv.compensate._balance import Sensor
 from fdvv.compensate._explain import explain as explain_rig
-from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN, tuning_of, unrepeatable_cN
+from fdvv.compensate._feed_forward import tuning_of
 from fdvv.compensate._felt import Pass, passes
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import NOTHING, Count, Job, Outcome, Trial
-from fdvv.compensate._rig_learning import Felt, Learning, Pair, believed, felt_off, learn_stroke
+from fdvv.compensate._rig_learning import Felt, Learning, Pair, believed, commands, felt_off, learn_stroke
 from fdvv.compensate._rig_memory import RigMemory
-from fdvv.compensate._rig_outcome import curves_of, held_up, kept_rows
+from fdvv.compensate._rig_outcome import curves_of, held_up, kept_rows, told_of
 from fdvv.compensate._tuning import Tuning
 from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.units import FloatArray
 
 ANY_PACE_ratio, LOOSE_PACE_ratio = float("inf"), 0.6
 """A rig is known from presses of any pace; on a heavy one that is not learned yet no person can keep it."""
@@ -129,7 +128,8 @@ class RigAware:
         pair, tables = self._learn(self._passes(press, state), state, at)
         felt = (*state.felt[:at], (*state.felt[at], pair), *state.felt[at + 1 :])
         after = replace(state, felt=felt, tables=tables)
-        return replace(after, told=self._told(state, after, at))
+        told = told_of(after.rig[0], (state.rig[1], tables), pair, at)
+        return replace(after, told=told)
 
     def explain(self, state: RigState) -> str:
         """Tell what the last press changed; empty before the first."""
@@ -220,37 +220,4 @@ class RigAware:
         return tuning_of(state.known, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
 
     def _surface(self, state: RigState, tables: Pair) -> ForceSurface:
-        """Make the commands: what the numbers ask for, what was learned, the cap held up at its home."""
-        known, target, limit = state.rig[0], state.job.target, state.job.force_limit_cN
-        grid = target.displacement_mm
-        lift = (LIFT_cN + known.weight_cN) / known.gain_at(grid)
-
-        # what the controller takes off by speed is not whole yet in a slow stroke
-        slow = np.clip(1.0 - target.velocity_mm_s / self.friction_mm_s, 0.0, 1.0)[:, np.newaxis]
-        rub = slow * known.friction_cN / known.gain_at(grid)
-
-        def rows(force_cN: FloatArray, learned_cN: FloatArray, down: float) -> FloatArray:
-            command = command_cN(known, grid, force_cN) - down * rub + learned_cN
-            return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
-
-        press, release = tables
-        return ForceSurface(
-            grid,
-            target.velocity_mm_s,
-            rows(target.press_cN, press.rows_cN, 1.0),
-            rows(target.release_cN, release.rows_cN, -1.0),
-        )
-
-    def _told(self, before: RigState, after: RigState, at: int) -> str:
-        known, tables = after.rig
-        speed = float(after.job.target.velocity_mm_s[at])
-        down, up = after.felt[at][-1]
-        moved = [
-            float(np.abs(new.rows_cN[at] - old.rows_cN[at]).max())
-            for new, old in zip(tables, before.rig[1], strict=True)
-        ]
-        return (
-            f"felt {down.mean_cN:.1f} cN off on the press, {up.mean_cN:.1f} on the release; moved them by up "
-            f"to {moved[0]:.1f} and {moved[1]:.1f} cN; two such presses differ by about "
-            f"{unrepeatable_cN(known, speed):.1f} cN"
-        )
+        return commands(state.job, state.rig[0], tables, self.friction_mm_s)

@@ -1,4 +1,4 @@
-"""One press on a known rig: what it felt like, and what it tells about the tables."""
+"""One press on a known rig: what it felt like, what it tells about the tables, and the commands they make."""
 
 from __future__ import annotations
 
@@ -8,7 +8,14 @@ import numpy as np
 
 from fdvv.compensate._bins import bin_force
 from fdvv.compensate._error import error_cN
-from fdvv.compensate._feed_forward import inertia_cN, unrepeatable_cN, wanted_cN
+from fdvv.compensate._feed_forward import (
+    HOME_mm,
+    LIFT_cN,
+    command_cN,
+    inertia_cN,
+    unrepeatable_cN,
+    wanted_cN,
+)
 from fdvv.compensate._felt import Pass
 from fdvv.compensate._foresee import FingerJoint, foresee
 from fdvv.compensate._known_rig import KnownRig
@@ -16,6 +23,7 @@ from fdvv.compensate._method import Job
 from fdvv.compensate._shared_table import SharedTable
 from fdvv.compensate._tuning import Tuning
 from fdvv.errors import ModelError
+from fdvv.model import ForceSurface
 from fdvv.units import FloatArray
 
 Pair = tuple[SharedTable, SharedTable]
@@ -100,3 +108,28 @@ def learn_stroke(
     sigma_mm = how.smoothing_mm + how.smoothing_s * speed
     seen = bin_force(places, more, grid)
     return table.learned(seen, speed, unrepeatable_cN(known, speed), sigma_mm, how.fading)
+
+
+def commands(job: Job, known: KnownRig, tables: Pair, friction_mm_s: float) -> ForceSurface:
+    """Make the commands: what the numbers ask for, what was learned, the cap held up at its home.
+
+    friction_mm_s : speed from which the controller takes off friction whole; slower strokes carry the rest.
+    """
+    target, limit = job.target, job.force_limit_cN
+    grid = target.displacement_mm
+    gain = known.gain_at(grid)
+    lift = (LIFT_cN + known.weight_cN) / gain
+    slow = np.clip(1.0 - target.velocity_mm_s / friction_mm_s, 0.0, 1.0)[:, np.newaxis]
+    rub = slow * known.friction_cN / gain
+
+    def rows(force_cN: FloatArray, learned_cN: FloatArray, down: float) -> FloatArray:
+        command = command_cN(known, grid, force_cN) - down * rub + learned_cN
+        return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
+
+    press, release = tables
+    return ForceSurface(
+        grid,
+        target.velocity_mm_s,
+        rows(target.press_cN, press.rows_cN, 1.0),
+        rows(target.release_cN, release.rows_cN, -1.0),
+    )

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from fdvv.compensate._feed_forward import unrepeatable_cN
+from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import CurveOutcome, Job
 from fdvv.compensate._paper import PaperLaw
 from fdvv.compensate._rig_learning import Felt, Pair
@@ -75,3 +77,14 @@ def _curve(stroke: Stroke, speed_mm_s: float, made: list[Felt], expected_cN: flo
     told = f"error_k {errors[0]:.1f} cN at press 1, {errors[-1]:.1f} at press {len(made)}"
     told += "; the best table is kept, since the last press got worse" if astray else ""
     return CurveOutcome(stroke, speed_mm_s, errors, used.mean_cN, used.max_cN, told)
+
+
+def told_of(known: KnownRig, tables: tuple[Pair, Pair], felt: tuple[Felt, Felt], at: int) -> str:
+    """Tell how a press of speed number ``at`` felt, and what it changed: tables before and after it."""
+    (down, up), speed = felt, float(tables[0][0].speeds_mm_s[at])
+    moved = [float(np.abs(new.rows_cN[at] - old.rows_cN[at]).max()) for old, new in zip(*tables, strict=True)]
+    return (
+        f"felt {down.mean_cN:.1f} cN off on the press, {up.mean_cN:.1f} on the release; moved them by up "
+        f"to {moved[0]:.1f} and {moved[1]:.1f} cN; two such presses differ by about "
+        f"{unrepeatable_cN(known, speed):.1f} cN"
+    )

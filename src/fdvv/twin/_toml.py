@@ -30,7 +30,7 @@ def finger_to_toml(finger: Finger) -> str:
 
 
 def load_rig(name: Path | str) -> Rig:
-    """Read a shipped rig by its name ("default", "paper"), or any by its path.
+    """Read a shipped rig by its name ("default", "light", "paper"), or any by its path.
 
     InputError names file, key, bound and remedy of the first thing that is wrong.
     """
