@@ -80,6 +80,8 @@ ROWS = (
     ("paper's parts, rig-aware", rig_aware, PAPER, SPEEDS_mm_s),
     ("current drive, rig-aware", rig_aware, (*PAPER, CURRENT), SPEEDS_mm_s),
     ("12 g mover, rig-aware", rig_aware, (*PAPER, LIGHT_12_g), SPEEDS_mm_s),
+    ("loop of 10 kHz, rig-aware", rig_aware, (*PAPER, LOOP_10_kHz), SPEEDS_mm_s),
+    ("position sensor of 4 kHz and 1 um, rig-aware", rig_aware, (*PAPER, SENSOR), SPEEDS_mm_s),
     ("current drive and 12 g, rig-aware", rig_aware, (*PAPER, CURRENT, LIGHT_12_g), SPEEDS_mm_s),
     ("the best rig, rig-aware", best_rig, BEST, BEST_SPEEDS_mm_s),
 )
@@ -88,13 +90,22 @@ ROWS = (
 def main() -> None:
     rigs = int(sys.argv[1]) if len(sys.argv) > 1 else RIGS
     print(f"error, cN, median (5-95 %) over {len(BUTTONS)} buttons on {rigs} rigs and people each; simulated")
+    began: dict[tuple[int, str], FloatArray] = {}
     for name, work, options, speeds in ROWS:
         cases = [Case(FIRST_SEED + i, button, options) for button in BUTTONS for i in range(rigs)]
-        found = [result for _, result in run_all(work, cases)]
+        results = list(run_all(work, cases))
+        found = [result for _, result in results]
         done = [result for result in found if not isinstance(result, str)]
         table = np.array([rows for rows, _ in done])
         presses = np.median([made for _, made in done])
         print(f"\n{name}: {len(done)} of {len(found)} finished, {presses:g} presses", flush=True)
+        ended = {(c.seed, c.button): r[0][:, 0] for c, r in results if not isinstance(r, str)}
+        if work is nothing:
+            began = ended
+        elif options == PAPER:
+            both = [(ended[key], began[key]) for key in ended.keys() & began.keys()]
+            worse = sum(int((after > before).sum()) for after, before in both)
+            print(f"{worse} of {sum(after.size for after, _ in both)} curves worse than not compensated")
         print("| stroke | mm/s | mean | largest | mean, against the model at the achieved speed |")
         for at in range(table.shape[1]):
             stroke = "press" if at < len(speeds) else "release"
