@@ -26,15 +26,10 @@ RIGS, PRESSES, JUDGED_mm_s = 3, 12, (50.0, 200.0)
 
 def opened(name: str, case: Case, folder: Path) -> Device:
     """Open a device with the case's rig and person."""
-    files = folder / "rig.toml", folder / "finger.toml"
-    for path, text in zip(files, map(str, _texts(case)), strict=True):
+    (rig, finger), files = case.parts(), (folder / "rig.toml", folder / "finger.toml")
+    for path, text in zip(files, (rig_to_toml(rig), finger_to_toml(finger)), strict=True):
         path.write_text(text)
     return open_device(name, *files, case.seed + JUDGE)
-
-
-def _texts(case: Case) -> tuple[str, str]:
-    rig, finger = case.parts()
-    return rig_to_toml(rig), finger_to_toml(finger)
 
 
 def errors_cN(name: str, case: Case, learned: CompensationResult) -> list[float]:

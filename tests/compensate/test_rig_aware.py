@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from fdvv.compensate import Count, Job, KnownRig, RigAware, RigMemory, RigState, Trial, Tuning, identify
-from fdvv.compensate._feed_forward import HOME_mm, LIFT_cN, command_cN
+from fdvv.compensate._feed_forward import LIFT_cN, command_cN
 from fdvv.compensate._rig_aware import LOOSE_PACE_ratio
 from fdvv.compensate._rig_learning import Felt
+from fdvv.compensate._strokes import HOME_mm
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press, load_builtin
 

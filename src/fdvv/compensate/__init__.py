@@ -49,20 +49,29 @@ from fdvv.compensate._stability_loop import (
     stiffness_limit_N_m,
     tick_matrix,
 )
-from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes, why_incomplete
+from fdvv.compensate._strokes import (
+    FROM_mm,
+    Span,
+    STOP_GUARD_mm,
+    mean_speed_mm_s,
+    split_strokes,
+    why_incomplete,
+)
 from fdvv.compensate._tables import dense_velocities
 from fdvv.compensate._thermal import ThermalDose, held_until_s, rise_K, thermal_dose
 from fdvv.compensate._tuned import HOLDS_cN, tuned_paper_law
-from fdvv.compensate._tuning import Tuning
+from fdvv.compensate._tuning import UNTUNED, Tuning
 
 __all__ = [
     "RIG_DELAYS",
+    "UNTUNED",
     "Acceptance",
     "Best",
     "Count",
     "CurveOutcome",
     "Delays",
     "ExpectedError",
+    "FROM_mm",
     "FingerJoint",
     "FollowVerdict",
     "Following",
@@ -86,6 +95,7 @@ __all__ = [
     "RigLimits",
     "RigMemory",
     "RigState",
+    "STOP_GUARD_mm",
     "SampledLoop",
     "Sensor",
     "Slope",

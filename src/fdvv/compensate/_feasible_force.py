@@ -11,6 +11,7 @@ from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._feasible_motion import Motion
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._lag import late
+from fdvv.compensate._strokes import FROM_mm, STOP_GUARD_mm
 from fdvv.errors import ModelError
 from fdvv.model import find_bump
 from fdvv.units import FloatArray
@@ -18,8 +19,6 @@ from fdvv.units import FloatArray
 BoolArray = npt.NDArray[np.bool_]
 NOTICED_cN = 1.0
 """A command cut by less is no saturation that a finger could tell."""
-FROM_mm, STOP_GUARD_mm = 0.3, 0.1
-"""Where a probe judges: beyond the contact, and ahead of the impact at the stop."""
 LEAST_GAIN = 0.05
 NEAR_mm = 0.2
 """How far beyond its peak and valley a smeared bump is looked for."""

@@ -8,6 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from fdvv.compensate._balance import spans
 from fdvv.compensate._feasible_force import BoolArray, Reach
 from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._stability import BUZZES, ENOUGH, HUNTS, SPAN_mm, Stability
@@ -146,9 +147,8 @@ def _warmth(dose: ThermalDose) -> Iterator[Hindrance]:
 
 def _between(displacement_mm: FloatArray, rows: BoolArray) -> str:
     """Name the ranges where rows, (n,) bool, hold."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(int)))
-    spans = [(float(displacement_mm[a]), float(displacement_mm[b - 1])) for a, b in edges.reshape(-1, 2)]
+    ranges = [(float(displacement_mm[a]), float(displacement_mm[b - 1])) for a, b in spans(rows)]
     told = [
-        f"between {low:.2f} and {high:.2f} mm" if high > low else f"at {low:.2f} mm" for low, high in spans
+        f"between {low:.2f} and {high:.2f} mm" if high > low else f"at {low:.2f} mm" for low, high in ranges
     ]
     return " and ".join(told)

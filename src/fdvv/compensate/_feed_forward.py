@@ -9,7 +9,6 @@ from fdvv.compensate._known_rig import DRAG_cN, KnownRig, cN_PER_g_m_s2
 from fdvv.compensate._tuning import Tuning
 from fdvv.units import FloatArray
 
-HOME_mm = 0.1
 LIFT_cN = 50.0
 """Least force in the first 0.1 mm: a table of displacement cannot tell a resting cap from a moving one."""
 

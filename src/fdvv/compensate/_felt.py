@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.compensate._balance import Sensor
+from fdvv.compensate._balance import Sensor, felt_cN
 from fdvv.compensate._known_rig import KnownRig, cN_PER_g_m_s2
 from fdvv.compensate._strokes import Span, mean_speed_mm_s, split_strokes
-from fdvv.compensate._ticks import through, ticks_of, windows
+from fdvv.compensate._ticks import Ticks, through, ticks_of, windows
 from fdvv.model import Press
 from fdvv.units import FloatArray
 
@@ -45,7 +45,7 @@ def passes(press: Press, travel_mm: float, known: KnownRig, sensor: Sensor) -> t
     lag = known.position_lag_s
     x, v, a = (one + lag * next_one for one, next_one in zip((place, *slopes[:2]), slopes, strict=True))
     a = a / 1000.0
-    felt = _felt_cN(ticks.force_cN, ticks.tick_s, known.play_cN, sensor) - cN_PER_g_m_s2 * sensor.cone_g * a
+    felt = felt_cN(ticks, sensor) + _ahead_cN(ticks, known.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
     own = felt - known.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
 
     def between(span: Span) -> Pass:
@@ -56,8 +56,7 @@ def passes(press: Press, travel_mm: float, known: KnownRig, sensor: Sensor) -> t
     return between(down), between(up)
 
 
-def _felt_cN(reading_cN: FloatArray, tick_s: float, play_cN: float, sensor: Sensor) -> FloatArray:
-    """Undo the sensor's filter, and the half of its play by which a changing force is ahead of it."""
-    even, slope = (through(window, reading_cN) for window in windows(tick_s)[:2])
-    ahead = 0.5 * play_cN * np.clip(slope / TURN_cN_s, -1.0, 1.0)
-    return np.asarray(even + sensor.filter_s * slope + ahead)
+def _ahead_cN(ticks: Ticks, play_cN: float) -> FloatArray:
+    """Give by how much, half the sensor's play, a changing force is ahead of its reading."""
+    slope = through(windows(ticks.tick_s)[1], ticks.force_cN)
+    return np.asarray(0.5 * play_cN * np.clip(slope / TURN_cN_s, -1.0, 1.0))

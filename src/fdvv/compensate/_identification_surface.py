@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv.compensate._bins import smooth
+from fdvv.compensate._strokes import HOME_mm
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface
 from fdvv.units import FloatArray
 
-HOME_mm = 0.1
 HOLD_cN = 80.0
 """Twice the heaviest mover of the class: it is not known yet what must be held up."""
 FADE_mm = 0.3

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from fdvv.compensate._tuning import Tuning
+from fdvv.compensate._tuning import UNTUNED, Tuning
 from fdvv.model import ForceSurface, Press, Stroke
 
 S = TypeVar("S")
-
-NOTHING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +36,7 @@ class Trial:
 
     surface: ForceSurface
     velocity_mm_s: float
-    tuning: Tuning = NOTHING
+    tuning: Tuning = UNTUNED
     pace_ratio: float | None = None
 
 
@@ -79,7 +77,7 @@ class Outcome:
     presses: int
     complete: bool
     sentence: str
-    tuning: Tuning = NOTHING
+    tuning: Tuning = UNTUNED
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,9 @@ from fdvv.compensate._curve_state import Best, Learned, State, better, frozen
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._observe import Delays
+from fdvv.compensate._strokes import HOME_mm
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-
-HOME_mm = 0.1
-"""Where a resting cap belongs: above the upper guard of the strokes, where nothing is learned."""
-
 
 RIG_DELAYS = Delays(position_s=0.0005, command_s=0.002)
 """Delays of the paper's rig, from its parts: the position's demodulator and burst less the force's filter;

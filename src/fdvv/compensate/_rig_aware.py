@@ -13,11 +13,11 @@ from fdvv.compensate._felt import Pass, passes
 from fdvv.compensate._identification_surface import identification_surface
 from fdvv.compensate._identify import identify
 from fdvv.compensate._known_rig import KnownRig
-from fdvv.compensate._method import NOTHING, Count, Job, Outcome, Trial
+from fdvv.compensate._method import Count, Job, Outcome, Trial
 from fdvv.compensate._rig_learning import Felt, Learning, Pair, believed, commands, felt_off, learn_stroke
 from fdvv.compensate._rig_memory import RigMemory
 from fdvv.compensate._rig_outcome import curves_of, held_up, kept_rows, told_of
-from fdvv.compensate._tuning import Tuning
+from fdvv.compensate._tuning import UNTUNED, Tuning
 from fdvv.errors import FitError, ModelError
 from fdvv.model import ForceSurface, Press
 
@@ -54,10 +54,15 @@ class RigState:
             raise ModelError("the rig is not known yet")
         return self.known, self.tables
 
+    @property
+    def turn(self) -> int:
+        """Give the number of the speed with the fewest presses on a known rig."""
+        return min(range(len(self.felt)), key=lambda i: len(self.felt[i]))
+
 
 @dataclass(frozen=True)
 class RigAware:
-    """Settings of the method; docs/explanation/compensation.md tells it.
+    """Settings of the method; docs/explanation/rig-aware.md tells it.
 
     Attributes
     ----------
@@ -112,7 +117,7 @@ class RigAware:
             surface = identification_surface(state.job.target, limit_cN=state.job.force_limit_cN)
             speed = float(speeds[len(state.unknown) % speeds.size])
             return Trial(surface, speed, pace_ratio=ANY_PACE_ratio)
-        at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
+        at = state.turn
         if len(state.felt[at]) >= self.rounds:
             return None
         return Trial(
@@ -123,8 +128,7 @@ class RigAware:
         """Know the rig, or learn from a press on it. ModelError on a press that tells nothing."""
         if state.known is None:
             return self._meet(press, state)
-        speeds = state.job.target.velocity_mm_s
-        at = min(range(speeds.size), key=lambda i: len(state.felt[i]))
+        at = state.turn
         pair, tables = self._learn(self._passes(press, state), state, at)
         felt = (*state.felt[:at], (*state.felt[at], pair), *state.felt[at + 1 :])
         after = replace(state, felt=felt, tables=tables)
@@ -216,7 +220,7 @@ class RigAware:
 
     def _tuning(self, state: RigState) -> Tuning:
         if state.known is None:
-            return NOTHING
+            return UNTUNED
         return tuning_of(state.known, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
 
     def _surface(self, state: RigState, tables: Pair) -> ForceSurface:

@@ -9,7 +9,6 @@ import numpy as np
 from fdvv.compensate._bins import bin_force
 from fdvv.compensate._error import error_cN
 from fdvv.compensate._feed_forward import (
-    HOME_mm,
     LIFT_cN,
     command_cN,
     inertia_cN,
@@ -21,6 +20,7 @@ from fdvv.compensate._foresee import FingerJoint, foresee
 from fdvv.compensate._known_rig import KnownRig
 from fdvv.compensate._method import Job
 from fdvv.compensate._shared_table import SharedTable
+from fdvv.compensate._strokes import FROM_mm, HOME_mm, STOP_GUARD_mm
 from fdvv.compensate._tuning import Tuning
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface
@@ -28,9 +28,6 @@ from fdvv.units import FloatArray
 
 Pair = tuple[SharedTable, SharedTable]
 """Press and release."""
-
-FROM_mm, STOP_GUARD_mm = 0.3, 0.1
-"""Errors count between them: where the finger has met the cap, and ahead of the impact."""
 
 
 @dataclass(frozen=True)

@@ -46,10 +46,16 @@ def kept_rows(tables: Pair, felt: Presses) -> Pair:
 def _kept(table: SharedTable, felt: list[list[Felt]]) -> SharedTable:
     rows = table.rows_cN.copy()
     for at, made in enumerate(felt):
-        best = min(made, key=lambda one: one.error_cN, default=None)
-        if best is not None and made[-1].error_cN > WORSE_ratio * best.error_cN:
-            rows[at] = best.row_cN
+        better = _better(made)
+        if better is not None:
+            rows[at] = better.row_cN
     return replace(table, rows_cN=rows)
+
+
+def _better(made: list[Felt]) -> Felt | None:
+    """Give the best press of a speed if the last one was far worse; else None."""
+    best = min(made, key=lambda one: one.error_cN, default=None)
+    return best if best is not None and made[-1].error_cN > WORSE_ratio * best.error_cN else None
 
 
 def curves_of(job: Job, felt: Presses, memory: RigMemory | None) -> tuple[CurveOutcome, ...]:
@@ -70,12 +76,10 @@ def _curve(stroke: Stroke, speed_mm_s: float, made: list[Felt], expected_cN: flo
         told = left if known else "not pressed"
         return CurveOutcome(stroke, speed_mm_s, (), expected_cN, float("nan"), told)
     errors = tuple(one.error_cN for one in made)
-    best = min(made, key=lambda one: one.error_cN)
-    last = made[-1]
-    astray = last.error_cN > WORSE_ratio * best.error_cN
-    used = best if astray else last
+    better = _better(made)
+    used = better or made[-1]
     told = f"error_k {errors[0]:.1f} cN at press 1, {errors[-1]:.1f} at press {len(made)}"
-    told += "; the best table is kept, since the last press got worse" if astray else ""
+    told += "; the best table is kept, since the last press got worse" if better else ""
     return CurveOutcome(stroke, speed_mm_s, errors, used.mean_cN, used.max_cN, told)
 
 

@@ -11,6 +11,12 @@ from fdvv.units import FloatArray
 EDGE_mm = 0.1
 """Guard at both ends: below it the finger meets the cap, within it of the stop the cap bounces."""
 
+HOME_mm = 0.1
+"""Where a resting cap belongs: above the upper guard, where nothing is learned."""
+
+FROM_mm, STOP_GUARD_mm = 0.3, 0.1
+"""Errors count from 0.3 mm, where the finger has met the cap, to 0.1 mm before the stop."""
+
 SHORT_mm = 0.3
 """A press that ends this far before the stop did not reach it; a servo sets its stop to 0.1 mm."""
 

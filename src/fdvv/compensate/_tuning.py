@@ -43,3 +43,7 @@ class Tuning:
             raise ModelError(
                 f"a tuning needs finite numbers of at least 0, and friction_mm_s above 0, got {self}"
             )
+
+
+UNTUNED = Tuning()
+"""A controller that adds nothing."""

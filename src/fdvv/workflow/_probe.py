@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from fdvv.compensate import Tuning, judge
+from fdvv.compensate import UNTUNED, FROM_mm, STOP_GUARD_mm, Tuning, judge
 from fdvv.device import Device
 from fdvv.model import FDVVModel, ForceSurface, Stroke, reading_order
 from fdvv.workflow._compensate import check_force_sensor, check_speeds
-from fdvv.workflow._probe_curve import FROM_mm, ProbeCurve, STOP_GUARD_mm, judged_curves
+from fdvv.workflow._probe_curve import ProbeCurve, judged_curves
 from fdvv.workflow._probe_plan import Found, ProbePlan
 from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
 from fdvv.workflow._session import Session
@@ -19,7 +19,6 @@ from fdvv.workflow._session_events import Guide, Progress, Standing
 from fdvv.workflow._session_log import PressLog
 from fdvv.workflow._session_manifest import Manifest, make_manifest, table_digest
 from fdvv.workflow._session_run import Course, run
-from fdvv.workflow._tuning import NOTHING
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +78,7 @@ def probe(
     method: str = "as uploaded",
     session: Session | None = None,
     guide: Guide | None = None,
-    tuning: Tuning = NOTHING,
+    tuning: Tuning = UNTUNED,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and hold the felt force against the model.
 
@@ -96,7 +95,7 @@ def probe(
     check_force_sensor(device, truth_counts=True)
     plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses, tuning)
     settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
-    if tuning != NOTHING:
+    if tuning != UNTUNED:
         settings["tuning"] = asdict(tuning)
     manifest = make_manifest(
         "probe", device, model, plan.velocities_mm_s, (method, settings), (session.seed, session.parts)

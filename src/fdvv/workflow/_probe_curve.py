@@ -8,15 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.compensate import CurveOutcome, bin_force, error_cN, grid_mm, mean_speed_mm_s, split_strokes
+from fdvv.compensate import (
+    CurveOutcome,
+    FROM_mm,
+    STOP_GUARD_mm,
+    bin_force,
+    error_cN,
+    grid_mm,
+    mean_speed_mm_s,
+    split_strokes,
+)
 from fdvv.model import FDVVModel, Press, Stroke
 from fdvv.units import FloatArray
 
 BIN_mm = 0.05
-FROM_mm = 0.3
-STOP_GUARD_mm = 0.1
-"""Judged is from 0.3 mm, where the finger has met the cap, to 0.1 mm before the stop, ahead of its impact."""
-
 ALPHA = 0.7
 """Weight of eq. 3, so that the probe's error_k reads like the paper's."""
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.compensate import Count, Trial, Tuning
+from fdvv.compensate import UNTUNED, Count, Trial, Tuning
 from fdvv.errors import ModelError
 from fdvv.model import ForceSurface, Press
-from fdvv.workflow._tuning import NOTHING
 
 Found = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan."""
@@ -20,7 +19,7 @@ class ProbePlan:
     surface: ForceSurface
     velocities_mm_s: tuple[float, ...]
     presses: int
-    tuning: Tuning = NOTHING
+    tuning: Tuning = UNTUNED
 
     def init(self) -> Found:
         """Begin."""

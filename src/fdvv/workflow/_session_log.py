@@ -19,12 +19,11 @@ from typing import Any
 
 import msgspec
 
-from fdvv.compensate import Tuning
+from fdvv.compensate import UNTUNED, Tuning
 from fdvv.device import pack_record, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.files import sync_folder
 from fdvv.model import ForceSurface, Press
-from fdvv.workflow._tuning import NOTHING
 
 PRESSES = "presses.jsonl"
 REMEDY = "begin a new session in another folder"
@@ -75,7 +74,7 @@ class Kept:
     entry: Entry
     surface: ForceSurface
     press: Press | None
-    tuning: Tuning = NOTHING
+    tuning: Tuning = UNTUNED
 
 
 class Line(msgspec.Struct, forbid_unknown_fields=True):
@@ -188,7 +187,7 @@ def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
 
 def _packed(kept: Kept) -> dict[str, Any]:
     columns = pack_record(kept.press) if kept.press else None
-    tuning = {} if kept.tuning == NOTHING else {"tuning": asdict(kept.tuning)}
+    tuning = {} if kept.tuning == UNTUNED else {"tuning": asdict(kept.tuning)}
     found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
     return found | tuning
 

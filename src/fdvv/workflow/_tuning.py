@@ -11,7 +11,6 @@ from fdvv.errors import InputError, ModelError
 from fdvv.protocol import CN64_PER_cN, MM_S16_PER_mm_s, Settings
 from fdvv.units import cN_from_N
 
-NOTHING = Tuning()
 TUNED = (
     "predictor_q16",
     "lead_us",
