@@ -14,7 +14,8 @@ GROUND = {"errors", "units", "files", "documents", "_native", "protocol", "core"
 LEVELS = [
     GROUND,
     {"model"},
-    {"capture", "compensate", "program", "twin"},
+    {"recording"},
+    {"capture", "compensate", "preprocess", "program", "twin", "vibration"},
     {"device", "plot"},
     {"workflow"},
     {"cli"},

@@ -1,0 +1,1 @@
+"""From raw streams to averaged force curves: pure steps, each with declared units."""

@@ -1,0 +1,1 @@
+"""Vibration from recording to rendering: onsets, damped modes, exciter and inverse, templates, likeness."""
