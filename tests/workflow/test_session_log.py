@@ -43,6 +43,28 @@ def same(left: Press, right: Press) -> bool:
     return all(np.array_equal(getattr(left, n), getattr(right, n)) for n in names)
 
 
+def test_a_file_of_the_first_version_is_read_and_written_again_byte_for_byte(tmp_path: Path) -> None:
+    old = Path(__file__).parent / "files" / "presses-0.1.jsonl"
+    (tmp_path / PRESSES).write_bytes(old.read_bytes())
+    log = PressLog(tmp_path)
+    (first, second), (run,) = list(log.kept()), log.runs
+    log.close()
+    assert first.press is not None
+    assert first.press.displacement_mm.tobytes() == np.array([0.1, -0.0, np.nan]).tobytes()
+    assert first.press.force_cN.tolist() == [1 / 3, 2.0, 1e-300]
+    assert first.press.saturated is not None
+    assert first.press.saturated.tolist() == [False, True, False]
+    assert first.surface.press_cN.tolist() == [[0, 40.5, 90], [0, 41, np.pi]]
+    assert (second.press, second.entry.reason, run.seed) == (None, "over speed", 3)
+    (tmp_path / "again").mkdir()
+    again = PressLog(tmp_path / "again")
+    again.begin(run)
+    again.add(first)
+    again.add(second)
+    again.close()
+    assert (tmp_path / "again" / PRESSES).read_bytes() == old.read_bytes()
+
+
 def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) -> None:
     filled(tmp_path).close()
     again = PressLog(tmp_path)

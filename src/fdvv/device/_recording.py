@@ -2,9 +2,9 @@
 
 The first line is ``{"fdvv": "session", "format": 1, "info": {…}, "settings": {…}}``; then, in order,
 ``{"settings": {…}}``, ``{"upload": {…}}``, ``{"program": "base64"}``, ``{"press": {…}}`` and
-``{"error": {…}}``. An upload holds ``"paced": true`` where it was. Columns are base64 of zlib of
-little-endian 64-bit floats, or of bytes for flags. Every line is on the disk before the next begins; a last
-line that was cut short is left out when the file is read.
+``{"error": {…}}``. An upload holds ``"paced": true`` where it was. Columns are 64-bit floats or flags,
+packed as `fdvv.columns` tells. Every line is on the disk before the next begins; a last line that was cut
+short is left out when the file is read.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import base64
 import dataclasses
 import json
 import os
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
@@ -21,6 +20,7 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from fdvv.columns import pack_column, unpack_column
 from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model import ForceSurface, Press
@@ -30,22 +30,15 @@ FORMAT = 1
 T = TypeVar("T")
 
 
-def pack_column(column: np.ndarray[Any, Any]) -> str:
-    """Write a column as text."""
-    kind = "?" if column.dtype == np.bool_ else "<f8"
-    return kind + ":" + base64.b64encode(zlib.compress(column.astype(kind).tobytes())).decode()
-
-
-def unpack_column(text: str) -> Any:
-    """Read a column."""
-    kind, _, data = text.partition(":")
-    return np.frombuffer(zlib.decompress(base64.b64decode(data)), "?" if kind == "?" else "<f8")
-
-
 def pack_record(record: Press | ForceSurface) -> dict[str, Any]:
     """Write a record of columns and numbers."""
     found = {f.name: getattr(record, f.name) for f in dataclasses.fields(record)}
-    return {k: pack_column(np.asarray(v)) if isinstance(v, np.ndarray) else v for k, v in found.items()}
+    return {k: _flat(v) if isinstance(v, np.ndarray) else v for k, v in found.items()}
+
+
+def _flat(column: np.ndarray[Any, Any]) -> str:
+    """Write a column as flags or floats; a table row after row, as unpack_surface expects it."""
+    return pack_column(column.ravel().astype("?" if column.dtype == np.bool_ else "<f8", copy=False))
 
 
 def unpack_press(found: dict[str, Any]) -> Press:

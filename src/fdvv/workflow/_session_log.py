@@ -1,17 +1,12 @@
 """The presses of a session on file, each as it is made: people cannot repeat them.
 
-``presses.jsonl`` holds a line ``{"crc32": …, "record": {…}}`` per record: ``{"run": {…}}`` each time the
-session is begun or gone on with, ``{"press": {…}}`` for every press, used or not, with all columns and the
-table it was made on. The checksum is that of the record's bytes. Each line is on the disk before the next
-press begins; columns are packed as in recordings of devices.
+``presses.jsonl`` is a journal (see `fdvv.journal`) with the records ``{"run": {…}}`` each time the session is
+begun or gone on with and ``{"press": {…}}`` for every press, used or not, with all columns and the table it
+was made on. Each is on the disk before the next press begins; columns are packed as `fdvv.columns` tells.
 """
 
 from __future__ import annotations
 
-import fcntl
-import json
-import os
-import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,11 +17,12 @@ import msgspec
 from fdvv.compensate import UNTUNED, Tuning
 from fdvv.device import pack_record, unpack_press, unpack_surface
 from fdvv.errors import InputError
-from fdvv.files import sync_folder
+from fdvv.journal import Journal, JournalKind, read_records
 from fdvv.model import ForceSurface, Press
 
 PRESSES = "presses.jsonl"
 REMEDY = "begin a new session in another folder"
+KIND = JournalKind(frozenset({"run", "press"}), REMEDY)
 
 
 class Run(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -77,13 +73,6 @@ class Kept:
     tuning: Tuning = UNTUNED
 
 
-class Line(msgspec.Struct, forbid_unknown_fields=True):
-    """A line of the file."""
-
-    crc32: int
-    record: msgspec.Raw
-
-
 class PressLog:
     """The presses of a session, in memory, and on file if there is a folder for it.
 
@@ -105,30 +94,28 @@ class PressLog:
         self.runs: list[Run] = []
         self.entries: list[Entry] = []
         self.warnings: list[str] = []
-        self._file: int | None = None
+        self._journal: Journal | None = None
         if self.path:
-            self._file = _locked(self.path)
+            self._journal = Journal(self.path, _busy(self.path))
             try:
-                self._read(self.path)
+                self._read(self._journal)
             except BaseException:
                 self.close()
                 raise
 
-    def _read(self, path: Path) -> None:
+    def _read(self, journal: Journal) -> None:
         """Learn what is there; cut off a record that was not finished."""
-        self.runs, self.entries, end = read_log(path)
-        if end < path.stat().st_size:
-            assert self._file is not None
-            os.ftruncate(self._file, end)
+        self.runs, self.entries, end = read_log(journal.path)
+        if journal.cut(end):
             kept = f"presses kept: {len(self.entries)}"
-            self.warnings.append(f"{path}: the last record is not whole and is left out; {kept}")
+            self.warnings.append(f"{journal.path}: the last record is not whole and is left out; {kept}")
 
     def kept(self) -> Iterator[Kept]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""
         if self.path is None:
             return
         number = 0
-        for record, _ in _records(self.path):
+        for record, _ in read_records(self.path, KIND):
             if "press" in record:
                 number += 1
                 yield _kept(self.path, record["press"], number)
@@ -140,35 +127,20 @@ class PressLog:
 
     def begin(self, run: Run) -> None:
         """Note that the session is begun, or gone on with."""
-        if self._file is not None:
-            self._write({"run": msgspec.to_builtins(run)})
+        if self._journal:
+            self._journal.write({"run": msgspec.to_builtins(run)})
         self.runs.append(run)
 
     def add(self, kept: Kept) -> None:
         """Keep a press."""
-        if self._file is not None:
-            self._write({"press": _packed(kept)})
+        if self._journal:
+            self._journal.write({"press": _packed(kept)})
         self.entries.append(kept.entry)
-
-    def _write(self, record: dict[str, Any]) -> None:
-        """Append a record and force it to the disk, whole or not at all."""
-        assert self._file is not None
-        body = json.dumps(record, allow_nan=False).encode()
-        line = b'{"crc32": %d, "record": %b}\n' % (zlib.crc32(body), body)
-        end = os.fstat(self._file).st_size
-        try:
-            while line:
-                line = line[os.write(self._file, line) :]
-            os.fsync(self._file)
-        except OSError as error:
-            os.ftruncate(self._file, end)
-            raise OSError(error.errno, error.strerror, str(self.path)) from error
 
     def close(self) -> None:
         """Let go of the file; a second time does nothing."""
-        if self._file is not None:
-            os.close(self._file)
-            self._file = None
+        if self._journal:
+            self._journal.close()
 
 
 def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
@@ -176,7 +148,7 @@ def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
     runs: list[Run] = []
     entries: list[Entry] = []
     end = 0
-    for record, after in _records(path):
+    for record, after in read_records(path, KIND):
         end = after
         if "run" in record:
             runs.append(_run(path, record["run"]))
@@ -192,43 +164,9 @@ def _packed(kept: Kept) -> dict[str, Any]:
     return found | tuning
 
 
-def _locked(path: Path) -> int:
-    """Open the file for this process alone; the system frees it however the process ends."""
-    file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o666)
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(file)
-        reason = "another process is at work on this session"
-        raise InputError(path.parent, "session", reason, "wait for it, or name another folder") from None
-    sync_folder(path.parent)
-    return file
-
-
-def _records(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
-    """Read records, each with the place where it ends; one that was cut short at the end is left out."""
-    end = 0
-    with path.open("rb") as stream:
-        for number, text in enumerate(stream, 1):
-            record = _record(text)
-            if record is None:
-                if stream.read(1):
-                    raise _damaged(path, f"line {number}", "the record is damaged")
-                return
-            end += len(text)
-            yield record, end
-
-
-def _record(text: bytes) -> dict[str, Any] | None:
-    """Read a line; None if it is not whole."""
-    try:
-        line = msgspec.json.decode(text, type=Line)
-        if zlib.crc32(bytes(line.record)) != line.crc32 or not text.endswith(b"\n"):
-            return None
-        found: dict[str, Any] = msgspec.json.decode(line.record)
-    except (msgspec.MsgspecError, UnicodeDecodeError):
-        return None
-    return found if len(found) == 1 and set(found) <= {"run", "press"} else None
+def _busy(path: Path) -> InputError:
+    reason = "another process is at work on this session"
+    return InputError(path.parent, "session", reason, "wait for it, or name another folder")
 
 
 def _run(path: Path, found: Any) -> Run:
@@ -247,7 +185,7 @@ def _kept(path: Path, found: dict[str, Any], number: int) -> Kept:
         if entry.number != number:
             raise ValueError(f"bears the number {entry.number}")
         return Kept(entry, surface, unpack_press(columns) if columns else None, tuning)
-    except (ValueError, TypeError, KeyError, AttributeError, zlib.error) as error:
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise _damaged(path, f"press {number}", str(error)) from error
 
 
