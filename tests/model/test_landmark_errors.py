@@ -22,8 +22,8 @@ RISING = CurveSpread(np.array([0.0, 4.0]), np.array([0.0, 8.0]), 16)
 """A spread of 2 cN for every mm, of 16 presses: a standard error of 0.5 cN for every mm."""
 
 
-def measured(**points: PointSpread) -> FDVVModel:
-    return replace(CLEAR, curves=tuple(replace(c, spread=RISING) for c in CLEAR.curves), **points)
+def measured() -> FDVVModel:
+    return replace(CLEAR, curves=tuple(replace(c, spread=RISING) for c in CLEAR.curves))
 
 
 def test_a_button_that_was_not_measured_on_presses_has_no_errors() -> None:
@@ -45,14 +45,14 @@ def test_places_have_the_errors_of_their_own_presses() -> None:
     errors = landmark_errors(
         replace(CLEAR, actuation_spread=PointSpread(0.06, 9), travel_spread=PointSpread(0.04, 16))
     )
-    assert errors["actuation_mm"] == errors["pre_travel_mm"] == LandmarkError(pytest.approx(0.02), 9)
-    assert errors["travel_mm"] == errors["bottom_out_mm"] == LandmarkError(pytest.approx(0.01), 16)
+    assert errors["actuation_mm"] == errors["pre_travel_mm"] == LandmarkError(0.02, 9)
+    assert errors["travel_mm"] == errors["bottom_out_mm"] == LandmarkError(0.01, 16)
     assert "reset_mm" not in errors
     assert "peak_cN" not in errors
 
 
 def test_errors_stand_only_beside_landmarks_that_are_there() -> None:
-    told = landmark_errors(measured(actuation_spread=PointSpread(0.06, 9)))
+    told = landmark_errors(replace(measured(), actuation_spread=PointSpread(0.06, 9)))
     marks = landmarks(measured()).to_dict()
     assert all(marks[name] is not None for name in told)
 
@@ -68,7 +68,7 @@ def test_a_curve_that_ends_before_the_stop_tells_of_the_force_that_it_holds() ->
     curve = ForceCurve(Stroke.PRESS, 50.0, 1, np.array([0.0, 0.0, 3.9, 3.9]), np.array([30.0, 70.0]))
     spread = CurveSpread(x_mm, np.full(79, 2.0), 4)
     model = FDVVModel("short", 4.0, (replace(curve, spread=spread),))
-    assert landmark_errors(model)["bottom_out_cN"] == LandmarkError(pytest.approx(1.0), 4)
+    assert landmark_errors(model)["bottom_out_cN"] == LandmarkError(1.0, 4)
 
 
 def test_the_error_of_the_peak_is_how_the_peaks_of_repeated_measurements_differ() -> None:

@@ -48,6 +48,11 @@ def number(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
+def with_spread(value: float | None, spread: float | None, digits: int = 2) -> str:
+    """Write a number with its standard deviation or error, where there is one."""
+    return number(value, digits) if spread is None else f"{number(value, digits)} ± {spread:.{digits}f}"
+
+
 def one_line(text: str, width: int | None = None) -> str:
     """Make text from a file fit for a terminal: one line, no control characters, at most width long."""
     plain = "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))

@@ -1,6 +1,8 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
+from fdvv.workflow._capture_report import capture_report
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
@@ -34,6 +36,7 @@ __all__ = [
     "DemoResult",
     "Difference",
     "FeasibilityReport",
+    "FindVibrations",
     "FitSettings",
     "FolderButton",
     "FolderFit",
@@ -44,11 +47,13 @@ __all__ = [
     "Presses",
     "ProbeResult",
     "Receipt",
+    "RecordedModel",
     "Rendering",
     "Session",
     "Standing",
     "SwitchFit",
     "button_files",
+    "capture_report",
     "compare",
     "compensate",
     "demo",
@@ -64,6 +69,7 @@ __all__ = [
     "make_program",
     "measured_files",
     "merge_parts",
+    "model_of_recording",
     "one_curve",
     "open_device",
     "open_files",
@@ -74,6 +80,7 @@ __all__ = [
     "open_receipt",
     "press_button",
     "probe",
+    "process_recording",
     "program_image",
     "save_actuation",
     "settings_with",
