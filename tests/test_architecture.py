@@ -11,6 +11,9 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[1] / "src" / "fdvv"
 
 GROUND = {
+    *("errors", "units", "files", "documents", "columns", "journal", "text"),
+    *("_native", "protocol", "core"),
+}
     "errors",
     "units",
     "files",
