@@ -14,17 +14,6 @@ GROUND = {
     *("errors", "units", "files", "documents", "columns", "journal", "text"),
     *("_native", "protocol", "core"),
 }
-    "errors",
-    "units",
-    "files",
-    "documents",
-    "columns",
-    "journal",
-    "text",
-    "_native",
-    "protocol",
-    "core",
-}
 LEVELS = [
     GROUND,
     {"model"},

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from tests.recording.strategies import told
-from tests.recording.test_file import ABOUT, take
+from tests.recording.takes import ABOUT, take
 
 from fdvv.recording import RecordingLog, Take, load_recording
 

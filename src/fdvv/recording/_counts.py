@@ -21,11 +21,12 @@ _NUMBERS = re.compile(r"[-+\d.eE,; \t]+\Z", re.ASCII)
 
 
 def is_counts(head: Sequence[str]) -> bool:
-    """Tell such a log by lines of numbers only, equally many on each but perhaps the first."""
-    rows = [line for line in head[1:] if _NUMBERS.match(line)] or list(head[:1])
-    widths = {len(_cells(line)) for line in rows}
-    good = all(not np.isnan(number(cell)) for line in rows for cell in _cells(line))
-    return len(rows) >= 0.9 * (len(head) - 1) and len(widths) == 1 and max(widths) <= MOST_COLUMNS and good
+    """Tell such a log by lines of numbers only, equally many on each."""
+    rows = [_cells(line) for line in head if _NUMBERS.match(line)]
+    widths = {len(row) for row in rows}
+    good = all(not np.isnan(number(cell)) for row in rows for cell in row)
+    most = len(rows) >= 0.9 * len(head) and _NUMBERS.match(head[0]) is not None
+    return most and good and len(widths) == 1 and max(widths) <= MOST_COLUMNS
 
 
 def _cells(line: str) -> list[str]:
@@ -53,9 +54,11 @@ def read_counts(source: Path, lines: Sequence[str], rate_Hz: float | None) -> Re
     while rows and not rows[-1]:
         rows.pop()
     width = max((len(row) for row in rows[:60]), default=0)
+    if not width:
+        raise refusal(source, "whole file", "it holds no number")
     values = np.array([[number(c) for c in row] if len(row) == width else [np.nan] * width for row in rows])
     bad = int(np.isnan(values).any(axis=1).sum())
-    if values.size == 0 or bad > MOST_BAD * len(rows):
+    if bad > MOST_BAD * len(rows):
         raise refusal(source, "whole file", f"{bad} of {counted(len(rows), 'line')} hold no number")
     warnings = ["the numbers are counts of a converter whose scale nobody stated"]
     if rate_Hz is None:

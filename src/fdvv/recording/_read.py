@@ -85,6 +85,8 @@ def _read(path: Path, content: bytes, rate_Hz: float | None, full_scale_V: float
     while lines and not lines[0].strip():
         lines = lines[1:]
     head = [line.strip() for line in lines if line.strip()][:60]
+    if not head:
+        raise refusal(path, "whole file", "it is empty")
     for recognise, read in READERS:
         if recognise(head):
             reading = read(path, lines)

@@ -48,7 +48,7 @@ def rising(t: FloatArray) -> npt.NDArray[np.bool_]:
     """Pick the samples whose times rise strictly; a single time that leaps ahead goes, not all behind it."""
     keep = np.isfinite(t)
     at = np.flatnonzero(keep)
-    falls = np.flatnonzero(np.diff(t[at]) <= 0)
+    falls = np.flatnonzero(np.diff(t[at]) < 0)
     leapt = falls[(falls > 0) & (t[at[falls + 1]] > t[at[falls - 1]])]
     keep[at[leapt]] = False
     at = np.flatnonzero(keep)

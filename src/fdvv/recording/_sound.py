@@ -98,8 +98,8 @@ def _wav(source: Path, content: bytes) -> Samples | None:
             data = file.readframes(file.getnframes())
     except wave.Error:
         return None
-    except (EOFError, ValueError, OverflowError) as error:
-        raise refusal(source, "whole file", f"the WAV is cut short or damaged ({error})", REMEDY) from None
+    except (EOFError, ValueError, OverflowError, RuntimeError):
+        raise refusal(source, "whole file", "the WAV is cut short or damaged", REMEDY) from None
     frame = width * channels
     data = data[: len(data) // frame * frame] if frame else b""
     if width not in (1, 2, 3, 4) or not rate_Hz or not data:
