@@ -70,6 +70,28 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], left: int
         click.echo("  ".join(cells).rstrip())
 
 
+def print_spreads(report: dict[str, Any]) -> None:
+    """Print how the presses behind a model's curves differ; nothing where none has a spread."""
+    told = [c for c in report["curves"] if c["presses"] is not None]
+    if not told:
+        return
+    click.echo("")
+    print_table(
+        ["measured curve", "mm/s", "achieved mm/s", "presses", "median spread cN", "largest"],
+        [
+            [
+                c["stroke"],
+                number(c["velocity_mm_s"], 1),
+                with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
+                str(c["presses"]),
+                number(c["median_spread_cN"]),
+                number(c["largest_spread_cN"]),
+            ]
+            for c in told
+        ],
+    )
+
+
 def print_wrapped(text: str) -> None:
     """Print a sentence over as many lines as it takes, those after the first indented."""
     click.echo(click.wrap_text(one_line(text), WIDTH, subsequent_indent="  "))

@@ -25,6 +25,7 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tuning import settings_with
 
 __all__ = [
@@ -84,6 +85,7 @@ __all__ = [
     "program_image",
     "save_actuation",
     "settings_with",
+    "spread_reports",
     "summarise",
     "uncompensated",
 ]

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from fdvv.model import CurveFit, Stroke, landmark_errors, landmarks
+from fdvv.model import Stroke, landmark_errors, landmarks
 from fdvv.preprocess import Processed
 from fdvv.workflow._capture_model import RecordedModel
 from fdvv.workflow._fit import fit_report
+from fdvv.workflow._spread_report import curve_spread
 
 
 def capture_report(recorded: RecordedModel) -> dict[str, Any]:
@@ -21,28 +20,13 @@ def capture_report(recorded: RecordedModel) -> dict[str, Any]:
         "name": model.name,
         "simulated": model.provenance.simulated,
         "clock": {name: float(value) for name, value in vars(recorded.processed.clock).items()},
-        "curves": [curve_report(fit) for fit in recorded.fits],
+        "curves": [{**curve_spread(fit.curve), **fit_report(fit)} for fit in recorded.fits],
         "presses": press_reports(recorded.processed),
         "landmarks": landmarks(model).to_dict() if pressed else {"travel_mm": model.travel_mm},
         "landmark_errors": {name: vars(error) for name, error in errors.items()},
         "method": model.provenance.method,
         "assumptions": list(model.provenance.assumptions),
         "warnings": list(recorded.warnings),
-    }
-
-
-def curve_report(fit: CurveFit) -> dict[str, Any]:
-    """Give the figures of one curve: its presses, their spread, how well the spline holds to their mean."""
-    curve, spread = fit.curve, fit.curve.spread
-    return {
-        "stroke": str(curve.stroke),
-        "velocity_mm_s": curve.velocity_mm_s,
-        "achieved_mm_s": spread.achieved_mm_s if spread else None,
-        "achieved_spread_mm_s": spread.achieved_spread_mm_s if spread else None,
-        "presses": spread.presses if spread else None,
-        "median_spread_cN": float(np.median(spread.spread_cN)) if spread else None,
-        "largest_spread_cN": float(spread.spread_cN.max()) if spread else None,
-        **fit_report(fit),
     }
 
 
