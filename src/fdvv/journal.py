@@ -88,8 +88,9 @@ class Journal:
 
 
 def line_of(record: dict[str, Any]) -> bytes:
-    """Write a record as a line with its checksum."""
+    """Write a record as a line with its checksum. ValueError if it holds what could not be read again."""
     body = json.dumps(record, allow_nan=False).encode()
+    msgspec.json.decode(body)
     return b'{"crc32": %d, "record": %b}\n' % (zlib.crc32(body), body)
 
 

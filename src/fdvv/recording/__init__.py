@@ -1,5 +1,23 @@
 """Streams as benches record them: their types, their files, readers of foreign logs."""
 
+from fdvv.recording._file import RECORDING_SUFFIX, load_recording, save_recording
+from fdvv.recording._log import RecordingLog
+from fdvv.recording._mend import Mend
 from fdvv.recording._types import UNITS, Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
-__all__ = ["UNITS", "Bench", "Mark", "Quantity", "Recording", "Source", "Stage", "Stream", "Take"]
+__all__ = [
+    "RECORDING_SUFFIX",
+    "UNITS",
+    "Bench",
+    "Mark",
+    "Mend",
+    "Quantity",
+    "Recording",
+    "RecordingLog",
+    "Source",
+    "Stage",
+    "Stream",
+    "Take",
+    "load_recording",
+    "save_recording",
+]

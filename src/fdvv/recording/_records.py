@@ -1,0 +1,155 @@
+"""Recordings as the lines of their file hold them, strictly typed, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, Literal
+
+import msgspec
+
+from fdvv.columns import pack_column, unpack_column
+from fdvv.errors import ModelError
+from fdvv.recording._types import Bench, Mark, Recording, Source, Stream, Take
+
+FORMAT, VERSION = "fdvv-recording", 1
+
+
+class BenchRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """What is known of the instruments; the names are those of Bench."""
+
+    force_filter_ms: float
+    sound_filter_ms: float
+    tip_mass_g: float
+    exposure_ms: float
+    clocks_go_on: bool
+
+
+class SourceRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A file that the recording was read from."""
+
+    name: str
+    sha256: str
+    format: str
+
+
+class HeadRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """The first line: what the recording is of."""
+
+    format: Literal["fdvv-recording"]
+    version: Literal[1]
+    name: str
+    bench: BenchRecord
+    licence: str
+    person: str
+    simulated: bool
+    sources: list[SourceRecord]
+    warnings: list[str]
+
+
+class StreamRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A stream; t_s and raw are columns."""
+
+    name: str
+    quantity: str
+    clock: str
+    scale: float
+    zero: float
+    t_s: str
+    raw: str
+
+
+class MarkRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A mark."""
+
+    name: str
+    clock: str
+    t_s: float
+
+
+class TakeRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A take with all its samples."""
+
+    number: int
+    stage: str
+    velocity_mm_s: float | None
+    made: str
+    remark: str
+    marks: list[MarkRecord]
+    streams: list[StreamRecord]
+
+
+def pack_head(recording: Recording) -> dict[str, Any]:
+    """Write what a recording is of, without its takes."""
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "name": recording.name,
+        "bench": asdict(recording.bench),
+        "licence": recording.licence,
+        "person": recording.person,
+        "simulated": recording.simulated,
+        "sources": [asdict(source) for source in recording.sources],
+        "warnings": list(recording.warnings),
+    }
+
+
+def pack_take(take: Take) -> dict[str, Any]:
+    """Write a take. ModelError for a kind of number that no file holds."""
+    try:
+        streams = [_pack_stream(stream) for stream in take.streams]
+    except ValueError as error:
+        raise ModelError(f"take {take.number}: {error}") from error
+    return {
+        "number": take.number,
+        "stage": str(take.stage),
+        "velocity_mm_s": None if take.velocity_mm_s is None else float(take.velocity_mm_s),
+        "made": take.made,
+        "remark": take.remark,
+        "marks": [{"name": m.name, "clock": m.clock, "t_s": float(m.t_s)} for m in take.marks],
+        "streams": streams,
+    }
+
+
+def _pack_stream(stream: Stream) -> dict[str, Any]:
+    return {
+        "name": stream.name,
+        "quantity": str(stream.quantity),
+        "clock": stream.clock,
+        "scale": float(stream.scale),
+        "zero": float(stream.zero),
+        "t_s": pack_column(stream.t_s),
+        "raw": pack_column(stream.raw),
+    }
+
+
+def unpack_head(found: object) -> Recording:
+    """Read what a recording is of. ValueError."""
+    head = msgspec.convert(found, HeadRecord)
+    sources = tuple(Source(**msgspec.to_builtins(source)) for source in head.sources)
+    bench = Bench(**msgspec.to_builtins(head.bench))
+    told = (head.licence, head.person, head.simulated, tuple(head.warnings))
+    return Recording(head.name, (), bench, sources, *told)
+
+
+def unpack_take(found: object) -> Take:
+    """Read a take. ValueError."""
+    take = msgspec.convert(found, TakeRecord)
+    return Take(
+        take.number,
+        [_unpack_stream(stream) for stream in take.streams],  # type: ignore[arg-type]  # made a tuple there
+        _marks(take.marks),
+        take.stage,  # type: ignore[arg-type]  # made a Stage there
+        take.velocity_mm_s,
+        take.made,
+        take.remark,
+    )
+
+
+def _marks(found: Sequence[MarkRecord]) -> tuple[Mark, ...]:
+    return tuple(Mark(mark.name, mark.clock, mark.t_s) for mark in found)
+
+
+def _unpack_stream(found: StreamRecord) -> Stream:
+    t_s, raw = unpack_column(found.t_s), unpack_column(found.raw)
+    return Stream(found.name, found.quantity, found.clock, t_s, raw, found.scale, found.zero)  # type: ignore[arg-type]

@@ -1,0 +1,308 @@
+"""A recording on file: exact to the bit, only growing, refused where anything is wrong."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from tests.recording.strategies import recordings, told
+
+from fdvv.errors import InputError, ModelError
+from fdvv.journal import line_of
+from fdvv.recording import (
+    RECORDING_SUFFIX,
+    Bench,
+    Mark,
+    Mend,
+    Quantity,
+    Recording,
+    RecordingLog,
+    Stage,
+    Stream,
+    Take,
+    load_recording,
+    save_recording,
+)
+
+ABOUT = Recording("mx-clear", bench=Bench(force_filter_ms=1.0, tip_mass_g=2.5), licence="CC0", person="A")
+SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None)
+
+
+def take(number: int = 1, samples: int = 50) -> Take:
+    rng = np.random.default_rng(number)
+    t_s = np.arange(samples) / 1000
+    frames_s = np.arange(samples // 4) / 256
+    place = rng.normal(size=(samples // 4, 3))
+    place[1] = np.nan
+    force, sound = (rng.integers(0, 4096, samples, dtype=kind) for kind in (np.int16, np.int32))
+    streams = (
+        Stream("force", Quantity.FORCE, "board", t_s, force, 0.05, 9.0),
+        Stream("sound", Quantity.SOUND, "board", t_s, sound, 1e-3),
+        Stream("left", Quantity.MARKER, "camera", frames_s, place),
+        Stream("right", Quantity.MARKER, "camera", frames_s, place.astype(np.float32)),
+    )
+    return Take(number, streams, (Mark("light on", "board", 0.01),), Stage.PRESS, 100.0, "2026-01-01")
+
+
+def written(path: Path, takes: int = 3) -> Path:
+    with RecordingLog(path, ABOUT) as log:
+        for number in range(1, takes + 1):
+            log.add(take(number))
+    return path
+
+
+@SMALL
+@given(recording=recordings())
+def test_a_recording_comes_back_to_the_bit(tmp_path: Path, recording: Recording) -> None:
+    path = tmp_path / f"a{RECORDING_SUFFIX}"
+    path.unlink(missing_ok=True)
+    save_recording(recording, path)
+    assert told(load_recording(path)) == told(recording)
+
+
+@SMALL
+@given(recording=recordings())
+def test_adding_take_by_take_writes_the_same_bytes_as_saving_at_once(
+    tmp_path: Path, recording: Recording
+) -> None:
+    one, other = tmp_path / "one", tmp_path / "other"
+    one.unlink(missing_ok=True)
+    other.unlink(missing_ok=True)
+    save_recording(recording, one)
+    for take_ in recording.takes:
+        with RecordingLog(other, recording) as log:
+            log.add(take_)
+    RecordingLog(other, recording).close()
+    assert other.read_bytes() == one.read_bytes()
+
+
+def test_raw_samples_keep_their_kind_and_their_gaps(tmp_path: Path) -> None:
+    found = load_recording(written(tmp_path / "a")).takes[0]
+    force, _, left, right = found.streams
+    assert [s.raw.dtype.str for s in (force, right)] == ["<i2", "<f4"]
+    assert left.raw.shape == (12, 3)
+    assert np.isnan(left.raw[1]).all()
+    np.testing.assert_array_equal(force.values, 0.05 * (take().streams[0].raw.astype(float) - 9))
+
+
+def test_sixty_presses_of_four_streams_load_in_well_under_a_second(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    save_recording(replace(ABOUT, takes=tuple(take(n, samples=2000) for n in range(1, 61))), path)
+    begun = time.process_time()
+    assert len(load_recording(path).takes) == 60
+    assert time.process_time() - begun < 0.5
+
+
+def test_what_is_there_is_never_written_over(tmp_path: Path) -> None:
+    path = written(tmp_path / "a")
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="there is a file already"):
+        save_recording(ABOUT, path)
+    assert path.read_bytes() == before
+
+
+OTHERS = [
+    replace(ABOUT, name="mx-blue"),
+    replace(ABOUT, bench=Bench()),
+    replace(ABOUT, person="B"),
+    replace(ABOUT, licence=""),
+    replace(ABOUT, simulated=True),
+]
+
+
+@pytest.mark.parametrize("about", OTHERS, ids=["button", "bench", "person", "licence", "simulated"])
+def test_takes_of_something_else_are_not_added(tmp_path: Path, about: Recording) -> None:
+    path = written(tmp_path / "a")
+    before = path.read_bytes()
+    with pytest.raises(InputError, match=r"is another recording: .* there and .* now; name another file"):
+        RecordingLog(path, about)
+    assert path.read_bytes() == before
+
+
+def test_takes_are_counted(tmp_path: Path) -> None:
+    with RecordingLog(tmp_path / "a", ABOUT) as log:
+        with pytest.raises(ModelError, match="the next take bears the number 1, got 2"):
+            log.add(take(2))
+        log.add(take(1))
+        assert log.next_number == 2
+    with RecordingLog(tmp_path / "a", ABOUT) as log:
+        assert log.next_number == 2
+
+
+def test_a_second_process_is_refused_while_the_first_is_at_work(tmp_path: Path) -> None:
+    with RecordingLog(tmp_path / "a", ABOUT):
+        with pytest.raises(InputError, match="another process is at work on this recording"):
+            RecordingLog(tmp_path / "a", ABOUT)
+        assert load_recording(tmp_path / "a").name == "mx-clear"
+
+
+@SMALL
+@given(part=st.floats(0, 1, exclude_max=True))
+def test_wherever_it_is_cut_the_whole_takes_before_are_there_and_it_goes_on(
+    tmp_path: Path, part: float
+) -> None:
+    path = tmp_path / "a"
+    path.unlink(missing_ok=True)
+    data = written(path).read_bytes()
+    data = data[: int(part * len(data))]
+    path.write_bytes(data)
+    whole = max(0, data.count(b"\n") - 1)
+    with RecordingLog(path, ABOUT) as log:
+        assert len(log.recording.takes) == whole
+        assert bool(log.warnings) == bool(data and not data.endswith(b"\n"))
+        log.add(take(whole + 1))
+    found = load_recording(path)
+    assert told(found.takes) == told(tuple(take(n) for n in range(1, whole + 2)))
+    assert found.warnings == ()
+
+
+def test_a_cut_take_is_told_of_when_it_is_read(tmp_path: Path) -> None:
+    path = written(tmp_path / "a")
+    path.write_bytes(path.read_bytes()[:-1])
+    assert load_recording(path).warnings == ("the last record is not whole and is left out; takes kept: 2",)
+
+
+def test_a_calibration_is_mended_without_touching_a_sample(tmp_path: Path) -> None:
+    path = written(tmp_path / "a")
+    before = path.read_bytes()
+    with RecordingLog(path, ABOUT) as log:
+        log.mend(Mend({"scale": 0.06, "zero": 11.0}, stream="force", why="weighed again"), made="2026-02-01")
+        log.mend(Mend({"remark": "slipped", "stage": "probe"}, take=2))
+        log.mend(Mend({"tip_mass_g": 3.0, "licence": "CC BY 4.0"}))
+        log.add(take(4))
+        mended = log.recording
+    found = load_recording(path)
+    assert path.read_bytes().startswith(before)
+    assert told(found) == told(mended)
+    assert [t.streams[0].scale for t in found.takes] == [0.06, 0.06, 0.06, 0.05]
+    assert (found.takes[1].remark, found.takes[1].stage, found.takes[0].remark) == ("slipped", "probe", "")
+    assert (found.bench.tip_mass_g, found.bench.force_filter_ms, found.licence) == (3.0, 1.0, "CC BY 4.0")
+    assert told(found.takes[0].streams[0].raw) == told(take().streams[0].raw)
+
+
+WRONG = [
+    ({"raw": 1}, None, "force"),
+    ({"scale": 0.0}, None, "force"),
+    ({"scale": "2"}, None, "force"),
+    ({"scale": 2.0}, 1, None),
+    ({"scale": 2.0}, 9, "force"),
+    ({"scale": 2.0}, None, "no such"),
+    ({"name": "other"}, None, None),
+    ({"tip_mass_g": -1.0}, None, None),
+    ({"clocks_go_on": 1}, None, None),
+    ({"stage": "no stage"}, 1, None),
+    ({}, 1, None),
+]
+
+
+@pytest.mark.parametrize(("values", "number", "stream"), WRONG)
+def test_what_may_not_be_mended_is_refused_before_it_is_written(
+    tmp_path: Path, values: dict[str, object], number: int | None, stream: str | None
+) -> None:
+    path = written(tmp_path / "a", 1)
+    before = path.read_bytes()
+    with RecordingLog(path, ABOUT) as log, pytest.raises((ModelError, ValueError)):
+        log.mend(Mend(values, number, stream))
+    assert path.read_bytes() == before
+
+
+def head(**changes: object) -> dict[str, object]:
+    found = {"format": "fdvv-recording", "version": 1, "name": "a", "licence": "", "person": ""}
+    bench = {
+        "force_filter_ms": 0,
+        "sound_filter_ms": 0,
+        "tip_mass_g": 0,
+        "exposure_ms": 0,
+        "clocks_go_on": True,
+    }
+    return {**found, "bench": bench, "simulated": False, "sources": [], "warnings": [], **changes}
+
+
+TAKE = {"number": 1, "stage": "press", "velocity_mm_s": None, "made": "", "remark": "", "marks": []}
+STREAM = {"name": "f", "quantity": "force", "clock": "b", "scale": 1.0, "zero": 0.0}
+EMPTY = "<f8:eJwDAAAAAAE="
+NO_QUANTITY = {**STREAM, "quantity": "x", "t_s": EMPTY, "raw": EMPTY}
+BAD: dict[str, tuple[list[dict[str, object]], str]] = {
+    "no head": ([{"take": {**TAKE, "streams": []}}], "line 1: begins with no head"),
+    "two heads": ([{"head": head()}, {"head": head()}], "line 2: holds a second head"),
+    "another format": ([{"head": head(format="x")}], '"format" must be "fdvv-recording"'),
+    "a newer one": ([{"head": head(version=2)}], "file version 2, this fdvv reads version 1"),
+    "a field too many": ([{"head": head(more=1)}], "unknown field `more`"),
+    "a bad bench": ([{"head": head(bench={})}], r"line 1, \$.bench: .*missing required field"),
+    "a name with spaces": ([{"head": head(name=" a ")}], "name must be text without spaces"),
+    "a number left out": (
+        [{"head": head()}, {"take": {**TAKE, "number": 2, "streams": []}}],
+        "line 2: take 1 bears the number 2",
+    ),
+    "no column": (
+        [{"head": head()}, {"take": {**TAKE, "streams": [{**STREAM, "t_s": "<f8:!", "raw": EMPTY}]}}],
+        "line 2: ",
+    ),
+    "an unknown quantity": (
+        [{"head": head()}, {"take": {**TAKE, "streams": [NO_QUANTITY]}}],
+        "'x' is not a valid Quantity",
+    ),
+    "a head that is a list": ([{"head": []}], '"format" must be'),
+    "a mend of nothing": ([{"head": head()}, {"mend": 5}], "line 2: Expected `object`"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_file_with_a_wrong_record_is_refused_with_its_line(tmp_path: Path, name: str) -> None:
+    records, reason = BAD[name]
+    path = tmp_path / "a"
+    path.write_bytes(b"".join(line_of(record) for record in records))
+    with pytest.raises(InputError, match=reason) as caught:
+        load_recording(path)
+    assert "\n" not in str(caught.value)
+    with pytest.raises(InputError, match=reason):
+        RecordingLog(path, ABOUT)
+
+
+@pytest.mark.parametrize("content", [b"", b"a", b"\x00\xff", b'{"crc32": 1}'])
+def test_a_file_without_a_whole_record_is_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "a").write_bytes(content)
+    with pytest.raises(InputError, match="holds no whole record"):
+        load_recording(tmp_path / "a")
+
+
+def test_a_file_that_is_not_there_is_refused_in_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file or directory"):
+        load_recording(tmp_path / "a")
+
+
+def test_a_damaged_byte_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
+    path = written(tmp_path / "a")
+    lines = path.read_bytes().split(b"\n")
+    lines[2] = lines[2].replace(b"light on", b"light off")
+    path.write_bytes(b"\n".join(lines))
+    with pytest.raises(InputError, match="line 3: the record is damaged"):
+        load_recording(path)
+
+
+def test_text_that_no_file_can_hold_is_refused_before_it_is_written(tmp_path: Path) -> None:
+    with RecordingLog(tmp_path / "a", ABOUT) as log:
+        before = (tmp_path / "a").read_bytes()
+        with pytest.raises(ModelError, match="take 1"):
+            log.add(replace(take(), remark="\ud800"))
+        half = Stream("a", Quantity.COUNTS, "b", np.zeros(1), np.zeros(1, np.float16))
+        with pytest.raises(ModelError, match="take 1: a column cannot hold float16"):
+            log.add(replace(take(), streams=(half,)))
+        assert (tmp_path / "a").read_bytes() == before
+
+
+def test_a_line_is_plain_json(tmp_path: Path) -> None:
+    lines = [json.loads(line)["record"] for line in written(tmp_path / "a", 1).read_text().splitlines()]
+    assert [list(line) for line in lines] == [["head"], ["take"]]
+    assert lines[0]["head"] == head(
+        name="mx-clear",
+        licence="CC0",
+        person="A",
+        bench={**vars(ABOUT.bench)},
+    )
