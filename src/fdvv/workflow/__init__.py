@@ -1,6 +1,10 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._capture import CaptureResult, capture_session
+from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
+from fdvv.workflow._capture_look import Verdict, quick_look
+from fdvv.workflow._capture_plan import CapturePlan, Step
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
@@ -28,6 +32,9 @@ from fdvv.workflow._tuning import settings_with
 __all__ = [
     "Ask",
     "ButtonPress",
+    "CaptureGuide",
+    "CapturePlan",
+    "CaptureResult",
     "Comparison",
     "CompensationResult",
     "CurveFeasibility",
@@ -40,6 +47,7 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "ModelFit",
+    "PaceStanding",
     "PressDone",
     "Presses",
     "ProbeResult",
@@ -47,8 +55,13 @@ __all__ = [
     "Rendering",
     "Session",
     "Standing",
+    "Step",
     "SwitchFit",
+    "TakeAsk",
+    "TakeDone",
+    "Verdict",
     "button_files",
+    "capture_session",
     "compare",
     "compensate",
     "demo",
@@ -75,6 +88,7 @@ __all__ = [
     "press_button",
     "probe",
     "program_image",
+    "quick_look",
     "save_actuation",
     "settings_with",
     "summarise",
