@@ -26,6 +26,7 @@ from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
 from fdvv.model._records import VERSION, schema
+from fdvv.model._spread import CurveSpread, ModeSpread, PointSpread, VibrationSpread
 from fdvv.model._surface import ForceSurface
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
@@ -37,6 +38,7 @@ __all__ = [
     "Bump",
     "Conflict",
     "CurveFit",
+    "CurveSpread",
     "FDVVModel",
     "FitMethod",
     "ForceCurve",
@@ -45,10 +47,13 @@ __all__ = [
     "Landmarks",
     "MeasuredCurve",
     "Mode",
+    "ModeSpread",
+    "PointSpread",
     "Press",
     "Provenance",
     "Stroke",
     "Vibration",
+    "VibrationSpread",
     "active_part",
     "assign",
     "bic_star",
