@@ -6,6 +6,7 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
+from fdvv.workflow._exciter import identify_exciter, with_lead
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
@@ -24,6 +25,7 @@ from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._tuning import settings_with
+from fdvv.workflow._vibration_slots import RenderedVibration, Way, converter, render_vibration, slot_volts
 
 __all__ = [
     "Ask",
@@ -44,13 +46,16 @@ __all__ = [
     "Presses",
     "ProbeResult",
     "Receipt",
+    "RenderedVibration",
     "Rendering",
     "Session",
     "Standing",
     "SwitchFit",
+    "Way",
     "button_files",
     "compare",
     "compensate",
+    "converter",
     "demo",
     "demo_report",
     "fd_only",
@@ -60,6 +65,7 @@ __all__ = [
     "fit_files",
     "fit_folder",
     "fit_force_file",
+    "identify_exciter",
     "load_actuation",
     "make_program",
     "measured_files",
@@ -75,8 +81,11 @@ __all__ = [
     "press_button",
     "probe",
     "program_image",
+    "render_vibration",
     "save_actuation",
     "settings_with",
+    "slot_volts",
     "summarise",
     "uncompensated",
+    "with_lead",
 ]
