@@ -80,7 +80,7 @@ def drive_for(exciter: KnownExciter, vibration: Vibration, settings: InverseSett
     Least squares in time over what the board can play: min ‖H w - a‖² + λ ‖w‖², the Wiener inverse for a
     drive of finite length. No direction is boosted by more than 1 / 2√λ, which is set gain_dB above 1 / |H|
     at the vibration's strongest frequency. A drive beyond the limit is weakened, and bounded more tightly
-    where that is nearer to the vibration. Raises ModelError if the board cannot play so long or so fast a wave.
+    where that is nearer to the vibration. Raises ModelError if the board cannot play such a wave.
     """
     chosen = settings or InverseSettings()
     length_s = chosen.lead_s + vibration.duration_s + chosen.tail_s

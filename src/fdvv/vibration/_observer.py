@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +14,7 @@ SCALE = 1.5
 """Ratings per unit of how much a template is liked."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class SimulatedObserver:
     """Answers as someone might whose likes are known; a proxy that shows that the machinery works.
 
@@ -29,16 +29,12 @@ class SimulatedObserver:
     unsure: float = 0.2
     noise: float = 1.0
     seed: int = 0
-    _random: np.random.Generator = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        self._random = np.random.default_rng(self.seed)
 
     def answer(self, question: Question) -> int | Preferred:
-        """Rate one template, or compare two."""
-        felt = [
-            self.likes[question.place][i] + self.noise * self._random.normal() for i in question.templates
-        ]
+        """Rate one template, or compare two; the same question, by its number, is answered the same."""
+        random = np.random.default_rng([self.seed, question.number])
+        likes = self.likes[question.place]
+        felt = [likes[i] + self.noise * random.normal() for i in question.templates]
         if len(felt) == 1:
             middle = (LOWEST + HIGHEST) / 2
             return int(np.clip(round(middle + SCALE * felt[0]), LOWEST, HIGHEST))

@@ -74,16 +74,19 @@ class Standing:
 
 @dataclass(frozen=True)
 class Job:
-    """What is tuned: how many velocities, how many templates at each."""
+    """What is tuned: how many templates at each velocity."""
 
-    places: int
-    templates: int
+    templates: tuple[int, ...]
 
     def __post_init__(self) -> None:
-        if self.places < 1 or self.templates < 2:
-            raise ModelError(
-                f"tuning needs a velocity and 2 templates, got {self.places} and {self.templates}"
-            )
+        object.__setattr__(self, "templates", tuple(self.templates))
+        if not self.templates or min(self.templates) < 2:
+            raise ModelError(f"tuning needs 2 templates at every velocity, got {self.templates}")
+
+    @property
+    def places(self) -> int:
+        """Count the velocities."""
+        return len(self.templates)
 
 
 class Method(Protocol[S]):

@@ -59,7 +59,7 @@ class Comparing:
 
     def ask(self, state: ComparingState) -> Question | None:
         """Choose the pair of the first velocity that is not done; the same answers ask the same."""
-        total = state.job.places * self._most(state.job)
+        total = sum(self._most(state.job, place) for place in range(state.job.places))
         for place in range(state.job.places):
             if not self._done(state, place):
                 pair = self._pair(state, place)
@@ -83,14 +83,14 @@ class Comparing:
         """Give log-odds by the posterior; alike is what has 5 % of the likeliest's chance or more."""
         return tuple(self._standing(state, place) for place in range(state.job.places))
 
-    def _most(self, job: Job) -> int:
-        return self.comparisons or 3 * job.templates
+    def _most(self, job: Job, place: int) -> int:
+        return self.comparisons or 3 * job.templates[place]
 
     def _done(self, state: ComparingState, place: int) -> bool:
         made = sum(a.place == place for a in state.answers)
-        if made >= self._most(state.job):
+        if made >= self._most(state.job, place):
             return True
-        if made < (self.fewest or state.job.templates):
+        if made < (self.fewest or state.job.templates[place]):
             return False
         return bool(self._chances(state, place).max() >= self.sure)
 
@@ -136,7 +136,8 @@ class Comparing:
 
 def wins(state: ComparingState, place: int) -> FloatArray:
     """Count how often each template (row) was preferred to each other; neither is half for both."""
-    count = np.zeros((state.job.templates, state.job.templates))
+    size = state.job.templates[place]
+    count = np.zeros((size, size))
     for answered in state.answers:
         if answered.place != place:
             continue

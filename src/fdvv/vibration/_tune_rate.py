@@ -47,9 +47,9 @@ class Rating:
         plan: list[tuple[int, int]] = []
         for _ in range(self.repeats):
             for place in random.permutation(job.places):
-                order = random.permutation(job.templates)
+                order = random.permutation(job.templates[place])
                 while plan and plan[-1] == (int(place), int(order[0])):
-                    order = random.permutation(job.templates)
+                    order = random.permutation(job.templates[place])
                 plan += [(int(place), int(template)) for template in order]
         return RatingState(job, tuple(plan))
 
@@ -81,12 +81,12 @@ class Rating:
         mine = [a for a in state.answers if a.place == place]
         rated = [
             np.array([float(a.answer) for a in mine if a.templates[0] == template])
-            for template in range(state.job.templates)
+            for template in range(state.job.templates[place])
         ]
         scores = np.array([r.mean() if r.size else np.nan for r in rated])
         errors = _errors(rated)
         if np.isnan(scores).any() or np.isnan(errors).any():
-            every = tuple(range(state.job.templates))
+            every = tuple(range(state.job.templates[place]))
             return standing(np.nan_to_num(scores), np.full(scores.size, np.inf).tolist(), every, len(mine))
         alike = _alike(scores, errors, sum(r.size - 1 for r in rated))
         return standing(scores.tolist(), errors.tolist(), alike, len(mine))

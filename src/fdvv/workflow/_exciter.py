@@ -96,6 +96,14 @@ def with_lead(settings: Settings, exciter: KnownExciter, lead_s: float | None = 
     return replace(settings, vibration_latency_us=round(1e6 * (exciter.latency_s + lead)))
 
 
+def prepare_exciter(device: Device, exciter: KnownExciter) -> None:
+    """Have a device start vibrations as early as with_lead says, if not yet; it forgets its program then."""
+    before = device.settings()
+    wanted = with_lead(before, exciter)
+    if wanted != before:
+        device.configure(wanted)
+
+
 def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> list[Record]:
     client, port = device.client, device.client.port
     client.stream(1)

@@ -13,6 +13,7 @@ from fdvv.model import Vibration
 from fdvv.program import (
     RATE_HZ,
     ConvertedVibration,
+    Limits,
     SILENCE_counts,
     Slot,
     Waveform,
@@ -25,11 +26,16 @@ from fdvv.vibration import (
     Drive,
     InverseSettings,
     KnownExciter,
+    Wav,
     acceleration_m_s2,
+    board_wav,
     correlation,
     drive_for,
+    to_wav,
+    vibration_samples,
 )
 
+PLAIN = Limits().counts_per_m_s2
 COUNTS_V = SILENCE_counts / FULL_SCALE_V
 RING_s = 0.03
 WAVE_PEAK = 127
@@ -96,6 +102,17 @@ def slot_volts(slot: Slot, samples: int | None = None) -> FloatArray:
     """Give the volts of a slot at 16 kHz, bit for bit as the board plays it."""
     count = slot.duration_samples if samples is None else samples
     return (render(slot, count).astype(np.float64) - SILENCE_counts) / COUNTS_V
+
+
+def vibration_wav(vibration: Vibration, exciter: KnownExciter | None = None, board: bool = False) -> Wav:
+    """Make a vibration's WAV file: its acceleration at 48 kHz, or the board's samples bit for bit at 16 kHz.
+
+    exciter : where it is known, the board's samples are those of its inverse. Raises ModelError.
+    """
+    if not board:
+        return to_wav(vibration_samples(vibration))
+    made = render_vibration(vibration, exciter).slot if exciter else slot_of_vibration(vibration, PLAIN).slot
+    return board_wav(render(made, made.duration_samples), RATE_HZ)
 
 
 def _wave(drive: Drive) -> Slot:
