@@ -32,8 +32,8 @@ COMMANDS = {
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
-    "tune": ("fdvv.cli._tune", "Tune a button's vibrations with a person: rate or compare, keep the best."),
-    "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, what a rig makes of them; write WAV."),
+    "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
+    "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }
 
 
