@@ -18,7 +18,10 @@ COMMANDS = {
     "compare": ("fdvv.cli._compare", "Compare buttons: landmarks side by side and force differences."),
     "compensate": ("fdvv.cli._compensate", "Learn the actuation that makes a rig feel like a model."),
     "demo": ("fdvv.cli._demo", "Run the whole chain on the simulated rig and write a report."),
-    "device": ("fdvv.cli._device", "Work with a device: list, info, selftest, monitor, upload, press."),
+    "device": (
+        "fdvv.cli._device",
+        "Work with a device: list, info, selftest, monitor, upload, press, exciter.",
+    ),
     "feasible": (
         "fdvv.cli._feasible",
         "Tell whether a rig can render a button, and why not, before any upload.",
@@ -30,6 +33,8 @@ COMMANDS = {
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
+    "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
+    "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }
 
 

@@ -10,6 +10,7 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
+from fdvv.workflow._exciter import identify_exciter, prepare_exciter, with_lead
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
@@ -27,11 +28,23 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
+from fdvv.workflow._tune_observer import simulated_observer
+from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
 from fdvv.workflow._tuning import settings_with
+from fdvv.workflow._vibration_slots import (
+    RenderedVibration,
+    Way,
+    converter,
+    render_vibration,
+    slot_volts,
+    vibration_wav,
+)
 
 __all__ = [
     "Ask",
     "ButtonPress",
+    "Candidates",
     "CaptureGuide",
     "CapturePlan",
     "CaptureResult",
@@ -52,6 +65,7 @@ __all__ = [
     "Presses",
     "ProbeResult",
     "Receipt",
+    "RenderedVibration",
     "Rendering",
     "Session",
     "Standing",
@@ -59,11 +73,18 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "TuneResult",
+    "TuneSetup",
+    "TunedVibration",
     "Verdict",
+    "Way",
+    "acceleration_per_volt",
     "button_files",
+    "candidates_for",
     "capture_session",
     "compare",
     "compensate",
+    "converter",
     "demo",
     "demo_report",
     "fd_only",
@@ -73,6 +94,7 @@ __all__ = [
     "fit_files",
     "fit_folder",
     "fit_force_file",
+    "identify_exciter",
     "load_actuation",
     "make_program",
     "measured_files",
@@ -85,12 +107,20 @@ __all__ = [
     "open_part",
     "open_program",
     "open_receipt",
+    "prepare_exciter",
     "press_button",
     "probe",
     "program_image",
     "quick_look",
+    "render_vibration",
     "save_actuation",
     "settings_with",
+    "simulated_observer",
+    "slot_volts",
     "summarise",
+    "tune_vibration",
+    "tuned_model",
     "uncompensated",
+    "vibration_wav",
+    "with_lead",
 ]
