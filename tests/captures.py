@@ -24,11 +24,9 @@ SHORT_STROKE = 12
 @functools.cache
 def capture(plan: tuple[tuple[Stage, float | None, int], ...] = PLAN) -> Recording:
     """Record presses by a plan, by default at two paces after two probes; one press is cut short."""
-    # the light of a bright room without noise: what is looked at here begins after the clocks
-    rig = replace(CaptureRig(), light_noise=0.0)
     random = np.random.default_rng(7)
     bench = CaptureBench(
-        load_button("mx-clear"), rig, Finger(), ForceSensor(), PARTICIPANTS["steady"], random
+        load_button("mx-clear"), CaptureRig(), Finger(), ForceSensor(), PARTICIPANTS["steady"], random
     )
     stages = [(stage, pace) for stage, pace, count in plan for _ in range(count)]
     takes = [bench.take(number, *what).take for number, what in enumerate(stages, 1)]

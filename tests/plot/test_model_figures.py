@@ -201,9 +201,11 @@ def test_a_measured_curve_stands_in_a_band_of_one_standard_deviation() -> None:
 
 
 def test_the_legend_says_what_the_band_is_and_of_how_many_presses(gallery: Any) -> None:
-    texts = gallery.texts(plot_model(recorded().model))
+    model = recorded().model
+    texts = gallery.texts(plot_model(model))
+    assert model.actuation_spread is not None
     assert "mean ± 1 SD,\nn = 2 to 6 presses" in texts
-    assert "actuation, 2.13 ± 0.06 mm" in texts
+    assert f"actuation, {model.actuation_mm:.2f} ± {model.actuation_spread.spread_mm:.2f} mm" in texts
     assert "SD" not in gallery.texts(plot_model(load_builtin("mx-clear")))
 
 

@@ -65,7 +65,7 @@ def test_lost_frames_widen_the_bounds_but_do_not_mislead() -> None:
     assert np.abs(fit.board_s(7.0 + (1 + 5e-5) * edges.t_s) - edges.t_s).max() < 3e-4
 
 
-def test_a_flash_that_nobody_switched_is_refused() -> None:
+def test_an_edge_that_was_written_down_wrong_does_not_mislead() -> None:
     random = np.random.default_rng(4)
     edges, frames, light = session(10, 3.0, 1.0, random)
     moved = edges.t_s.copy()
@@ -74,7 +74,7 @@ def test_a_flash_that_nobody_switched_is_refused() -> None:
 
     fit = align_clocks(wrong, frames, light, EXPOSURE_s)
 
-    assert fit.refused >= 1
+    assert fit.edges < edges.t_s.size
     assert abs(fit.offset_s - 3.0) < 3e-4
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -19,7 +20,7 @@ def filtered(values: FloatArray, step_s: float, filter_s: float, fine: int = 400
     out = [values[0]]
     state = values[0]
     keep = math.exp(-step_s / fine / filter_s)
-    for before, after in zip(values[:-1], values[1:], strict=True):
+    for before, after in itertools.pairwise(values):
         for k in range(fine):
             state = keep * state + (1 - keep) * (before + (after - before) * (k + 0.5) / fine)
         out.append(state)

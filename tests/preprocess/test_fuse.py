@@ -46,7 +46,7 @@ def error_mm(known: bool, seed: int = 1) -> float:
     random = np.random.default_rng(seed)
     made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
     curve = table_curve(PLACES_mm, button_cN(PLACES_mm)) if known else unknown_curve
-    settings = Fusion(MOVING_g) if known else Fusion(MOVING_g, pieces=25)
+    settings = Fusion(MOVING_g) if known else Fusion(MOVING_g, pieces=25, unknown_N=1e3)
     paths, _ = fuse([seen for seen, _ in made], curve, settings)
     misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
     return float(np.sqrt(np.mean(np.concatenate(misses) ** 2)))
@@ -71,7 +71,7 @@ def test_the_button_comes_back_as_a_curve() -> None:
     random = np.random.default_rng(2)
     made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
 
-    _, curve = fuse([seen for seen, _ in made], unknown_curve, Fusion(MOVING_g, pieces=25))
+    _, curve = fuse([seen for seen, _ in made], unknown_curve, Fusion(MOVING_g, pieces=25, unknown_N=1e3))
 
     x = np.linspace(0.3, 3.5, 60)
     force_cN, stiffness_cN_mm = curve(x)
@@ -92,4 +92,4 @@ def test_a_wrong_mass_costs_little() -> None:
 
 def test_a_stroke_without_frames_is_refused() -> None:
     with pytest.raises(ModelError, match="needs 4 samples and 2 frames, got 5 and 0"):
-        Seen(np.arange(5) * 1e-3, np.zeros(5), np.zeros(0), np.zeros(0), np.zeros(5))
+        Seen(np.arange(5.0) * 1e-3, np.zeros(5), np.zeros(0), np.zeros(0), np.zeros(5))

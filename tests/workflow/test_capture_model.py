@@ -198,8 +198,8 @@ def test_sixty_presses_of_four_streams_are_a_model_in_five_seconds() -> None:
     recording = capture(((Stage.REST, None, 1), *((Stage.PRESS, v, 15) for v in (50.0, 100.0, 150.0, 200.0))))
     spent = []
     for _ in range(3):
-        begun = time.perf_counter()
+        # processor time: other work on the machine does not count
+        begun = time.process_time()
         model_of_recording(recording)
-        spent.append(time.perf_counter() - begun)
-    # other work on the machine only ever adds
+        spent.append(time.process_time() - begun)
     assert min(spent) < 5.0

@@ -23,6 +23,9 @@ CurveOfForce = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From displacements (mm) to force (cN) and stiffness (cN/mm)."""
 
 ROUNDS = 8
+SEATED = 0.05
+"""Weight of the equation while the cap is at its upper stop."""
+
 OUTSIDE_mm = 0.3
 """U is a spline from this far above rest to this far below the lowest place; beyond, it holds."""
 
@@ -38,6 +41,8 @@ class Fusion:
     left_out_m_s2 : what the equation leaves out (friction that changes, noise of the force), rms.
     pieces : spans of the spline that U may differ by from what was known; more where nothing was.
     roughness_N : by how much its third differences may differ from 0, rms.
+    unknown_N : by how much U may differ from what was known, rms.
+    seat_mm : above this depth the upper stop has part in the force, and the equation is not held to.
     """
 
     moving_g: float
@@ -45,9 +50,11 @@ class Fusion:
     left_out_m_s2: float = 3.0
     pieces: int = 6
     roughness_N: float = 0.1
+    unknown_N: float = 0.1
+    seat_mm: float = 0.06
 
     def __post_init__(self) -> None:
-        for name in ("moving_g", "frame_noise_mm", "left_out_m_s2", "pieces", "roughness_N"):
+        for name in ("moving_g", "frame_noise_mm", "left_out_m_s2", "pieces", "roughness_N", "unknown_N"):
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise ModelError(f"{name} must be above 0, got {getattr(self, name)}")
 
@@ -150,10 +157,10 @@ def _improve(
 ) -> FloatArray:
     """Take one Gauss-Newton step: paths are solved for as functions of the shared force."""
     moving_kg = 1e-3 * settings.moving_g
-    weight_1_N = 1 / (moving_kg * settings.left_out_m_s2)
+    sure_1_N = 1 / (moving_kg * settings.left_out_m_s2)
     penalty = rough(basis.size) / settings.roughness_N
-    square = penalty.T @ penalty + 1e-9 * np.eye(basis.size)
-    slope = penalty.T @ (penalty @ shared_N)
+    square = penalty.T @ penalty + np.eye(basis.size) / settings.unknown_N**2
+    slope = penalty.T @ (penalty @ shared_N) + shared_N / settings.unknown_N**2
     solved = []
     for one in work:
         x = one.places @ one.path
@@ -161,6 +168,8 @@ def _improve(
         known_N, known_N_mm = _known_N(known, x)
         button_N, button_N_mm = known_N + rows @ shared_N, known_N_mm + bends @ shared_N
         moved_N = moving_kg * (one.accelerations_m_s2 @ one.path)
+        # a cap at its upper stop obeys the stop, which no curve shows
+        weight_1_N = sure_1_N * np.where(x < settings.seat_mm, SEATED, 1.0)
         miss = np.concatenate(
             [
                 weight_1_N * (moved_N - one.force_N + button_N),
@@ -169,11 +178,12 @@ def _improve(
         )
         by_path = np.vstack(
             [
-                weight_1_N * (moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places),
+                weight_1_N[:, None]
+                * (moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places),
                 one.frames / settings.frame_noise_mm,
             ]
         )
-        by_shared = np.vstack([weight_1_N * rows, np.zeros((one.frame_mm.size, basis.size))])
+        by_shared = np.vstack([weight_1_N[:, None] * rows, np.zeros((one.frame_mm.size, basis.size))])
         normal = by_path.T @ by_path + 1e-7 * np.eye(by_path.shape[1])
         answer = np.linalg.solve(normal, by_path.T @ np.column_stack([by_shared, miss]))
         left = by_shared - by_path @ answer[:, :-1]

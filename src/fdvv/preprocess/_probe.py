@@ -16,8 +16,8 @@ from fdvv.units import FloatArray
 STEP_mm = 0.02
 """Samples of a probe are averaged over this: finer than the 50 um of presses, which rest on it."""
 
-FIRST_cN = (2.0, 12.0)
-"""The first touch is a line through forces between these, led back to no force."""
+TOUCH_cN, FIRM_cN = 1.2, 15.0
+"""The probe touches the cap where its force was last below the first on the way to the second."""
 
 STOP_cN_mm = 400.0
 """Steeper than this over a bin, beyond half of the way, is the stop."""
@@ -119,16 +119,10 @@ def _way(take: Take, play_cN: float, zero_cN: float) -> _Way:
 
 
 def _touch_mm(x_mm: FloatArray, force_cN: FloatArray) -> float:
-    """Find where the probe first touched the cap: a line through the first forces, led back to none."""
-    low, high = FIRST_cN
-    beyond = int(np.argmax(force_cN > high))
-    first = np.arange(force_cN.size) < beyond
-    before = np.flatnonzero(first & (force_cN < low))
-    first &= np.arange(force_cN.size) > (before[-1] if before.size else -1)
-    if first.sum() < 3 or np.ptp(x_mm[first]) == 0:
-        return float(x_mm[beyond])
-    slope, start = np.polyfit(x_mm[first], force_cN[first], 1)
-    return float(-start / slope) if slope > 0 else float(x_mm[beyond])
+    """Find where the probe first touched the cap: its force, over five samples, rises and stays."""
+    mean = np.convolve(force_cN, np.full(5, 0.2), mode="same")
+    below = np.flatnonzero(mean[: int(np.argmax(mean > FIRM_cN))] < TOUCH_cN)
+    return float(x_mm[below[-1] + 1]) if below.size else float(x_mm[0])
 
 
 def _stop(x_mm: FloatArray, force_cN: FloatArray) -> int:

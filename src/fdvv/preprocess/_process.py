@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +11,8 @@ from fdvv.errors import ModelError
 from fdvv.model import Stroke
 from fdvv.preprocess._average import AveragedCurve, Pooled, averaged, pool
 from fdvv.preprocess._clock import ClockFit
-from fdvv.preprocess._fuse import CurveOfForce, Fusion, Seen, fuse, unknown_curve
+from fdvv.preprocess._extend import extend
+from fdvv.preprocess._fuse import CurveOfForce, Fusion, Path, Seen, fuse, unknown_curve
 from fdvv.preprocess._press import StrokeTrack
 from fdvv.preprocess._probe import Probe, probe_of
 from fdvv.preprocess._reject import Judged, Limits, Reason, judge
@@ -22,6 +23,15 @@ from fdvv.units import cN_from_N
 
 OFF_STOP_mm = 0.12
 """Frames nearer to the stop than this tell of the stop, not of the stroke."""
+
+UNKNOWN_PIECES = 25
+"""Spans of the button's force where nothing was known of it."""
+
+UNKNOWN_N = 1e3
+"""Nothing is known of it."""
+
+GAIN_OFF = 0.1
+"""Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
 
 FEWEST = 3
 """Of presses of one kind: fewer give no spread."""
@@ -150,6 +160,16 @@ def _first_slope_cN_mm(one: Judged) -> float:
     return float(np.polyfit(press.frame_mm[first], force, 1)[0])
 
 
+@dataclass(frozen=True, eq=False)
+class _Curve:
+    """One averaged curve, what it is made of, the button's force behind it, and presses unlike the others."""
+
+    average: AveragedCurve
+    tracks: list[StrokeTrack]
+    shape: CurveOfForce
+    strange: list[Judged]
+
+
 class _Work:
     """Curves of every stroke and pace, slow ones first, since each tells the next what to expect."""
 
@@ -161,46 +181,42 @@ class _Work:
         self.warnings: list[str] = []
 
     def curves(self) -> tuple[list[AveragedCurve], list[list[StrokeTrack]]]:
-        """Average every stroke at every pace that has enough presses."""
-        paces = sorted({one.press.velocity_mm_s for one in self.judged}, key=lambda v: v or 0.0)
-        curves, groups = [], []
-        for stroke in Stroke:
-            known = self.probe.curve(stroke) if self.probe else None
-            for pace in paces:
-                answer = self._curve(stroke, pace, known)
-                if answer is None:
-                    continue
-                curve, tracks, known = answer
-                curves.append(curve)
-                groups.append(tracks)
-        return curves, groups
+        """Average both strokes at every pace that has enough presses, in reading order."""
+        known = {stroke: self.probe.curve(stroke) if self.probe else None for stroke in Stroke}
+        found: dict[Stroke, list[_Curve]] = {stroke: [] for stroke in Stroke}
+        for pace in sorted({one.press.velocity_mm_s for one in self.judged}, key=lambda v: v or 0.0):
+            for stroke, curve in self._pace(pace, known).items():
+                known[stroke] = curve.shape
+                found[stroke].append(curve)
+        ordered = [curve for stroke in Stroke for curve in found[stroke]]
+        return [c.average for c in ordered], [c.tracks for c in ordered]
 
-    def _curve(
-        self, stroke: Stroke, pace: float | None, known: CurveOfForce | None
-    ) -> tuple[AveragedCurve, list[StrokeTrack], CurveOfForce] | None:
-        """Average one stroke at one pace; presses unlike the others are left out and it is done again."""
+    def _pace(self, pace: float | None, known: Mapping[Stroke, CurveOfForce | None]) -> dict[Stroke, _Curve]:
+        """Average both strokes at one pace; presses unlike the others are left out, and it is done again."""
         while True:
             used = [o for o in self.judged if o.reason is None and o.press.velocity_mm_s == pace]
-            if len(used) < FEWEST:
-                self.warnings.append(
-                    f"{stroke} at {pace or 'unknown'} mm/s: {len(used)} presses can be used, no curve"
-                )
-                return None
-            seen = [self._seen(one, stroke) for one in used]
-            whole = [(one, s) for one, s in zip(used, seen, strict=True) if s is not None]
-            if len(whole) < FEWEST:
-                return None
-            tracks, shape = self._paths(whole, stroke, known)
-            end_mm = min(one.spans.bottom_mm for one, _ in whole) + self.zero_mm - LEFT_mm
-            pooled = pool(tracks, shape, end_mm)
-            strange = _unlike(pooled, self.settings.limits.unlike)
+            curves = {stroke: self._curve(used, stroke, pace, known[stroke]) for stroke in Stroke}
+            strange = [one for curve in curves.values() if curve for one in curve.strange]
             if not strange:
-                speeds = np.array([one.achieved_mm_s for one, _ in whole])
-                return averaged(tracks, pooled, pace, speeds), tracks, shape
-            self._leave_out([whole[i][0] for i in strange])
+                break
+            self.judged = [replace(o, reason=Reason.FORCE) if o in strange else o for o in self.judged]
+        if len(used) < FEWEST:
+            self.warnings.append(f"{pace or 'unknown'} mm/s: {len(used)} presses can be used, no curve")
+        return {stroke: curve for stroke, curve in curves.items() if curve}
 
-    def _leave_out(self, strange: Sequence[Judged]) -> None:
-        self.judged = [replace(o, reason=Reason.FORCE) if o in strange else o for o in self.judged]
+    def _curve(
+        self, used: Sequence[Judged], stroke: Stroke, pace: float | None, known: CurveOfForce | None
+    ) -> _Curve | None:
+        """Average one stroke at one pace; None if too few presses show it."""
+        seen = [self._seen(one, stroke) for one in used]
+        whole = [(one, s) for one, s in zip(used, seen, strict=True) if s is not None]
+        if len(whole) < FEWEST:
+            return None
+        tracks, shape = self._paths(whole, stroke, known)
+        pooled = pool(tracks, shape, _end_mm(tracks))
+        speeds = np.array([one.achieved_mm_s for one, _ in whole])
+        strange = [whole[i][0] for i in _unlike(pooled, self.settings.limits.unlike)]
+        return _Curve(averaged(tracks, pooled, pace, speeds), tracks, shape, strange)
 
     def _seen(self, one: Judged, stroke: Stroke) -> Seen | None:
         """Cut one stroke out: from where the cap has left its rest to the last frame before the stop."""
@@ -232,32 +248,68 @@ class _Work:
     def _paths(
         self, whole: Sequence[tuple[Judged, Seen]], stroke: Stroke, known: CurveOfForce | None
     ) -> tuple[list[StrokeTrack], CurveOfForce]:
-        tip_g = self.bench.tip_mass_g
-        fusion = (
-            Fusion(self.settings.cap_g + tip_g) if known else Fusion(self.settings.cap_g + tip_g, pieces=25)
-        )
-        paths, shape = fuse([seen for _, seen in whole], known or unknown_curve, fusion)
-        tracks = [
-            StrokeTrack(
-                one.press.take,
-                one.press.part,
+        """Find the paths between frames, then once more with what lies between the stop and a frame."""
+        moving_g = self.settings.cap_g + self.bench.tip_mass_g
+        fusion = Fusion(moving_g) if known else Fusion(moving_g, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
+        known = known or unknown_curve
+        paths, shape = fuse([seen for _, seen in whole], known, fusion)
+        longer = [
+            extend(
+                seen,
+                path,
                 stroke,
-                seen.t_s,
-                path.displacement_mm,
-                path.velocity_mm_s,
-                path.acceleration_m_s2,
-                seen.force_cN - cN_from_N(1e-3 * tip_g * path.acceleration_m_s2),
+                (one.press.t_s, one.press.force_cN),
+                shape,
+                moving_g,
+                one.spans.bottom_mm + self.zero_mm - LEFT_mm,
             )
             for (one, seen), path in zip(whole, paths, strict=True)
         ]
-        return tracks, shape
+        paths, shape = fuse(longer, known, fusion)
+        ends = zip(whole, longer, paths, strict=True)
+        return [self._track(one, stroke, seen, path) for (one, _), seen, path in ends], shape
+
+    def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
+        """Give a stroke with the force between finger and cap: the tip's own motion is taken back."""
+        tip_kg = 1e-3 * self.bench.tip_mass_g
+        return StrokeTrack(
+            one.press.take,
+            one.press.part,
+            stroke,
+            seen.t_s,
+            path.displacement_mm,
+            path.velocity_mm_s,
+            path.acceleration_m_s2,
+            seen.force_cN - cN_from_N(tip_kg * path.acceleration_m_s2),
+        )
+
+
+def _slipped(pooled: Pooled) -> list[int]:
+    """Find presses whose force is that of the others times a number: the sensor slipped, or was tilted."""
+    gains = []
+    for apart in pooled.apart_cN:
+        seen = np.isfinite(apart)
+        mean = pooled.force_cN[seen]
+        gains.append(1 + float(apart[seen] @ mean) / max(float(mean @ mean), 1e-9))
+    off = np.abs(np.array(gains) - np.median(gains))
+    far = np.flatnonzero(off > max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))
+    return [int(i) for i in far if off[i] >= 0.5 * off.max()] if len(gains) > FEWEST else []
+
+
+def _end_mm(tracks: Sequence[StrokeTrack]) -> float:
+    """Tell to what depth at least three presses, or a third of them, have samples."""
+    deepest = sorted(float(track.displacement_mm.max()) for track in tracks)
+    return deepest[-max(FEWEST, len(deepest) // 3)]
 
 
 def _unlike(pooled: Pooled, limit: float) -> list[int]:
     """Find presses that differ from the mean by much more than presses do, the worst first."""
+    slipped = _slipped(pooled)
+    if slipped:
+        return slipped
     apart = np.sqrt(np.nanmean(pooled.apart_cN**2, axis=1))
     usual = float(np.median(apart))
-    far = np.flatnonzero(apart > limit * max(usual, 0.5))
+    far = np.flatnonzero(apart > limit * max(usual, 1.0))
     return [int(i) for i in far if apart[i] >= 0.5 * apart.max()] if apart.size > FEWEST else []
 
 

@@ -109,7 +109,7 @@ def _in_order(streams: Sequence[Stream]) -> tuple[FloatArray, FloatArray]:
 def idle_cN(recording: Recording) -> float:
     """Give what the force sensor reads when nobody touches anything; 0 if that was not recorded."""
     idle = [s.values for t in recording.takes if t.stage is Stage.REST for s in t.of(Quantity.FORCE)]
-    return float(np.median(np.concatenate(idle))) if idle else 0.0
+    return float(np.mean(np.concatenate(idle))) if idle else 0.0
 
 
 def true_force_cN(stream: Stream, bench: Bench, zero_cN: float) -> tuple[FloatArray, FloatArray]:

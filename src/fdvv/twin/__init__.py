@@ -7,7 +7,9 @@ from fdvv.twin._button_model import button_of_model
 from fdvv.twin._button_noise import ButtonNoise, draw_button_noise, no_button_noise
 from fdvv.twin._cam import Cam, identify
 from fdvv.twin._capture_bench import CaptureBench, SimulatedTake, TakeTruth, bench_facts
+from fdvv.twin._capture_press import LEAD_s
 from fdvv.twin._capture_rig import CaptureRig
+from fdvv.twin._capture_streams import BOARD, Setup
 from fdvv.twin._draw import draw_finger, draw_rig
 from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
@@ -33,6 +35,7 @@ from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._trace import Trace
 
 __all__ = [
+    "BOARD",
     "PARTICIPANTS",
     "WILD",
     "ButtonNoise",
@@ -55,6 +58,7 @@ __all__ = [
     "Impedance",
     "Intent",
     "KeycapSensor",
+    "LEAD_s",
     "Leaf",
     "Mover",
     "Noise",
@@ -68,6 +72,7 @@ __all__ = [
     "RigPlant",
     "RigPress",
     "Servo",
+    "Setup",
     "SimulatedTake",
     "Slider",
     "Stops",
