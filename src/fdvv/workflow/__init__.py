@@ -1,6 +1,7 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
+from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
@@ -49,6 +50,7 @@ __all__ = [
     "Standing",
     "SwitchFit",
     "button_files",
+    "check_file",
     "compare",
     "compensate",
     "demo",
