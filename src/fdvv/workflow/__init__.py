@@ -5,6 +5,7 @@ from fdvv.workflow._capture import CaptureResult, capture_session
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_plan import CapturePlan, Step
+from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
@@ -82,6 +83,7 @@ __all__ = [
     "button_files",
     "candidates_for",
     "capture_session",
+    "check_file",
     "compare",
     "compensate",
     "converter",
