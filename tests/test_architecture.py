@@ -10,7 +10,10 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "src" / "fdvv"
 
-GROUND = {"errors", "units", "files", "documents", "columns", "journal", "_native", "protocol", "core"}
+GROUND = {
+    *("errors", "units", "files", "documents", "columns", "journal", "text"),
+    *("_native", "protocol", "core"),
+}
 LEVELS = [
     GROUND,
     {"model"},
@@ -22,7 +25,7 @@ LEVELS = [
 ]
 # inside the ground and between rooms of one level, only these arrows
 SAME_LEVEL = {
-    *((room, "errors") for room in ("_native", "core", "documents", "files", "journal", "protocol")),
+    *((room, "errors") for room in ("_native", "core", "documents", "files", "journal", "protocol", "text")),
     ("journal", "files"),
     ("core", "_native"),
     ("core", "protocol"),

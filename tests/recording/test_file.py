@@ -12,42 +12,23 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.recording.strategies import recordings, told
+from tests.recording.takes import ABOUT, TAKE, head, take
 
 from fdvv.errors import InputError, ModelError
 from fdvv.journal import line_of
 from fdvv.recording import (
     RECORDING_SUFFIX,
     Bench,
-    Mark,
     Mend,
     Quantity,
     Recording,
     RecordingLog,
-    Stage,
     Stream,
-    Take,
     load_recording,
     save_recording,
 )
 
-ABOUT = Recording("mx-clear", bench=Bench(force_filter_ms=1.0, tip_mass_g=2.5), licence="CC0", person="A")
 SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None)
-
-
-def take(number: int = 1, samples: int = 50) -> Take:
-    rng = np.random.default_rng(number)
-    t_s = np.arange(samples) / 1000
-    frames_s = np.arange(samples // 4) / 256
-    place = rng.normal(size=(samples // 4, 3))
-    place[1] = np.nan
-    force, sound = (rng.integers(0, 4096, samples, dtype=kind) for kind in (np.int16, np.int32))
-    streams = (
-        Stream("force", Quantity.FORCE, "board", t_s, force, 0.05, 9.0),
-        Stream("sound", Quantity.SOUND, "board", t_s, sound, 1e-3),
-        Stream("left", Quantity.MARKER, "camera", frames_s, place),
-        Stream("right", Quantity.MARKER, "camera", frames_s, place.astype(np.float32)),
-    )
-    return Take(number, streams, (Mark("light on", "board", 0.01),), Stage.PRESS, 100.0, "2026-01-01")
 
 
 def written(path: Path, takes: int = 3) -> Path:
@@ -212,19 +193,6 @@ def test_what_may_not_be_mended_is_refused_before_it_is_written(
     assert path.read_bytes() == before
 
 
-def head(**changes: object) -> dict[str, object]:
-    found = {"format": "fdvv-recording", "version": 1, "name": "a", "licence": "", "person": ""}
-    bench = {
-        "force_filter_ms": 0,
-        "sound_filter_ms": 0,
-        "tip_mass_g": 0,
-        "exposure_ms": 0,
-        "clocks_go_on": True,
-    }
-    return {**found, "bench": bench, "simulated": False, "sources": [], "warnings": [], **changes}
-
-
-TAKE = {"number": 1, "stage": "press", "velocity_mm_s": None, "made": "", "remark": "", "marks": []}
 STREAM = {"name": "f", "quantity": "force", "clock": "b", "scale": 1.0, "zero": 0.0}
 EMPTY = "<f8:eJwDAAAAAAE="
 NO_QUANTITY = {**STREAM, "quantity": "x", "t_s": EMPTY, "raw": EMPTY}

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pytest
 from tests.recording.strategies import told
-from tests.recording.test_file import ABOUT, take
+from tests.recording.takes import ABOUT, take
 
 from fdvv.recording import RecordingLog, Take, load_recording
 
-LONGEST_s = 0.03
-"""A child that is not killed makes some ten takes meanwhile."""
+LONGEST_s = 0.08
+"""A child makes its first take after some 20 ms, and then one every few."""
 
 
 def record(path: Path) -> None:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fdvv.capture._record import Notes, RawCycle, Reading, Track, stroke_name
-from fdvv.capture._text import Table, body, cells, refusal
+from fdvv.capture._text import Table, body, refusal
 from fdvv.model import Stroke
+from fdvv.text import cells
 from fdvv.units import cN_from_gf
 
 _TITLE = re.compile(r"^(.*?)\s*\b(Press|Release)\s*(\d*)\s*,\s*([xy])$", re.IGNORECASE)

@@ -10,8 +10,9 @@ import numpy as np
 
 from fdvv.capture._header import Column, Quantity, describe, guess_length_mm
 from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import Table, body, cells, refusal
+from fdvv.capture._text import Table, body, refusal
 from fdvv.model import Stroke
+from fdvv.text import cells, sniff_separator
 from fdvv.units import FloatArray
 
 FORMATS = {
@@ -33,12 +34,6 @@ def find_header(lines: Sequence[str]) -> tuple[int, str, list[Column]] | None:
         if len({Quantity.FORCE, Quantity.DISPLACEMENT} & {c.quantity for c in columns}) == 2:
             return at, separator, columns
     return None
-
-
-def sniff_separator(line: str) -> str:
-    """Tell the separator of a line: tab, semicolon, comma, else blanks; those in quotes do not count."""
-    bare = re.sub(r'"[^"]*"', "", line)
-    return next((mark for mark in ("\t", ";", ",") if mark in bare), " ")
 
 
 def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, notes: Notes) -> Reading:

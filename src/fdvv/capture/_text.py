@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
-import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,18 +11,9 @@ import numpy as np
 
 from fdvv.capture._record import Notes
 from fdvv.errors import InputError
+from fdvv.text import cells, decode_lines
 from fdvv.units import FloatArray
 
-BINARY = {
-    b"\x89PNG": "a PNG image",
-    b"\xff\xd8\xff": "a JPEG image",
-    b"GIF8": "a GIF image",
-    b"%PDF": "a PDF document",
-    b"\x1f\x8b": "a gzip archive",
-    b"\xd0\xcf\x11\xe0": "an old Office document",
-    b"\x93NUMPY": "a NumPy array",
-    b"\x89HDF": "an HDF5 file",
-}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?\Z", re.ASCII)
 LARGEST = 1e12
 """No column of a bench holds more, in any unit; what is larger is a fault and would overflow."""
@@ -32,49 +21,20 @@ LEAST_SAMPLES = 4
 """Fewer samples than coefficients of a cubic are not a curve."""
 
 
+REMEDY = "give a file of force and displacement"
+
+
 def decode(source: Path, content: bytes, notes: Notes) -> list[str]:
-    """Decode a text file into lines without their endings (LF, CRLF or CR).
-
-    UTF-8 with or without a byte-order mark and marked UTF-16 are read as such, anything else as
-    Latin-1 with a warning. Raises InputError for an empty or a binary file.
-    """
-    for magic, kind in BINARY.items():
-        if content.startswith(magic):
-            raise refusal(source, "whole file", f"it is {kind}, whatever its name says")
-    text = _to_text(source, content, notes)
-    if not text.strip("\x00\ufeff \t\r\n\v\f"):
-        raise refusal(source, "whole file", "it is empty")
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
-def _to_text(source: Path, content: bytes, notes: Notes) -> str:
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return content.decode("utf-16", errors="replace")
-    head = content[:4096]
-    if sum(byte < 9 or 13 < byte < 32 for byte in head) > 0.02 * len(head):
-        raise refusal(source, "whole file", "it is a binary file of no kind known here")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        notes.say(f"byte {error.start}: not UTF-8; the file was read as Latin-1")
-        return content.decode("latin-1")
+    """Decode a text file into lines, as decode_lines tells; what was repaired goes to notes. InputError."""
+    lines, warnings = decode_lines(source, content, REMEDY)
+    for warning in warnings:
+        notes.say(warning)
+    return lines
 
 
 def refusal(source: object, place: str, reason: str, remedy: str = "") -> InputError:
     """Make the error for a file that cannot be used."""
-    return InputError(source, place, reason, remedy or "give a file of force and displacement")
-
-
-def cells(line: str, separator: str) -> list[str]:
-    """Split one line into its cells; quotes may hold separators."""
-    if separator == " ":
-        return line.split()
-    if '"' not in line:
-        return line.split(separator)
-    try:
-        return next(csv.reader([line.replace("\x00", " ")], delimiter=separator))
-    except (csv.Error, StopIteration):
-        return [line]
+    return InputError(source, place, reason, remedy or REMEDY)
 
 
 @dataclass(frozen=True)

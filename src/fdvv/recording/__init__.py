@@ -1,8 +1,10 @@
 """Streams as benches record them: their types, their files, readers of foreign logs."""
 
 from fdvv.recording._file import RECORDING_SUFFIX, load_recording, save_recording
+from fdvv.recording._join import join
 from fdvv.recording._log import RecordingLog
 from fdvv.recording._mend import Mend
+from fdvv.recording._read import log_formats, read_log
 from fdvv.recording._types import UNITS, Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 __all__ = [
@@ -18,6 +20,9 @@ __all__ = [
     "Stage",
     "Stream",
     "Take",
+    "join",
     "load_recording",
+    "log_formats",
+    "read_log",
     "save_recording",
 ]

@@ -1,0 +1,98 @@
+"""Read a log of a bench, whatever wrote it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from fdvv.errors import InputError, ModelError
+from fdvv.files import read_limited
+from fdvv.recording._counts import is_counts, read_counts
+from fdvv.recording._file import load_recording
+from fdvv.recording._forcepeaks import is_forcepeaks, read_forcepeaks
+from fdvv.recording._motive import read_motive
+from fdvv.recording._motive_head import is_motive
+from fdvv.recording._reading import REMEDY, Reading, refusal
+from fdvv.recording._serial import is_serial, read_serial
+from fdvv.recording._sound import read_sound, sound_kind
+from fdvv.recording._table import find_header, read_table
+from fdvv.recording._types import Recording, Source, Take
+from fdvv.text import decode_lines
+
+LARGEST_bytes = 512_000_000
+JOURNAL = b'{"crc32": '
+
+Lines = Sequence[str]
+READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines], Reading]], ...] = (
+    (is_motive, read_motive),
+    (is_forcepeaks, read_forcepeaks),
+    (is_serial, read_serial),
+    (lambda head: find_header(head) is not None, read_table),
+)
+"""Text formats known by their first lines."""
+
+
+def log_formats() -> tuple[str, ...]:
+    """List the formats that can be read, as Source.format gives them."""
+    motive = [f"motive-1.{minor}" for minor in range(21, 26)]
+    return (*motive, "fdvv-capture", "forcepeaks", "table", "counts", "wav", "flac", "ogg", "mp3")
+
+
+def read_log(
+    path: Path | str, name: str = "", rate_Hz: float | None = None, full_scale_V: float | None = None
+) -> Recording:
+    """Read one log as a recording of one take, its format found by looking inside.
+
+    Parameters
+    ----------
+    path : the file; one that is a recording already is loaded as it is.
+    name : of the button; that of the file if it is empty.
+    rate_Hz : of a log of bare numbers whose name does not tell it.
+    full_scale_V : voltage at full scale of a sound file; without it sound stays counts.
+
+    What was repaired or is not known is told in ``warnings``. Raises InputError, one line, if the file cannot
+    be used; BuildError where soundfile is needed and is not installed.
+    """
+    path = Path(path)
+    _check(path, rate_Hz, full_scale_V)
+    content = read_limited(path, LARGEST_bytes, "cut it into parts")
+    if content.startswith(JOURNAL):
+        return load_recording(path)
+    try:
+        reading = _read(path, content, rate_Hz, full_scale_V)
+        take = Take(1, tuple(reading.streams), tuple(reading.marks), made=reading.made, remark=reading.remark)
+    except ModelError as error:
+        raise refusal(path, "whole file", f"no valid recording: {error}") from None
+    source = Source(path.name, hashlib.sha256(content).hexdigest(), reading.format)
+    called = name or path.stem.strip() or "log"
+    return Recording(called, (take,), reading.bench, (source,), warnings=tuple(reading.warnings))
+
+
+def _check(path: Path, rate_Hz: float | None, full_scale_V: float | None) -> None:
+    for option, value in (("rate_Hz", rate_Hz), ("full_scale_V", full_scale_V)):
+        if value is not None and not 0 < value < 1e9:
+            raise InputError(
+                path, option, f"must be finite and above 0, got {value}", "leave it out or mend it"
+            )
+
+
+def _read(path: Path, content: bytes, rate_Hz: float | None, full_scale_V: float | None) -> Reading:
+    if sound_kind(content):
+        return read_sound(path, content, full_scale_V)
+    lines, repaired = decode_lines(path, content, REMEDY)
+    while lines and not lines[0].strip():
+        lines = lines[1:]
+    head = [line.strip() for line in lines if line.strip()][:60]
+    if not head:
+        raise refusal(path, "whole file", "it is empty")
+    for recognise, read in READERS:
+        if recognise(head):
+            reading = read(path, lines)
+            break
+    else:
+        if not is_counts(head):
+            raise refusal(path, "line 1", "none of the known formats of logs")
+        reading = read_counts(path, lines, rate_Hz)
+    return replace(reading, warnings=(*repaired, *reading.warnings))

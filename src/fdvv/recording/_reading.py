@@ -1,0 +1,76 @@
+"""What readers hand on, and what they share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import InputError
+from fdvv.recording._types import Bench, Mark, Stream
+from fdvv.units import FloatArray
+
+REMEDY = "give one of the formats of docs/reference/log-files.md"
+LARGEST = 1e15
+"""No instrument counts further; what is larger is a fault."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Everything a reader found in one file."""
+
+    format: str
+    streams: Sequence[Stream]
+    marks: Sequence[Mark] = ()
+    warnings: Sequence[str] = ()
+    made: str = ""
+    remark: str = ""
+    bench: Bench = field(default_factory=Bench)
+
+
+def refusal(source: object, place: str, reason: str, remedy: str = REMEDY) -> InputError:
+    """Make the error for a file that cannot be used."""
+    return InputError(source, place, reason, remedy)
+
+
+def number(text: str) -> float:
+    """Read a cell as a number; NaN for a blank and for what is none."""
+    try:
+        found = float(text) if "_" not in text else np.nan
+    except ValueError:
+        return np.nan
+    return found if abs(found) < LARGEST else np.nan
+
+
+def rising(t: FloatArray) -> npt.NDArray[np.bool_]:
+    """Pick the samples whose times rise strictly; a single time that leaps ahead goes, not all behind it."""
+    keep = np.isfinite(t)
+    at = np.flatnonzero(keep)
+    falls = np.flatnonzero(np.diff(t[at]) < 0)
+    leapt = falls[(falls > 0) & (t[at[falls + 1]] > t[at[falls - 1]])]
+    keep[at[leapt]] = False
+    at = np.flatnonzero(keep)
+    if at.size:
+        keep[at[1:]] = t[at[1:]] > np.maximum.accumulate(t[at])[:-1]
+    return keep
+
+
+def unlike(streams: Iterable[Stream]) -> tuple[Stream, ...]:
+    """Give streams different names, by a number behind those that are met again."""
+    met: set[str] = set()
+    found = []
+    for stream in streams:
+        name, count = stream.name, 1
+        while name in met:
+            count += 1
+            name = f"{stream.name} {count}"
+        met.add(name)
+        found.append(replace(stream, name=name))
+    return tuple(found)
+
+
+def counted(count: int, noun: str) -> str:
+    """Write a number of things: 1 line, 2 lines."""
+    return f"{count} {noun if count == 1 else noun + 's'}"
