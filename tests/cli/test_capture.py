@@ -15,10 +15,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.device.benches import PressedBoard
 
 from fdvv.cli._beep import TONES_Hz, beeper, tone
 from fdvv.cli._capture_view import Beeps, CaptureLines, asked, frame
 from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s
+from fdvv.device import SerialBench
 from fdvv.errors import InputError
 from fdvv.recording import Recording, Stage, load_recording
 from fdvv.workflow import Step, TakeAsk
@@ -291,3 +293,59 @@ def test_a_capture_killed_at_any_moment_loses_no_take_and_goes_on_to_the_same_re
         )
         assert json.loads(last.stdout)["takes"] == len(whole.takes)
         assert same(load_recording(folder / FILE), whole)
+
+
+# -- a person at a bench --
+
+AT_BENCH = ("capture", FILE, "--device", "serial:/dev/bench", "--button", "door bell", "--paces", "100")
+
+
+def at(board: PressedBoard, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fdvv.device.open_bench", lambda *_: SerialBench(board))
+
+
+def test_a_person_at_a_bench_is_asked_and_told_and_asked_again(
+    fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at(PressedBoard([0.0, 0.5, 100.0, 50.0, 110.0]), monkeypatch)
+    ran = fdvv(*AT_BENCH, "--presses", "2")
+    assert ran.status == 0, ran.err
+    assert ran.err.splitlines() == [
+        "1 of 4: take the finger off the button and wait",
+        "take 1, 1 of 4, bench at rest: good",
+        "2 of 4: press, 0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly",
+        "take 2, 2 of 4, slow probe: good, 4.00 mm",
+        "3 of 4: press, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 3, 3 of 4, 100 mm/s: good, 100 mm/s, 4.00 mm",
+        "4 of 4: press, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 4, 3 of 4, 100 mm/s: too slow, 50 instead of 100 mm/s; press faster",
+        "4 of 4: press once more, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 5, 4 of 4, 100 mm/s: good, 110 mm/s, 4.00 mm",
+    ]
+    assert ran.out.splitlines()[0] == "door bell on /dev/bench, 5 takes"
+    found = load_recording(tmp_path / FILE)
+    assert not found.simulated
+    assert found.bench.tip_mass_g == 2.0
+    assert all(take.made for take in found.takes)
+
+
+def test_a_bench_that_is_unplugged_ends_the_session_in_one_line_and_it_goes_on_later(
+    fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = PressedBoard([0.0, 100.0, 100.0])
+    board.gone_s = 7.0
+    at(board, monkeypatch)
+    ran = fdvv(*AT_BENCH, "--presses", "3", "--no-probe")
+    last = ran.err.splitlines()[-1]
+    assert ran.status == 1
+    assert last == (
+        "fdvv: /dev/bench: the device is gone (EIO); plug it in again; 2 takes are kept in "
+        f"{FILE}; run the same command again to go on"
+    )
+    assert not board.open
+    at(PressedBoard([100.0, 100.0]), monkeypatch)
+    again = fdvv(*AT_BENCH, "--presses", "3", "--no-probe")
+    assert again.status == 0
+    assert "goes on" in again.err
+    takes = load_recording(tmp_path / FILE).takes
+    assert [take.streams[0].clock for take in takes] == ["board"] * 2 + ["board from take 3"] * 2

@@ -5,6 +5,8 @@ from fdvv.recording._join import join
 from fdvv.recording._log import RecordingLog
 from fdvv.recording._mend import Mend
 from fdvv.recording._read import log_formats, read_log
+from fdvv.recording._reading import Reading
+from fdvv.recording._serial import read_serial
 from fdvv.recording._types import UNITS, Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 __all__ = [
@@ -14,6 +16,7 @@ __all__ = [
     "Mark",
     "Mend",
     "Quantity",
+    "Reading",
     "Recording",
     "RecordingLog",
     "Source",
@@ -24,5 +27,6 @@ __all__ = [
     "load_recording",
     "log_formats",
     "read_log",
+    "read_serial",
     "save_recording",
 ]
