@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import pty
 import random
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -15,15 +17,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
+from rich.live import Live
 from tests.device.benches import PressedBoard
 
 from fdvv.cli._beep import TONES_Hz, beeper, tone
-from fdvv.cli._capture_view import Beeps, CaptureLines, asked, frame
+from fdvv.cli._capture_view import Beeps, CaptureLines, CaptureTable, asked, frame
 from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s
 from fdvv.device import SerialBench
 from fdvv.errors import InputError
-from fdvv.recording import Recording, Stage, load_recording
-from fdvv.workflow import Step, TakeAsk
+from fdvv.recording import Recording, Stage, Take, load_recording
+from fdvv.workflow import PaceStanding, Step, TakeAsk, TakeDone, Verdict
 from fdvv.workflow._capture_cue import COUNT_IN_s
 from fdvv.workflow._capture_cue import DWELL_s as TOLD_DWELL_s
 
@@ -187,6 +191,28 @@ def test_it_beeps_once_at_contact_and_once_at_the_bottom() -> None:
     assert [t for t, _ in heard] == pytest.approx([1.5, 1.58], abs=0.004)
 
 
+def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sight() -> None:
+    screen, heard = io.StringIO(), list[str]()
+    console = Console(file=screen, force_terminal=True, width=100, color_system=None)
+    with Live(console=console, auto_refresh=False) as live:
+        view = CaptureTable(True, live, heard.append)
+        show = view.cue(ASK)
+        for tick in range(500):
+            show(0.004 * tick)
+        take = Take(3, (), (), Stage.PRESS, 50.0)
+        bad, pace = Verdict(False, reason="too slow; press faster"), PaceStanding(50.0, 0, 15, 1, 0)
+        view.done(TakeDone(take, bad, 2, 62, False, (pace,)))
+        view.notice("x.recording.jsonl goes on")
+    shown = screen.getvalue()
+    assert heard == list(TONES_Hz)
+    depths = [line.count("█") for line in shown.splitlines() if "·" in line or "█" in line]
+    assert max(depths) == 40
+    assert depths.index(max(depths)) > 10
+    assert "take 3, 2 of 62, 50 mm/s: too slow; press faster" in shown
+    assert "50 mm/s     0  15      1" in shown
+    assert "goes on" in shown
+
+
 def test_what_is_asked_says_pace_way_and_time() -> None:
     assert asked(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
     again = TakeAsk(ASK.step, 3, 62, 4.0, "too slow")
@@ -216,18 +242,7 @@ def test_a_player_is_given_a_sound_file_for_each_beep(tmp_path: Path) -> None:
 
 # -- stopped and killed --
 
-LONG = (
-    "capture",
-    FILE,
-    "--paces",
-    "50,100,150,200",
-    "--presses",
-    "10",
-    "--seed",
-    "11",
-    "--participant",
-    "clumsy",
-)
+LONG = ("capture", FILE, "--paces", "100,200", "--presses", "12", "--seed", "11", "--participant", "clumsy")
 TOLD = re.compile(r"^take (\d+),", re.MULTILINE)
 
 
@@ -246,6 +261,25 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, tmp_path: Pat
     assert again.status == 0
     assert f"{FILE}, with " in again.err.splitlines()[0]
     assert "goes on" in again.err.splitlines()[0]
+
+
+def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
+    fdvv: Run, tmp_path: Path
+) -> None:
+    limit = 200_000
+
+    def small_disk() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    command = [*FDVV, *LONG]
+    full = subprocess.run(command, cwd=tmp_path, preexec_fn=small_disk, stderr=subprocess.PIPE, text=True)
+    told = full.stderr.splitlines()
+    assert full.returncode == 2
+    assert told[-1].startswith(f"fdvv: {FILE}: File too large")
+    kept = load_recording(tmp_path / FILE)
+    assert kept.warnings == ()
+    assert len(kept.takes) == len(told) - 1 > 3
+    assert fdvv(*LONG).status == 0
 
 
 def killed(folder: Path, draw: random.Random) -> tuple[int, bool]:

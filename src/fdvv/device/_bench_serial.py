@@ -12,8 +12,10 @@ from fdvv.device._port import Port
 from fdvv.errors import DeviceError, InputError
 from fdvv.recording import Mark, Reading, Stage, Take, read_serial
 
-HEAD_s = 5.0
-"""Time in which a bench must tell what it is; opening the port makes some boards start anew."""
+HEAD_s = 12.0
+"""Time in which a bench must tell what it is; boards that do not answer do so every ten seconds."""
+BODY = 20
+"""So many lines of samples in a row, and the head is over."""
 SILENT_s = 1.0
 """A bench that writes nothing for so long is not running."""
 GLANCE_s = 0.004
@@ -78,15 +80,17 @@ class SerialBench:
     def _heard(self) -> tuple[list[str], int]:
         """Listen until the head and a line with a time have come."""
         self._port.write(ASK)
-        until_s, head, heard = self._port.now_s() + HEAD_s, list[str](), False
+        until_s, head, heard, body = self._port.now_s() + HEAD_s, list[str](), False, 0
         while self._port.now_s() < until_s:
             data = self._port.read(self._port.now_s() + GLANCE_s)
             heard |= bool(data)
             for line in self._lines(data):
                 if line.startswith("#"):
-                    head = [line] if line.startswith(MAGIC) else [*head, line]
+                    head, body = [line] if line.startswith(MAGIC) else [*head, line], 0
                 elif head and head[0].startswith(MAGIC) and (timed := _TIME.match(line)):
-                    return head, int(timed[1]) % TURN_us
+                    body += 1
+                    if body == BODY:
+                        return head, int(timed[1]) % TURN_us
         found = "something else than a capture bench writes there" if heard else "no answer"
         raise DeviceError(
             f"{self._port.name}: {found}; check the port's name, the cable and the board's program"
