@@ -32,6 +32,7 @@ COMMANDS = {
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
+    "process": ("fdvv.cli._process", "Turn recorded presses into a model, with its spread over presses."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
     "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),

@@ -22,6 +22,7 @@ from fdvv.model._fit import (
     scan_sizes,
     smooth,
 )
+from fdvv.model._landmark_errors import LandmarkError, landmark_errors
 from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
@@ -44,6 +45,7 @@ __all__ = [
     "ForceCurve",
     "ForceSurface",
     "Interpolation",
+    "LandmarkError",
     "Landmarks",
     "MeasuredCurve",
     "Mode",
@@ -64,6 +66,7 @@ __all__ = [
     "find_contact_mm",
     "first_loaded",
     "fit_curve",
+    "landmark_errors",
     "landmarks",
     "load_builtin",
     "load_model",

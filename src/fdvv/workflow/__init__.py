@@ -4,7 +4,9 @@ from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_act
 from fdvv.workflow._capture import CaptureResult, capture_session
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_look import Verdict, quick_look
+from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
 from fdvv.workflow._capture_plan import CapturePlan, Step
+from fdvv.workflow._capture_report import capture_report
 from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
@@ -29,6 +31,7 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
 from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
@@ -55,6 +58,7 @@ __all__ = [
     "DemoResult",
     "Difference",
     "FeasibilityReport",
+    "FindVibrations",
     "FitSettings",
     "FolderButton",
     "FolderFit",
@@ -66,6 +70,7 @@ __all__ = [
     "Presses",
     "ProbeResult",
     "Receipt",
+    "RecordedModel",
     "RenderedVibration",
     "Rendering",
     "Session",
@@ -82,6 +87,7 @@ __all__ = [
     "acceleration_per_volt",
     "button_files",
     "candidates_for",
+    "capture_report",
     "capture_session",
     "check_file",
     "compare",
@@ -101,6 +107,7 @@ __all__ = [
     "make_program",
     "measured_files",
     "merge_parts",
+    "model_of_recording",
     "one_curve",
     "open_device",
     "open_files",
@@ -112,6 +119,7 @@ __all__ = [
     "prepare_exciter",
     "press_button",
     "probe",
+    "process_recording",
     "program_image",
     "quick_look",
     "render_vibration",
@@ -119,6 +127,7 @@ __all__ = [
     "settings_with",
     "simulated_observer",
     "slot_volts",
+    "spread_reports",
     "summarise",
     "tune_vibration",
     "tuned_model",
