@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import pty
 import random
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -15,13 +17,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
+from rich.live import Live
+from tests.device.benches import PressedBoard
 
 from fdvv.cli._beep import TONES_Hz, beeper, tone
-from fdvv.cli._capture_view import Beeps, CaptureLines, asked, frame
+from fdvv.cli._capture_view import Beeps, CaptureLines, CaptureTable, asked, frame
 from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s
+from fdvv.device import SerialBench
 from fdvv.errors import InputError
-from fdvv.recording import Recording, Stage, load_recording
-from fdvv.workflow import Step, TakeAsk
+from fdvv.recording import Recording, Stage, Take, load_recording
+from fdvv.workflow import PaceStanding, Step, TakeAsk, TakeDone, Verdict
 from fdvv.workflow._capture_cue import COUNT_IN_s
 from fdvv.workflow._capture_cue import DWELL_s as TOLD_DWELL_s
 
@@ -185,6 +191,28 @@ def test_it_beeps_once_at_contact_and_once_at_the_bottom() -> None:
     assert [t for t, _ in heard] == pytest.approx([1.5, 1.58], abs=0.004)
 
 
+def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sight() -> None:
+    screen, heard = io.StringIO(), list[str]()
+    console = Console(file=screen, force_terminal=True, width=100, color_system=None)
+    with Live(console=console, auto_refresh=False) as live:
+        view = CaptureTable(True, live, heard.append)
+        show = view.cue(ASK)
+        for tick in range(500):
+            show(0.004 * tick)
+        take = Take(3, (), (), Stage.PRESS, 50.0)
+        bad, pace = Verdict(False, reason="too slow; press faster"), PaceStanding(50.0, 0, 15, 1, 0)
+        view.done(TakeDone(take, bad, 2, 62, False, (pace,)))
+        view.notice("x.recording.jsonl goes on")
+    shown = screen.getvalue()
+    assert heard == list(TONES_Hz)
+    depths = [line.count("█") for line in shown.splitlines() if "·" in line or "█" in line]
+    assert max(depths) == 40
+    assert depths.index(max(depths)) > 10
+    assert "take 3, 2 of 62, 50 mm/s: too slow; press faster" in shown
+    assert "50 mm/s     0  15      1" in shown
+    assert "goes on" in shown
+
+
 def test_what_is_asked_says_pace_way_and_time() -> None:
     assert asked(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
     again = TakeAsk(ASK.step, 3, 62, 4.0, "too slow")
@@ -214,18 +242,7 @@ def test_a_player_is_given_a_sound_file_for_each_beep(tmp_path: Path) -> None:
 
 # -- stopped and killed --
 
-LONG = (
-    "capture",
-    FILE,
-    "--paces",
-    "50,100,150,200",
-    "--presses",
-    "10",
-    "--seed",
-    "11",
-    "--participant",
-    "clumsy",
-)
+LONG = ("capture", FILE, "--paces", "100,200", "--presses", "12", "--seed", "11", "--participant", "clumsy")
 TOLD = re.compile(r"^take (\d+),", re.MULTILINE)
 
 
@@ -244,6 +261,25 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, tmp_path: Pat
     assert again.status == 0
     assert f"{FILE}, with " in again.err.splitlines()[0]
     assert "goes on" in again.err.splitlines()[0]
+
+
+def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
+    fdvv: Run, tmp_path: Path
+) -> None:
+    limit = 200_000
+
+    def small_disk() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    command = [*FDVV, *LONG]
+    full = subprocess.run(command, cwd=tmp_path, preexec_fn=small_disk, stderr=subprocess.PIPE, text=True)
+    told = full.stderr.splitlines()
+    assert full.returncode == 2
+    assert told[-1].startswith(f"fdvv: {FILE}: File too large")
+    kept = load_recording(tmp_path / FILE)
+    assert kept.warnings == ()
+    assert len(kept.takes) == len(told) - 1 > 3
+    assert fdvv(*LONG).status == 0
 
 
 def killed(folder: Path, draw: random.Random) -> tuple[int, bool]:
@@ -291,3 +327,59 @@ def test_a_capture_killed_at_any_moment_loses_no_take_and_goes_on_to_the_same_re
         )
         assert json.loads(last.stdout)["takes"] == len(whole.takes)
         assert same(load_recording(folder / FILE), whole)
+
+
+# -- a person at a bench --
+
+AT_BENCH = ("capture", FILE, "--device", "serial:/dev/bench", "--button", "door bell", "--paces", "100")
+
+
+def at(board: PressedBoard, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fdvv.device.open_bench", lambda *_: SerialBench(board))
+
+
+def test_a_person_at_a_bench_is_asked_and_told_and_asked_again(
+    fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at(PressedBoard([0.0, 0.5, 100.0, 50.0, 110.0]), monkeypatch)
+    ran = fdvv(*AT_BENCH, "--presses", "2")
+    assert ran.status == 0, ran.err
+    assert ran.err.splitlines() == [
+        "1 of 4: take the finger off the button and wait",
+        "take 1, 1 of 4, bench at rest: good",
+        "2 of 4: press, 0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly",
+        "take 2, 2 of 4, slow probe: good, 4.00 mm",
+        "3 of 4: press, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 3, 3 of 4, 100 mm/s: good, 100 mm/s, 4.00 mm",
+        "4 of 4: press, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 4, 3 of 4, 100 mm/s: too slow, 50 instead of 100 mm/s; press faster",
+        "4 of 4: press once more, 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
+        "take 5, 4 of 4, 100 mm/s: good, 110 mm/s, 4.00 mm",
+    ]
+    assert ran.out.splitlines()[0] == "door bell on /dev/bench, 5 takes"
+    found = load_recording(tmp_path / FILE)
+    assert not found.simulated
+    assert found.bench.tip_mass_g == 2.0
+    assert all(take.made for take in found.takes)
+
+
+def test_a_bench_that_is_unplugged_ends_the_session_in_one_line_and_it_goes_on_later(
+    fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = PressedBoard([0.0, 100.0, 100.0])
+    board.gone_s = 7.0
+    at(board, monkeypatch)
+    ran = fdvv(*AT_BENCH, "--presses", "3", "--no-probe")
+    last = ran.err.splitlines()[-1]
+    assert ran.status == 1
+    assert last == (
+        "fdvv: /dev/bench: the device is gone (EIO); plug it in again; 2 takes are kept in "
+        f"{FILE}; run the same command again to go on"
+    )
+    assert not board.open
+    at(PressedBoard([100.0, 100.0]), monkeypatch)
+    again = fdvv(*AT_BENCH, "--presses", "3", "--no-probe")
+    assert again.status == 0
+    assert "goes on" in again.err
+    takes = load_recording(tmp_path / FILE).takes
+    assert [take.streams[0].clock for take in takes] == ["board"] * 2 + ["board from take 3"] * 2

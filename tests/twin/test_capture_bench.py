@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -277,6 +278,12 @@ def test_a_press_needs_a_pace_that_fits_between_two_takes() -> None:
         a_bench().take(1, Stage.PRESS)
     with pytest.raises(ModelError, match="too slow"):
         a_press(velocity_mm_s=3.0)
+
+
+def test_the_page_of_the_bench_names_every_error_and_every_way_to_go_wrong() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "capture-bench.md").read_text()
+    names = [*(f.name for f in fields(CaptureRig)), *WILD, *PARTICIPANTS]
+    assert [name for name in names if f"`{name}`" not in page] == []
 
 
 # -- the participant --

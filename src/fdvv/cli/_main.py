@@ -15,6 +15,7 @@ from fdvv.errors import BuildError, DeviceError, FdvvError
 COMMANDS = {
     "assign": ("fdvv.cli._models", "Give a curve, or a segment of one, to press or release of a model."),
     "capture": ("fdvv.cli._capture", "Record a button: a guided session of presses at several paces."),
+    "check": ("fdvv.cli._check", "Check files: what each is, whether it is whole, and what it holds."),
     "compare": ("fdvv.cli._compare", "Compare buttons: landmarks side by side and force differences."),
     "compensate": ("fdvv.cli._compensate", "Learn the actuation that makes a rig feel like a model."),
     "demo": ("fdvv.cli._demo", "Run the whole chain on the simulated rig and write a report."),

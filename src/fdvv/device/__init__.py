@@ -2,6 +2,7 @@
 
 from fdvv.device._bench import BenchInfo, CaptureDevice, Cue, show_nothing
 from fdvv.device._bench_open import BENCHES, open_bench
+from fdvv.device._bench_serial import SerialBench
 from fdvv.device._bench_twin import Pacing, TwinBench
 from fdvv.device._boards import HostBoard, LibraryBoard
 from fdvv.device._client import Client
@@ -59,6 +60,7 @@ __all__ = [
     "ReplayDevice",
     "ScriptedPerson",
     "ScriptedPlant",
+    "SerialBench",
     "SerialPort",
     "SimulatedPerson",
     "Telemetry",

@@ -1,5 +1,7 @@
 """Figures and reports from records; needs the optional extra ``plot`` (matplotlib) for figures."""
 
+from fdvv.plot._capture_curves import plot_averages, plot_paces, plot_registration
+from fdvv.plot._capture_figures import plot_clocks, plot_displacement, plot_force, plot_take
 from fdvv.plot._feasibility_figures import plot_feasibility
 from fdvv.plot._fit_figures import plot_fit, plot_scan
 from fdvv.plot._model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
@@ -21,14 +23,21 @@ __all__ = [
     "figure_png",
     "figure_svg",
     "house_style",
+    "plot_averages",
+    "plot_clocks",
     "plot_comparison",
     "plot_convergence",
+    "plot_displacement",
     "plot_feasibility",
     "plot_fit",
+    "plot_force",
     "plot_model",
+    "plot_paces",
+    "plot_registration",
     "plot_rendering",
     "plot_scan",
     "plot_surface",
+    "plot_take",
     "plot_vibration",
     "render_html",
     "write_report",

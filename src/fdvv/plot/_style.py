@@ -6,6 +6,7 @@ Figures are made without pyplot, so nothing is registered, nothing needs closing
 from __future__ import annotations
 
 import functools
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
@@ -148,6 +149,11 @@ def name_text(name: str) -> str:
     short = clean if len(clean) <= LONGEST_NAME else f"{clean[: LONGEST_NAME - 1]}…"
     # matplotlib hides legend entries that begin with an underscore
     return f" {short}" if short.startswith("_") else short
+
+
+def wrapped(text: str, width: int = 30) -> str:
+    """Break a long legend entry into lines."""
+    return "\n".join(textwrap.wrap(text, width))
 
 
 def set_titles(ax: Axes, title: str, simulated: bool) -> None:

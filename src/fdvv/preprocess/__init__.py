@@ -3,6 +3,7 @@
 from fdvv.preprocess._average import AveragedCurve, pool
 from fdvv.preprocess._clock import ClockFit, align_clocks
 from fdvv.preprocess._edges import Edges
+from fdvv.preprocess._evidence import EdgeBounds, edge_bounds
 from fdvv.preprocess._force import undo_filter, undo_play
 from fdvv.preprocess._fuse import Fusion, Seen, fuse, table_curve, unknown_curve
 from fdvv.preprocess._paper import AS_PRINTED, Gaussian, PaperRecipe, SigmaUnit, paper_average
@@ -11,12 +12,13 @@ from fdvv.preprocess._probe import Probe, probe_of
 from fdvv.preprocess._process import Feature, Processed, Settings, process
 from fdvv.preprocess._reject import Judged, Limits, Reason, judge
 from fdvv.preprocess._strokes import spans_of
-from fdvv.preprocess._takes import Presses, presses_of
+from fdvv.preprocess._takes import Presses, idle_cN, presses_of
 
 __all__ = [
     "AS_PRINTED",
     "AveragedCurve",
     "ClockFit",
+    "EdgeBounds",
     "Edges",
     "Feature",
     "Fusion",
@@ -35,10 +37,12 @@ __all__ = [
     "Spans",
     "StrokeTrack",
     "align_clocks",
+    "edge_bounds",
     "fuse",
+    "idle_cN",
     "judge",
-    "pool",
     "paper_average",
+    "pool",
     "presses_of",
     "probe_of",
     "process",

@@ -22,7 +22,12 @@ from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm
 CurveOfForce = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From displacements (mm) to force (cN) and stiffness (cN/mm)."""
 
-ROUNDS = 8
+ROUNDS, SETTLED_N = 8, 2e-4
+"""At most so many steps, fewer where the last one changed the button's force by less."""
+
+TABLE = 1001
+"""Points of a tabulated force: 5 um apart on a key."""
+
 SEATED = 0.05
 """Weight of the equation while the cap is at its upper stop."""
 
@@ -115,7 +120,9 @@ def fuse(strokes: Sequence[Seen], known: CurveOfForce, settings: Fusion) -> tupl
     basis = EvenBasis(low, (high - low) / settings.pieces, settings.pieces)
     shared_N = _first(work, basis, known)
     for _ in range(ROUNDS):
-        shared_N = _improve(work, basis, shared_N, known, settings)
+        before_N, shared_N = shared_N, _improve(work, basis, shared_N, known, settings)
+        if float(np.abs(shared_N - before_N).max()) < SETTLED_N:
+            break
     return [_path(one) for one in work], _curve(basis, shared_N, known)
 
 
@@ -197,12 +204,9 @@ def _improve(
 
 
 def _curve(basis: EvenBasis, shared_N: FloatArray, known: CurveOfForce) -> CurveOfForce:
-    def curve(x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
-        force_N, stiffness_N_mm = _known_N(known, x_mm)
-        force_N = force_N + basis.rows(x_mm) @ shared_N
-        return cN_from_N(force_N), cN_from_N(stiffness_N_mm + basis.rows(x_mm, 1) @ shared_N)
-
-    return curve
+    """Tabulate the button's force: a curve that is known from a curve that is known must not grow slower."""
+    x = np.linspace(basis.start, basis.start + basis.step * basis.pieces, TABLE)
+    return table_curve(x, cN_from_N(_known_N(known, x)[0] + basis.rows(x) @ shared_N))
 
 
 def unknown_curve(x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -18,7 +18,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.model import Stroke
-from fdvv.preprocess._average import GRID_mm, AveragedCurve
+from fdvv.preprocess._average import AveragedCurve, GRID_mm
 from fdvv.preprocess._reject import Judged
 from fdvv.units import FloatArray
 

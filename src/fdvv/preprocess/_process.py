@@ -18,6 +18,7 @@ from fdvv.preprocess._probe import Probe, probe_of
 from fdvv.preprocess._reject import Judged, Limits, Reason, judge
 from fdvv.preprocess._strokes import LEFT_mm, spans_of, whole_press
 from fdvv.preprocess._takes import idle_cN, presses_of
+from fdvv.preprocess._travel import travels_mm
 from fdvv.recording import Bench, Recording
 from fdvv.units import cN_from_N
 
@@ -118,7 +119,7 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
         probe,
         tuple(curves),
         tuple(tuple(group) for group in tracks),
-        _feature([one.spans.bottom_mm + zero_mm for one in used]),
+        _feature(travels_mm(used, zero_mm, _arrival_cN(curves))),
         _switched(used, tracks, Stroke.PRESS),
         _switched(used, tracks, Stroke.RELEASE),
         zero_mm,
@@ -130,6 +131,11 @@ def _feature(values: Sequence[float]) -> Feature:
     finite = np.array([v for v in values if np.isfinite(v)])
     spread = float(np.std(finite, ddof=1)) if finite.size > 1 else 0.0
     return Feature(float(np.median(finite)), spread, int(finite.size))
+
+
+def _arrival_cN(curves: Sequence[AveragedCurve]) -> float:
+    """Give the force with which a cap arrives at its stop, the middle of all presses' curves."""
+    return float(np.median([c.force_cN[-1] for c in curves if c.stroke is Stroke.PRESS] or [0.0]))
 
 
 def _zero_mm(judged: Sequence[Judged], probe: Probe | None) -> float:

@@ -77,6 +77,12 @@ def join_clocks(recording: Recording) -> ClockFit:
     board, camera = known.pop()
     if board == camera:
         return ClockFit(0.0)
+    edges, frame_s, light = switched_light(recording, board, camera)
+    return align_clocks(edges, frame_s, light, 1e-3 * recording.bench.exposure_ms, camera)
+
+
+def switched_light(recording: Recording, board: str, camera: str) -> tuple[Edges, FloatArray, FloatArray]:
+    """Give when the light was switched, by one clock, and times and brightness of frames, by the other."""
     lights = [s for take in recording.takes for s in take.of(Quantity.LIGHT) if s.clock == camera]
     if not lights:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no stream shows the light")
@@ -85,8 +91,7 @@ def join_clocks(recording: Recording) -> ClockFit:
     )
     if not edges.t_s.size:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no mark tells of the light")
-    frame_s, light = _in_order(lights)
-    return align_clocks(edges, frame_s, light, 1e-3 * recording.bench.exposure_ms, camera)
+    return edges, *_in_order(lights)
 
 
 def _clocks(take: Take) -> tuple[str, str] | None:

@@ -86,7 +86,7 @@ class Instruments:
         """Record a press that began at begin_s of the board clock; the trace needs a worn force sensor."""
         if trace.sensed_cN is None:
             raise ModelError("a capture needs a press with a force sensor, this finger was bare")
-        blinks_s = begin_s + float(random.uniform(0.005, 0.02)) + np.array(BLINKS_s)
+        blinks_s = np.round(begin_s + float(random.uniform(0.005, 0.02)) + np.array(BLINKS_s), 6)
         event_s = _event_s(trace, intent)
         board = (self._force(trace, begin_s, intent, event_s), self._sound(trace, begin_s, random))
         camera = self._camera(trace, begin_s, blinks_s, intent, event_s, random)

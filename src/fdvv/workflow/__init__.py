@@ -7,6 +7,7 @@ from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
 from fdvv.workflow._capture_plan import CapturePlan, Step
 from fdvv.workflow._capture_report import capture_report
+from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
@@ -88,6 +89,7 @@ __all__ = [
     "candidates_for",
     "capture_report",
     "capture_session",
+    "check_file",
     "compare",
     "compensate",
     "converter",
