@@ -71,3 +71,12 @@ def test_a_file_that_is_no_recording_is_refused(fdvv: Run, tmp_path: Path) -> No
     assert ran.err.startswith(f"fdvv: {other}: line 1")
     assert len(ran.err.splitlines()) == 1
     assert not Path("m.fdvv.json").exists()
+
+
+def test_the_report_is_written_with_every_step(fdvv: Run, recording: Path) -> None:
+    ran = fdvv("process", recording, "--report", "out/steps.html")
+    assert (ran.status, ran.err) == (0, "")
+    html = Path("out/steps.html").read_text()
+    assert html.startswith("<!DOCTYPE html>")
+    assert html.count("<svg") >= 8
+    assert "written to out/steps.html" in ran.out

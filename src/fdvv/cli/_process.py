@@ -52,6 +52,11 @@ def process(
     found = process_recording(recording, Settings(cap_g=cap_mass_g))
     if output:
         save_model(found.model, output)
+    if report:
+        from fdvv.plot import write_report
+        from fdvv.workflow import capture_html
+
+        write_report(report, capture_html(found))
     if as_json:
         print_json(capture_report(found))
     else:
