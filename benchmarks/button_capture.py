@@ -9,20 +9,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.button_lines import Line, rms
-from fdvv.twin import (
-    ButtonTrace,
-    CaptureRig,
-    Finger,
-    ForceSensor,
-    RawCapture,
-    capture,
-    draw_button_noise,
-    load_button,
-    no_button_noise,
-    plan,
-    simulate_button,
-    solve_button_pace,
-)
+from fdvv.recording import Quantity, Stage
+from fdvv.twin import PARTICIPANTS, CaptureBench, CaptureRig, Finger, ForceSensor, SimulatedTake, load_button
 
 PERFECT_SENSOR = ForceSensor(
     mass_kg=2e-4, filter_s=2e-5, noise_N=0.0, hysteresis_N=0.0, converter_bits=0, contact_stiffness_N_m=2e4,
@@ -30,23 +18,29 @@ PERFECT_SENSOR = ForceSensor(
 )  # fmt: skip
 PERFECT = CaptureRig(
     frame_Hz=2000.0, exposure_s=0.0, marker_noise_m=0.0, marker_bias_m=0.0, rocking_rad=0.0,
-    dropped_ratio=0.0, clock_ppm=0.0, sound_low_Hz=0.0, sound_filter_s=0.0, sound_noise_V=0.0, sound_bits=0,
+    sideways_m=0.0, askew_rad=0.0, dropped_ratio=0.0, unseen_ratio=0.0, light_noise=0.0, clock_ppm=0.0,
+    force_zero_N=0.0, sound_low_Hz=0.0, sound_filter_s=0.0, sound_noise_V=0.0, sound_bits=0,
 )  # fmt: skip
 
 
-def curve_error_cN(trace: ButtonTrace, raw: RawCapture, synced: bool) -> float:
+def curve_error_cN(made: SimulatedTake, synced: bool) -> float:
     """Align, join and compare one captured press with the true force at the true displacement; rms.
 
-    synced: use the true offset of the clocks, else the frame in which the light was first seen.
+    synced: use the true relation of the clocks, else the frame in which the light was first seen.
     """
-    lit = int(np.argmax(raw.light > 0.5))
-    offset_s = raw.offset_s if synced else raw.frame_s[lit] - raw.light_s
-    seen = ~np.isnan(raw.marker_mm[:, 0])
-    cap_mm = raw.marker_mm[seen].mean(axis=1)
-    sampled_mm = np.interp(raw.t_s, raw.frame_s[seen] - offset_s, cap_mm)
+    take, truth, trace = made.take, made.truth, made.truth.trace
+    assert trace is not None
+    (force,), (light,), markers = (take.of(q) for q in (Quantity.FORCE, Quantity.LIGHT, Quantity.MARKER))
+    lit_s = light.t_s[int(np.argmax(light.values > 0.5))]
+    light_s = take.times_s("light on")
+    offset_s = (truth.setup.camera_s(light_s)[0] if synced else lit_s) - light_s[0]
+    places = np.stack([marker.values for marker in markers])
+    seen = ~np.isnan(places).any(axis=(0, 2))
+    cap_mm = (truth.setup.places_mm[:, None] - places)[:, seen].mean(axis=0) @ truth.setup.turn[:, 2]
+    sampled_mm = np.interp(force.t_s, light.t_s[seen] - offset_s, cap_mm)
     end = int(np.argmax(sampled_mm))
     x_mm = np.linspace(0.3, 0.95 * float(trace.displacement_mm.max()), 200)
-    captured = np.interp(x_mm, np.maximum.accumulate(sampled_mm[:end]), raw.force_cN[:end])
+    captured = np.interp(x_mm, np.maximum.accumulate(sampled_mm[:end]), force.values[:end])
     turn = int(np.argmax(trace.displacement_mm))
     true = np.interp(x_mm, np.maximum.accumulate(trace.displacement_mm[:turn]), trace.force_cN[:turn])
     return rms(captured - true)
@@ -73,6 +67,8 @@ def budget(velocity_mm_s: float = 100.0) -> Iterator[Line]:
         "cameras: bias": {"marker_bias_m": rig.marker_bias_m},
         "cameras: rocking": {"rocking_rad": rig.rocking_rad, "lever_m": rig.lever_m,
                              "lever_mismatch_ratio": rig.lever_mismatch_ratio},
+        "cameras: play of the cap": {"sideways_m": rig.sideways_m},
+        "force: zero off by 2 cN rms": {"force_zero_N": rig.force_zero_N},
         "clocks: 50 ppm": {"clock_ppm": rig.clock_ppm},
     }  # fmt: skip
     for what, changes in sensors.items():
@@ -86,15 +82,11 @@ def budget(velocity_mm_s: float = 100.0) -> Iterator[Line]:
 
 def _budget_line(what: str, sensor: ForceSensor, rig: CaptureRig, synced: bool, velocity_mm_s: float) -> Line:
     button, finger = load_button("mx-clear"), Finger()
-    gesture = plan(finger, button.curve.travel_m, solve_button_pace(button, finger, velocity_mm_s, sensor))
+    finger = replace(finger, habit=finger.habit.still())
     found = []
     for seed in range(20):
-        random = np.random.default_rng(seed)
-        noise = replace(
-            no_button_noise(gesture), force_N=draw_button_noise(finger, gesture, random, sensor).force_N
-        )
-        trace = simulate_button(button, finger, gesture, noise, sensor)
-        found.append(curve_error_cN(trace, capture(trace, rig, random), synced))
+        bench = CaptureBench(button, rig, finger, sensor, PARTICIPANTS["steady"], np.random.default_rng(seed))
+        found.append(curve_error_cN(bench.take(1, Stage.PRESS, velocity_mm_s), synced))
     got = f"{np.median(found):.2f} cN rms, median of 20 ({min(found):.2f} to {max(found):.2f})"
     perfect = what.startswith("nothing")
     met = float(np.median(found)) < 0.5 if perfect else True

@@ -147,3 +147,24 @@ def test_compensating_a_rig_goes_as_the_tutorial_shows(tmp_path: Path, environme
     assert {p.name for p in (tmp_path / "clear.session").iterdir()} == set(
         re.findall(r"^\| `(.*?\.jsonl?)` \|", RIG.read_text(), flags=re.MULTILINE)
     )
+
+
+CAPTURE = REPOSITORY / "docs" / "tutorials" / "capture-a-button.md"
+
+
+def test_capturing_a_button_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    printed, ran_here = "", list[str]()
+    for language, text in blocks(CAPTURE):
+        if language == "python":
+            ran = run([sys.executable, "-W", "error", "-c", text], tmp_path, environment)
+            assert (ran.returncode, ran.stderr) == (0, "")
+            printed = ran.stdout
+        elif language == "console":
+            for command, shown in steps(text):
+                assert shown
+                check(command, shown, tmp_path, environment)
+                ran_here.append(command[1])
+        elif language == "":
+            assert text == printed, "the block after a program shows what it prints"
+    assert ran_here == ["capture"] * 3
+    assert [path.name for path in tmp_path.iterdir()] == ["clear.recording.jsonl"]

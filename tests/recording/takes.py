@@ -32,6 +32,7 @@ def head(**changes: object) -> dict[str, object]:
     bench = {
         "force_filter_ms": 0,
         "sound_filter_ms": 0,
+        "force_play_cN": 0,
         "tip_mass_g": 0,
         "exposure_ms": 0,
         "clocks_go_on": True,

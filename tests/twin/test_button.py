@@ -174,6 +174,45 @@ def test_a_solved_pace_gives_the_asked_mean_speed(velocity_mm_s: float) -> None:
     assert speed == pytest.approx(velocity_mm_s, rel=0.01)
 
 
+def test_a_pace_is_found_where_the_shortest_stroke_would_diverge() -> None:
+    """A finger that drops 4 mm in 10 ms onto a worn sensor is more than the equations bear."""
+    button, sensor = load_button("mx-clear"), ForceSensor()
+    finger = Finger(habit=replace(Finger().habit, lift_m=0.004))
+    sudden = plan(finger, button.curve.travel_m, 0.01)
+    with pytest.raises(ModelError, match="diverged"):
+        simulate_button(button, finger, sudden, no_button_noise(sudden), sensor)
+    press_s = solve_button_pace(button, finger, 150.0, sensor)
+    gesture = plan(finger, button.curve.travel_m, press_s)
+    trace = simulate_button(button, finger, gesture, no_button_noise(gesture), sensor)
+    assert mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0) == pytest.approx(150.0, rel=0.01)
+    # a pace that no stroke reaches without diverging gives the shortest one that does not
+    fastest = plan(finger, button.curve.travel_m, solve_button_pace(button, finger, 5000.0, sensor))
+    simulate_button(button, finger, fastest, no_button_noise(fastest), sensor)
+
+
+def test_a_detour_of_the_referent_is_where_the_finger_goes() -> None:
+    """A press of the gesture, and the same press told as a detour of a finger that stays."""
+    button, finger = load_button("mx-brown"), Finger()
+    gesture = plan(finger, button.curve.travel_m, 0.1)
+    noise = no_button_noise(gesture)
+    t = np.asarray(1e-3 * (np.arange(noise.effort_ratio.size) - 20.0), dtype=np.float64)
+
+    def smooth(part: FloatArray) -> FloatArray:
+        s = np.clip(part, 0, 1)
+        return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
+
+    up_s = gesture.onset_s + gesture.press_s + gesture.dwell_s
+    moves = smooth((t - gesture.onset_s) / 0.1) - smooth((t - up_s) / 0.1)
+    still = replace(gesture, end_m=gesture.start_m)
+    wanted = simulate_button(button, finger, gesture, noise)
+    got = simulate_button(
+        button, finger, still, noise, detour_m=(gesture.end_m - gesture.start_m) * moves, audit=True
+    )
+    assert np.abs(got.displacement_mm - wanted.displacement_mm).max() < 5e-3
+    assert got.energy_J is not None
+    assert np.abs(got.energy_J).max() < 1e-6
+
+
 def test_the_record_of_a_press_is_that_of_every_device() -> None:
     trace = press("mx-clear", sensor=ForceSensor())
     record = trace.press(100.0)

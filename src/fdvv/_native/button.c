@@ -21,6 +21,8 @@ typedef struct {
     double law_1_s_m;
     double effort;        /* modulation of the finger's force at the tick */
     double effort_per_s;  /* and its slope until the next */
+    double detour_m;      /* of the referent at the tick */
+    double detour_m_s;    /* and its slope until the next */
     double tick_s;
     int leaf, law, audit;
 } drive_input;
@@ -108,7 +110,8 @@ static double contact_force(const fdvv_button_model *m, const double *y) {
 
 static inline void rates(const fdvv_button_model *m, drive_input *in, double t, const double *y, double *dy) {
     double effort = 1.0 + in->effort + in->effort_per_s * (t - in->tick_s);
-    double pull = effort * muscle(&m->finger, &m->gesture, t, y[XF], y[VF]);
+    double off = in->detour_m + in->detour_m_s * (t - in->tick_s);
+    double pull = effort * muscle(&m->finger, &m->gesture, t, y[XF] - off, y[VF] - in->detour_m_s);
     double squeeze_rate = y[VF] - y[VT], growth = m->finger.pulp_exponent_1_m * y[SW] * squeeze_rate;
     double arms = y[H1] + y[H2];
     double pulp = m->finger.pulp_relaxed_ratio * (y[SW] - m->finger.pulp_scale_N) + (arms - m->finger.strap_N);
@@ -283,7 +286,8 @@ static int usable(const fdvv_button_grid *g) {
 }
 
 int fdvv_button_press(const fdvv_button_model *m, const fdvv_button_grid *g, const double *table,
-                      const double *effort_ratio, double *rows, double *switching) {
+                      const double *effort_ratio, const double *detour_m, double *rows,
+                      double *switching) {
     if (!usable(g)) return 1;
     double y[STATES], tick_s = m->step_s * (double)g->steps_per_tick;
     int on = 0;
@@ -303,6 +307,8 @@ int fdvv_button_press(const fdvv_button_model *m, const fdvv_button_grid *g, con
         in.tick_s = tick_s * (double)(k - g->settle_ticks);
         in.effort = effort_ratio[k];
         in.effort_per_s = (effort_ratio[k + 1] - effort_ratio[k]) / tick_s;
+        in.detour_m = detour_m[k];
+        in.detour_m_s = (detour_m[k + 1] - detour_m[k]) / tick_s;
         for (int64_t s = 0; s < g->steps_per_tick; s++) {
             double t = in.tick_s + m->step_s * (double)s;
             int was = on;

@@ -62,7 +62,8 @@ typedef struct {
  * table (cells, FDVV_BUTTON_CELL), u running from 0 to 1 over a cell: four coefficients in u of the elastic
  * force N (spring or dome), four of the cam's height m, two of the rail's friction N (or the dome's arm), two
  * of the cam's friction coefficient, and the energy J of the elastic force at the cell's start.
- * effort_ratio (settle_ticks + ticks + 1,) modulates the finger's own force, linear between ticks.
+ * effort_ratio (settle_ticks + ticks + 1,) modulates the finger's own force, detour_m (as many) is added to
+ * where the gesture leads the referent; both linear between ticks.
  * rows (FDVV_BUTTON_COLUMNS, ticks * steps_per_tick / steps_per_row), written: time s, slider m, m/s, m/s2,
  * contact force N, filtered force N, finger m, leaf m, force of the fixed contact N, plate m, plate m/s,
  * closed 0/1, energy unaccounted for J (0 without audit).
@@ -70,7 +71,7 @@ typedef struct {
  * Returns 0, or 1 if a count is out of its bounds (nothing is written then).
  */
 int fdvv_button_press(const fdvv_button_model *model, const fdvv_button_grid *grid, const double *table,
-                      const double *effort_ratio, double *rows, double *switching);
+                      const double *effort_ratio, const double *detour_m, double *rows, double *switching);
 
 /* Lead the slider of a button whose housing is held, as a force tester does: down by way_m and a tenth of a
  * millimetre, and back, at speed_m_s. rows (2 * count, 2), written: displacement m and force N (the tester

@@ -1,5 +1,9 @@
 """Anything that accepts a table of force or a program and yields presses."""
 
+from fdvv.device._bench import BenchInfo, CaptureDevice, Cue, show_nothing
+from fdvv.device._bench_open import BENCHES, open_bench
+from fdvv.device._bench_serial import SerialBench
+from fdvv.device._bench_twin import Pacing, TwinBench
 from fdvv.device._boards import HostBoard, LibraryBoard
 from fdvv.device._client import Client
 from fdvv.device._clocks import ClockRelation, Exchange, relate
@@ -24,10 +28,14 @@ from fdvv.device._twin import TwinDevice
 from fdvv.device._wire import RefusedError, Wire
 
 __all__ = [
+    "BENCHES",
     "KINDS",
+    "BenchInfo",
     "Board",
+    "CaptureDevice",
     "Client",
     "ClockRelation",
+    "Cue",
     "Device",
     "DeviceInfo",
     "EmulatedBoard",
@@ -39,6 +47,7 @@ __all__ = [
     "LinkedDevice",
     "LockstepPort",
     "Outputs",
+    "Pacing",
     "Person",
     "Plant",
     "Port",
@@ -51,18 +60,22 @@ __all__ = [
     "ReplayDevice",
     "ScriptedPerson",
     "ScriptedPlant",
+    "SerialBench",
     "SerialPort",
     "SimulatedPerson",
     "Telemetry",
     "TickColumns",
     "Truth",
+    "TwinBench",
     "TwinDevice",
     "Wire",
+    "open_bench",
     "open_device",
     "pack_record",
     "read_session",
     "relate",
     "serial_ports",
+    "show_nothing",
     "surface_image",
     "unpack_press",
     "unpack_surface",

@@ -23,6 +23,7 @@ class BenchRecord(msgspec.Struct, forbid_unknown_fields=True):
 
     force_filter_ms: float
     sound_filter_ms: float
+    force_play_cN: float
     tip_mass_g: float
     exposure_ms: float
     clocks_go_on: bool

@@ -6,7 +6,10 @@ from fdvv.twin._button_file import button_names, button_to_toml, load_button
 from fdvv.twin._button_model import button_of_model
 from fdvv.twin._button_noise import ButtonNoise, draw_button_noise, no_button_noise
 from fdvv.twin._cam import Cam, identify
-from fdvv.twin._capture_rig import CaptureRig, RawCapture, capture
+from fdvv.twin._capture_bench import CaptureBench, SimulatedTake, TakeTruth, bench_facts
+from fdvv.twin._capture_press import LEAD_s
+from fdvv.twin._capture_rig import CaptureRig
+from fdvv.twin._capture_streams import BOARD, Setup
 from fdvv.twin._draw import draw_finger, draw_rig
 from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
@@ -15,6 +18,7 @@ from fdvv.twin._image import TableImage, image_of
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
 from fdvv.twin._pace_button import solve_button_pace
+from fdvv.twin._participant import PARTICIPANTS, WILD, Intent, Participant
 from fdvv.twin._plant import RigPlant
 from fdvv.twin._probe_button import ProbedCurve, probe_button
 from fdvv.twin._reference import ReferenceTrace, reference_simulate
@@ -31,11 +35,15 @@ from fdvv.twin._toml import finger_to_toml, load_finger, load_rig, rig_to_toml
 from fdvv.twin._trace import Trace
 
 __all__ = [
+    "BOARD",
+    "PARTICIPANTS",
+    "WILD",
     "ButtonNoise",
     "ButtonPhysics",
     "ButtonReference",
     "ButtonTrace",
     "Cam",
+    "CaptureBench",
     "CaptureRig",
     "Coil",
     "Controller",
@@ -48,28 +56,33 @@ __all__ = [
     "Habit",
     "Housing",
     "Impedance",
+    "Intent",
     "KeycapSensor",
+    "LEAD_s",
     "Leaf",
     "Mover",
     "Noise",
+    "Participant",
     "PositionSensor",
     "PressPlan",
     "ProbedCurve",
     "Pulp",
-    "RawCapture",
     "ReferenceTrace",
     "Rig",
     "RigPlant",
     "RigPress",
     "Servo",
+    "Setup",
+    "SimulatedTake",
     "Slider",
     "Stops",
     "TableImage",
+    "TakeTruth",
     "Trace",
+    "bench_facts",
     "button_names",
     "button_of_model",
     "button_to_toml",
-    "capture",
     "draw_button",
     "draw_button_noise",
     "draw_finger",

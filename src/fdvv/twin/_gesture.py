@@ -12,7 +12,7 @@ from fdvv.twin._finger import Finger
 
 FULL_UNDERSHOOT_m_s = 0.2
 TAIL_s = 0.06
-"""Time recorded after the finger has gone, for the cap to come back."""
+"""Time recorded after the finger has gone, for the cap to come back, unless the gesture says otherwise."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,7 @@ class Gesture:
     end_m : at the bottom, beyond the stop by what the finger pushes with.
     onset_s, press_s, dwell_s, release_s : durations, in order.
     stiffness_N_m, damping_N_s_m : of the finger in this press.
+    tail_s : recorded after the finger has gone.
     """
 
     start_m: float
@@ -35,26 +36,27 @@ class Gesture:
     release_s: float
     stiffness_N_m: float
     damping_N_s_m: float
+    tail_s: float = TAIL_s
 
     def __post_init__(self) -> None:
         if not all(np.isfinite(value) for value in vars(self).values()):
             raise ModelError(f"a gesture needs finite numbers, got {self}")
-        if self.press_s <= 0 or self.release_s <= 0 or self.onset_s < 0 or self.dwell_s < 0:
+        if self.press_s <= 0 or self.release_s <= 0 or min(self.onset_s, self.dwell_s, self.tail_s) < 0:
             raise ModelError(f"a gesture needs durations above 0, got {self}")
 
     @property
     def duration_s(self) -> float:
         """Length of the record."""
-        return self.onset_s + self.press_s + self.dwell_s + self.release_s + TAIL_s
+        return self.onset_s + self.press_s + self.dwell_s + self.release_s + self.tail_s
 
 
 def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
     """Plan the press of a person who never varies; press and release last equally long."""
     habit, stiffness = finger.habit, finger.impedance.stiffness_N_m
-    start = -habit.lift_m if habit.lift_m else _depth_m(finger, habit.rest_N, stiffness)
+    start = -habit.lift_m if habit.lift_m else depth_m(finger, habit.rest_N, stiffness)
     return Gesture(
         start,
-        travel_m + _depth_m(finger, habit.push_N, stiffness),
+        travel_m + depth_m(finger, habit.push_N, stiffness),
         habit.onset_s,
         press_s,
         habit.dwell_s,
@@ -64,7 +66,7 @@ def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
     )
 
 
-def _depth_m(finger: Finger, force_N: float, stiffness_N_m: float) -> float:
+def depth_m(finger: Finger, force_N: float, stiffness_N_m: float) -> float:
     """Give how far beyond a wall the referent must be for a held force: joint and relaxed pulp in series."""
     pulp = finger.pulp
     squeeze = math.log1p(force_N / (pulp.relaxed_ratio * pulp.scale_N + pulp.strap_N)) / pulp.exponent_1_m
@@ -90,7 +92,7 @@ def vary(
     beyond = habit.push_N * max(0.1, scale(habit.push_spread_ratio, push))
     return Gesture(
         start,
-        travel_m + _depth_m(finger, beyond, stiffness),
+        travel_m + depth_m(finger, beyond, stiffness),
         max(0.0, habit.onset_s + habit.onset_spread_s * float(onset)),
         nominal.press_s / speed,
         habit.dwell_s,

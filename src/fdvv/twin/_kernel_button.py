@@ -132,17 +132,23 @@ def _model(plant: ButtonPlant) -> _Model:
 
 
 def run_button(
-    plant: ButtonPlant, grid: ButtonGrid, table: FloatArray, effort_ratio: FloatArray
+    plant: ButtonPlant,
+    grid: ButtonGrid,
+    table: FloatArray,
+    effort_ratio: FloatArray,
+    detour_m: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Simulate one press in C: rows (COLUMNS, grid.rows) and switching times (2,), as button.h lists them."""
-    wanted = {"table": (grid.cells, CELL), "effort_ratio": (grid.settle_ticks + grid.ticks + 1,)}
-    for (name, shape), array in zip(wanted.items(), (table, effort_ratio), strict=True):
+    detour = np.zeros_like(effort_ratio) if detour_m is None else np.ascontiguousarray(detour_m)
+    each = (grid.settle_ticks + grid.ticks + 1,)
+    wanted = {"table": (grid.cells, CELL), "effort_ratio": each, "detour_m": each}
+    for (name, shape), array in zip(wanted.items(), (table, effort_ratio, detour), strict=True):
         if array.shape != shape:
             raise ModelError(f"{name} must be {shape}, got {array.shape}")
     rows, switching = np.empty((COLUMNS, grid.rows)), np.empty(2)
     effort = np.ascontiguousarray(effort_ratio)
     model, counts = _model(plant), _Grid(*dataclasses.astuple(grid))
-    pointers = [address(array) for array in (table, effort, rows, switching)]
+    pointers = [address(array) for array in (table, effort, detour, rows, switching)]
     if _library().fdvv_button_press(ctypes.byref(model), ctypes.byref(counts), *pointers):
         raise ModelError(f"the compiled button cannot step this press: {grid}")
     return rows, switching

@@ -17,6 +17,8 @@ from fdvv.units import mm_from_m
 TOLERANCE = 0.005
 NEVER_mm_s = 1e-3
 """Speed that stands for a press that does not reach the bottom."""
+DIVERGED_mm_s = 1e5
+"""Speed that stands for a press too sudden for the equations."""
 
 
 def solve_button_pace(
@@ -25,7 +27,8 @@ def solve_button_pace(
     """Find the duration of the referent's stroke (s) for a mean speed of the cap, to 0.5 %.
 
     The person has adapted to this button; nothing varies. Bisection and secants (Brent) on the logarithms of
-    duration and speed. Speeds beyond the finger's reach give the shortest or longest duration.
+    duration and speed. Speeds beyond the finger's reach give the shortest or longest duration. A stroke so
+    short that its press diverges counts as too fast. Raises ModelError if the longest one diverges too.
     """
     from scipy.optimize import brentq
 
@@ -33,7 +36,12 @@ def solve_button_pace(
         raise ModelError(f"velocity_mm_s must be above 0, got {velocity_mm_s}")
 
     def miss(log_s: float) -> float:
-        speed = _speed_mm_s(button, finger, math.exp(log_s), sensor)
+        try:
+            speed = _speed_mm_s(button, finger, math.exp(log_s), sensor)
+        except ModelError:
+            if log_s >= high:
+                raise
+            speed = DIVERGED_mm_s
         return math.log(max(speed, NEVER_mm_s) / velocity_mm_s)
 
     low, high = math.log(SHORTEST_s), math.log(max(8 * mm_from_m(button.curve.travel_m) / velocity_mm_s, 0.1))
@@ -41,7 +49,10 @@ def solve_button_pace(
         return SHORTEST_s
     if miss(high) >= 0:
         return min(math.exp(high), LONGEST_s)
-    return math.exp(brentq(miss, low, high, xtol=0.5 * TOLERANCE))
+    found = brentq(miss, low, high, xtol=0.5 * TOLERANCE)
+    while miss(found) >= math.log(DIVERGED_mm_s / velocity_mm_s):
+        found += TOLERANCE
+    return math.exp(found)
 
 
 def _speed_mm_s(button: ButtonPhysics, finger: Finger, press_s: float, sensor: ForceSensor | None) -> float:

@@ -14,6 +14,9 @@ from fdvv.twin._gesture import plan
 from fdvv.twin._kernel_button import run_probe
 from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
 
+BEYOND_mm = 0.1
+"""The tester goes on beyond the bottom by this before it turns, as the kernel does; no row is taken there."""
+
 
 @dataclass(frozen=True, eq=False)
 class ProbedCurve:

@@ -65,6 +65,10 @@ class _Straight:
         part = min(max((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0), 1.0)
         return self.values[i] + part * (self.values[i + 1] - self.values[i])
 
+    def slope(self, x: float) -> float:
+        i = min(max(bisect_right(self.x, x) - 1, 0), len(self.x) - 2)
+        return (self.values[i + 1] - self.values[i]) / (self.x[i + 1] - self.x[i])
+
 
 class _Plant:
     """The equations of motion.
@@ -80,11 +84,14 @@ class _Plant:
         gesture: Gesture,
         noise: ButtonNoise,
         sensor: ForceSensor | None,
+        detour_m: FloatArray | None,
     ) -> None:
         self.button, self.finger, self.gesture = button, finger, gesture
         self.sensor = sensor or BARE
         ticks = np.arange(noise.effort_ratio.size) - settle_button_ticks()
         self.effort = _Straight(np.asarray(TICK_s * ticks), noise.effort_ratio)
+        detour = np.zeros(ticks.size) if detour_m is None else detour_m
+        self.detour = _Straight(np.asarray(TICK_s * ticks), detour)
         cam = identify(button)
         self.elastic, self.height = _Smooth(cam.x_m, cam.elastic_N), _Smooth(cam.x_m, cam.height_m)
         self.rail, self.ratio = _Straight(cam.x_m, cam.rail_N), _Straight(cam.x_m, cam.friction_ratio)
@@ -97,6 +104,7 @@ class _Plant:
         up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
         reach = g.end_m - g.start_m
         to, rate = g.start_m + reach * (down - up), reach * (rate_down / g.press_s - rate_up / g.release_s)
+        to, rate = to + self.detour(t), rate + self.detour.slope(t)
         return (1 + self.effort(t)) * (g.stiffness_N_m * (to - x) + g.damping_N_s_m * (rate - v))
 
     def pulp(self, depth: float, rate: float, arms: float) -> tuple[float, float]:
@@ -201,6 +209,7 @@ def reference_button(
     sensor: ForceSensor | None = None,
     method: Literal["DOP853", "Radau"] = "DOP853",
     rtol: float = 1e-8,
+    detour_m: FloatArray | None = None,
 ) -> ButtonReference:
     """Simulate one press as simulate_button() does, with SciPy's solve_ivp.
 
@@ -208,7 +217,7 @@ def reference_button(
     """
     from scipy.integrate import solve_ivp
 
-    plant = _Plant(button, finger, gesture, noise, sensor)
+    plant = _Plant(button, finger, gesture, noise, sensor, detour_m)
     rows = round(button_ticks(gesture) * TICK_s / ROW_s)
     t = np.asarray(ROW_s * np.arange(rows))
     solution = solve_ivp(

@@ -79,11 +79,13 @@ def simulate_button(
     sensor: ForceSensor | None = None,
     step_s: float = STEP_s,
     audit: bool = False,
+    detour_m: FloatArray | None = None,
 ) -> ButtonTrace:
     """Simulate one press of a real button in compiled C.
 
     sensor : the force sensor worn on the fingertip; None for a bare finger, which senses nothing.
     audit : also account for the energy of the press.
+    detour_m : added to where the gesture leads the referent, one for each of noise.effort_ratio.
 
     Raises ModelError if button or finger are too stiff for the step. Safe to call from threads.
     """
@@ -92,7 +94,7 @@ def simulate_button(
     table = prepare(button).table
     grid = ButtonGrid(settle, ticks, per_tick, per_row, len(table), int(audit))
     plant = replace(button_plant(button, finger, gesture, sensor), step_s=step_s)
-    rows, switching = run_button(plant, grid, table, noise.effort_ratio)
+    rows, switching = run_button(plant, grid, table, noise.effort_ratio, detour_m)
     if not np.isfinite(rows[:-1, -1]).all():
         raise ModelError(
             f"the press diverged: button or finger are too stiff or too light for steps of {step_s:g} s; "

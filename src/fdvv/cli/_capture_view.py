@@ -1,0 +1,210 @@
+"""A capture on the terminal: a row per pace that is kept up to date, the moving pace, beeps, verdicts."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
+
+import click
+
+from fdvv.cli._beep import TONES_Hz, beeper
+from fdvv.cli._cue import BEATS, BEAT_s, FRAME_s, bar, depth_at
+from fdvv.cli._output import number, one_line
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.live import Live
+
+    from fdvv.workflow import PaceStanding, TakeAsk, TakeDone
+
+Beep = Callable[[str], None]
+Show = Callable[[float], None]
+
+
+class CaptureView(Protocol):
+    """What shows a capture."""
+
+    def cue(self, ask: TakeAsk) -> Show:
+        """Say what is wanted; give what shows the pace."""
+        ...
+
+    def done(self, event: TakeDone) -> None:
+        """Tell what became of a take."""
+        ...
+
+    def notice(self, text: str) -> None:
+        """Tell what a person should know."""
+        ...
+
+
+@contextmanager
+def capture_view(paced: bool, quiet: bool, player: str | None) -> Iterator[CaptureView]:
+    """Show a capture on standard error, in place if it is a terminal.
+
+    paced : someone follows the cue; quiet : tell only what a person at a bench must know.
+    """
+    with beeper(player, _bell) as beep:
+        if quiet or not sys.stderr.isatty():
+            yield CaptureLines(paced, quiet, beep)
+            return
+        from rich.console import Console
+        from rich.live import Live
+
+        with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
+            yield CaptureTable(paced, live, beep)
+
+
+def _bell() -> None:
+    if sys.stderr.isatty():
+        click.echo("\a", nl=False, err=True)
+
+
+class Beeps:
+    """Beeps once for each event of a cue, when its time has come."""
+
+    def __init__(self, ask: TakeAsk, beep: Beep) -> None:
+        stroke_s = stroke_of(ask)
+        begun_s = BEAT_s * len(BEATS)
+        times_s = () if stroke_s is None else (begun_s, begun_s + stroke_s)
+        self._left = list(zip(times_s, TONES_Hz, strict=False))
+        self._beep = beep
+
+    def __call__(self, t_s: float) -> None:
+        """Beep if it is due."""
+        while self._left and t_s >= self._left[0][0]:
+            self._beep(self._left.pop(0)[1])
+
+
+class CaptureLines:
+    """A line per take."""
+
+    def __init__(self, paced: bool, quiet: bool, beep: Beep) -> None:
+        self._paced, self._quiet, self._beep = paced, quiet, beep
+
+    def cue(self, ask: TakeAsk) -> Show:
+        """Ask a person; the pace is told by the beeps alone."""
+        if not self._paced:
+            return lambda _t_s: None
+        click.echo(asked(ask), err=True)
+        return Beeps(ask, self._beep)
+
+    def done(self, event: TakeDone) -> None:
+        """Tell of a take."""
+        if self._paced or not self._quiet:
+            click.echo(told(event), err=True)
+
+    def notice(self, text: str) -> None:
+        """Tell it; where only a document is wanted, warnings alone."""
+        if not self._quiet or text.startswith("warning: "):
+            click.echo(one_line(text), err=True)
+
+
+class CaptureTable:
+    """A row per pace, the last take and the cue below them, redrawn in place."""
+
+    def __init__(self, paced: bool, live: Live, beep: Beep) -> None:
+        self._paced, self._live, self._beep = paced, live, beep
+        self._rows: tuple[PaceStanding, ...] = ()
+        self._line = ""
+
+    def cue(self, ask: TakeAsk) -> Show:
+        """Show a person the pace."""
+        if not self._paced:
+            return lambda _t_s: None
+        beeps, drawn_s = Beeps(ask, self._beep), [-1.0]
+
+        def show(t_s: float) -> None:
+            beeps(t_s)
+            if t_s - drawn_s[0] >= FRAME_s:
+                drawn_s[0] = t_s
+                self._draw(asked(ask), frame(ask, t_s))
+
+        return show
+
+    def done(self, event: TakeDone) -> None:
+        """Tell of a take; one that must be made again stays on the screen."""
+        self._line, self._rows = told(event), event.standing
+        if not event.verdict.ok:
+            self._live.console.print(self._line, highlight=False, markup=False)
+        self._draw()
+
+    def notice(self, text: str) -> None:
+        """Tell it above the rows."""
+        self._live.console.print(one_line(text), highlight=False, markup=False)
+
+    def _draw(self, *lines: str) -> None:
+        self._live.update(picture(self._rows, (self._line, *lines)), refresh=True)
+
+
+def stroke_of(ask: TakeAsk) -> float | None:
+    """Give the time of a stroke; None where nothing is pressed."""
+    velocity = ask.step.velocity_mm_s
+    return None if velocity is None else ask.travel_mm / velocity
+
+
+def frame(ask: TakeAsk, t_s: float) -> str:
+    """Draw the cue at a time: a count-in, then the bar that goes as the cap should."""
+    stroke_s, begun_s = stroke_of(ask), BEAT_s * len(BEATS)
+    if stroke_s is None:
+        return "hands off"
+    if t_s < begun_s:
+        return f"{BEATS[min(int(t_s / BEAT_s), len(BEATS) - 1)]}  {bar(0.0)}"
+    return f"   {bar(depth_at(t_s - begun_s, stroke_s))}"
+
+
+def asked(ask: TakeAsk) -> str:
+    """Say what is wanted."""
+    at, again = f"{ask.number} of {ask.total}", " once more" if ask.again else ""
+    stroke_s, velocity = stroke_of(ask), ask.step.velocity_mm_s
+    if stroke_s is None:
+        return f"{at}: take the finger off the button and wait{again}"
+    how = "down to the stop and let go"
+    if ask.step.stage == "probe":
+        how = f"slowly, {how} as slowly"
+    long = f"{stroke_s:.0f} s" if stroke_s >= 1 else f"{1000 * stroke_s:.0f} ms"
+    return f"{at}: press{again}, {velocity:g} mm/s, {ask.travel_mm:.1f} mm in {long}, {how}"
+
+
+NAMES = {"rest": "bench at rest", "probe": "slow probe"}
+
+
+def told(event: TakeDone) -> str:
+    """Say what became of a take."""
+    take, verdict = event.take, event.verdict
+    what = NAMES.get(str(take.stage)) or f"{take.velocity_mm_s:g} mm/s"
+    at = f"take {take.number}, {event.done} of {event.total}, {what}"
+    if not verdict.ok:
+        then = "; enough tries, the session goes on without it" if event.missed else ""
+        return one_line(f"{at}: {verdict.reason}{then}")
+    found = [f"{verdict.achieved_mm_s:.0f} mm/s"] if math.isfinite(verdict.achieved_mm_s) else []
+    found += [f"{verdict.travel_mm:.2f} mm"] if math.isfinite(verdict.travel_mm) else []
+    return one_line(f"{at}: {', '.join(['good', *found])}")
+
+
+COLUMNS = ("pace", "good", "of", "takes", "missed", "median mm/s", "least", "most")
+
+
+def cells(pace: PaceStanding) -> list[str]:
+    """Give the cells of a row."""
+    speeds = pace.achieved_mm_s
+    found = (statistics.median(speeds), min(speeds), max(speeds)) if speeds else (None, None, None)
+    counts = (pace.good, pace.wanted, pace.made, pace.missed)
+    return [f"{pace.velocity_mm_s:g} mm/s", *map(str, counts), *(number(v, 1) for v in found)]
+
+
+def picture(rows: tuple[PaceStanding, ...], lines: tuple[str, ...]) -> RenderableType:
+    """Lay out the rows and the lines below them."""
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False)
+    for i, name in enumerate(COLUMNS):
+        table.add_column(name, justify="right" if i else "left")
+    for row in rows:
+        table.add_row(*cells(row))
+    return Group(*([table] if rows else []), *(Text(line, no_wrap=True) for line in lines if line))
