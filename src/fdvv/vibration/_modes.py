@@ -43,7 +43,9 @@ def fit_modes(
     if count is not None:
         fit = _with(records, times, rows, rate_Hz, count, degree)
         if fit is None:
-            raise FitError(f"no {count} modes that ring and decay in {records.shape[1]} samples; ask for fewer")
+            raise FitError(
+                f"no {count} modes that ring and decay in {records.shape[1]} samples; ask for fewer"
+            )
         return fit
     fits = [_with(records, times, rows, rate_Hz, k, degree) for k in range(1, most + 1)]
     return min([empty, *(fit for fit in fits if fit is not None)], key=lambda fit: fit.bic)
@@ -61,7 +63,12 @@ def _nothing(records: FloatArray, degree: int) -> DampedFit:
 
 
 def _with(
-    records: FloatArray, times: list[FloatArray], rows: list[FloatArray], rate_Hz: float, count: int, degree: int
+    records: FloatArray,
+    times: list[FloatArray],
+    rows: list[FloatArray],
+    rate_Hz: float,
+    count: int,
+    degree: int,
 ) -> DampedFit | None:
     """Fit a number of modes from the pencil's poles; None if there are not so many that ring."""
     # a polynomial beneath takes poles near 1 of its own
