@@ -11,7 +11,6 @@ import numpy as np
 from fdvv.errors import FitError, ModelError
 from fdvv.units import FloatArray
 
-
 MOST_STEPS = 25
 """Of the search; a fit that needs more has no clear minimum, and its standard errors say so."""
 
@@ -91,12 +90,31 @@ def _slopes(t_s: FloatArray, own: FloatArray, weight: FloatArray) -> FloatArray:
     return np.hstack([by_f, by_d])
 
 
+def _block_diagonal(blocks: list[FloatArray]) -> FloatArray:
+    whole = np.zeros((sum(len(b) for b in blocks), sum(b.shape[1] for b in blocks)))
+    row = column = 0
+    for block in blocks:
+        whole[row : row + len(block), column : column + block.shape[1]] = block
+        row, column = row + len(block), column + block.shape[1]
+    return whole
+
+
 class _Records:
     """Several records that share frequencies and decays; amplitudes, phases and background are their own."""
 
-    def __init__(self, times_s: Sequence[FloatArray], signals: Sequence[FloatArray], degree: int) -> None:
-        self.times_s, self.signals = times_s, signals
+    def __init__(
+        self, times_s: Sequence[FloatArray], signals: Sequence[FloatArray], degree: int, one_phase: bool
+    ) -> None:
+        # the search stops at an absolute slope, so that it needs signals of a size of its own
+        self.size = (
+            math.sqrt(sum(float(y @ y) for y in signals) / max(sum(y.size for y in signals), 1)) or 1.0
+        )
+        self.times_s, self.signals = times_s, [y / self.size for y in signals]
         self.backgrounds = [polynomial(t, degree) for t in times_s]
+        if one_phase:
+            # one record with all samples, in which each press keeps a background of its own
+            self.times_s, self.signals = [np.concatenate(times_s)], [np.concatenate(self.signals)]
+            self.backgrounds = [_block_diagonal(self.backgrounds)]
         self.samples = sum(t.size for t in times_s)
 
     def solve(self, theta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -127,20 +145,22 @@ def fit_damped(
     frequency_Hz: Sequence[float],
     decay_1_s: Sequence[float],
     degree: int = -1,
+    one_phase: bool = False,
 ) -> DampedFit:
     """Fit decaying sinusoids that several records share, by least squares from a first guess.
 
-    times_s, signals : one array each per record, times from the moment that the modes start; they need not
-        be even, so that records sampled at different phases fill each other's gaps.
+    times_s, signals : one array each per record, times from the moment that the modes start, even or not.
     frequency_Hz, decay_1_s : first guess, one of each per mode.
     degree : of the polynomial that each record may have beneath; -1 for none.
+    one_phase : the records share amplitudes and phases too. Only then do records that were sampled at
+        different phases fill each other's gaps: with phases of their own, f and its alias fit equally well.
 
     Weights are solved exactly at each step (variable projection, Golub and Pereyra 1973), so only f and d
     are searched. Raises FitError if there are fewer samples than parameters.
     """
     from scipy.optimize import least_squares
 
-    records = _Records(times_s, signals, degree)
+    records = _Records(times_s, signals, degree, one_phase)
     f0, d0 = np.asarray(frequency_Hz, dtype=np.float64), np.asarray(decay_1_s, dtype=np.float64)
     needed = records.parameters(f0.size)
     if records.samples <= needed or not f0.size:
@@ -171,15 +191,16 @@ def _summary(records: _Records, theta: FloatArray) -> DampedFit:
     spread = np.sqrt(np.mean((amplitudes / np.maximum(total, 1e-300)) ** 2 * errors, axis=0) / len(weights))
     made = [
         DampedMode(
-            float(theta[k]), float(theta[modes + k]), float(total[k]),
+            float(theta[k]), float(theta[modes + k]), records.size * float(total[k]),
             float(math.atan2(cosines[0, k], sines[0, k])), float(sd[k]), float(sd[modes + k]),
-            float(spread[k]),
+            records.size * float(spread[k]),
         )
         for k in np.argsort(-total)
     ]  # fmt: skip
-    mean_power = max(float(left @ left) / records.samples, 1e-300)
+    mean_power = max(records.size**2 * float(left @ left) / records.samples, 1e-300)
     bic = records.samples * math.log(mean_power) + needed * math.log(records.samples)
-    return DampedFit(tuple(made), amplitudes[:, np.argsort(-total)], math.sqrt(power), records.samples, bic)
+    sizes, noise = records.size * amplitudes[:, np.argsort(-total)], records.size * math.sqrt(power)
+    return DampedFit(tuple(made), sizes, noise, records.samples, bic)
 
 
 def _weight_variance(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -19,18 +20,22 @@ SHORT_s, LONG_s = 0.0007, 0.004
 """A burst begins where the mean power of the first, ahead, exceeds that of the second, behind."""
 
 RISE_ratio = 8.0
-"""By so much, 9 dB: far more than the powers of two stretches of one noise differ, 30 and 180 samples at 44.1 kHz."""
+"""By so much, 9 dB: far more than two stretches of one noise differ, 30 and 180 samples at 44.1 kHz."""
 
 QUIET_ratio = 1e-3
 """Bursts 30 dB below the loudest of the stroke are of the room or of a lossy codec."""
 
 GROUP_s = 0.045
-"""Contact, click and bottom-out of a stroke follow one another closer than this, a release comes later: typed keys
-take 5 to 20 ms to go down and are held for 80 or more."""
+"""Contact, click and bottom-out of a stroke follow one another closer than this, a release comes later: typed
+keys take 5 to 20 ms to go down and are held for 80 or more."""
 
 BESIDE_ratio, CLICK_ratio = 10**-1.5, 10**-2.0
 """Click and bottom are heard beside each other: what ends a press is at most 15 dB below the loudest of it, a
 click at most 20 dB below the bottom; a finger's contact is fainter."""
+
+CLICK_LEAD_s = (0.003, 0.020)
+"""How long before the bottom a click can be: half of 4 mm at 640 and at 100 mm/s, as typed keys and
+calm presses go. Earlier is the finger's contact, later the bottom's own."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +74,10 @@ def key_events(sound: npt.ArrayLike, rate_Hz: float, release_alone: bool = False
     rate_Hz : at least 8000.
     release_alone : the recording holds no press; then its loudest burst is the release.
 
-    The press is 45 ms from the first burst on that is within 15 dB of the loudest. The last such burst in them
-    is the bottom; a burst before it, no more than 20 dB below, is the click, the loudest if there are several.
-    The release is the loudest burst later than 45 ms after the bottom. Raises ModelError for other rates or no
-    samples.
+    The press is 45 ms from the first burst on that is within 15 dB of the loudest. The last such burst in
+    them is the bottom. A burst 3 to 20 ms before it, no more than 20 dB below, is the click, the loudest if
+    there are several. The release is the loudest burst later than 45 ms after the bottom. Raises ModelError
+    for other rates or no samples.
     """
     signal = np.asarray(sound, dtype=np.float64)
     if signal.ndim != 1 or signal.size < 64 or not np.isfinite(signal).all():
@@ -90,14 +95,16 @@ def key_events(sound: npt.ArrayLike, rate_Hz: float, release_alone: bool = False
     strong = [burst for burst in found if burst.peak_power >= BESIDE_ratio * loudest]
     group = [b for b in strong if b.onset_s - strong[0].onset_s <= GROUP_s]
     bottom = group[-1]
-    before = [b for b in found if 0 < bottom.onset_s - b.onset_s <= GROUP_s]
+    earliest, latest = bottom.onset_s - CLICK_LEAD_s[1], bottom.onset_s - CLICK_LEAD_s[0]
+    before = [b for b in found if earliest <= b.onset_s <= latest]
     after = [b for b in found if b.onset_s - bottom.onset_s > GROUP_s]
     return KeyEvents(_click(before, bottom), bottom.onset_s, _release(after), tuple(found))
 
 
 def _click(before: list[Burst], bottom: Burst) -> float | NotFound:
     if not before:
-        return NotFound("nothing is heard before the bottom")
+        low, high = (1e3 * lead for lead in CLICK_LEAD_s)
+        return NotFound(f"nothing is heard {low:.0f} to {high:.0f} ms before the bottom")
     loudest = max(before, key=lambda burst: burst.peak_power)
     below_dB = 10 * math.log10(loudest.peak_power / bottom.peak_power)
     if loudest.peak_power < CLICK_ratio * bottom.peak_power:
@@ -130,7 +137,7 @@ def bursts(signal: FloatArray, rate_Hz: float) -> list[Burst]:
     rising[:short] = False
     edges = np.flatnonzero(np.diff(np.append(False, rising).astype(int)) == 1).tolist()
     found: list[Burst] = []
-    for edge, after in zip(edges, [*edges[1:], power.size], strict=True):
+    for edge, after in pairwise([*edges, power.size]):
         peak = float(ahead[edge : min(edge + long, after)].max())
         onset = _first_loud(power, edge, min(edge + 2 * short, power.size), peak) / rate_Hz
         since = onset - found[-1].onset_s if found else np.inf

@@ -122,8 +122,8 @@ def _search(
 
 def chi_square_tail(value: float, freedom: int) -> float:
     """Give the chance that chi-square with an even number of degrees of freedom exceeds a value."""
-    half = 0.5 * value
-    return math.exp(-half) * math.fsum(half**j / math.factorial(j) for j in range(freedom // 2))
+    half, terms = 0.5 * value, range(freedom // 2)
+    return float(math.exp(-half) * math.fsum(half**j / math.factorial(j) for j in terms))
 
 
 def _gain(
@@ -157,4 +157,4 @@ def _gain(
     q, _ = np.linalg.qr(np.hstack([before, turn]))
     parts = q.T @ y
     left = (float(y @ y) - float(parts @ parts)) / free
-    return float(np.sum(parts[before.shape[1] :] ** 2)) / max(noise**2, left)
+    return float(np.sum(parts[before.shape[1] :] ** 2) / max(noise**2, left))

@@ -20,6 +20,10 @@ LEAST_SHARE = 0.5
 """A snap that fewer presses show is not one of the button's."""
 
 
+KNOWN_ratio = 0.05
+"""Standard error of a frequency that other velocities may build on."""
+
+
 @dataclass(frozen=True)
 class Measured:
     """A figure and its spread: standard deviation over presses, or standard error, as its owner says."""
@@ -39,7 +43,7 @@ class MeasuredVibration:
     onset_mm : median, and the spread over presses (scaled from the median deviation).
     snap_velocity_mm_s : of the cap at the onset: median and spread over presses.
     shown, presses : presses that showed it, and all.
-    snaps : of the presses that showed it.
+    heard, snaps : the presses that showed it, and where.
     ring : its modes, or why they could not be told.
     acceleration : the sensor gives acceleration, not velocity.
     """
@@ -51,14 +55,24 @@ class MeasuredVibration:
     snap_velocity_mm_s: Measured
     shown: int
     presses: int
+    heard: tuple[HeardPress, ...]
     snaps: tuple[Snap, ...]
     ring: Ring | NotFound
     acceleration: bool
 
     @property
     def amplitude(self) -> Measured | None:
-        """Get the principal mode's amplitude in the signal's unit, median and spread over presses, or None."""
+        """Get the principal mode's amplitude in the signal's unit, median and spread, or None."""
         return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes)
+
+    @property
+    def rings(self) -> tuple[tuple[float, float], ...]:
+        """Get frequency and decay of one or two modes known to 5 %, as measure_vibration() takes them."""
+        if isinstance(self.ring, NotFound):
+            return ()
+        sure = [m for m in self.ring.modes if m.frequency_sd_Hz < KNOWN_ratio * m.frequency_Hz]
+        apart = [m for m in sure[1:] if not 0.7 < m.frequency_Hz / sure[0].frequency_Hz < 1.4]
+        return tuple((m.frequency_Hz, m.decay_1_s) for m in [*sure[:1], *apart[:1]])
 
     @property
     def duration_s(self) -> Measured | None:
@@ -70,8 +84,8 @@ class MeasuredVibration:
     def vibration(self, scale: float | None = None) -> Vibration:
         """Give the vibration as models hold it, its amplitudes as accelerations of the cap.
 
-        scale : what the sensor gives per m/s (V s/m) or, of an accelerometer, per m/s2. Without it the unit of
-            the signal says nothing of the cap: None is refused unless the signal is an acceleration in m/s2.
+        scale : what the sensor gives per m/s (V s/m) or, of an accelerometer, per m/s2. Without it the unit
+            of the signal says nothing of the cap: None is refused unless it is an acceleration in m/s2.
 
         Raises ModelError if the ring was not found or a microphone's scale is unknown.
         """
@@ -110,7 +124,11 @@ def _mode(
 
 
 def measure_vibration(
-    presses: Sequence[HeardPress], velocity_mm_s: float, energy: SnapEnergy | None, acceleration: bool = False
+    presses: Sequence[HeardPress],
+    velocity_mm_s: float,
+    energy: SnapEnergy | None,
+    acceleration: bool = False,
+    rings: Sequence[tuple[float, float]] = (),
 ) -> MeasuredVibration | NotFound:
     """Measure onset, frequency, decay, duration and amplitude of the snap of one stroke at one velocity.
 
@@ -119,6 +137,9 @@ def measure_vibration(
         there is no snap to look for.
     acceleration : the signal is an acceleration, not a velocity.
 
+    rings : frequency (Hz) and decay (1/s) of modes that this button is known to ring in, as other velocities
+        or the other stroke told (MeasuredVibration.rings); they sharpen the search.
+
     Each press is searched by itself; the modes that the pooled presses ring in then sharpen the search. The
     ring is fitted to all presses together.
     """
@@ -126,9 +147,9 @@ def measure_vibration(
         raise ModelError("a vibration is measured from one or more presses, all of one stroke")
     if energy is None:
         return NotFound("force does not fall between contact and bottom-out: there is no snap to look for")
-    looked = [find_snap(press, energy.window_mm) for press in presses]
+    looked = [find_snap(press, energy.window_mm, rings) for press in presses]
     heard, snaps = _shown(presses, looked)
-    rings = rough_rings(heard, snaps, acceleration)
+    rings = () if rings else rough_rings(heard, snaps, acceleration)
     if rings and presses[0].period_s * 8 * max(f for f, _ in rings) < 1:
         again = [find_snap(press, energy.window_mm, rings) for press in presses]
         if len(_shown(presses, again)[0]) >= len(heard):
@@ -139,10 +160,18 @@ def measure_vibration(
         return NotFound(f"{len(snaps)} of {len(presses)} presses show a snap; of the others: {reasons[0]}")
     ring = fit_ring(heard, snaps, acceleration)
     return MeasuredVibration(
-        presses[0].stroke, velocity_mm_s, energy, _median(np.array([snap.onset_mm for snap in snaps])),
-        _median(np.array([snap.velocity_mm_s for snap in snaps])), len(snaps), len(presses), tuple(snaps),
-        ring, acceleration,
-    )  # fmt: skip
+        presses[0].stroke,
+        velocity_mm_s,
+        energy,
+        _median(np.array([snap.onset_mm for snap in snaps])),
+        _median(np.array([snap.velocity_mm_s for snap in snaps])),
+        len(snaps),
+        len(presses),
+        tuple(heard),
+        tuple(snaps),
+        ring,
+        acceleration,
+    )
 
 
 def _shown(

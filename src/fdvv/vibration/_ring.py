@@ -69,8 +69,8 @@ class Ring:
 def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration: bool) -> Ring | NotFound:
     """Fit the modes that ring after the snaps of presses of one velocity and stroke.
 
-    presses, snaps : alike in number; each press is sampled at its own phase against its snap, so that
-        together they resolve more than the rate of one.
+    presses, snaps : alike in number. Each ring has an amplitude and a phase of its own, for onsets are not
+        known to a small part of a period; so frequencies are taken to lie below half the rate.
     acceleration : the signal is an acceleration, not a velocity (as a microphone's near a cap).
 
     The number of modes has the smallest BIC, down to none. Principal is the mode with the most kinetic energy

@@ -12,6 +12,9 @@ from fdvv.model import Stroke
 from fdvv.units import FloatArray
 from fdvv.vibration._onset import FALSE_ALARM, Turn, find_turn, noise_rms
 
+STOP_mm = 0.15
+"""No snap is looked for so near to where the stroke turns: a bench places the cap to 0.1 mm."""
+
 GUARD_samples = 2.0
 """Left out before the stop: its burst has begun by the first sample that shows it."""
 
@@ -107,7 +110,8 @@ def find_snap(
 
     The largest sudden turn counts if noise alone gives such a one in less than a hundredth of presses.
     """
-    passed = [press.passing_s(at) for at in window_mm]
+    deepest = float(press.place_mm.max()) - STOP_mm
+    passed = [press.passing_s(min(at, deepest)) for at in window_mm]
     if passed[0] is None or passed[1] is None:
         return NotFound(f"the stroke does not pass {window_mm[0]:.2f} to {window_mm[1]:.2f} mm")
     start, end = sorted((passed[0], passed[1]))
