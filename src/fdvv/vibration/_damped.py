@@ -235,6 +235,8 @@ def cramer_rao(
     mode : f (Hz), d (1/s), amplitude and phase (rad); the latter two are unknown in each record.
     noise : rms per sample, in the unit of the amplitude.
     degree : of the unknown polynomial beneath each record; -1 for none.
+
+    Infinite where the records are too short to tell anything.
     """
     f, d, amplitude, phase = mode
     if noise <= 0 or amplitude <= 0:
@@ -246,5 +248,7 @@ def cramer_rao(
         free = np.hstack([shapes(t, np.array([f]), np.array([d])), polynomial(t, degree)])
         slopes -= free @ np.linalg.lstsq(free, slopes, rcond=None)[0]
         fisher += slopes.T @ slopes / noise**2
+    if np.linalg.cond(fisher) > 1 / np.finfo(np.float64).eps:
+        return math.inf, math.inf
     bound = np.sqrt(np.diag(np.linalg.inv(fisher)))
     return float(bound[0]), float(bound[1])

@@ -13,15 +13,19 @@ from fdvv.model import Mode, Stroke, Vibration
 from fdvv.units import FloatArray
 from fdvv.vibration._damped import duration_s
 from fdvv.vibration._energy import SnapEnergy
-from fdvv.vibration._ring import Ring, fit_ring, rough_rings
+from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
 
 LEAST_SHARE = 0.5
 """A snap that fewer presses show is not one of the button's."""
 
 
-KNOWN_ratio = 0.05
-"""Standard error of a frequency that other velocities may build on."""
+ROUNDS = 2
+"""Searches with the modes that the search before told."""
+
+KNOWN_ratio, FREE_ratio, APART_ratio = 0.05, 0.3, 1.4
+"""A mode to build on: frequency known to this part, damping below this part of critical (a drive that fades is
+no mode), and frequency apart from that of the first."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +71,8 @@ class MeasuredVibration:
 
     @property
     def rings(self) -> tuple[tuple[float, float], ...]:
-        """Get frequency and decay of one or two modes known to 5 %, as measure_vibration() takes them."""
-        if isinstance(self.ring, NotFound):
-            return ()
-        sure = [m for m in self.ring.modes if m.frequency_sd_Hz < KNOWN_ratio * m.frequency_Hz]
-        apart = [m for m in sure[1:] if not 0.7 < m.frequency_Hz / sure[0].frequency_Hz < 1.4]
-        return tuple((m.frequency_Hz, m.decay_1_s) for m in [*sure[:1], *apart[:1]])
+        """Get frequency and decay of the modes that measure_vibration() of other presses can build on."""
+        return known_rings(self.ring)
 
     @property
     def duration_s(self) -> Measured | None:
@@ -123,6 +123,20 @@ def _mode(
     )
 
 
+def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
+    """Give frequency and decay of the principal mode and of one other, those that are known well enough."""
+    if isinstance(ring, NotFound):
+        return ()
+    sure = [
+        mode
+        for mode in ring.modes
+        if mode.frequency_sd_Hz < KNOWN_ratio * mode.frequency_Hz
+        and mode.decay_1_s < FREE_ratio * 2 * math.pi * mode.frequency_Hz
+    ]
+    apart = [m for m in sure[1:] if not 1 / APART_ratio < m.frequency_Hz / sure[0].frequency_Hz < APART_ratio]
+    return tuple((mode.frequency_Hz, mode.decay_1_s) for mode in [*sure[:1], *apart[:1]])
+
+
 def measure_vibration(
     presses: Sequence[HeardPress],
     velocity_mm_s: float,
@@ -149,16 +163,21 @@ def measure_vibration(
         return NotFound("force does not fall between contact and bottom-out: there is no snap to look for")
     looked = [find_snap(press, energy.window_mm, rings) for press in presses]
     heard, snaps = _shown(presses, looked)
-    rings = () if rings else rough_rings(heard, snaps, acceleration)
-    if rings and presses[0].period_s * 8 * max(f for f, _ in rings) < 1:
-        again = [find_snap(press, energy.window_mm, rings) for press in presses]
-        if len(_shown(presses, again)[0]) >= len(heard):
-            looked = again
-            heard, snaps = _shown(presses, looked)
+    ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
+    for _ in range(ROUNDS):
+        known = known_rings(ring)
+        # known modes part beginning from going on only where a sample is short beside their periods
+        if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:
+            break
+        again = [find_snap(press, energy.window_mm, known) for press in presses]
+        if len(_shown(presses, again)[0]) < len(heard):
+            break
+        looked = again
+        heard, snaps = _shown(presses, looked)
+        ring = fit_ring(heard, snaps, acceleration)
     if len(snaps) < LEAST_SHARE * len(presses):
         reasons = [snap.reason for snap in looked if isinstance(snap, NotFound)]
         return NotFound(f"{len(snaps)} of {len(presses)} presses show a snap; of the others: {reasons[0]}")
-    ring = fit_ring(heard, snaps, acceleration)
     return MeasuredVibration(
         presses[0].stroke,
         velocity_mm_s,

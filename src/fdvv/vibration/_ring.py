@@ -23,9 +23,6 @@ BACKGROUND_DEGREE = 2
 DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.006)
 """A ring is free once its drive is over: of these delays after the onset the shortest that fits is kept."""
 
-ROUGH_DELAY_s = 0.002
-"""For a first look at the modes."""
-
 FITS_ratio = 1.2
 """What a free ring leaves is noise, up to this."""
 
@@ -102,18 +99,6 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     return Ring(first, modes, fit.amplitudes[:, order[0]], delay, ratio)
 
 
-def rough_rings(
-    presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration: bool
-) -> tuple[tuple[float, float], ...]:
-    """Give frequency and decay of the two principal modes, sure or not: enough to look for onsets again."""
-    found = _fit_after(presses, snaps, ROUGH_DELAY_s, most=2)
-    if found is None:
-        return ()
-    delay, fit, _ = found
-    modes = [fit.modes[k] for k in _order(fit, delay, acceleration)]
-    return tuple((mode.frequency_Hz, mode.decay_1_s) for mode in modes)
-
-
 def _best(presses: Sequence[HeardPress], snaps: Sequence[Snap]) -> tuple[float, DampedFit, float] | None:
     """Give delay, fit and its noise ratio: of the shortest delay that leaves noise, or of the least left."""
     least = None
@@ -138,7 +123,7 @@ def _energy(mode: DampedMode, delay_s: float, acceleration: bool) -> float:
 
 
 def _fit_after(
-    presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float, most: int = MOST_MODES
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
 ) -> tuple[float, DampedFit, float] | None:
     """Fit from a delay after the onsets on; give delay, fit and its noise over the sensor's."""
     times, signals, noises = [], [], []
@@ -153,7 +138,7 @@ def _fit_after(
     if not times:
         return None
     fits = [_background(times, signals)]
-    for count in range(1, most + 1):
+    for count in range(1, MOST_MODES + 1):
         try:
             start = _starts(times, signals, count, presses[0].period_s)
             fits.append(fit_damped(times, signals, *start, degree=BACKGROUND_DEGREE))

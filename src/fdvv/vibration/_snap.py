@@ -136,8 +136,9 @@ def find_snap(
 def stop_s(press: HeardPress, after_s: float) -> float:
     """Give until when the signal is free of the stop that ends the stroke (bottom-out, or the top).
 
-    The stop is by far the loudest thing after the snap: the first sample after after_s whose third
-    difference reaches half the largest of the stroke. A guard before it is left out.
+    The stop is by far the loudest thing after the snap. It begins at the first sample after after_s whose
+    third difference is six times that of the noise and a thirtieth of the stop's largest, or, in more noise,
+    half of the largest. A guard before it is left out.
     """
     turn = float(press.place_s[np.argmax(press.place_mm)])
     end = turn if press.stroke is Stroke.PRESS else float(press.place_s[-1])
@@ -147,4 +148,6 @@ def stop_s(press: HeardPress, after_s: float) -> float:
     if not later.any():
         return after_s
     loud = third[later]
-    return float(at[later][int(np.argmax(loud >= 0.5 * loud.max()))] - GUARD_samples * press.period_s)
+    largest = float(loud.max())
+    level = min(max(6 * np.sqrt(20.0) * press.noise_or_own(), largest / 30), largest / 2)
+    return float(at[later][int(np.argmax(loud >= level))] - GUARD_samples * press.period_s)
