@@ -17,19 +17,23 @@ from fdvv.core import Core
 from fdvv.device import HostBoard, LinkedDevice, SimulatedPerson
 from fdvv.errors import FdvvError, ModelError
 from fdvv.model import ForceSurface, Mode, Stroke, Vibration, load_builtin
-from fdvv.program import ConvertedVibration, Limits, Slot, Waveform, button_program, compile_program
-from fdvv.protocol import Settings
+from fdvv.program import RATE_HZ, ConvertedVibration, Limits, Slot, Waveform, button_program, compile_program
+from fdvv.protocol import NONE, Settings
+from fdvv.testing import AWAY
 from fdvv.twin import Finger, Rig, RigPlant, Trace, draw_finger, draw_rig, plan, settings_of, solve_pace
 from fdvv.units import FloatArray, m_from_mm
 from fdvv.vibration import (
     InverseSettings,
     KnownExciter,
+    acceleration_m_s2,
     correlation,
+    drive_for,
+    measure_tone,
     spectral_similarity,
     spqi,
     st_sim,
 )
-from fdvv.workflow import identify_exciter, render_vibration
+from fdvv.workflow import identify_exciter, render_vibration, tone_image
 
 FIRST_SEED = 2000
 """Below it seeds were used to choose settings."""
@@ -243,6 +247,57 @@ def print_fingers() -> None:
     print(f"default rig, one drive, 20 drawn fingers, 50 mm/s: {told(rows)}")
 
 
+def print_tones() -> None:
+    """Default rig at rest: what a tone does to the cap, and what the position sensor makes of it."""
+    rig = uno(Rig())
+    free, settings = true_exciter(rig), settings_of(rig)
+    frequencies, tone_s = [200.0, 260.0, 300.0, 400.0, 580.0, 740.0, 930.0], 3.0
+    core = Core(settings, tone_image(frequencies, tone_s))
+    core.arm()
+    plant = RigPlant(rig, AWAY, seed=1, stop_us=settings.stop_zero_us + 4 * settings.stop_us_mm)
+    plant.load(tone_image(frequencies, tone_s))
+    sensor = rig.position_sensor
+    print("default rig, tones of 3 s at rest: cap and sensor over the free cap's motion, error um")
+    for slot in (None, *range(len(frequencies))):
+        told = []
+        for k in range(round((tone_s - 0.02) / rig.controller.tick_s)):
+            out = core.tick(plant.inputs)
+            plant.step(out["duty_q15"], out["enable"], out["stop_us"], NONE if slot is None or k else slot)
+            told.append(float(out["displacement_um16"]) / 16e6)
+        trace = plant.record()
+        if slot is None:
+            continue
+        f = frequencies[slot]
+        begun = round(0.1 / rig.controller.tick_s)
+        t_s: FloatArray = np.arange(len(told), dtype=np.float64) * rig.controller.tick_s
+        seen = measure_tone(t_s[begun:], np.array(told)[begun:], f)
+        late = trace.t_s > 0.1
+        moved = measure_tone(trace.t_s[late], 1e-3 * trace.displacement_mm[late], f).amplitude
+        alone = 2047 / 2048 * 2.5 * abs(complex(free.response(f))) / (2 * np.pi * f) ** 2
+        passed = np.sinc(f * sensor.burst_s) / np.hypot(1, f / sensor.bandwidth_Hz)
+        print(
+            f"  {f:4g} Hz: {moved / alone:.2f}  {seen.amplitude / alone / passed:.2f}  {1e6 * seen.error:.2f}"
+        )
+
+
+def print_filter() -> None:
+    """The inverse as a filter in frequency, cut to what a slot may last, against least squares in time."""
+    free, wanted = true_exciter(uno(Rig())), target("239 Hz, 16 ms")
+    times = (np.arange(8192) + 0.5) / RATE_HZ
+    shape = wanted.acceleration_m_s2(times)
+    response = free.response(np.fft.rfftfreq(times.size, 1 / RATE_HZ))
+    strong = abs(complex(free.response(239.0)))
+    print("expected on the default rig, drive of 20 ms: likeness")
+    print(f"  the waveform as it is {correlation(acceleration_m_s2(free, shape), shape):.2f}")
+    for gain_dB in (5.0, 10.0, 15.0, 20.0):
+        bound = (strong / 2 / 10 ** (gain_dB / 20)) ** 2
+        spectrum = np.fft.rfft(shape) * np.conj(response) / (np.abs(response) ** 2 + bound)
+        drive = np.where(times < 0.02, np.fft.irfft(spectrum, times.size), 0.0)
+        filtered = correlation(acceleration_m_s2(free, drive), shape)
+        fitted = drive_for(free, wanted, InverseSettings(gain_dB=gain_dB, lead_s=0.0)).likeness
+        print(f"  {gain_dB:2g} dB: filter in frequency {filtered:.2f}, least squares in time {fitted:.2f}")
+
+
 def print_onset() -> None:
     """Default rig: when the waveform lies where it is most like the target."""
     rig, wanted = uno(Rig()), target("239 Hz, 16 ms")
@@ -264,6 +319,8 @@ def main() -> None:
     count = parser.parse_args().rigs
     print("vibrations on the cap, MX Clear, at 2 mm; simulated")
     print_settings()
+    print_filter()
+    print_tones()
     print_fingers()
     print_onset()
     benches = list(drawn(count))
