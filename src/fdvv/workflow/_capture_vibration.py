@@ -1,4 +1,4 @@
-"""The vibrations of a recording: what its microphone heard of the snaps, at every pace and on both strokes."""
+"""The vibrations of a recording: what its microphone heard of the snaps, at every pace, on both strokes."""
 
 from __future__ import annotations
 
@@ -106,8 +106,10 @@ def _energy(curve: AveragedCurve) -> SnapEnergy | None:
 
 def _vibration(one: HeardStroke, scale_V_s_m: float | None) -> Vibration:
     """Give a found vibration with its spread. ModelError, or what was said of one that was not found."""
-    if isinstance(one.found, NotFound):
-        raise ModelError(one.found.reason)
+    missing = one.found if isinstance(one.found, NotFound) else one.found.ring
+    if isinstance(one.found, NotFound) or isinstance(missing, NotFound):
+        assert isinstance(missing, NotFound)
+        raise ModelError(missing.reason)
     vibration = one.found.vibration(scale_V_s_m)
     return replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=_spread(one.found, vibration))
 
