@@ -23,9 +23,9 @@ LEAST_SHARE = 0.5
 ROUNDS = 2
 """Searches with the modes that the search before told."""
 
-KNOWN_ratio, FREE_ratio, APART_ratio = 0.05, 0.3, 1.4
-"""A mode to build on: frequency known to this part, damping below this part of critical (a drive that fades
-is no mode), and frequency apart from that of the first."""
+KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
+"""A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
+mode), and frequency apart from that of the first."""
 
 
 @dataclass(frozen=True)
