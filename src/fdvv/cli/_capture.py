@@ -133,7 +133,9 @@ def capture(
     plan = CapturePlan(**asked, shuffled=shuffled, seed=seed)
     twin = spec == "twin"
     device = open_bench(spec, button or TWIN_BUTTON, participant, seed, watch)
-    name = Path(button).stem if button else TWIN_BUTTON if twin else recording.name.removesuffix(SUFFIX)
+    name = (button and Path(button).name.removesuffix(".toml")) or (
+        TWIN_BUTTON if twin else recording.name.removesuffix(SUFFIX)
+    )
     try:
         with capture_view(watch or not twin, as_json, player) as view:
             guide = CaptureGuide(view.cue, view.done, view.notice)
