@@ -1,4 +1,4 @@
-"""Write the published JSON schemas of model and program files: ``python tools/make_schema.py``."""
+"""Write the published JSON schemas of models, programs, recordings: ``python tools/make_schema.py``."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import Any
 from fdvv.files import write_atomic
 from fdvv.model import schema
 from fdvv.program import schema as program_schema
+from fdvv.recording import schema as recording_schema
 
 REFERENCE = Path(__file__).parents[1] / "docs" / "reference"
 OUTPUT = REFERENCE / "fdvv.schema.json"
 PROGRAM_OUTPUT = REFERENCE / "fdvv-program.schema.json"
+RECORDING_OUTPUT = REFERENCE / "fdvv-recording.schema.json"
 
 
 def text(found: dict[str, Any] | None = None) -> str:
@@ -21,6 +23,7 @@ def text(found: dict[str, Any] | None = None) -> str:
 
 
 if __name__ == "__main__":
-    for path, found in ((OUTPUT, schema()), (PROGRAM_OUTPUT, program_schema())):
+    every = {OUTPUT: schema(), PROGRAM_OUTPUT: program_schema(), RECORDING_OUTPUT: recording_schema()}
+    for path, found in every.items():
         write_atomic(path, text(found))
         print(path)

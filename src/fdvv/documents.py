@@ -23,6 +23,7 @@ class Kind:
     Attributes
     ----------
     format, version : what its head must say.
+    oldest : the first version that is still read; by default only the newest is.
     name : with its article, for people.
     remedy : what to do about one that cannot be read.
     """
@@ -31,6 +32,12 @@ class Kind:
     version: int
     name: str
     remedy: str
+    oldest: int | None = None
+
+    @property
+    def versions(self) -> range:
+        """Get the versions that are read."""
+        return range(self.version if self.oldest is None else self.oldest, self.version + 1)
 
 
 class Head(msgspec.Struct):
@@ -58,8 +65,9 @@ def read_document(
         if head.format != kind.format:
             reason = f'not {kind.name} ("format" must be "{kind.format}")'
             raise InputError(source, "$.format", reason, kind.remedy)
-        if head.version != kind.version:
-            reason = f"file version {head.version!r:.40}, this fdvv reads version {kind.version}"
+        if head.version not in kind.versions:
+            reads = " or ".join(map(str, kind.versions))
+            reason = f"file version {head.version!r:.40}, this fdvv reads version {reads}"
             raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
         return read(data)
     except msgspec.ValidationError as error:

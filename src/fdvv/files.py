@@ -50,7 +50,9 @@ def read_limited(path: Path | str, limit_bytes: int, remedy: str) -> bytes:
     """
     try:
         with Path(path).open("rb") as stream:
-            content = stream.read(limit_bytes + 1)
+            # a reader asked for more than there is takes that much memory at once; of a pipe no size is known
+            size = os.fstat(stream.fileno()).st_size or limit_bytes
+            content = stream.read(min(size, limit_bytes) + 1)
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError(path, "whole file", reason, "check the path and its permissions") from error

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.captures import recorded
 from tests.cli.conftest import Run, tactile_csv
 
-from fdvv.model import builtin_names, load_builtin, load_model
+from fdvv.model import builtin_names, load_builtin, load_model, save_model
 
 FIT_KEYS = {"rmse_cN", "max_cN", "control_points", "bump_kept_ratio", "time_s"}
 LANDMARK_KEYS = {"travel_mm", "actuation_mm", "peak_cN", "peak_mm", "valley_cN", "valley_mm", "snap_ratio"}
@@ -64,9 +65,49 @@ def test_show_reports_landmarks_and_curves(fdvv: Run) -> None:
     assert report["name"] == "mx-clear"
     assert set(report["landmarks"]) >= LANDMARK_KEYS
     assert len(report["curves"]) == 10
-    assert report["curves"][0] == {"stroke": "press", "velocity_mm_s": 0.5}
+    first = report["curves"][0]
+    assert (first["stroke"], first["velocity_mm_s"], first["presses"]) == ("press", 0.5, None)
+    assert (report["landmark_errors"], report["points"]) == ({}, {})
     fast = fdvv("show", "mx-clear", "--velocity", "190", "--json").json
     assert fast["landmarks"]["velocity_mm_s"] == 200
+
+
+@pytest.fixture
+def captured(tmp_path: Path) -> Path:
+    """Give the model of a recording."""
+    save_model(recorded().model, tmp_path / "captured.fdvv.json")
+    return tmp_path / "captured.fdvv.json"
+
+
+def test_show_tells_the_spread_of_a_measured_button(fdvv: Run, captured: Path) -> None:
+    report = fdvv("show", captured, "--velocity", "150", "--json").json
+    assert report["landmark_errors"]["peak_cN"]["presses"] == 6
+    assert report["points"]["travel"]["presses"] == 11
+    (fast,) = [c for c in report["curves"] if (c["stroke"], c["velocity_mm_s"]) == ("press", 150.0)]
+    assert (fast["presses"], fast["achieved_mm_s"]) == (6, pytest.approx(142.7, abs=0.1))
+    ran = fdvv("show", captured, "--velocity", "150")
+    (peak,) = [line.split() for line in ran.out.splitlines() if line.startswith("peak_cN")]
+    error = report["landmark_errors"]["peak_cN"]["error"]
+    assert peak == ["peak_cN", f"{report['landmarks']['peak_cN']:.3f}", "±", f"{error:.3f}", "6"]
+    assert f"{fast['achieved_mm_s']:.1f} ± {fast['achieved_spread_mm_s']:.1f}" in ran.out
+
+
+def test_show_tells_of_no_spread_where_there_is_none(fdvv: Run) -> None:
+    out = fdvv("show", "mx-clear").out
+    assert "±" not in out
+    assert "presses" not in out
+
+
+def test_compare_tells_standard_errors_and_what_they_are(fdvv: Run, captured: Path) -> None:
+    ran = fdvv("compare", "mx-red", captured, "--velocity", "150")
+    error = fdvv("compare", "mx-red", captured, "--velocity", "150", "--json").json["buttons"][1][
+        "landmark_errors"
+    ]["peak_cN"]["error"]
+    (peak,) = [line for line in ran.out.splitlines() if line.startswith("peak_cN")]
+    assert peak.endswith(f" ± {error:.3f}")
+    assert "±: standard error over presses" in ran.out
+    assert "±" not in fdvv("compare", "mx-red", "mx-blue").out
+    assert max(map(len, ran.out.splitlines())) <= 100
 
 
 def test_show_of_a_folder_reports_each_button(fdvv: Run, folder: Path) -> None:

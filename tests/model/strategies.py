@@ -5,7 +5,19 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from fdvv.model import FDVVModel, ForceCurve, Interpolation, Mode, Provenance, Stroke, Vibration
+from fdvv.model import (
+    CurveSpread,
+    FDVVModel,
+    ForceCurve,
+    Interpolation,
+    Mode,
+    ModeSpread,
+    PointSpread,
+    Provenance,
+    Stroke,
+    Vibration,
+    VibrationSpread,
+)
 from fdvv.units import FloatArray
 
 forces_cN = st.floats(-100, 300, allow_subnormal=False)
@@ -24,6 +36,21 @@ def knots(draw: st.DrawFn, degree: int, start_mm: float = 0.0, end_mm: float = 4
     return np.concatenate(ends)
 
 
+deviations = st.floats(0, 100, allow_subnormal=False)
+maybe = st.one_of(st.none(), deviations)
+presses = st.integers(2, 200)
+point_spreads = st.builds(PointSpread, deviations, presses)
+
+
+@st.composite
+def curve_spreads(draw: st.DrawFn) -> CurveSpread:
+    """Draw the spread of a curve at two to twenty places."""
+    steps = draw(st.lists(st.floats(1e-3, 0.5), min_size=2, max_size=20))
+    spread_cN = draw(st.lists(deviations, min_size=len(steps), max_size=len(steps)))
+    achieved = draw(st.one_of(st.none(), velocities_mm_s))
+    return CurveSpread(np.cumsum(steps), np.array(spread_cN), draw(presses), achieved, draw(maybe))
+
+
 @st.composite
 def curves(
     draw: st.DrawFn,
@@ -36,7 +63,8 @@ def curves(
     t = draw(knots(k))
     n = t.size - k - 1
     c = np.array(draw(st.lists(forces_cN, min_size=n, max_size=n)))
-    return ForceCurve(stroke or draw(st.sampled_from(Stroke)), velocity_mm_s, k, t, c)
+    spread = draw(st.one_of(st.none(), curve_spreads()))
+    return ForceCurve(stroke or draw(st.sampled_from(Stroke)), velocity_mm_s, k, t, c, spread)
 
 
 @st.composite
@@ -46,7 +74,10 @@ def vibrations(draw: st.DrawFn, stroke: Stroke, velocity_mm_s: float | None) -> 
         Mode, st.floats(1, 5000), st.floats(-100, 100), st.floats(0, 1000), st.floats(-np.pi, np.pi)
     )
     modes = tuple(draw(st.lists(mode, min_size=1, max_size=3)))
-    return Vibration(stroke, velocity_mm_s, draw(st.floats(-1, 5)), draw(st.floats(1e-4, 1)), modes)
+    of_modes = st.lists(st.builds(ModeSpread, maybe, maybe, maybe), min_size=len(modes), max_size=len(modes))
+    told = st.builds(VibrationSpread, presses, maybe, maybe, st.one_of(st.just(()), of_modes))
+    spread = draw(st.one_of(st.none(), told))
+    return Vibration(stroke, velocity_mm_s, draw(st.floats(-1, 5)), draw(st.floats(1e-4, 1)), modes, spread)
 
 
 @st.composite
@@ -58,15 +89,20 @@ def models(draw: st.DrawFn) -> FDVVModel:
     found += [draw(curves(Stroke.RELEASE, v)) for v in draw(speeds)]
     travel_mm = draw(st.floats(0.1, 10))
     point = st.one_of(st.none(), st.floats(0, travel_mm))
+    actuation_mm, reset_mm = draw(point), draw(point)
+    spread = st.one_of(st.none(), point_spreads)
     return FDVVModel(
         name=draw(names),
         travel_mm=travel_mm,
         curves=tuple(found) or (draw(curves()),),
-        actuation_mm=draw(point),
-        reset_mm=draw(point),
+        actuation_mm=actuation_mm,
+        reset_mm=reset_mm,
         vibrations=tuple(draw(vibrations(s, v)) for s in Stroke for v in draw(speeds)),
         interpolation=draw(st.sampled_from(Interpolation)),
         provenance=draw(provenances),
+        travel_spread=draw(spread),
+        actuation_spread=None if actuation_mm is None else draw(spread),
+        reset_spread=None if reset_mm is None else draw(spread),
     )
 
 

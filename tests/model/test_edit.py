@@ -5,13 +5,16 @@ import pytest
 
 from fdvv.errors import ModelError
 from fdvv.model import (
+    CurveSpread,
     FDVVModel,
     ForceCurve,
     Interpolation,
     Mode,
+    PointSpread,
     Provenance,
     Stroke,
     Vibration,
+    VibrationSpread,
     assign,
     copy_curve,
     load_builtin,
@@ -189,3 +192,87 @@ def test_a_curve_that_is_not_there_cannot_be_copied_or_removed() -> None:
         remove_curve(CLEAR, "release", 75.0)
     with pytest.raises(ModelError, match="no release curve at unknown velocity"):
         copy_curve(CLEAR, "release", None, "press", 50.0)
+
+
+SPREAD = CurveSpread(np.array([0.0, 2.0, 4.0]), np.array([1.0, 2.0, 1.0]), 15, 48.0, 4.0)
+OTHER = CurveSpread(np.array([0.0, 2.0, 4.0]), np.array([1.0, 2.0, 1.0]), 12, 48.0, 4.0)
+
+
+def measured(name: str = "measured", **fields: object) -> FDVVModel:
+    """A button whose press at 50 mm/s, release at 50 mm/s and points were measured on presses."""
+    press, release = (replace(curve(60, stroke), spread=SPREAD) for stroke in ("press", "release"))
+    given: dict[str, object] = {"actuation_mm": 2.0, "actuation_spread": PointSpread(0.03, 15)} | fields
+    return model(name, press, release, travel_spread=PointSpread(0.01, 15), **given)  # type: ignore[arg-type]
+
+
+def spreads(found: FDVVModel) -> dict[tuple[str, float | None], CurveSpread | None]:
+    return {(str(c.stroke), c.velocity_mm_s): c.spread for c in found.curves}
+
+
+def test_a_merge_keeps_spreads_of_curves_points_and_vibrations() -> None:
+    shaken = replace(buzz(239.0), spread=VibrationSpread(11, 0.05))
+    merged = merge([measured(vibrations=(shaken,)), curve(80, velocity_mm_s=100.0)], "both")
+    assert spreads(merged) == {("press", 50.0): SPREAD, ("release", 50.0): SPREAD, ("press", 100.0): None}
+    assert merged.vibrations[0].spread == VibrationSpread(11, 0.05)
+    assert merged.travel_spread == PointSpread(0.01, 15)
+    assert merged.actuation_spread == PointSpread(0.03, 15)
+
+
+def test_a_point_that_is_given_to_a_merge_was_not_measured() -> None:
+    merged = merge([measured()], "moved", actuation_mm=1.5, travel_mm=3.9)
+    assert (merged.actuation_spread, merged.travel_spread) == (None, None)
+    assert merge([measured()], "same", actuation_mm=2.0).actuation_spread == PointSpread(0.03, 15)
+
+
+def test_a_point_with_two_different_spreads_keeps_neither() -> None:
+    parts = [measured(), measured("again", actuation_spread=PointSpread(0.05, 9))]
+    assert merge(parts, "both").actuation_spread is None
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_of_equal_curves_and_vibrations_the_one_that_knows_its_spread_is_kept(turned: bool) -> None:
+    shaken = replace(buzz(239.0), spread=VibrationSpread(11, 0.05))
+    knowing = measured(vibrations=(shaken,))
+    plain = model("plain", curve(60), curve(60, "release"), vibrations=(buzz(239.0),))
+    merged = merge([knowing, plain][:: -1 if turned else 1], "both")
+    assert set(spreads(merged).values()) == {SPREAD}
+    assert merged.vibrations == (shaken,)
+
+
+def test_equal_curves_of_different_spreads_are_a_conflict() -> None:
+    other = model("other", replace(curve(60), spread=OTHER))
+    with pytest.raises(ModelError, match="two different curves for press at 50 mm/s"):
+        merge([measured(), other], "both")
+    assert spreads(merge([measured(), other], "both", conflict="last"))["press", 50.0] == OTHER
+
+
+def test_a_curve_assigned_to_where_it_was_measured_keeps_its_spread() -> None:
+    fresh = replace(curve(70), spread=OTHER)
+    assert spreads(assign(measured(), fresh, "press", 50.0))["press", 50.0] == OTHER
+
+
+@pytest.mark.parametrize(("stroke", "velocity_mm_s"), [("release", 50.0), ("press", 100.0), ("press", None)])
+def test_a_curve_assigned_to_another_stroke_or_velocity_was_not_measured_there(
+    stroke: str, velocity_mm_s: float | None
+) -> None:
+    fresh = replace(curve(70), spread=OTHER)
+    edited = assign(model("one", curve(60, stroke, velocity_mm_s)), fresh, stroke, velocity_mm_s)
+    assert spreads(edited)[stroke, velocity_mm_s] is None
+
+
+def test_a_segment_makes_a_curve_that_was_not_measured_and_leaves_the_others() -> None:
+    edited = assign(measured(), replace(curve(70), spread=OTHER), "press", 50.0, segment_mm=(1.0, 2.0))
+    assert spreads(edited) == {("press", 50.0): None, ("release", 50.0): SPREAD}
+    assert edited.travel_spread == PointSpread(0.01, 15)
+
+
+def test_a_copied_curve_was_not_measured_at_its_new_place() -> None:
+    edited = copy_curve(measured(), "press", 50.0, "press", 100.0)
+    assert spreads(edited)["press", 100.0] is None
+    assert spreads(edited)["press", 50.0] == SPREAD
+
+
+def test_removing_and_renaming_keep_what_was_measured_of_the_rest() -> None:
+    left = remove_curve(measured(), "release", 50.0).renamed("left")
+    assert spreads(left) == {("press", 50.0): SPREAD}
+    assert left.actuation_spread == PointSpread(0.03, 15)

@@ -14,9 +14,13 @@ from hypothesis import strategies as st
 
 from fdvv.errors import InputError
 from fdvv.model import (
+    CurveSpread,
     FDVVModel,
     ForceCurve,
+    ModeSpread,
+    PointSpread,
     Stroke,
+    VibrationSpread,
     builtin_names,
     load_builtin,
     load_model,
@@ -31,6 +35,23 @@ from .strategies import models
 ROOT = Path(__file__).parents[2]
 CLEAR = load_builtin("mx-clear")
 TEXT = model_to_json(CLEAR)
+"""As files are that tell of no spread: of version 1."""
+
+
+def spread_model() -> FDVVModel:
+    """The published button as if it had been measured on presses."""
+    told = CurveSpread(np.array([0.0, 1.5, 3.9]), np.array([0.5, 2.5, 0.75]), 14, 48.5, 3.25)
+    shaken = VibrationSpread(12, 0.05, None, (ModeSpread(6.5, None, 20.0),))
+    return replace(
+        CLEAR,
+        curves=(*(replace(c, spread=told) for c in CLEAR.curves[:2]), *CLEAR.curves[2:]),
+        vibrations=(replace(CLEAR.vibrations[0], spread=shaken), *CLEAR.vibrations[1:]),
+        travel_spread=PointSpread(0.0125, 46),
+        actuation_spread=PointSpread(0.025, 44),
+    )
+
+
+SPREAD = model_to_json(spread_model())
 
 
 def bits(model: FDVVModel) -> list[bytes]:
@@ -82,9 +103,9 @@ def test_changing_one_control_point_changes_one_line() -> None:
     assert sum(a != b for a, b in zip(before, after, strict=True)) == 1
 
 
-def edited(change: Callable[[dict[str, Any]], object]) -> str:
+def edited(change: Callable[[dict[str, Any]], object], text: str = TEXT) -> str:
     """The text of the published button after a change to its tree."""
-    tree = json.loads(TEXT)
+    tree = json.loads(text)
     change(tree)
     return json.dumps(tree)
 
@@ -110,7 +131,7 @@ def drop(*path: str | int) -> Callable[[dict[str, Any]], object]:
 @pytest.mark.parametrize(
     ("change", "place", "said"),
     [
-        (put("version", value=2), "$.version", "file version 2, this fdvv reads version 1"),
+        (put("version", value=3), "$.version", "file version 3, this fdvv reads version 1 or 2"),
         (put("version", value="x" * 9999), "$.version", "file version 'xxx"),
         (put("version", value=True), "$.version", "Expected `int`, got `bool`"),
         (drop("version"), "$.version", "file version None"),
@@ -186,10 +207,89 @@ def test_a_text_that_is_no_json_is_refused_in_one_line_with_the_place(text: str 
     assert len(message) < 300
 
 
+@pytest.mark.parametrize(
+    ("change", "place", "said"),
+    [
+        (put("version", value=1), "$.version", "a file of version 1 has no spreads"),
+        (put("travel_spread", "spread_mm", value=-0.1), "$.travel_spread.spread_mm", ">= 0"),
+        (put("travel_spread", "presses", value=1), "$.travel_spread.presses", ">= 2"),
+        (put("travel_spread", "presses", value=2.5), "$.travel_spread.presses", "Expected `int`"),
+        (put("travel_spread", "spread_cN", value=0.1), "$.travel_spread", "unknown field `spread_cN`"),
+        (drop("travel_spread", "presses"), "$.travel_spread", "missing required field `presses`"),
+        (put("actuation_mm", value=None), "$", "actuation_mm is unknown, so it has no spread"),
+        (put("curves", 0, "spread", value=3.0), "$.curves[0].spread", "Expected `object | null`"),
+        (put("curves", 0, "spread", "displacement_mm", value=[0.0, 1.0]), "$.curves[0]", "got 2 and 3"),
+        (put("curves", 0, "spread", "displacement_mm", 1, value=4.0), "$.curves[0]", "must rise strictly"),
+        (put("curves", 0, "spread", "displacement_mm", 2, value=1e9), "$.curves[0]", "must stay within"),
+        (put("curves", 1, "spread", "spread_cN", 2, value=-1.0), "$.curves[1].spread.spread_cN[2]", ">= 0"),
+        (put("curves", 1, "spread", "spread_cN", value=[]), "$.curves[1].spread.spread_cN", "length >= 2"),
+        (put("curves", 1, "spread", "achieved_mm_s", value=0), "$.curves[1].spread.achieved_mm_s", "> 0"),
+        (
+            put("vibrations", 0, "spread", "modes", value=[{}, {}]),
+            "$.vibrations[0]",
+            "the spread tells of 2 modes, the vibration has 1",
+        ),
+        (
+            put("vibrations", 0, "spread", "modes", 0, "decay_1_s", value="slow"),
+            "$.vibrations[0].spread.modes[0].decay_1_s",
+            "Expected `float | null`",
+        ),
+    ],
+)
+def test_a_spread_that_is_none_is_refused_in_one_line_with_the_place(
+    change: Callable[[dict[str, Any]], object], place: str, said: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        model_from_json(edited(change, SPREAD), "bad.fdvv.json")
+    message = str(caught.value)
+    assert message.startswith(f"bad.fdvv.json: {place}: ")
+    assert said in message
+    assert "\n" not in message
+
+
+def test_a_file_has_the_version_that_it_takes() -> None:
+    assert json.loads(TEXT)["version"] == 1
+    assert json.loads(SPREAD)["version"] == 2
+    without = edited(put("version", value=2))
+    assert model_to_json(model_from_json(without)) == TEXT
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_a_file_of_version_1_is_written_back_byte_for_byte(name: str) -> None:
+    shipped = ROOT / "src" / "fdvv" / "model" / "builtin" / f"{name}.fdvv.json"
+    assert model_to_json(load_model(shipped)).encode() == shipped.read_bytes()
+
+
+def test_what_differs_in_nothing_but_a_spread_is_another_model() -> None:
+    told = model_from_json(SPREAD)
+    assert told == spread_model()
+    assert hash(told) == hash(spread_model())
+    assert told != CLEAR
+    assert replace(told, travel_spread=None) != told
+    other = CurveSpread(np.array([0.0, 1.5, 3.9]), np.array([0.5, 2.5, 0.75]), 15, 48.5, 3.25)
+    assert replace(told, curves=(replace(told.curves[0], spread=other), *told.curves[1:])) != told
+
+
+def test_spreads_come_back_as_they_were() -> None:
+    told = model_from_json(SPREAD)
+    spread = told.curves[0].spread
+    assert spread is not None
+    np.testing.assert_array_equal(spread.spread_cN, [0.5, 2.5, 0.75])
+    assert (spread.presses, spread.achieved_mm_s, spread.achieved_spread_mm_s) == (14, 48.5, 3.25)
+    assert told.curves[2].spread is None
+    assert told.actuation_spread == PointSpread(0.025, 44)
+    assert told.reset_spread is None
+    shaken = told.vibrations[0].spread
+    assert shaken == VibrationSpread(12, 0.05, None, (ModeSpread(6.5, None, 20.0),))
+
+
 @settings(max_examples=100, deadline=None)
-@given(st.integers(0, len(TEXT) - 1), st.binary(min_size=0, max_size=3))
-def test_a_damaged_file_is_refused_or_is_a_model_but_never_a_crash(at: int, damage: bytes) -> None:
-    data = TEXT.encode()
+@given(st.sampled_from([TEXT, SPREAD]), st.floats(0, 1, exclude_max=True), st.binary(min_size=0, max_size=3))
+def test_a_damaged_file_is_refused_or_is_a_model_but_never_a_crash(
+    text: str, part: float, damage: bytes
+) -> None:
+    data = text.encode()
+    at = int(part * len(data))
     with contextlib.suppress(InputError):
         model = model_from_json(data[:at] + damage + data[at + 2 :], "bad")
         assert model_from_json(model_to_json(model)) == model
@@ -235,7 +335,7 @@ def test_every_model_that_can_be_made_is_valid_by_the_schema(model: FDVVModel) -
 
 @pytest.mark.parametrize(
     "change",
-    [put("colour", value=1), drop("travel_mm"), put("curves", 0, "degree", value=9), put("version", value=2)],
+    [put("colour", value=1), drop("travel_mm"), put("curves", 0, "degree", value=9), put("version", value=3)],
 )
 def test_the_schema_refuses_what_the_reader_refuses(change: Callable[[dict[str, Any]], object]) -> None:
     text = edited(change)

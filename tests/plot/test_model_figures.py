@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from numpy.testing import assert_allclose
+from tests.captures import recorded
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, landmarks
+from fdvv.model import FDVVModel, ForceCurve, Stroke, landmarks, load_builtin
 from fdvv.plot import _style as style
 from fdvv.plot import figure_of, plot_comparison, plot_model, plot_surface, plot_vibration
 
@@ -177,3 +178,36 @@ def test_limits_hold_every_finite_value() -> None:
     assert high > 3.0
     assert style.limits_around([2.0, 2.0]) == (1.5, 2.5)
     assert style.limits_around([np.nan]) == (-0.05, 1.05)
+
+
+def bands(ax: Any) -> list[Any]:
+    """Give the bands that axes hold, as (vertices, 2) arrays."""
+    from matplotlib.collections import PolyCollection
+
+    return [c.get_paths()[0].vertices for c in ax.collections if isinstance(c, PolyCollection)]
+
+
+def test_a_measured_curve_stands_in_a_band_of_one_standard_deviation() -> None:
+    model = recorded().model
+    ax = plot_model(model)
+    measured = [c for c in model.curves if c.spread]
+    assert len(bands(ax)) == len(measured) == 6
+    for curve, band in zip(measured, bands(ax), strict=True):
+        assert curve.spread is not None
+        at_mm = curve.spread.displacement_mm[30]
+        heights = band[np.isclose(band[:, 0], at_mm), 1]
+        middle, half = float(curve.force_cN(at_mm)), float(curve.spread.spread_cN[30])
+        np.testing.assert_allclose([heights.min(), heights.max()], [middle - half, middle + half], atol=1e-9)
+
+
+def test_the_legend_says_what_the_band_is_and_of_how_many_presses(gallery: Any) -> None:
+    texts = gallery.texts(plot_model(recorded().model))
+    assert "mean ± 1 SD,\nn = 2 to 6 presses" in texts
+    assert "actuation, 2.13 ± 0.06 mm" in texts
+    assert "SD" not in gallery.texts(plot_model(load_builtin("mx-clear")))
+
+
+def test_a_comparison_draws_the_bands_of_the_buttons_that_were_measured(gallery: Any) -> None:
+    ax = plot_comparison([load_builtin("mx-clear"), recorded().model], velocity_mm_s=150.0)
+    assert len(bands(ax)) == 2
+    assert "mean ± 1 SD,\nn = 6 presses" in gallery.texts(ax)

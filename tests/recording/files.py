@@ -78,7 +78,7 @@ def serial(samples: int = 50, first_us: int = 1_000_000, head: bool = True, chec
         "# channel M sound_V scale=0.0008 zero=2048",
         "# bench force_filter_ms=1 tip_mass_g=2.5",
     ]
-    lines = lines if head else []
+    lines = [_summed(line, checked) for line in lines] if head else []
     for i in range(samples):
         us = (first_us + 1000 * i) % 2**32
         lines.append(_summed(f"FM {us} {512 + i} {2048 - i}", checked))

@@ -11,8 +11,8 @@ ABOUT = Recording("mx-clear", bench=Bench(force_filter_ms=1.0, tip_mass_g=2.5), 
 
 def take(number: int = 1, samples: int = 50) -> Take:
     rng = np.random.default_rng(number)
-    t_s = np.arange(samples) / 1000
-    frames_s = np.arange(samples // 4) / 256
+    t_s = number + np.arange(samples) / 1000
+    frames_s = number + np.arange(samples // 4) / 256
     place = rng.normal(size=(samples // 4, 3))
     place[1] = np.nan
     force, sound = (rng.integers(0, 4096, samples, dtype=kind) for kind in (np.int16, np.int32))
@@ -22,7 +22,9 @@ def take(number: int = 1, samples: int = 50) -> Take:
         Stream("left", Quantity.MARKER, "camera", frames_s, place),
         Stream("right", Quantity.MARKER, "camera", frames_s, place.astype(np.float32)),
     )
-    return Take(number, streams, (Mark("light on", "board", 0.01),), Stage.PRESS, 100.0, "2026-01-01")
+    return Take(
+        number, streams, (Mark("light on", "board", number + 0.01),), Stage.PRESS, 100.0, "2026-01-01"
+    )
 
 
 def head(**changes: object) -> dict[str, object]:
@@ -30,6 +32,7 @@ def head(**changes: object) -> dict[str, object]:
     bench = {
         "force_filter_ms": 0,
         "sound_filter_ms": 0,
+        "force_play_cN": 0,
         "tip_mass_g": 0,
         "exposure_ms": 0,
         "clocks_go_on": True,

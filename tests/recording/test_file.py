@@ -214,7 +214,7 @@ BAD: dict[str, tuple[list[dict[str, object]], str]] = {
     ),
     "an unknown quantity": (
         [{"head": head()}, {"take": {**TAKE, "streams": [NO_QUANTITY]}}],
-        "'x' is not a valid Quantity",
+        "line 2, .*quantity: Invalid enum value 'x'",
     ),
     "a head that is a list": ([{"head": []}], '"format" must be'),
     "a mend of nothing": ([{"head": head()}, {"mend": 5}], "line 2: Expected `object`"),

@@ -9,7 +9,7 @@ import pytest
 from tests.recording.files import serial
 
 from fdvv.errors import InputError
-from fdvv.recording import Quantity, Recording, read_log
+from fdvv.recording import Quantity, Recording, RecordingLog, SerialCapture, Stage, load_recording, read_log
 
 
 def read(folder: Path, text: str) -> Recording:
@@ -86,6 +86,15 @@ def test_a_sum_that_does_not_fit_gives_a_changed_digit_away(tmp_path: Path) -> N
     assert found.warnings == ("line 9 garbled and left out",)
 
 
+@pytest.mark.parametrize(
+    "line", ["# fdvv-capture 7", "# fdvv-capture", "# fdvv-capture x", "# channel F g scale=nan"]
+)
+def test_a_head_told_again_that_differs_is_garbled(tmp_path: Path, line: str) -> None:
+    found = read(tmp_path, serial() + line)
+    assert found.takes[0].streams[0].quantity is Quantity.FORCE
+    assert found.warnings == (("line 57 garbled and left out",) if line != "# fdvv-capture" else ())
+
+
 def test_a_time_that_leaps_ahead_costs_one_sample(tmp_path: Path) -> None:
     text = serial().replace("FM 1003000 ", "FM 1903000 ")
     found = read(tmp_path, text)
@@ -103,7 +112,7 @@ def test_a_channel_without_a_unit_is_kept_as_counts(tmp_path: Path) -> None:
 REFUSED = {
     "a version to come": (serial().replace("capture 1", "capture 2"), "version 2 of fdvv-capture, this fdvv"),
     "no sample": (serial(samples=0), "it holds no sample"),
-    "a bad bench": (serial().replace("mass_g=2.5", "mass_g=-1"), "# bench: tip_mass_g must be at least 0"),
+    "a bad bench": (serial().replace("mass_g=2.5", "mass_g=-1"), "head: tip_mass_g must be at least 0"),
 }
 
 
@@ -112,3 +121,34 @@ def test_what_cannot_be_used_is_refused_with_a_reason(tmp_path: Path, what: str)
     text, reason = REFUSED[what]
     with pytest.raises(InputError, match=reason):
         read(tmp_path, text)
+
+
+@pytest.mark.parametrize("first_us", [1_000_000, 2**32 - 20_000])
+def test_takes_cut_out_of_a_board_that_goes_on_are_those_of_its_log(tmp_path: Path, first_us: int) -> None:
+    text = serial(first_us=first_us)
+    whole = read(tmp_path, text).takes[0]
+    capture, path = SerialCapture(), tmp_path / "a.recording.jsonl"
+    with RecordingLog(path, Recording("a")) as log:
+        for count, line in enumerate(text.split("\r\n")):
+            assert capture.feed(line)
+            if count in (17, 40):
+                log.add(capture.take(log.next_number, Stage.PRESS, 100.0))
+        log.add(capture.take(log.next_number))
+    takes = load_recording(path).takes
+    assert [take.streams[0].t_s.size for take in takes] == [13, 22, 15]
+    assert [take.velocity_mm_s for take in takes] == [100.0, 100.0, None]
+    for at in (0, 1):
+        joined = np.concatenate([take.streams[at].t_s for take in takes])
+        np.testing.assert_allclose(joined, whole.streams[at].t_s, atol=1e-9)
+        raw = np.concatenate([take.streams[at].raw for take in takes])
+        np.testing.assert_array_equal(raw, whole.streams[at].raw)
+    assert sum(len(take.marks) for take in takes) == 1
+    assert (capture.bench.tip_mass_g, capture.warnings) == (2.5, [])
+
+
+def test_a_take_in_which_nothing_came_is_empty() -> None:
+    capture = SerialCapture()
+    assert capture.take(1).streams == ()
+    assert not capture.feed("FM 12")
+    assert capture.take(2).marks == ()
+    assert capture.warnings[-1] == "line 1 garbled and left out"

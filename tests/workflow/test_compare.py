@@ -6,10 +6,11 @@ import json
 
 import numpy as np
 import pytest
+from tests.captures import recorded
 from tests.workflow.conftest import line_model
 
 from fdvv.errors import ModelError
-from fdvv.model import SUFFIX, FDVVModel, Stroke, landmarks, load_builtin
+from fdvv.model import SUFFIX, FDVVModel, Stroke, landmark_errors, landmarks, load_builtin
 from fdvv.workflow import compare
 
 
@@ -75,11 +76,19 @@ def test_without_a_press_nothing_is_compared() -> None:
         compare([both, FDVVModel("lone", 4.0, both.of("release"))])
 
 
+def test_standard_errors_stand_beside_the_landmarks_of_measured_buttons() -> None:
+    model = recorded().model
+    result = compare([load_builtin("mx-red"), model], 150.0)
+    assert result.errors == ({}, landmark_errors(model, 150.0))
+    told = result.to_dict()["buttons"][1]["landmark_errors"]["peak_cN"]
+    assert told == {"error": result.errors[1]["peak_cN"].error, "presses": 6}
+
+
 def test_the_report_is_plain_json_with_every_landmark() -> None:
     models = [load_builtin("mx-blue"), load_builtin("mx-red")]
     report = compare(models).to_dict()
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     for entry, model in zip(report["buttons"], models, strict=True):
-        assert entry == {"name": model.name, **landmarks(model).to_dict()}
+        assert entry == {"name": model.name, **landmarks(model).to_dict(), "landmark_errors": {}}
     assert {d["stroke"] for d in report["differences"]} == {"press", "release"}
     assert SUFFIX not in report["reference"]

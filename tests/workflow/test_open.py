@@ -6,11 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.workflow.conftest import line_model, write_cycle
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import SUFFIX, FDVVModel, Stroke, load_builtin, save_model
+from fdvv.model import SUFFIX, CurveSpread, FDVVModel, Stroke, load_builtin, save_model
 from fdvv.workflow import (
     button_files,
     fit_file,
@@ -100,6 +101,20 @@ def test_a_part_is_cut_to_its_stroke_and_declared_to_be_of_its_velocity() -> Non
     clear = open_part("mx-clear:release")
     assert {c.stroke for c in clear.curves} == {Stroke.RELEASE}
     assert {v.stroke for v in clear.vibrations} <= {Stroke.RELEASE}
+
+
+@pytest.mark.parametrize(
+    ("measured_mm_s", "kept"), [(None, True), (50.0, True), (80.0, False)], ids=["unknown", "same", "another"]
+)
+def test_a_part_declared_to_be_of_another_velocity_is_not_what_was_measured(
+    tmp_path: Path, measured_mm_s: float | None, kept: bool
+) -> None:
+    spread = CurveSpread(np.array([0.0, 3.0]), np.array([1.0, 2.0]), 15)
+    model = line_model("line", 40)
+    press = replace(model.of("press")[0], velocity_mm_s=measured_mm_s, spread=spread)
+    path = saved(tmp_path / f"line{SUFFIX}", replace(model, curves=(press,)))
+    assert one_curve(str(path)).spread == spread
+    assert one_curve(f"{path}@50").spread == (spread if kept else None)
 
 
 @pytest.mark.parametrize(

@@ -20,9 +20,11 @@ from fdvv.cli._output import (
     print_warnings,
     progress,
     save_figure,
+    with_spread,
 )
 
 if TYPE_CHECKING:
+    from fdvv.model import LandmarkError
     from fdvv.workflow import Comparison
 
 LABEL_WIDTH, NAME_WIDTH = 19, 28
@@ -63,19 +65,29 @@ def compare(
     if figure:
         from fdvv.plot import plot_comparison
 
-        save_figure(plot_comparison(models).figure, figure)
+        save_figure(plot_comparison(models, velocity_mm_s=velocity_mm_s).figure, figure)
     if as_json:
         print_json({**result.to_dict(), "refused": refused})
-    elif LABEL_WIDTH + sum(2 + max(8, len(name)) for name in result.names) <= WIDTH:
+    elif (
+        LABEL_WIDTH + sum(_width(*named) for named in zip(result.names, result.errors, strict=True)) <= WIDTH
+    ):
         _print_columns(result)
     else:
         _print_lines(result)
 
 
+def _width(name: str, errors: dict[str, LandmarkError]) -> int:
+    """Tell the width of a button's column; standard errors take their place in it."""
+    return 2 + max(16 if errors else 8, len(name))
+
+
 def _print_columns(result: Comparison) -> None:
     """Print a column per button, then the differences."""
     marks = [m.to_dict() for m in result.landmarks]
-    print_table(["landmark", *result.names], [[key, *(number(m[key], 3) for m in marks)] for key in marks[0]])
+    rows = [[key, *(_mark(m, e, key) for m, e in zip(marks, result.errors, strict=True))] for key in marks[0]]
+    print_table(["landmark", *result.names], rows)
+    if any(result.errors):
+        click.echo("±: standard error over presses")
     click.echo("")
     print_table(
         [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
@@ -84,6 +96,10 @@ def _print_columns(result: Comparison) -> None:
             for d in result.differences
         ],
     )
+
+
+def _mark(marks: dict[str, float | None], errors: dict[str, LandmarkError], key: str) -> str:
+    return with_spread(marks[key], errors[key].error if key in errors else None, 3)
 
 
 def _print_lines(result: Comparison) -> None:

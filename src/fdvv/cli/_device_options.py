@@ -34,12 +34,14 @@ velocity_option = click.option(
 
 
 @contextmanager
-def opened(spec: str, recording: Path | None = None) -> Iterator[Device]:
-    """Open a device and close it again, whatever happens."""
+def opened(
+    spec: str, recording: Path | None = None, rig: Path | None = None, seed: int = 0
+) -> Iterator[Device]:
+    """Open a device and close it again, whatever happens; rig and seed are of a simulated one."""
     from fdvv.device import Recorder
     from fdvv.workflow import open_device
 
-    found = open_device(spec)
+    found = open_device(spec, rig, None, seed)
     try:
         found = Recorder(found, recording) if recording else found
         yield found

@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli._device_options import device_option, opened, record_option, velocity_option
+from fdvv.cli._exciter_options import exciter_option, opened_exciter
 from fdvv.cli._output import Finite, json_option, number, print_json, print_table
+
+if TYPE_CHECKING:
+    from fdvv.vibration import KnownExciter
 
 
 @click.command()
 @click.argument("button")
 @device_option
 @velocity_option
+@exciter_option
 @record_option
 @json_option
 def upload(
-    button: str, spec: str, velocities_mm_s: tuple[float, ...], recording: Path | None, as_json: bool
+    button: str,
+    spec: str,
+    velocities_mm_s: tuple[float, ...],
+    exciter: Path | None,
+    recording: Path | None,
+    as_json: bool,
 ) -> None:
     """Make BUTTON the program of a device: a program image, a built-in, a *.fdvv.json or a measured file.
 
@@ -27,9 +37,10 @@ def upload(
     from fdvv.protocol import head_of, travel_mm_of
     from fdvv.workflow import program_image
 
-    image = program_image(button, velocities_mm_s)
+    known = opened_exciter(exciter)
+    image = program_image(button, velocities_mm_s, known)
     with opened(spec, recording) as found:
-        _programs(found, spec).upload_program(image)
+        _upload(_programs(found, spec), image, known)
         name = found.info().name
     travel_mm = travel_mm_of(image)
     document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
@@ -37,6 +48,15 @@ def upload(
         print_json(document)
         return
     click.echo(f"{name}: {len(image)} bytes, checked and active, travel {travel_mm:.3f} mm")
+
+
+def _upload(found: Any, image: bytes, exciter: KnownExciter | None) -> None:
+    """Upload a program; with a known exciter the board is told first how early its vibrations must begin."""
+    from fdvv.workflow import prepare_exciter
+
+    if exciter:
+        prepare_exciter(found, exciter)
+    found.upload_program(image)
 
 
 def _programs(found: Any, spec: str) -> Any:
@@ -51,6 +71,7 @@ def _programs(found: Any, spec: str) -> Any:
 @click.argument("button")
 @device_option
 @velocity_option
+@exciter_option
 @click.option(
     "--speed",
     "speed_mm_s",
@@ -66,6 +87,7 @@ def press(
     button: str,
     spec: str,
     velocities_mm_s: tuple[float, ...],
+    exciter: Path | None,
     speed_mm_s: float,
     presses: int,
     recording: Path | None,
@@ -78,10 +100,11 @@ def press(
     """
     from fdvv.workflow import program_image
 
-    image = program_image(button, velocities_mm_s)
+    known = opened_exciter(exciter)
+    image = program_image(button, velocities_mm_s, known)
     rows = []
     with opened(spec, recording) as found:
-        _programs(found, spec).upload_program(image)
+        _upload(_programs(found, spec), image, known)
         info = found.info()
         for count in range(presses):
             if not info.simulated:

@@ -15,10 +15,14 @@ from fdvv.errors import BuildError, DeviceError, FdvvError
 COMMANDS = {
     "assign": ("fdvv.cli._models", "Give a curve, or a segment of one, to press or release of a model."),
     "capture": ("fdvv.cli._capture", "Record a button: a guided session of presses at several paces."),
+    "check": ("fdvv.cli._check", "Check files: what each is, whether it is whole, and what it holds."),
     "compare": ("fdvv.cli._compare", "Compare buttons: landmarks side by side and force differences."),
     "compensate": ("fdvv.cli._compensate", "Learn the actuation that makes a rig feel like a model."),
     "demo": ("fdvv.cli._demo", "Run the whole chain on the simulated rig and write a report."),
-    "device": ("fdvv.cli._device", "Work with a device: list, info, selftest, monitor, upload, press."),
+    "device": (
+        "fdvv.cli._device",
+        "Work with a device: list, info, selftest, monitor, upload, press, exciter.",
+    ),
     "feasible": (
         "fdvv.cli._feasible",
         "Tell whether a rig can render a button, and why not, before any upload.",
@@ -28,8 +32,11 @@ COMMANDS = {
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
+    "process": ("fdvv.cli._process", "Turn recorded presses into a model, with its spread over presses."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
+    "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
+    "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }
 
 

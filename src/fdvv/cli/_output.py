@@ -48,6 +48,11 @@ def number(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
+def with_spread(value: float | None, spread: float | None, digits: int = 2) -> str:
+    """Write a number with its standard deviation or error, where there is one."""
+    return number(value, digits) if spread is None else f"{number(value, digits)} ± {spread:.{digits}f}"
+
+
 def one_line(text: str, width: int | None = None) -> str:
     """Make text from a file fit for a terminal: one line, no control characters, at most width long."""
     plain = "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
@@ -63,6 +68,28 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], left: int
             c.ljust(w) if i < left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
         ]
         click.echo("  ".join(cells).rstrip())
+
+
+def print_spreads(report: dict[str, Any]) -> None:
+    """Print how the presses behind a model's curves differ; nothing where none has a spread."""
+    told = [c for c in report["curves"] if c["presses"] is not None]
+    if not told:
+        return
+    click.echo("")
+    print_table(
+        ["measured curve", "mm/s", "achieved mm/s", "presses", "median spread cN", "largest"],
+        [
+            [
+                c["stroke"],
+                number(c["velocity_mm_s"], 1),
+                with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
+                str(c["presses"]),
+                number(c["median_spread_cN"]),
+                number(c["largest_spread_cN"]),
+            ]
+            for c in told
+        ],
+    )
 
 
 def print_wrapped(text: str) -> None:

@@ -26,6 +26,9 @@ def print_receipt(found: dict[str, Any]) -> None:
         click.echo(f"run of {run['started']} with {made}{seed}")
     print_wrapped(_rig(found["device"]))
     _print_presses(found)
+    if found["task"] == "tune":
+        click.echo("run the session's command again for its result, or to go on")
+        return
     if not found["curves"]:
         click.echo("not finished; run the session's command again to go on")
         return
@@ -58,6 +61,9 @@ def _rig(device: dict[str, Any]) -> str:
 def _print_presses(found: dict[str, Any]) -> None:
     """Print how many presses were used, and why others were not."""
     unused = found["not_used"]
+    if found["task"] == "tune":
+        click.echo(counted(found["used"], "answer"))
+        return
     click.echo(f"{counted(found['used'], 'press')} used, {len(unused)} not")
     for press in unused[:LISTED]:
         print_wrapped(f"  press {press['number']} at {press['velocity_mm_s']:g} mm/s: {press['reason']}")

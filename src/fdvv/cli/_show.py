@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,12 +15,16 @@ from fdvv.cli._output import (
     number,
     one_line,
     print_json,
+    print_spreads,
     print_table,
     print_warnings,
     print_wrapped,
     progress,
     save_figure,
 )
+
+if TYPE_CHECKING:
+    from fdvv.model import LandmarkError
 
 TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
 NAME_WIDTH = 28
@@ -54,30 +59,45 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
         _show_folder(Path(button), velocity_mm_s, as_json)
         return
     from fdvv.errors import InputError
-    from fdvv.model import landmarks
-    from fdvv.workflow import open_model
+    from fdvv.model import landmark_errors, landmarks
+    from fdvv.workflow import open_model, spread_reports
 
     model = open_model(button)
     if not model.of("press"):
         raise InputError(
             button, "curves", "it has no press, which landmarks are read from", "merge one into it"
         )
-    marks = landmarks(model, velocity_mm_s).to_dict()
+    marks, errors = landmarks(model, velocity_mm_s).to_dict(), landmark_errors(model, velocity_mm_s)
     if figure:
         from fdvv.plot import plot_model
 
         save_figure(plot_model(model).figure, figure)
     if as_json:
-        curves = [{"stroke": str(c.stroke), "velocity_mm_s": c.velocity_mm_s} for c in model.curves]
+        told = {name: vars(error) for name, error in errors.items()}
         source = model.provenance.source
-        print_json({"name": model.name, "source": source, "landmarks": marks, "curves": curves})
+        head = {"name": model.name, "source": source, "landmarks": marks, "landmark_errors": told}
+        print_json({**head, **spread_reports(model)})
         return
     print_wrapped(f"{model.name}: {model.provenance.source or 'source not stated'}")
     for stroke in ("press", "release"):
         speeds = ", ".join(f"{v:g}" for v in model.velocities_mm_s(stroke))
         if model.of(stroke):
             click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
-    print_table(["landmark", "value"], [[name, number(value, 3)] for name, value in marks.items()])
+    _print_landmarks(marks, errors)
+    print_spreads(spread_reports(model))
+
+
+def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkError]) -> None:
+    """Print landmarks, with standard errors where presses tell them."""
+    if not errors:
+        print_table(["landmark", "value"], [[name, number(value, 3)] for name, value in marks.items()])
+        return
+    rows = []
+    for name, value in marks.items():
+        error = errors.get(name)
+        told = [f"± {error.error:.3f}", str(error.presses)] if error else ["", ""]
+        rows.append([name, number(value, 3), *told])
+    print_table(["landmark", "value", "standard error", "presses"], rows)
 
 
 def _show_receipt(button: str, as_json: bool) -> bool:

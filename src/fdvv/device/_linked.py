@@ -41,6 +41,11 @@ class LinkedDevice(Remote):
         """Tell who this is; an emulated board does not know that nothing about it is real."""
         return replace(super().info(), name=self.board_name, simulated=True)
 
+    def upload_program(self, image: bytes) -> None:
+        """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
+        super().upload_program(image)
+        self._person.load(image)
+
     @property
     def board_name(self) -> str:
         """Name the board, and how it runs where its firmware names a real one."""

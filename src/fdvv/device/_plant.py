@@ -106,6 +106,10 @@ class Person(Protocol):
         """Come to the button at rest and press it once, at about this speed, on this program."""
         ...
 
+    def load(self, image: bytes) -> None:
+        """Give the rig's vibration board the waveforms of the program that was made active."""
+        ...
+
     def rest(self, settings: Settings) -> Plant:
         """Leave the button alone."""
         ...

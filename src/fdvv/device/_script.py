@@ -95,6 +95,9 @@ class ScriptedPerson:
         path: FloatArray = np.interp(t_s, corners_s, [0.0, 0.0, travel_mm, travel_mm, 0.0, 0.0])
         return ScriptedPlant(path, velocity_mm_s, settings, self._random, meddle=self.meddle)
 
+    def load(self, image: bytes) -> None:
+        """Do nothing: there is no vibration board."""
+
     def rest(self, settings: Settings) -> ScriptedPlant:
         """Leave the cap at the top."""
         return ScriptedPlant(np.zeros(1), 0.0, settings, self._random)

@@ -46,7 +46,6 @@ class SimulatedPerson:
         travel_m, speed_m_s = float(m_from_mm(travel_mm_of(image))), float(m_from_mm(velocity_mm_s))
         pace_s = self._pace_s(image, velocity_mm_s, settings)
         gesture = vary(self._plant.finger, travel_m, pace_s, speed_m_s, self._random)
-        self._plant.load(image)
         self._plant.record()
         self._plant.press(gesture)
         self._ticks = math.ceil(gesture.duration_s / (settings.tick_us * 1e-6))
@@ -63,6 +62,10 @@ class SimulatedPerson:
     def record(self) -> Trace:
         """Give what happened since the press began."""
         return self._plant.record()
+
+    def load(self, image: bytes) -> None:
+        """Give the vibration board the waveforms of a program."""
+        self._plant.load(image)
 
     def rest(self, settings: Settings) -> SimulatedPerson:
         """Leave the button alone: the finger rests once its press is over."""

@@ -22,10 +22,12 @@ from fdvv.model._fit import (
     scan_sizes,
     smooth,
 )
+from fdvv.model._landmark_errors import LandmarkError, landmark_errors
 from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._press import Press
 from fdvv.model._records import VERSION, schema
+from fdvv.model._spread import CurveSpread, ModeSpread, PointSpread, VibrationSpread
 from fdvv.model._surface import ForceSurface
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
@@ -37,18 +39,23 @@ __all__ = [
     "Bump",
     "Conflict",
     "CurveFit",
+    "CurveSpread",
     "FDVVModel",
     "FitMethod",
     "ForceCurve",
     "ForceSurface",
     "Interpolation",
+    "LandmarkError",
     "Landmarks",
     "MeasuredCurve",
     "Mode",
+    "ModeSpread",
+    "PointSpread",
     "Press",
     "Provenance",
     "Stroke",
     "Vibration",
+    "VibrationSpread",
     "active_part",
     "assign",
     "bic_star",
@@ -59,6 +66,7 @@ __all__ = [
     "find_contact_mm",
     "first_loaded",
     "fit_curve",
+    "landmark_errors",
     "landmarks",
     "load_builtin",
     "load_model",

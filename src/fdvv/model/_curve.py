@@ -11,10 +11,9 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model import _bspline
+from fdvv.model._checks import LARGEST_cN, LARGEST_mm, check_size, column
+from fdvv.model._spread import CurveSpread
 from fdvv.units import FloatArray
-
-LARGEST_mm, LARGEST_cN = 1e3, 1e6
-"""A metre and ten kilonewtons: beyond any button, within what can be tabulated and squared."""
 
 
 class Stroke(StrEnum):
@@ -22,25 +21,6 @@ class Stroke(StrEnum):
 
     PRESS = "press"
     RELEASE = "release"
-
-
-def _column(values: npt.ArrayLike, name: str) -> FloatArray:
-    """Make a read-only 1-D float column, refusing what is not finite."""
-    array = np.array(values, dtype=np.float64)
-    if array.ndim != 1:
-        raise ModelError(f"{name} must be one column, got {array.shape = }")
-    if not np.isfinite(array).all():
-        at = int(np.flatnonzero(~np.isfinite(array))[0])
-        raise ModelError(f"{name} must be finite, got {array[at]} at index {at}")
-    array.setflags(write=False)
-    return array
-
-
-def check_size(values: npt.ArrayLike, limit: float, name: str) -> None:
-    """Refuse numbers that no button has."""
-    worst = float(np.abs(values).max())
-    if worst > limit:
-        raise ModelError(f"{name} must stay within {limit:g}, got {worst:g}")
 
 
 class OfStroke(Protocol):
@@ -90,8 +70,8 @@ class MeasuredCurve:
     velocity_mm_s: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "displacement_mm", _column(self.displacement_mm, "displacement_mm"))
-        object.__setattr__(self, "force_cN", _column(self.force_cN, "force_cN"))
+        object.__setattr__(self, "displacement_mm", column(self.displacement_mm, "displacement_mm"))
+        object.__setattr__(self, "force_cN", column(self.force_cN, "force_cN"))
         object.__setattr__(self, "stroke", Stroke(self.stroke))
         check_velocity(self.velocity_mm_s)
         if self.displacement_mm.shape != self.force_cN.shape:
@@ -135,6 +115,8 @@ class ForceCurve:
     knots_mm : (n + degree + 1,) not falling, the first and last degree + 1 equal; they bound the curve.
     control_points_cN : (n,) one force per basis function; with ``control_points_mm`` (the Greville
         abscissae) these are the points a designer drags.
+    spread : how the presses it was averaged from differ; None if it was not measured that way. It belongs to
+        this shape at this stroke and velocity: whoever changes one of them passes None along with it.
 
     Outside its knots the curve holds its end values, with derivative 0: a resting cap and a stop are
     not the curve's to tell. Raises ModelError on anything that is not such a spline.
@@ -145,11 +127,12 @@ class ForceCurve:
     degree: int
     knots_mm: FloatArray
     control_points_cN: FloatArray
+    spread: CurveSpread | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
-        object.__setattr__(self, "knots_mm", _column(self.knots_mm, "knots_mm"))
-        object.__setattr__(self, "control_points_cN", _column(self.control_points_cN, "control_points_cN"))
+        object.__setattr__(self, "knots_mm", column(self.knots_mm, "knots_mm"))
+        object.__setattr__(self, "control_points_cN", column(self.control_points_cN, "control_points_cN"))
         check_velocity(self.velocity_mm_s)
         check_size(self.knots_mm, LARGEST_mm, "knots_mm")
         check_size(self.control_points_cN, LARGEST_cN, "control_points_cN")

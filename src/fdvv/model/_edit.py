@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from enum import StrEnum
-from operator import eq
 from typing import TypeVar
 
 from fdvv.errors import ModelError
 from fdvv.model._curve import ForceCurve, Stroke
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._splice import splice
+from fdvv.model._spread import PointSpread
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Vibration
 
@@ -44,11 +44,12 @@ def merge(
     parts : models, whose curves and vibrations are all taken, and single curves.
     name : of the merged model.
     conflict : what to do with two different curves or vibrations of one stroke and velocity: refuse them,
-        or keep the first or the last; equal ones count once.
+        or keep the first or the last; equal ones count once, and the one that knows its spread is kept.
     travel_mm : as given; else what all models say; without models, where all curves end.
     actuation_mm, reset_mm : as given; else what all models that know it say; else unknown.
     interpolation : as given; else what all models say; without models, the default.
 
+    Curves and vibrations keep their spread, and so does a point at the very place where a model measured it.
     The provenance is that of the models, joined; it is simulated if any of them is. Raises ModelError,
     naming both sides, where they differ and no argument decides, and as FDVVModel does.
     """
@@ -60,17 +61,22 @@ def merge(
     travel_mm = _decided("travel_mm", travel_mm, stated_mm)
     if travel_mm is None or not curves:
         raise ModelError("a merge needs at least one curve or model, got none")
+    actuation = _decided("actuation_mm", actuation_mm, [(_label(m), m.actuation_mm) for m in models])
+    reset = _decided("reset_mm", reset_mm, [(_label(m), m.reset_mm) for m in models])
     wanted = None if interpolation is None else Interpolation(interpolation)
     method = _decided("interpolation", wanted, [(_label(m), m.interpolation) for m in models])
     return FDVVModel(
         name=name,
         travel_mm=travel_mm,
         curves=_settled("curve", curves, Conflict(conflict), _same_curve),
-        actuation_mm=_decided("actuation_mm", actuation_mm, [(_label(m), m.actuation_mm) for m in models]),
-        reset_mm=_decided("reset_mm", reset_mm, [(_label(m), m.reset_mm) for m in models]),
-        vibrations=_settled("vibration", vibrations, Conflict(conflict), eq),
+        actuation_mm=actuation,
+        reset_mm=reset,
+        vibrations=_settled("vibration", vibrations, Conflict(conflict), _same_vibration),
         interpolation=method or Interpolation.PCHIP,
         provenance=_joined([m.provenance for m in models], "merged from " + ", ".join(map(_label, parts))),
+        travel_spread=_told(travel_mm, [(m.travel_mm, m.travel_spread) for m in models]),
+        actuation_spread=_told(actuation, [(m.actuation_mm, m.actuation_spread) for m in models]),
+        reset_spread=_told(reset, [(m.reset_mm, m.reset_spread) for m in models]),
     )
 
 
@@ -92,11 +98,14 @@ def assign(
     blend_mm : width beyond either end of the segment over which one cubic leads from the old curve to
         the new, value and slope continuous; outside it the old curve is unchanged.
 
-    Travel, points and vibrations stay; the provenance gains a note. Raises ModelError if there is no
-    curve to take a segment, if the segment leaves either curve, and as FDVVModel does.
+    A whole curve that goes where it was measured keeps its spread; at another stroke or velocity, or with a
+    segment of another curve in it, it was never measured and has none. Travel, points and vibrations stay;
+    the provenance gains a note. Raises ModelError if there is no curve to take a segment, if the segment
+    leaves either curve, and as FDVVModel does.
     """
     stroke = Stroke(stroke)
-    placed = replace(curve, stroke=stroke, velocity_mm_s=velocity_mm_s)
+    spread = curve.spread if _at(curve, stroke, velocity_mm_s) else None
+    placed = replace(curve, stroke=stroke, velocity_mm_s=velocity_mm_s, spread=spread)
     span = ""
     if segment_mm is not None:
         placed = splice(_found(model, stroke, velocity_mm_s), curve, segment_mm, blend_mm)
@@ -156,6 +165,18 @@ def _same_curve(a: ForceCurve, b: ForceCurve) -> bool:
     return numbers(a) == numbers(b)
 
 
+def _same_vibration(a: Vibration, b: Vibration) -> bool:
+    return replace(a, spread=None) == replace(b, spread=None)
+
+
+def _told(
+    point_mm: float | None, stated: Sequence[tuple[float | None, PointSpread | None]]
+) -> PointSpread | None:
+    """Give the spread of a point from those who state it at that very place; None if they differ in it."""
+    found = {spread for place_mm, spread in stated if spread is not None and place_mm == point_mm}
+    return found.pop() if len(found) == 1 else None
+
+
 def _decided(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value | None]]) -> _Value | None:
     """Take what is given, else the one value that everyone who knows it states."""
     if given is not None:
@@ -179,7 +200,10 @@ def _settled(
     for who, part in parts:
         key = (part.stroke, part.velocity_mm_s)
         earlier, there = kept.setdefault(key, (who, part))
-        if same(there, part):
+        if same(there, part) and None in (there.spread, part.spread):
+            kept[key] = (earlier, there) if there.spread else (who, part)
+            continue
+        if same(there, part) and there.spread == part.spread:
             continue
         if rule is Conflict.REFUSE:
             sides = f"one from {earlier!r}, one from {who!r}"

@@ -17,6 +17,7 @@ from fdvv.files import read_limited, write_atomic
 from fdvv.model._curve import ForceCurve, Stroke
 from fdvv.model._model import FDVVModel, Provenance
 from fdvv.model._records import FORMAT, VERSION, ModelRecord, ModeRecord
+from fdvv.model._spread_records import written
 from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
 
@@ -25,15 +26,16 @@ LIMIT_bytes = 64_000_000
 """Far above any button (a curve takes some 400 bytes), far below what would fill a machine's memory."""
 
 _REMEDY = "compare with docs/reference/model-file.md, or fit the measurement again"
-_KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY)
+_KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY, oldest=1)
+_POINTS = ("travel_spread", "actuation_spread", "reset_spread")
 _CHOICES = {"stroke": Stroke, "interpolation": Interpolation}
 
 
 def model_to_json(model: FDVVModel) -> str:
-    """Write a model as the text of a ``*.fdvv.json`` file."""
+    """Write a model as the text of a ``*.fdvv.json`` file, of version 1 unless it tells of spreads."""
     record = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": VERSION if _has_spreads(model) else 1,
         "name": model.name,
         "travel_mm": model.travel_mm,
         "actuation_mm": model.actuation_mm,
@@ -46,6 +48,7 @@ def model_to_json(model: FDVVModel) -> str:
                 "degree": c.degree,
                 "knots_mm": c.knots_mm.tolist(),
                 "control_points_cN": c.control_points_cN.tolist(),
+                **written(c.spread),
             }
             for c in model.curves
         ],
@@ -56,12 +59,20 @@ def model_to_json(model: FDVVModel) -> str:
                 "onset_mm": v.onset_mm,
                 "duration_s": v.duration_s,
                 "modes": [msgspec.to_builtins(ModeRecord(**vars(mode))) for mode in v.modes],
+                **written(v.spread),
             }
             for v in model.vibrations
         ],
         "provenance": {**vars(model.provenance), "assumptions": list(model.provenance.assumptions)},
     }
+    for name in _POINTS:
+        record |= written(getattr(model, name), name)
     return pretty(record) + "\n"
+
+
+def _has_spreads(model: FDVVModel | ModelRecord) -> bool:
+    parts = (*model.curves, *model.vibrations)
+    return any(getattr(model, name) for name in _POINTS) or any(part.spread for part in parts)
 
 
 def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
@@ -85,21 +96,34 @@ def _choices(place: str) -> Iterable[str] | None:
 
 def _model(record: ModelRecord, source: object) -> FDVVModel:
     """Build the model from a record of the right shape; each failure names its place."""
+    if record.version == 1 and _has_spreads(record):
+        raise InputError(
+            source, "$.version", "a file of version 1 has no spreads", "write 2, or take them out"
+        )
     place = "$"
     try:
         curves = []
         for i, c in enumerate(record.curves):
             place = f"$.curves[{i}]"
             curves.append(
-                ForceCurve(c.stroke, c.velocity_mm_s, c.degree, c.knots_mm, c.control_points_cN)  # type: ignore[arg-type]
+                ForceCurve(
+                    c.stroke,
+                    c.velocity_mm_s,
+                    c.degree,
+                    c.knots_mm,  # type: ignore[arg-type]
+                    c.control_points_cN,  # type: ignore[arg-type]
+                    c.spread.read() if c.spread else None,
+                )
             )
         vibrations = []
         for i, v in enumerate(record.vibrations):
             place = f"$.vibrations[{i}]"
             modes = tuple(Mode(**msgspec.to_builtins(mode)) for mode in v.modes)
-            vibrations.append(Vibration(v.stroke, v.velocity_mm_s, v.onset_mm, v.duration_s, modes))
+            spread = v.spread.read() if v.spread else None
+            vibrations.append(Vibration(v.stroke, v.velocity_mm_s, v.onset_mm, v.duration_s, modes, spread))
         place = "$"
         fields = msgspec.to_builtins(record.provenance)
+        told = {name: getattr(record, name) for name in _POINTS}
         return FDVVModel(
             name=record.name,
             travel_mm=record.travel_mm,
@@ -109,6 +133,7 @@ def _model(record: ModelRecord, source: object) -> FDVVModel:
             vibrations=tuple(vibrations),
             interpolation=record.interpolation,
             provenance=Provenance(**{**fields, "assumptions": tuple(fields["assumptions"])}),
+            **{name: found.read() if found else None for name, found in told.items()},
         )
     except ModelError as error:
         raise InputError(source, place, str(error), _REMEDY) from error

@@ -87,7 +87,9 @@ def _work_mJ(x: FloatArray, force_cN: FloatArray) -> float:
     return float(np.trapezoid(force_cN, x)) * mJ_PER_cN_mm
 
 
-def _dense(curve: ForceCurve, end_mm: float) -> FloatArray:
+def dense(curve: ForceCurve, end_mm: float) -> FloatArray:
+    """Give the places that landmarks are read from: the curve to the end of the travel, longer if it must."""
+    end_mm = max(end_mm, curve.start_mm + STEP_mm)
     count = max(8, round((end_mm - curve.start_mm) / STEP_mm) + 1)
     return np.linspace(curve.start_mm, end_mm, count)
 
@@ -102,7 +104,7 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     if press is None:
         raise ModelError(f"model {model.name!r} has no press curve to read landmarks from")
     release = model.nearest(Stroke.RELEASE, velocity_mm_s)
-    x = _dense(press, max(model.travel_mm, press.start_mm + STEP_mm))
+    x = dense(press, model.travel_mm)
     force, slope = press.force_cN(x), press.stiffness_cN_mm(x)
     bump = find_bump(x, force)
     step_end = _contact_step_end(x, slope)
@@ -111,7 +113,7 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     work = _work_mJ(x, force)
     release_bump = release_work = None
     if release is not None:
-        xr = _dense(release, max(model.travel_mm, release.start_mm + STEP_mm))
+        xr = dense(release, model.travel_mm)
         given_cN = release.force_cN(xr)
         release_bump, release_work = find_bump(xr, given_cN), _work_mJ(xr, given_cN)
     last = x >= x[-1] - 0.25 * (x[-1] - x[0])

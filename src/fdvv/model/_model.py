@@ -8,7 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._curve import ForceCurve, LARGEST_mm, Stroke, check_size, reading_order
+from fdvv.model._checks import LARGEST_mm, check_size
+from fdvv.model._curve import ForceCurve, Stroke, reading_order
+from fdvv.model._spread import PointSpread
 from fdvv.model._velocity import Interpolation, blend, blend_slope
 from fdvv.model._vibration import Vibration
 from fdvv.units import FloatArray
@@ -50,6 +52,8 @@ class FDVVModel:
     vibrations : any number; per stroke the velocities differ.
     interpolation : how force is found between the velocities.
     provenance : where it comes from.
+    travel_spread, actuation_spread, reset_spread : how these points differ between presses; None where that
+        was not measured.
 
     Raises ModelError on anything else. Equality is of all numbers, exactly.
     """
@@ -62,6 +66,9 @@ class FDVVModel:
     vibrations: tuple[Vibration, ...] = ()
     interpolation: Interpolation = Interpolation.PCHIP
     provenance: Provenance = field(default_factory=Provenance)
+    travel_spread: PointSpread | None = None
+    actuation_spread: PointSpread | None = None
+    reset_spread: PointSpread | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "interpolation", Interpolation(self.interpolation))
@@ -73,8 +80,10 @@ class FDVVModel:
         if not (np.isfinite(self.travel_mm) and self.travel_mm > 0):
             raise ModelError(f"travel_mm must be positive, got {self.travel_mm}")
         check_size(self.travel_mm, LARGEST_mm, "travel_mm")
-        for label in ("actuation_mm", "reset_mm"):
+        for label, spread in (("actuation_mm", self.actuation_spread), ("reset_mm", self.reset_spread)):
             point = getattr(self, label)
+            if point is None and spread is not None:
+                raise ModelError(f"{label} is unknown, so it has no spread")
             if point is not None and not 0 <= point <= self.travel_mm:
                 raise ModelError(f"{label} must lie within the travel of {self.travel_mm} mm, got {point}")
         if not self.curves:
@@ -159,10 +168,18 @@ class FDVVModel:
 
     def _key(self) -> tuple[object, ...]:
         curves = tuple(
-            (c.stroke, c.velocity_mm_s, c.degree, c.knots_mm.tobytes(), c.control_points_cN.tobytes())
+            (
+                c.stroke,
+                c.velocity_mm_s,
+                c.degree,
+                c.knots_mm.tobytes(),
+                c.control_points_cN.tobytes(),
+                c.spread,
+            )
             for c in self.curves
         )
-        points = (self.name, self.travel_mm, self.actuation_mm, self.reset_mm)
+        spreads = (self.travel_spread, self.actuation_spread, self.reset_spread)
+        points = (self.name, self.travel_mm, self.actuation_mm, self.reset_mm, spreads)
         return (*points, curves, self.vibrations, self.interpolation, self.provenance)
 
     def __eq__(self, other: object) -> bool:

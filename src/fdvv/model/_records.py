@@ -9,10 +9,12 @@ import msgspec
 from msgspec import Meta
 
 from fdvv.model._curve import Stroke
+from fdvv.model._spread_records import CurveSpreadRecord, PointSpreadRecord, VibrationSpreadRecord
 from fdvv.model._velocity import Interpolation
 
 FORMAT = "fdvv-model"
-VERSION = 1
+VERSION = 2
+"""Of a file with spreads; one without is of version 1, which had no place for them."""
 
 StrokeName = Annotated[Stroke, Meta(description="press or release")]
 
@@ -36,6 +38,9 @@ class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
     control_points_cN: Annotated[
         list[float], Meta(min_length=2, description="n coefficients, cN, one per basis function")
     ]
+    spread: Annotated[
+        CurveSpreadRecord | None, Meta(description="between presses; null or absent if not measured")
+    ] = None
 
 
 class ModeRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -58,6 +63,9 @@ class VibrationRecord(msgspec.Struct, forbid_unknown_fields=True):
     onset_mm: Annotated[float, Meta(description="displacement at which it starts, mm")]
     duration_s: Annotated[float, Meta(gt=0, description="length, s; the signal is zero after it")]
     modes: Annotated[list[ModeRecord], Meta(min_length=1, description="the sinusoids that add up to it")]
+    spread: Annotated[
+        VibrationSpreadRecord | None, Meta(description="between presses; null or absent if not measured")
+    ] = None
 
 
 class ProvenanceRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -75,7 +83,7 @@ class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
     """A button as force over displacement and velocity, with its vibration (FDVV)."""
 
     format: Annotated[Literal["fdvv-model"], Meta(description="tells the file from other JSON")]
-    version: Annotated[Literal[1], Meta(description="of this format")]
+    version: Annotated[Literal[1, 2], Meta(description="of this format; 2 if the file tells of spreads")]
     name: Annotated[str, Meta(min_length=1, description="short, as a file would be called")]
     travel_mm: Annotated[float, Meta(gt=0, description="from first contact to bottom-out, mm")]
     actuation_mm: Annotated[
@@ -95,6 +103,15 @@ class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
     provenance: Annotated[ProvenanceRecord, Meta(description="where the model comes from")] = msgspec.field(
         default_factory=ProvenanceRecord
     )
+    travel_spread: Annotated[
+        PointSpreadRecord | None, Meta(description="of travel_mm; null or absent if not measured")
+    ] = None
+    actuation_spread: Annotated[
+        PointSpreadRecord | None, Meta(description="of actuation_mm; null or absent if not measured")
+    ] = None
+    reset_spread: Annotated[
+        PointSpreadRecord | None, Meta(description="of reset_mm; null or absent if not measured")
+    ] = None
 
 
 def schema() -> dict[str, Any]:

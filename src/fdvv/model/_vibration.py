@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model._curve import Stroke, check_velocity
+from fdvv.model._spread import VibrationSpread
 from fdvv.units import FloatArray
 
 
@@ -46,6 +47,7 @@ class Vibration:
     onset_mm : displacement at which it starts.
     duration_s : length; the signal is zero after it.
     modes : the damped modes that add up to it.
+    spread : how it differs between presses; None if that was not measured.
     """
 
     stroke: Stroke
@@ -53,6 +55,7 @@ class Vibration:
     onset_mm: float
     duration_s: float
     modes: tuple[Mode, ...]
+    spread: VibrationSpread | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
@@ -64,6 +67,10 @@ class Vibration:
             raise ModelError(f"duration_s must be positive, got {self.duration_s}")
         if not self.modes:
             raise ModelError("a vibration needs at least one mode")
+        if self.spread and self.spread.modes and len(self.spread.modes) != len(self.modes):
+            raise ModelError(
+                f"the spread tells of {len(self.spread.modes)} modes, the vibration has {len(self.modes)}"
+            )
 
     def acceleration_m_s2(self, t_s: npt.ArrayLike) -> FloatArray:
         """Evaluate the cap's acceleration at times after the onset, in the shape of t_s."""

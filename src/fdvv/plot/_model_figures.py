@@ -24,15 +24,17 @@ SURFACE_COLUMNS = 49
 def plot_model(model: FDVVModel, ax: Axes | None = None, simulated: bool = False) -> Axes:
     """Draw every curve of a model with its landmarks: actuation, reset and onsets of vibration.
 
-    Colour tells the velocity (light slow, dark fast), solid press from dashed release. Simulated is
-    written if the model says so or the caller does. Gives the axes.
+    Colour tells the velocity (light slow, dark fast), solid press from dashed release; a band is the spread
+    between presses where the model keeps it. Simulated is written if the model says so or the caller does.
+    Gives the axes.
     """
     ax = style.axes_or_new(ax, 8.0, 4.6)
     colours = style.velocity_colours(c.velocity_mm_s for c in model.curves)
     for curve in model.curves:
         _draw_curve(ax, curve, colour=colours[curve.velocity_mm_s])
-    handles = [style.handle(style.velocity_text(v), color=c) for v, c in colours.items()]
+    handles: list[Any] = [style.handle(style.velocity_text(v), color=c) for v, c in colours.items()]
     handles += style.stroke_handles(c.stroke for c in model.curves)
+    handles += style.band_handles(c.spread.presses for c in model.curves if c.spread)
     handles += _mark_landmarks(ax, model)
     style.legend_beside(ax, handles)
     _force_axes(ax, style.name_text(model.name), simulated or model.provenance.simulated)
@@ -97,20 +99,24 @@ def plot_comparison(
 ) -> Axes:
     """Draw models over each other, each by its curves nearest to a velocity (its slowest by default).
 
-    Circles mark peak and valley of the bump, triangles actuation and reset. Gives the axes.
-    Raises ModelError if there is no model.
+    Circles mark peak and valley of the bump, triangles actuation and reset; a band is the spread between
+    presses where a model keeps it. Gives the axes. Raises ModelError if there is no model.
     """
     if not models:
         raise ModelError("a comparison needs at least one model, got none")
     ax = style.axes_or_new(ax, 8.0, 4.6)
-    handles = []
+    handles: list[Any] = []
+    presses: list[int] = []
     for model, colour in zip(models, _category_colours(len(models)), strict=True):
         for stroke in Stroke:
-            _draw_curve(ax, model.nearest(stroke, velocity_mm_s), colour=colour)
+            curve = model.nearest(stroke, velocity_mm_s)
+            _draw_curve(ax, curve, colour=colour)
+            presses += [curve.spread.presses] if curve and curve.spread else []
         _mark_points(ax, model, velocity_mm_s, colour)
         said = " (simulated)" if model.provenance.simulated else ""
         handles.append(style.handle(style.name_text(model.name) + said, color=colour))
     handles += style.stroke_handles(c.stroke for m in models for c in m.curves)
+    handles += style.band_handles(presses)
     handles += [style.handle(label, linestyle="", **look) for label, look in _POINTS.items()]
     style.legend_beside(ax, handles)
     _force_axes(ax, "", simulated or style.is_simulated(models))
@@ -158,6 +164,9 @@ _POINTS: dict[str, Any] = {
 def _draw_curve(ax: Axes, curve: ForceCurve | None, colour: Any) -> None:
     if curve is None:
         return
+    if curve.spread is not None:
+        places = curve.spread.displacement_mm
+        style.draw_band(ax, places, curve.force_cN(places), curve.spread.spread_cN, colour)
     drawn = curve.sample(STEP_mm)
     ax.plot(drawn.displacement_mm, drawn.force_cN, style.LINE[curve.stroke], color=colour)
 
@@ -173,16 +182,23 @@ def _force_axes(ax: Axes, title: str, simulated: bool) -> None:
 
 def _mark_landmarks(ax: Axes, model: FDVVModel) -> list[Line2D]:
     """Mark where a model's events lie on its curves, and give their legend entries."""
-    events = [("actuation", Stroke.PRESS, model.actuation_mm), ("reset", Stroke.RELEASE, model.reset_mm)]
-    events += [("vibration onset", v.stroke, v.onset_mm) for v in model.vibrations]
+    spreads_mm = [s.spread_mm if s else None for s in (model.actuation_spread, model.reset_spread)]
+    events: list[tuple[str, Stroke, float | None, float | None]] = [
+        ("actuation", Stroke.PRESS, model.actuation_mm, spreads_mm[0]),
+        ("reset", Stroke.RELEASE, model.reset_mm, spreads_mm[1]),
+    ]
+    events += [
+        ("vibration onset", v.stroke, v.onset_mm, v.spread.onset_mm if v.spread else None)
+        for v in model.vibrations
+    ]
     handles: dict[str, Line2D] = {}
-    for what, stroke, at_mm in events:
+    for what, stroke, at_mm, spread_mm in events:
         if at_mm is None or not model.of(stroke):
             continue
         force = [float(curve.force_cN(at_mm)) for curve in model.of(stroke)]
         look = _MARKS[what] | {"markerfacecolor": "white", "color": style.INK, "linestyle": ""}
         ax.plot([at_mm] * len(force), force, **look, zorder=5)
-        label = f"{what}, {at_mm:.2f} mm"
+        label = f"{what}, {at_mm:.2f}" + (f" ± {spread_mm:.2f} mm" if spread_mm is not None else " mm")
         handles[label] = style.handle(label, **look)
     return list(handles.values())
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -33,6 +34,9 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#0
 """Categories that a colour-blind reader can tell apart (after Okabe and Ito, yellow left out on white)."""
 
 LINE = {Stroke.PRESS: "-", Stroke.RELEASE: "--"}
+
+BAND = 0.2
+"""Opacity of bands: two that overlap are still told apart."""
 
 LONGEST_NAME = 36
 """Names come from foreign files; a longer one would push the axes off the page."""
@@ -165,18 +169,36 @@ def handle(label: str, **look: Any) -> Line2D:
     return Line2D([], [], **({"color": QUIET} | look), label=label)
 
 
+def draw_band(ax: Axes, x: Any, middle: Any, half: Any, colour: Any) -> None:
+    """Draw a band of one standard deviation on either side of a curve, below every line."""
+    ax.fill_between(x, middle - half, middle + half, color=colour, alpha=BAND, linewidth=0.0, zorder=1.5)
+
+
+def band_handles(presses: Iterable[int]) -> list[Patch]:
+    """Make the legend entry of bands: what they are and of how many presses; none where there are none."""
+    from matplotlib.patches import Patch
+
+    counts = sorted(set(presses))
+    if not counts:
+        return []
+    n = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+    return [Patch(facecolor=QUIET, alpha=2 * BAND, label=f"mean ± 1 SD,\nn = {n} presses")]
+
+
 def stroke_handles(strokes: Iterable[Stroke]) -> list[Line2D]:
     """Make the legend entries that tell press (solid) from release (dashed)."""
     present = set(strokes)
     return [handle(str(stroke), linestyle=LINE[stroke]) for stroke in Stroke if stroke in present]
 
 
-def legend_beside(ax: Axes, handles: Sequence[Line2D]) -> None:
+def legend_beside(ax: Axes, handles: Sequence[Line2D | Patch]) -> None:
     """Put the legend at the right of the axes, where it hides no curve; two columns if it is long."""
     labels = [str(item.get_label()) for item in handles]
     columns = 1 + (len(labels) - 1) // 22
     beside = (1.01, 1.0)
-    ax.legend(handles, labels, ncols=columns, loc="upper left", bbox_to_anchor=beside, borderaxespad=0.0)
+    ax.legend(
+        list[Any](handles), labels, ncols=columns, loc="upper left", bbox_to_anchor=beside, borderaxespad=0.0
+    )
 
 
 def limits_around(*columns: Any, margin: float = 0.05) -> tuple[float, float]:

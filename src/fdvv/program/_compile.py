@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.model import Vibration
 from fdvv.program._grid import Candidates, Grid, START_um16, speed_mm_s16
 from fdvv.program._image import lay_out
 from fdvv.program._limits import Limits
@@ -24,6 +26,8 @@ from fdvv.protocol import (
     TRANSITIONS,
     VIBRATIONS,
 )
+
+Converter = Callable[[Vibration], ConvertedVibration]
 
 
 @dataclass(frozen=True)
@@ -46,8 +50,12 @@ class Compiled:
     vibration_error_ratio: dict[str, float]
 
 
-def compile_program(program: Program, limits: Limits | None = None) -> Compiled:
+def compile_program(
+    program: Program, limits: Limits | None = None, convert: Converter | None = None
+) -> Compiled:
     """Compile a program to an image of protocol/fdvv.toml.
+
+    convert : makes the slot of a signal; None: slot_of_vibration at limits.counts_per_m_s2.
 
     Every state carries limits.weight_cN. Columns of a surface are evenly spaced: each surface gets the fewest
     that keep it within limits.grid_error_cN of its lines; while the image is too large, that bound is
@@ -60,7 +68,8 @@ def compile_program(program: Program, limits: Limits | None = None) -> Compiled:
         _check_surface(program, surface, limits)
     for state in program.states:
         _check_bias(program, state, limits)
-    converted = [_convert(program, i, limits) for i in range(len(program.signals))]
+    make = convert or partial(slot_of_vibration, counts_per_m_s2=limits.counts_per_m_s2)
+    converted = [_convert(program, i, make) for i in range(len(program.signals))]
     _check_waves(program, converted)
     grids, image = _fit(program, [Candidates(s) for s in program.surfaces], converted, limits)
     _check_fit(program, grids, len(image), limits)
@@ -131,10 +140,10 @@ def _check_bias(program: Program, state: State, limits: Limits) -> None:
         raise _refuse(program, f"state {state.name!r}", reason, "weaken it")
 
 
-def _convert(program: Program, index: int, limits: Limits) -> ConvertedVibration:
+def _convert(program: Program, index: int, convert: Converter) -> ConvertedVibration:
     signal = program.signals[index]
     try:
-        return slot_of_vibration(signal.vibration(), limits.counts_per_m_s2)
+        return convert(signal.vibration())
     except ModelError as error:
         raise _refuse(program, f"signal {signal.name!r}", str(error), "weaken or shorten it") from error
 

@@ -13,23 +13,21 @@ from fdvv.errors import InputError, ModelError
 from fdvv.files import write_atomic
 from fdvv.journal import JournalKind, line_of, read_records
 from fdvv.recording._mend import Mend, mended
-from fdvv.recording._records import FORMAT, VERSION, pack_head, pack_take, unpack_head, unpack_take
+from fdvv.recording._records import (
+    FORMAT,
+    VERSION,
+    MendRecord,
+    pack_head,
+    pack_take,
+    unpack_head,
+    unpack_take,
+)
 from fdvv.recording._types import Recording, Take
 
 RECORDING_SUFFIX = ".recording.jsonl"
 REMEDY = "compare with docs/reference/recording-file.md"
 KIND = JournalKind(frozenset({"head", "take", "mend"}), REMEDY)
 CUT = "the last record is not whole and is left out"
-
-
-class MendRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A correction; the names are those of Mend."""
-
-    values: dict[str, Any]
-    take: int | None
-    stream: str | None
-    why: str
-    made: str
 
 
 def load_recording(path: Path | str) -> Recording:

@@ -15,7 +15,8 @@ from fdvv.recording._forcepeaks import is_forcepeaks, read_forcepeaks
 from fdvv.recording._motive import read_motive
 from fdvv.recording._motive_head import is_motive
 from fdvv.recording._reading import REMEDY, Reading, refusal
-from fdvv.recording._serial import is_serial, read_serial
+from fdvv.recording._serial import read_serial
+from fdvv.recording._serial_lines import is_serial
 from fdvv.recording._sound import read_sound, sound_kind
 from fdvv.recording._table import find_header, read_table
 from fdvv.recording._types import Recording, Source, Take

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
+from msgspec import Meta
 
 from fdvv.columns import pack_column, unpack_column
 from fdvv.errors import ModelError
-from fdvv.recording._types import Bench, Mark, Recording, Source, Stream, Take
+from fdvv.recording._types import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 FORMAT, VERSION = "fdvv-recording", 1
+COLUMN = r"^(\?|\|[iu]1|<[iu][248]|<f[48])(\[\d+(,\d+)+\])?:"
+Column = Annotated[str, Meta(pattern=COLUMN, description="kind, shape, base64 of zlib of the numbers")]
 
 
 class BenchRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -20,6 +23,7 @@ class BenchRecord(msgspec.Struct, forbid_unknown_fields=True):
 
     force_filter_ms: float
     sound_filter_ms: float
+    force_play_cN: float
     tip_mass_g: float
     exposure_ms: float
     clocks_go_on: bool
@@ -51,12 +55,12 @@ class StreamRecord(msgspec.Struct, forbid_unknown_fields=True):
     """A stream; t_s and raw are columns."""
 
     name: str
-    quantity: str
+    quantity: Quantity
     clock: str
     scale: float
     zero: float
-    t_s: str
-    raw: str
+    t_s: Column
+    raw: Column
 
 
 class MarkRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -71,12 +75,42 @@ class TakeRecord(msgspec.Struct, forbid_unknown_fields=True):
     """A take with all its samples."""
 
     number: int
-    stage: str
+    stage: Stage
     velocity_mm_s: float | None
     made: str
     remark: str
     marks: list[MarkRecord]
     streams: list[StreamRecord]
+
+
+class MendRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A correction; the names are those of Mend."""
+
+    values: dict[str, Any]
+    take: int | None
+    stream: str | None
+    why: str
+    made: str
+
+
+def schema() -> dict[str, Any]:
+    """Give the JSON schema of one line, as published in docs/reference/fdvv-recording.schema.json."""
+    kinds = {"head": HeadRecord, "take": TakeRecord, "mend": MendRecord}
+    found, parts = msgspec.json.schema_components(kinds.values(), ref_template="#/$defs/{name}")
+    records = [
+        {"type": "object", "properties": {key: ref}, "required": [key], "additionalProperties": False}
+        for key, ref in zip(kinds, found, strict=True)
+    ]
+    checksum = {"type": "integer", "minimum": 0, "maximum": 2**32 - 1}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A line of a recording",
+        "type": "object",
+        "properties": {"crc32": checksum, "record": {"oneOf": records}},
+        "required": ["crc32", "record"],
+        "additionalProperties": False,
+        "$defs": parts,
+    }
 
 
 def pack_head(recording: Recording) -> dict[str, Any]:
@@ -137,9 +171,9 @@ def unpack_take(found: object) -> Take:
     take = msgspec.convert(found, TakeRecord)
     return Take(
         take.number,
-        [_unpack_stream(stream) for stream in take.streams],  # type: ignore[arg-type]  # made a tuple there
+        tuple(_unpack_stream(stream) for stream in take.streams),
         _marks(take.marks),
-        take.stage,  # type: ignore[arg-type]  # made a Stage there
+        take.stage,
         take.velocity_mm_s,
         take.made,
         take.remark,
@@ -152,4 +186,4 @@ def _marks(found: Sequence[MarkRecord]) -> tuple[Mark, ...]:
 
 def _unpack_stream(found: StreamRecord) -> Stream:
     t_s, raw = unpack_column(found.t_s), unpack_column(found.raw)
-    return Stream(found.name, found.quantity, found.clock, t_s, raw, found.scale, found.zero)  # type: ignore[arg-type]
+    return Stream(found.name, found.quantity, found.clock, t_s, raw, found.scale, found.zero)

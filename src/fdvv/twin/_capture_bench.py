@@ -19,6 +19,7 @@ from fdvv.twin._participant import Intent, Participant, draw_intent
 from fdvv.twin._probe_button import ProbedCurve
 from fdvv.twin._rig_senses import ForceSensor
 from fdvv.twin._simulate_button import ButtonTrace
+from fdvv.units import cN_from_N
 
 APART_s = 4.0
 """A take begins this much after the one before it, give or take 0.2 s."""
@@ -131,9 +132,10 @@ class CaptureBench:
 
 
 def bench_facts(rig: CaptureRig, sensor: ForceSensor) -> Bench:
-    """State what the builder of a bench knows of it: filters and exposure to 0.01 ms, the tip to 0.1 g."""
+    """State what a builder knows of a bench: filters and exposure to 0.01 ms, tip to 0.1 g, play 0.1 cN."""
     return Bench(
         force_filter_ms=round(1e3 * sensor.filter_s, 2),
+        force_play_cN=round(float(cN_from_N(sensor.hysteresis_N)), 1),
         sound_filter_ms=round(1e3 * rig.sound_filter_s, 2),
         tip_mass_g=round(1e3 * sensor.mass_kg, 1),
         exposure_ms=round(1e3 * rig.exposure_s, 2),

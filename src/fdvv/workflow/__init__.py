@@ -4,12 +4,16 @@ from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_act
 from fdvv.workflow._capture import CaptureResult, capture_session
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_look import Verdict, quick_look
+from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
 from fdvv.workflow._capture_plan import CapturePlan, Step
+from fdvv.workflow._capture_report import capture_report
+from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
+from fdvv.workflow._exciter import identify_exciter, prepare_exciter, with_lead
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
@@ -27,11 +31,24 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._spread_report import spread_reports
+from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
+from fdvv.workflow._tune_observer import simulated_observer
+from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
 from fdvv.workflow._tuning import settings_with
+from fdvv.workflow._vibration_slots import (
+    RenderedVibration,
+    Way,
+    converter,
+    render_vibration,
+    slot_volts,
+    vibration_wav,
+)
 
 __all__ = [
     "Ask",
     "ButtonPress",
+    "Candidates",
     "CaptureGuide",
     "CapturePlan",
     "CaptureResult",
@@ -41,6 +58,7 @@ __all__ = [
     "DemoResult",
     "Difference",
     "FeasibilityReport",
+    "FindVibrations",
     "FitSettings",
     "FolderButton",
     "FolderFit",
@@ -52,6 +70,8 @@ __all__ = [
     "Presses",
     "ProbeResult",
     "Receipt",
+    "RecordedModel",
+    "RenderedVibration",
     "Rendering",
     "Session",
     "Standing",
@@ -59,11 +79,20 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "TuneResult",
+    "TuneSetup",
+    "TunedVibration",
     "Verdict",
+    "Way",
+    "acceleration_per_volt",
     "button_files",
+    "candidates_for",
+    "capture_report",
     "capture_session",
+    "check_file",
     "compare",
     "compensate",
+    "converter",
     "demo",
     "demo_report",
     "fd_only",
@@ -73,10 +102,12 @@ __all__ = [
     "fit_files",
     "fit_folder",
     "fit_force_file",
+    "identify_exciter",
     "load_actuation",
     "make_program",
     "measured_files",
     "merge_parts",
+    "model_of_recording",
     "one_curve",
     "open_device",
     "open_files",
@@ -85,12 +116,22 @@ __all__ = [
     "open_part",
     "open_program",
     "open_receipt",
+    "prepare_exciter",
     "press_button",
     "probe",
+    "process_recording",
     "program_image",
     "quick_look",
+    "render_vibration",
     "save_actuation",
     "settings_with",
+    "simulated_observer",
+    "slot_volts",
+    "spread_reports",
     "summarise",
+    "tune_vibration",
+    "tuned_model",
     "uncompensated",
+    "vibration_wav",
+    "with_lead",
 ]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.model import FDVVModel, Landmarks, Stroke, landmarks
+from fdvv.model import FDVVModel, LandmarkError, Landmarks, Stroke, landmark_errors, landmarks
 
 STEP_mm = 0.01
 
@@ -37,16 +37,29 @@ class Difference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Buttons side by side; the first is the reference of the differences."""
+    """Buttons side by side; the first is the reference of the differences.
+
+    Attributes
+    ----------
+    names, landmarks : of each button.
+    errors : standard errors of its landmarks, by name, where presses tell them.
+    differences : of the others against the first.
+    """
 
     names: tuple[str, ...]
     landmarks: tuple[Landmarks, ...]
+    errors: tuple[dict[str, LandmarkError], ...]
     differences: tuple[Difference, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Give the report of ``fdvv compare --json``."""
         buttons = [
-            {"name": name, **marks.to_dict()} for name, marks in zip(self.names, self.landmarks, strict=True)
+            {
+                "name": name,
+                **marks.to_dict(),
+                "landmark_errors": {mark: vars(error) for mark, error in errors.items()},
+            }
+            for name, marks, errors in zip(self.names, self.landmarks, self.errors, strict=True)
         ]
         differences = [{**vars(d), "stroke": str(d.stroke)} for d in self.differences]
         return {"reference": self.names[0], "buttons": buttons, "differences": differences}
@@ -65,7 +78,9 @@ def compare(models: Sequence[FDVVModel], velocity_mm_s: float | None = None) -> 
         if (found := _difference(reference, index, model, stroke, velocity_mm_s)) is not None
     ]
     names = tuple(model.name for model in models)
-    return Comparison(names, tuple(landmarks(m, velocity_mm_s) for m in models), tuple(differences))
+    marks = tuple(landmarks(m, velocity_mm_s) for m in models)
+    errors = tuple(landmark_errors(m, velocity_mm_s) for m in models)
+    return Comparison(names, marks, errors, tuple(differences))
 
 
 def _difference(

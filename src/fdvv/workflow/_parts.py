@@ -56,7 +56,13 @@ def _declared(curves: tuple[ForceCurve, ...], velocity_mm_s: float, spec: str) -
         if count > 1:
             reason = f"the button has {count} {stroke} curves, one velocity cannot serve them"
             raise InputError(spec, "velocity", reason, "leave out the velocity or name a button of one curve")
-    return tuple(replace(c, velocity_mm_s=velocity_mm_s) for c in curves)
+    return tuple(_at(c, velocity_mm_s) for c in curves)
+
+
+def _at(curve: ForceCurve, velocity_mm_s: float) -> ForceCurve:
+    """Declare a velocity; a curve that was measured at another one is no longer the measured one."""
+    measured = curve.velocity_mm_s in (None, velocity_mm_s)
+    return replace(curve, velocity_mm_s=velocity_mm_s, spread=curve.spread if measured else None)
 
 
 def merge_parts(

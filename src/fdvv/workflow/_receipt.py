@@ -13,6 +13,7 @@ import msgspec
 from fdvv.compensate import CurveOutcome
 from fdvv.documents import Kind, pretty, read_document
 from fdvv.files import read_limited, write_atomic
+from fdvv.workflow._answer_log import ANSWERS, read_answers
 from fdvv.workflow._session_log import PRESSES, Entry, Run, read_log
 from fdvv.workflow._session_manifest import MANIFEST, LARGEST_bytes, Manifest, ModelName, read_manifest
 
@@ -55,7 +56,7 @@ class Receipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ----------
     device : as the session's manifest tells it.
     seed, runs : of a simulated device the seed of the first run; every start of the program on the session.
-    used, not_used : presses.
+    used, not_used : presses; answers of a tuning.
     begun, finished : UTC; the first start and the last press, None if there is none yet. Pauses between
         runs lie between.
     pressing_s : from the start of each run to its last press, summed.
@@ -63,7 +64,7 @@ class Receipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     format: Literal["fdvv-receipt"]
     version: Literal[1]
-    task: Literal["compensate", "probe"]
+    task: Literal["compensate", "probe", "tune"]
     model: ModelName
     device: dict[str, Any]
     method: str
@@ -124,7 +125,8 @@ def read_receipt(path: Path) -> Receipt | None:
     if (path / RECEIPT).is_file():
         text = read_limited(path / RECEIPT, LARGEST_bytes, KIND.remedy)
         return read_document(text, path / RECEIPT, KIND, _decoded, lambda _: None)
-    runs, entries, _ = read_log(path / PRESSES)
+    tuning = manifest.task == "tune"
+    runs, entries, _ = read_answers(path / ANSWERS) if tuning else read_log(path / PRESSES)
     return make_receipt(manifest, runs, entries)
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from fdvv.compensate import Acceptance
 from fdvv.device import Device
 from fdvv.errors import InputError
 from fdvv.files import write_atomic
+from fdvv.workflow._answer_log import ANSWERS, AnswerLog
 from fdvv.workflow._devices import open_device
 from fdvv.workflow._session_log import PRESSES, PressLog, Run
 from fdvv.workflow._session_manifest import (
@@ -27,6 +29,9 @@ from fdvv.workflow._session_manifest import (
     read_manifest,
     versions,
 )
+
+LOGS = (PRESSES, ANSWERS)
+Log = TypeVar("Log", PressLog, AnswerLog)
 
 
 @dataclass(frozen=True)
@@ -73,15 +78,22 @@ class Session:
         files = {"rig_toml_sha256": self.rig, "finger_toml_sha256": self.finger}
         return {name: digest(path.read_bytes()) for name, path in files.items() if path}
 
-    @contextmanager
-    def begun(self, manifest: Manifest) -> Iterator[PressLog]:
-        """Give the log of the session, locked while it lasts.
+    def begun(self, manifest: Manifest) -> AbstractContextManager[PressLog]:
+        """Give the log of a session's presses, locked while it lasts.
 
         Raises InputError if the folder holds something else, a session about something else, or one that is
         damaged or in use; OSError if it cannot be written.
         """
+        return self._begun(manifest, PressLog)
+
+    def begun_answers(self, manifest: Manifest) -> AbstractContextManager[AnswerLog]:
+        """Give the log of a session's answers, as begun gives that of presses."""
+        return self._begun(manifest, AnswerLog)
+
+    @contextmanager
+    def _begun(self, manifest: Manifest, kind: type[Log]) -> Iterator[Log]:
         seed = self.run_seed() if manifest.simulated else None
-        log = _open(self.folder, manifest) if self.folder else PressLog()
+        log = _open(self.folder, manifest, kind) if self.folder else kind()
         try:
             log.begin(Run(now(), seed, versions(), plain(self.acceptance)))
             yield log
@@ -91,20 +103,23 @@ class Session:
 
 def _runs_of(folder: Path | None) -> int:
     """Count the runs of a session; one that cannot be read is refused where it is opened."""
-    if folder is None or not (folder / PRESSES).is_file():
-        return 0
-    with (folder / PRESSES).open("rb") as stream:
-        return sum(b'"record": {"run": ' in line[:80] for line in stream)
+    runs = 0
+    for path in [folder / name for name in LOGS] if folder else []:
+        if not path.is_file():
+            continue
+        with path.open("rb") as stream:
+            runs += sum(b'"record": {"run": ' in line[:80] for line in stream)
+    return runs
 
 
-def _open(folder: Path, manifest: Manifest) -> PressLog:
+def _open(folder: Path, manifest: Manifest, kind: type[Log]) -> Log:
     """Begin a session in a new or empty folder, or go on with the one that is there."""
     if folder.exists() and not folder.is_dir():
         raise InputError(folder, "session", "is a file, a folder is needed", KIND.remedy)
     if not (folder / MANIFEST).exists() and _foreign(folder):
         raise InputError(folder, "session", f"holds files but no {MANIFEST}", KIND.remedy)
     folder.mkdir(parents=True, exist_ok=True)
-    log = PressLog(folder)
+    log = kind(folder)
     try:
         # asked again under the lock: another process may have begun the session meanwhile
         if (folder / MANIFEST).exists():
@@ -121,7 +136,7 @@ def _foreign(folder: Path) -> bool:
     """Tell whether a folder holds more than what a process leaves that was killed as it began."""
     if not folder.exists():
         return False
-    return any(path.name != PRESSES or path.stat().st_size for path in folder.iterdir())
+    return any(path.name not in LOGS or path.stat().st_size for path in folder.iterdir())
 
 
 def _check(folder: Path, manifest: Manifest) -> None:

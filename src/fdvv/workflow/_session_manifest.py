@@ -47,7 +47,7 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
     format: Literal["fdvv-session"]
     version: Literal[1]
-    task: Literal["compensate", "probe"]
+    task: Literal["compensate", "probe", "tune"]
     model: ModelName
     device: dict[str, Any]
     method: str
@@ -60,7 +60,7 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def make_manifest(
-    task: Literal["compensate", "probe"],
+    task: Literal["compensate", "probe", "tune"],
     device: Device,
     model: FDVVModel,
     velocities_mm_s: Sequence[float],

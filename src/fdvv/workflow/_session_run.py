@@ -93,13 +93,13 @@ def run(device: Device, course: Course[S], state: S, log: PressLog) -> S:
     try:
         return _pressed(device, course, state, log)
     except KeyboardInterrupt:
-        _let_go(device)
+        let_go(device)
         raise KeyboardInterrupt(f"interrupted; {_how_to_go_on(course, log)}") from None
     except DeviceError as error:
-        _let_go(device)
+        let_go(device)
         raise DeviceError(f"{error}; {_how_to_go_on(course, log)}") from error
     except BaseException:
-        _let_go(device)
+        let_go(device)
         raise
 
 
@@ -233,7 +233,7 @@ def _tell(course: Course[S], state: S, entry: Entry, press: Press | None) -> Non
     )
 
 
-def _let_go(device: Any) -> None:
+def let_go(device: Any) -> None:
     """Fall to zero force, if the device is there and holds any."""
     try:
         if hasattr(device, "stop"):

@@ -1,0 +1,97 @@
+"""fdvv process."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fdvv.cli._output import (
+    Finite,
+    check_output,
+    counted,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_warnings,
+    print_wrapped,
+    with_spread,
+)
+
+if TYPE_CHECKING:
+    from fdvv.workflow import RecordedModel
+
+
+@click.command()
+@click.argument("recording", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Where to write the model.")
+@click.option("--report", type=click.Path(path_type=Path), help="Draw every step into this .html file.")
+@click.option(
+    "--cap-mass-g", type=Finite(min=0, max=1000, min_open=True), default=3.0, show_default=True,
+    help="Mass of cap, stem, markers and a third of the spring.",
+)  # fmt: skip
+@json_option
+def process(
+    recording: Path, output: Path | None, report: Path | None, cap_mass_g: float, as_json: bool
+) -> None:
+    """Turn recorded presses into a model, with its spread over presses.
+
+    RECORDING is a *.recording.jsonl file: presses, each stream on its own clock, and a slow probe if there
+    was one. Clocks are joined, filters undone, presses judged, and all that may be used are averaged for
+    each stroke and pace. What was left out is told with its reason.
+    """
+    from fdvv.model import SUFFIX, save_model
+    from fdvv.preprocess import Settings
+    from fdvv.workflow import capture_report, process_recording
+
+    check_output(output, SUFFIX)
+    check_output(report, ".html")
+    found = process_recording(recording, Settings(cap_g=cap_mass_g))
+    if output:
+        save_model(found.model, output)
+    if as_json:
+        print_json(capture_report(found))
+    else:
+        _print(found)
+        for path in (output, report):
+            if path:
+                click.echo(f"written to {path}")
+
+
+def _print(found: RecordedModel) -> None:
+    said = " (simulated)" if found.model.provenance.simulated else ""
+    print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
+    from fdvv.workflow import capture_report
+
+    document = capture_report(found)
+    print_table(
+        ["curve", "asked mm/s", "achieved mm/s", "presses", "spread cN", "most", "RMSE cN", "bump kept"],
+        [
+            [
+                c["stroke"],
+                number(c["velocity_mm_s"], 1),
+                with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
+                "–" if c["presses"] is None else str(c["presses"]),
+                number(c["median_spread_cN"]),
+                number(c["largest_spread_cN"]),
+                number(c["rmse_cN"], 3),
+                "no bump" if c["bump_kept_ratio"] is None else f"{100 * c['bump_kept_ratio']:.1f} %",
+            ]
+            for c in document["curves"]
+        ],
+    )
+    for name in ("travel", "actuation", "reset"):
+        value, spread = getattr(found.model, f"{name}_mm"), getattr(found.model, f"{name}_spread")
+        told = f", {counted(spread.presses, 'press')}" if spread else ""
+        click.echo(f"{name} {with_spread(value, spread.spread_mm if spread else None, 3)} mm{told}")
+    left = [p for p in document["presses"] if p["reason"]]
+    if left:
+        print_table(
+            ["left out", "mm/s", "why"],
+            [[f"take {p['take']}", number(p["velocity_mm_s"], 0), one_line(p["reason"])] for p in left],
+            left=3,
+        )
+    print_warnings(found.warnings)

@@ -1,0 +1,132 @@
+"""One clock out of two: a light that one instrument switches and the other sees (clapperboard).
+
+A frame tells of an edge only that it fell between two exposures, at 256 Hz 3.6 ms of doubt, or how much
+of one exposure it cut off, and then to microseconds. Many edges narrow offset and rate down together:
+each is a pair of bounds, ``low <= offset + rate * edge <= high``, and what fits all of them is a polygon
+(linear programming). Edges that contradict the others cost slack and are told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.preprocess._edges import Edges, match, seen_edges
+from fdvv.units import FloatArray
+
+PPM_LARGEST = 2e4
+"""Two clocks that part by more than 2 % are not clocks."""
+
+SLACK_s = 2e-4
+"""An edge that misses its bounds by more than this contradicts the others."""
+
+
+@dataclass(frozen=True)
+class ClockFit:
+    """How another clock runs against that of the board.
+
+    Attributes
+    ----------
+    offset_s, rate : its time is offset_s + rate * board time.
+    doubt_s : half of what offset may differ by within the bounds, at the edge where that is most.
+    edges, refused : how many edges it rests on, and how many contradicted it.
+    """
+
+    offset_s: float
+    rate: float = 1.0
+    doubt_s: float = 0.0
+    edges: int = 0
+    refused: int = 0
+
+    def board_s(self, other_s: FloatArray) -> FloatArray:
+        """Tell the board's time from the other clock's."""
+        return (other_s - self.offset_s) / self.rate
+
+
+def align_clocks(
+    board: Edges, frame_s: FloatArray, light: FloatArray, exposure_s: float, other: str = "camera"
+) -> ClockFit:
+    """Find how the camera's clock runs against the board's.
+
+    board : when the light was switched, on the board's clock.
+    frame_s, light : (f,) starts of exposures on the camera's clock and the part of each that was lit, 0 to 1,
+        or any brightness that rises with it; NaN where a frame was lost.
+    exposure_s : length of an exposure; 0 if unknown, and then partly lit frames tell no more than the others.
+
+    Raises ModelError where no pattern of edges is common to both.
+    """
+    seen = seen_edges(frame_s, light, exposure_s)
+    pairs = match(board, seen, PPM_LARGEST * 1e-6)
+    if not len(pairs):
+        raise ModelError(
+            f"the light's {board.t_s.size} switchings and the {seen.low_s.size} that the {other} saw have no "
+            "pattern in common; check that they belong together"
+        )
+    edge_s, low_s, high_s = board.t_s[pairs[:, 0]], seen.low_s[pairs[:, 1]], seen.high_s[pairs[:, 1]]
+    kept = _fits(edge_s, low_s, high_s)
+    edge_s, low_s, high_s = edge_s[kept], low_s[kept], high_s[kept]
+    return _polygon(edge_s, low_s, high_s, int(kept.size - kept.sum()))
+
+
+def _fits(
+    edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Keep edges that one line fits: that line which the least total slack asks for."""
+    from scipy.optimize import linprog
+
+    n, middle = edge_s.size, float(edge_s.mean())
+    ones, away = np.ones(n), edge_s - middle
+    base = float(np.median(0.5 * (low_s + high_s) - edge_s))
+    # unknown: offset at the middle, rate - 1, slack of each edge
+    above = np.column_stack([-ones, -away, -np.eye(n)])
+    below = np.column_stack([ones, away, -np.eye(n)])
+    limits = np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
+    bounds = [(None, None), (-PPM_LARGEST * 1e-6, PPM_LARGEST * 1e-6), *[(0, None)] * n]
+    found = linprog(
+        np.concatenate([[0.0, 0.0], ones]), np.vstack([above, below]), limits, bounds=bounds, method="highs"
+    )
+    if not found.success:
+        raise ModelError(f"the two clocks cannot be joined by a line: {found.message}")
+    assert found.x is not None
+    return np.asarray(found.x[2:] <= SLACK_s)
+
+
+def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused: int) -> ClockFit:
+    """Find the middle of what all bounds allow, and how wide that is at the first, middle and last edge."""
+    from scipy.optimize import linprog
+
+    middle, span = float(edge_s.mean()), max(float(np.ptp(edge_s)), 1e-3)
+    away = (edge_s - middle) / span
+    base = float(np.median(0.5 * (low_s + high_s) - edge_s))
+    sides = np.concatenate(
+        [np.column_stack([-np.ones(away.size), -away]), np.column_stack([np.ones(away.size), away])]
+    )
+    # the slack that a few good edges need (noise of brightness) widens all bounds alike
+    widen = np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
+    most = PPM_LARGEST * 1e-6 * span
+    least = linprog(
+        [0.0, 0.0, 1.0],
+        np.column_stack([sides, -np.ones(widen.size)]),
+        widen,
+        bounds=[(None, None), (-most, most), (0, None)],
+        method="highs",
+    )
+    assert least.x is not None
+    limits = widen + float(least.x[2]) * (1 + 1e-6) + 1e-9
+    corners = []
+    for at in (away.min(), 0.0, away.max()):
+        for sign in (1.0, -1.0):
+            found = linprog(
+                [sign, sign * at], sides, limits, bounds=[(None, None), (-most, most)], method="highs"
+            )
+            corners.append(found.x)
+    points = np.array(corners)
+    offset, tilt = points.mean(axis=0)
+    widths = [
+        0.5 * abs(np.diff(points[2 * i : 2 * i + 2] @ [1.0, at])[0])
+        for i, at in enumerate((away.min(), 0.0, away.max()))
+    ]
+    rate = 1 + tilt / span
+    return ClockFit(base + offset - (rate - 1) * middle, rate, float(max(widths)), int(edge_s.size), refused)

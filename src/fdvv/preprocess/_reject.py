@@ -1,0 +1,145 @@
+"""Which presses may not be averaged, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from fdvv.preprocess._press import RawPress, Spans
+from fdvv.preprocess._strokes import NEAR_mm, achieved_mm_s, common_bottom_mm
+from fdvv.units import FloatArray
+
+
+class Reason(StrEnum):
+    """Why a press is left out."""
+
+    INCOMPLETE = "did not reach the bottom"
+    TOO_DEEP = "a marker moved on the cap: the press seems deeper than the stop"
+    MARKERS = "the markers moved against each other"
+    UNSEEN = "too few frames show it"
+    TWO = "two presses where one was asked for"
+    OFF_PACE = "far off the pace of the others"
+    HESITATION = "the finger stopped on the way"
+    FORCE = "its force is unlike that of the others"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a press is left out; none of them looks at the force, so that none can shape a curve.
+
+    Attributes
+    ----------
+    short_mm : that much above the stop is not at the bottom.
+    apart_mm : the markers may differ so much more after the press than before.
+    slowest_ratio, fastest_ratio : of the median speed at the same pace.
+    stop_ratio : part of the stroke's time that the cap may spend within a twentieth of the travel.
+    unlike : a press may differ from the mean by so many times what presses differ by.
+    """
+
+    short_mm: float = NEAR_mm
+    apart_mm: float = 0.08
+    slowest_ratio: float = 0.62
+    fastest_ratio: float = 1.6
+    stop_ratio: float = 0.4
+    unlike: float = 4.0
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One press and what is thought of it.
+
+    Attributes
+    ----------
+    press, spans : the record and its strokes.
+    achieved_mm_s : mean speed of its press.
+    reason : why it is left out; None if it is not.
+    """
+
+    press: RawPress
+    spans: Spans
+    achieved_mm_s: float
+    reason: Reason | None = None
+
+
+def judge(presses: Sequence[RawPress], spans: Sequence[Spans], limits: Limits) -> list[Judged]:
+    """Judge presses by how the cap moved; the first reason found is told.
+
+    The stop is found from all of them, so one press alone is complete by definition.
+    """
+    if not presses:
+        return []
+    bottom_mm = common_bottom_mm([span.bottom_mm for span in spans])
+    parts = np.array([press.part for press in presses])
+    takes = np.array([press.take for press in presses])
+    found = []
+    for press, span in zip(presses, spans, strict=True):
+        asked = press.velocity_mm_s is not None
+        two = asked and bool(np.any(parts[takes == press.take] > 1))
+        reason = _reason(press, span, bottom_mm, two, limits)
+        found.append(Judged(press, span, achieved_mm_s(press, span), reason))
+    return _off_pace(found, limits)
+
+
+def _reason(press: RawPress, span: Spans, bottom_mm: float, two: bool, limits: Limits) -> Reason | None:
+    during = (press.frame_s >= span.start_s) & (press.frame_s <= span.end_s)
+    if during.sum() < 4:
+        return Reason.UNSEEN
+    if _knocked(press, span, limits.apart_mm):
+        return Reason.MARKERS
+    if span.bottom_mm > bottom_mm + 1.5 * limits.short_mm:
+        return Reason.TOO_DEEP
+    if span.bottom_mm < bottom_mm - limits.short_mm:
+        return Reason.INCOMPLETE
+    if two:
+        return Reason.TWO
+    return Reason.HESITATION if _stopped(press, span, limits.stop_ratio) else None
+
+
+def _knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
+    """Tell whether the markers are apart differently after the press than before."""
+    before = press.apart_mm[press.frame_s < span.start_s]
+    after = press.apart_mm[press.frame_s > span.end_s]
+    before, after = before[np.isfinite(before)], after[np.isfinite(after)]
+    if before.size < 3 or after.size < 3:
+        return False
+    return abs(float(np.median(after)) - float(np.median(before))) > apart_mm
+
+
+def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
+    """Tell whether the cap rested between a tenth and four fifths of the way down.
+
+    The longest time within a twentieth of the travel is compared with the time of the stroke.
+    """
+    t, x = press.frame_s, press.frame_mm
+    down = (
+        (t >= span.start_s) & (t <= span.bottom_s) & (x > 0.1 * span.bottom_mm) & (x < 0.8 * span.bottom_mm)
+    )
+    t, x = t[down], x[down]
+    if t.size < 4:
+        return False
+    longest = max(float(t[np.abs(x - x[i]) < 0.025 * span.bottom_mm].max() - t[i]) for i in range(t.size))
+    return longest > stop_ratio * (span.bottom_s - span.start_s) and longest > 2.5 * float(
+        np.median(np.diff(press.frame_s))
+    )
+
+
+def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
+    """Leave out what was much slower or faster than the others of the same pace."""
+    judged = []
+    for one in found:
+        asked = one.press.velocity_mm_s
+        speeds = np.array(
+            [o.achieved_mm_s for o in found if o.press.velocity_mm_s == asked and o.reason is None]
+        )
+        ratio = one.achieved_mm_s / _middle(speeds) if asked is not None and speeds.size else 1.0
+        off = not limits.slowest_ratio <= ratio <= limits.fastest_ratio
+        reason = Reason.OFF_PACE if one.reason is None and off else one.reason
+        judged.append(Judged(one.press, one.spans, one.achieved_mm_s, reason))
+    return judged
+
+
+def _middle(speeds: FloatArray) -> float:
+    return float(np.nanmedian(speeds))

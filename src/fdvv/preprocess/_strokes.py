@@ -1,0 +1,108 @@
+"""Where presses lie in a record of depth: their strokes, how fast and how far they went."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fdvv.preprocess._press import RawPress, Spans
+from fdvv.units import FloatArray
+
+MOVED_mm = 0.3
+"""The cap is being pressed when it is deeper than this, and was not when it is back within half of it."""
+
+LEFT_mm = 0.05
+"""A stroke begins, or ends, this far from rest: the paper's bin."""
+
+NEAR_mm = 0.12
+"""Closer than this to the lowest place is at the bottom; stops give way by less, frames are noisy by less."""
+
+PACE_START_mm = 0.1
+"""Mean speed counts from this depth to the bottom."""
+
+
+def excursions(depth_mm: FloatArray) -> list[tuple[int, int]]:
+    """Find presses in a record of depth whose rest is 0: (first, last) index of each, rest left out."""
+    found = []
+    begun: int | None = None
+    for i, down in enumerate(depth_mm > MOVED_mm):
+        if down and begun is None:
+            begun = i
+        elif begun is not None and depth_mm[i] < 0.5 * MOVED_mm:
+            found.append((begun, i))
+            begun = None
+    if begun is not None:
+        found.append((begun, depth_mm.size - 1))
+    return found
+
+
+def whole_press(press: RawPress) -> tuple[int, int]:
+    """Find the press of a record that holds one: from its first to its last deep frame."""
+    deep = np.flatnonzero(press.frame_mm > MOVED_mm)
+    if not deep.size:
+        return 0, press.frame_mm.size - 1
+    back = np.flatnonzero(press.frame_mm[deep[-1] :] < 0.5 * MOVED_mm)
+    return int(deep[0]), int(deep[-1] + back[0]) if back.size else press.frame_mm.size - 1
+
+
+def spans_of(t_s: FloatArray, depth_mm: FloatArray, excursion: tuple[int, int]) -> Spans:
+    """Find the strokes of one press; between frames on a line.
+
+    The lowest place is the median of what lies within 0.12 mm of the deepest frame.
+    """
+    first, last = excursion
+    inside = depth_mm[first : last + 1]
+    bottom = float(np.median(inside[inside >= inside.max() - NEAR_mm]))
+    low = np.flatnonzero(inside >= bottom - NEAR_mm) + first
+    before = np.flatnonzero(depth_mm[:first] < LEFT_mm)
+    after = np.flatnonzero(depth_mm[last:] < LEFT_mm)
+    start = int(before[-1]) if before.size else 0
+    end = int(after[0]) + last if after.size else depth_mm.size - 1
+    return Spans(
+        _when(t_s, depth_mm, start, LEFT_mm),
+        _when(t_s, depth_mm, int(low[0]) - 1, bottom - NEAR_mm),
+        _when(t_s, depth_mm, int(low[-1]), bottom - NEAR_mm),
+        _when(t_s, depth_mm, end - 1, LEFT_mm),
+        bottom,
+    )
+
+
+def _when(t_s: FloatArray, depth_mm: FloatArray, i: int, level_mm: float) -> float:
+    """Tell when a level was passed between frames i and i + 1."""
+    i = min(max(i, 0), t_s.size - 2)
+    rise = depth_mm[i + 1] - depth_mm[i]
+    part = (level_mm - depth_mm[i]) / rise if rise else 0.5
+    return float(t_s[i] + min(max(part, 0.0), 1.0) * (t_s[i + 1] - t_s[i]))
+
+
+def achieved_mm_s(press: RawPress, spans: Spans) -> float:
+    """Give the mean speed of the press between 0.1 mm and the bottom; NaN where it cannot be told.
+
+    Both ends lie between frames; they are found on lines, so one press at 200 mm/s is known to some per cent.
+    """
+    down = (press.frame_s >= spans.start_s) & (press.frame_s <= spans.leave_s)
+    t, x = press.frame_s[down], press.frame_mm[down]
+    if t.size < 2:
+        return float("nan")
+    deepest = np.maximum.accumulate(x)
+    above = np.flatnonzero(deepest > PACE_START_mm)
+    if not above.size or spans.bottom_mm <= PACE_START_mm + NEAR_mm:
+        return float("nan")
+    start_s = _when(
+        press.frame_s, press.frame_mm, int(np.flatnonzero(down)[0]) + int(above[0]) - 1, PACE_START_mm
+    )
+    end_mm = spans.bottom_mm - NEAR_mm
+    return (end_mm - PACE_START_mm) / max(spans.bottom_s - start_s, 1e-6)
+
+
+def common_bottom_mm(bottoms_mm: Sequence[float]) -> float:
+    """Find the stop from the lowest places of many presses: the middle of the densest 0.1 mm.
+
+    Presses that did not reach the stop end anywhere, those that did end together.
+    """
+    places = np.sort(np.asarray(bottoms_mm, dtype=np.float64))
+    counts = np.searchsorted(places, places + NEAR_mm, side="right") - np.arange(places.size)
+    # of equally full windows the deepest: a stop is where the cap cannot go on
+    first = int(places.size - 1 - np.argmax(counts[::-1]))
+    return float(np.median(places[first : first + counts[first]]))

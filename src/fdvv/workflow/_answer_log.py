@@ -1,0 +1,140 @@
+"""The answers of a tuning on file, each before the next is asked for: people cannot repeat them.
+
+``answers.jsonl`` is a journal (see `fdvv.journal`) with the records ``{"run": {…}}`` each time the session is
+begun or gone on with and ``{"answer": {…}}`` for every answer.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+from fdvv.errors import InputError
+from fdvv.journal import Journal, JournalKind, read_records
+from fdvv.workflow._session_log import REMEDY, Entry, Run
+
+ANSWERS = "answers.jsonl"
+Read = TypeVar("Read")
+KIND = JournalKind(frozenset({"run", "answer"}), REMEDY)
+
+
+class Given(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One answer.
+
+    Attributes
+    ----------
+    number : counts from 1.
+    templates : those asked about, in the order they were pressed; numbers among the session's templates.
+    answer : a rating from 1 to 7, or "first", "second" or "neither".
+    achieved_mm_s : mean speed of each press; None where it has none.
+    made : when, UTC.
+    """
+
+    number: int
+    velocity_mm_s: float
+    templates: list[int]
+    answer: int | str
+    achieved_mm_s: list[float | None]
+    made: str
+
+    @property
+    def entry(self) -> Entry:
+        """Give it as receipts count it; the speed is that of the last press."""
+        achieved = self.achieved_mm_s[-1] if self.achieved_mm_s else None
+        return Entry(self.number, self.velocity_mm_s, "", achieved, self.made)
+
+
+class AnswerLog:
+    """The answers of a session, in memory, and on file if there is a folder for it.
+
+    Parameters
+    ----------
+    folder : of the session, for one process at a time; None keeps them in memory.
+
+    Attributes
+    ----------
+    runs, answers : so far, those of earlier runs among them.
+    warnings : what a person should know of the file.
+
+    Raises InputError on a file that is damaged or in use, OSError if it cannot be written.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder
+        self.runs: list[Run] = []
+        self.answers: list[Given] = []
+        self.warnings: list[str] = []
+        self._journal: Journal | None = None
+        if folder:
+            reason = "another process is at work on this session"
+            busy = InputError(folder, "session", reason, "wait for it, or name another folder")
+            self._journal = Journal(folder / ANSWERS, busy)
+            try:
+                self._read(self._journal)
+            except BaseException:
+                self.close()
+                raise
+
+    def _read(self, journal: Journal) -> None:
+        """Learn what is there; cut off a record that was not finished."""
+        end = 0
+        for record, after in read_records(journal.path, KIND):
+            end = after
+            if "run" in record:
+                self.runs.append(_converted(journal.path, "run", record["run"], Run))
+            else:
+                self.answers.append(_answer(journal.path, len(self.answers) + 1, record["answer"]))
+        if journal.cut(end):
+            kept = f"answers kept: {len(self.answers)}"
+            self.warnings.append(f"{journal.path}: the last record is not whole and is left out; {kept}")
+
+    def begin(self, run: Run) -> None:
+        """Note that the session is begun, or gone on with."""
+        if self._journal:
+            self._journal.write({"run": msgspec.to_builtins(run)})
+        self.runs.append(run)
+
+    def add(self, given: Given) -> None:
+        """Keep an answer."""
+        if self._journal:
+            self._journal.write({"answer": msgspec.to_builtins(given)})
+        self.answers.append(given)
+
+    def close(self) -> None:
+        """Let go of the file; a second time does nothing."""
+        if self._journal:
+            self._journal.close()
+            self._journal = None
+
+
+def read_answers(path: Path) -> tuple[list[Run], list[Entry], int]:
+    """Read runs, and each answer as an entry of a receipt; also the byte where the last whole record ends.
+
+    Raises InputError on a damaged file.
+    """
+    runs: list[Run] = []
+    entries: list[Entry] = []
+    end = 0
+    for record, after in read_records(path, KIND):
+        end = after
+        if "run" in record:
+            runs.append(_converted(path, "run", record["run"], Run))
+        else:
+            entries.append(_answer(path, len(entries) + 1, record["answer"]).entry)
+    return runs, entries, end
+
+
+def _answer(path: Path, number: int, found: Any) -> Given:
+    given = _converted(path, f"answer {number}", found, Given)
+    if given.number != number:
+        raise InputError(path, f"answer {number}", f"bears the number {given.number}", REMEDY)
+    return given
+
+
+def _converted(path: Path, place: str, found: Any, kind: type[Read]) -> Read:
+    try:
+        return msgspec.convert(found, kind)
+    except msgspec.ValidationError as error:
+        raise InputError(path, place, str(error), REMEDY) from error

@@ -1,0 +1,169 @@
+"""Check any file that fdvv writes or reads: what it is, and whether it is whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from fdvv.compensate import load_rig
+from fdvv.errors import BuildError, FdvvError, InputError
+from fdvv.model import load_model
+from fdvv.program import check_program, describe, load_program
+from fdvv.recording import FileCheck, Problem, check_recording, facts_of, read_log, unusable
+from fdvv.workflow._actuation_file import load_actuation
+from fdvv.workflow._check_session import A_SESSION, check_device_recording, check_session
+from fdvv.workflow._session_log import PRESSES
+from fdvv.workflow._session_manifest import MANIFEST
+
+HEAD_bytes = 400
+IMAGE = b"FDVP"
+REMEDY = "name a file that fdvv wrote, the folder of a session, or a log of a bench"
+
+
+def check_file(path: Path | str) -> FileCheck:
+    """Tell what a file is, and whether it is whole, found by looking inside.
+
+    Models, programs and their images, rigs, actuations, recordings, folders of sessions and what they hold,
+    recordings of devices; of anything else whether it is a log that read_log reads. Never raises for what
+    stands in a file. Raises InputError where there is none, or what it holds is not known.
+    """
+    path = Path(path)
+    if path.is_dir():
+        if (path / MANIFEST).is_file() or (path / PRESSES).is_file():
+            return check_session(path)
+        raise InputError(path, "folder", f"holds no {MANIFEST}", REMEDY)
+    head = _head(path)
+    for mark, kind, check in KINDS:
+        if mark in head:
+            return _guarded(path, kind, check)
+    return _log(path)
+
+
+def _head(path: Path) -> bytes:
+    try:
+        with path.open("rb") as stream:
+            return stream.read(HEAD_bytes)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
+
+
+def _guarded(path: Path, kind: str, check: Callable[[Path], FileCheck]) -> FileCheck:
+    try:
+        return check(path)
+    except InputError as error:
+        return unusable(path, kind, error)
+    except FdvvError as error:
+        return unusable(path, kind, InputError(path, "whole file", str(error), "make it again"))
+
+
+def _model(path: Path) -> FileCheck:
+    model = load_model(path)
+    facts = {
+        "version": 1,
+        "name": model.name,
+        "simulated": model.provenance.simulated,
+        "travel_mm": model.travel_mm,
+        "actuation_mm": model.actuation_mm,
+        "reset_mm": model.reset_mm,
+        "curves": [{"stroke": str(c.stroke), "velocity_mm_s": c.velocity_mm_s} for c in model.curves],
+        "vibrations": len(model.vibrations),
+    }
+    return FileCheck(path, A_MODEL, facts, notes=tuple(model.provenance.assumptions))
+
+
+def _program(path: Path) -> FileCheck:
+    program = load_program(path)
+    facts = {
+        "version": 1,
+        "name": program.name,
+        "travel_mm": program.travel_mm,
+        "states": [state.name for state in program.states],
+        "surfaces": len(program.surfaces),
+        "signals": len(program.signals),
+        "vibrations": len(program.vibrations),
+    }
+    report = check_program(program)
+    remedy = "change it; fdvv program check tells more"
+    problems = tuple(Problem(f.state or f.place, str(f), remedy) for f in report.refused)
+    return FileCheck(path, A_PROGRAM, facts, problems, tuple(map(str, report.warnings)))
+
+
+def _image(path: Path) -> FileCheck:
+    held = describe(path.read_bytes(), path)
+    facts = {
+        "name": held.name,
+        "size_bytes": held.size_bytes,
+        "travel_mm": held.travel_mm,
+        "states": len(held.states),
+    }
+    return FileCheck(path, AN_IMAGE, facts)
+
+
+def _rig(path: Path) -> FileCheck:
+    rig = load_rig(path)
+    return FileCheck(path, A_RIG, {"version": 1, **_plain(asdict(rig))})
+
+
+def _actuation(path: Path) -> FileCheck:
+    found = load_actuation(path)
+    facts = {
+        "method": found.method,
+        "name": found.model_name,
+        "device": found.device_name,
+        "simulated": found.simulated,
+        "travel_mm": found.travel_mm,
+        "velocities_mm_s": found.surface.velocity_mm_s.tolist(),
+        "curves": len(found.outcome.curves),
+        "presses_skipped": len(found.skipped),
+        "receipt": found.receipt is not None,
+    }
+    return FileCheck(path, AN_ACTUATION, facts)
+
+
+def _journal(path: Path) -> FileCheck:
+    """Check a journal: that of a session in its folder, else a recording."""
+    if path.name == PRESSES and (path.parent / MANIFEST).is_file():
+        return check_session(path.parent)
+    return check_recording(path)
+
+
+def _in_session(path: Path) -> FileCheck:
+    return check_session(path.parent)
+
+
+def _log(path: Path) -> FileCheck:
+    """Check a foreign log by reading it."""
+    try:
+        found = read_log(path)
+    except BuildError as error:
+        raise InputError(path, "whole file", str(error), "install it and look again") from error
+    except InputError as error:
+        if "none of the known formats" in error.reason:
+            raise InputError(path, "whole file", "is nothing that fdvv writes or reads", REMEDY) from None
+        return unusable(path, "a log", error)
+    form = found.sources[0].format if found.sources else ""
+    facts = {"size_bytes": path.stat().st_size, **facts_of(found)}
+    return FileCheck(path, f"a log ({form})", facts, (), found.warnings)
+
+
+def _plain(record: dict[str, Any]) -> dict[str, Any]:
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in record.items()}
+
+
+A_MODEL, A_PROGRAM, AN_IMAGE = "an FDVV model", "a program", "a program's image"
+A_RIG, AN_ACTUATION = "a known rig", "an actuation"
+KINDS: tuple[tuple[bytes, str, Callable[[Path], FileCheck]], ...] = (
+    (b'{"crc32": ', "a recording", _journal),
+    (b'{"fdvv": "session"', "a recording of a device", check_device_recording),
+    (b'"fdvv-model"', A_MODEL, _model),
+    (b'"fdvv-program"', A_PROGRAM, _program),
+    (b'"fdvv-rig"', A_RIG, _rig),
+    (b'"fdvv-actuation"', AN_ACTUATION, _actuation),
+    (b'"fdvv-session"', A_SESSION, _in_session),
+    (b'"fdvv-receipt"', A_SESSION, _in_session),
+    (IMAGE, AN_IMAGE, _image),
+)
+"""What stands within the first bytes of each kind, and who looks at it."""

@@ -1,0 +1,132 @@
+"""Know the exciter of a rig: hum through it and watch the cap with the rig's own position sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fdvv.compensate import KnownRig
+from fdvv.device import Device, Remote
+from fdvv.errors import DeviceError, FitError, InputError
+from fdvv.model import Mode
+from fdvv.program import Limits, Program, Signal, State, Surface, compile_program
+from fdvv.protocol import Settings
+from fdvv.units import FloatArray
+from fdvv.vibration import (
+    FULL_SCALE_V,
+    InverseSettings,
+    KnownExciter,
+    Tone,
+    ToneBench,
+    clear_frequencies_Hz,
+    clock_ratio,
+    fit_exciter,
+    measure_tone,
+)
+
+TONES_Hz = np.arange(260.0, 861.0, 40.0)
+"""Below them friction grips, above them the cap hardly moves."""
+APART_Hz = 150.0
+TRAVEL_mm, SPRING_cN_mm = 4.0, 20.0
+"""The motor holds the cap in the middle on a spring so soft that it takes no part in what is measured."""
+SETTLE_s, START_s, END_s = 0.6, 0.1, 0.02
+LONGEST_s = 4.0
+COUNTS = 2047
+KNOWN_LAG_ratio = 0.1
+
+Progress = Callable[[int, int], None]
+Record = tuple[FloatArray, FloatArray]
+
+
+def identify_exciter(
+    device: Device,
+    rig: KnownRig | None = None,
+    tone_s: float = 3.0,
+    progress: Progress = lambda _done, _total: None,
+) -> KnownExciter:
+    """Play tones one after the other on a cap that nobody touches, and fit the exciter to how it moves.
+
+    rig : tells the lag of the position sensor; without it the gain is known to a third only.
+    tone_s : of each of 14 tones or so; errors fall with its root. The device is left without force, and its
+    program is that of the tones. Raises InputError if it cannot play on command, DeviceError, FitError.
+    """
+    if not isinstance(device, Remote):
+        reason = "it plays vibrations within presses only"
+        raise InputError("--device", device.info().name, reason, "use host or serial:PORT")
+    if not 0.3 <= tone_s <= LONGEST_s:
+        raise InputError("--tone-s", f"{tone_s:g}", "out of range", f"choose 0.3 to {LONGEST_s:g} s")
+    settings = device.settings()
+    frequencies = clear_frequencies_Hz(TONES_Hz, 1e6 / settings.tick_us, APART_Hz).tolist()
+    device.upload_program(tone_image(frequencies, tone_s))
+    records = _records(device, len(frequencies), tone_s, progress)
+    ratio = clock_ratio(records, frequencies)
+    tones = [_tone(record, f * ratio) for record, f in zip(records, frequencies, strict=True)]
+    drive_V = COUNTS * FULL_SCALE_V / 2048
+    known = (
+        {"lag_s": rig.position_lag_s, "lag_ratio": KNOWN_LAG_ratio} if rig and rig.position_lag_s > 0 else {}
+    )
+    bench = replace(ToneBench(drive_V), **known)
+    try:
+        return fit_exciter(tones, bench, 1e-6 * settings.vibration_latency_us, device.info().simulated)
+    except FitError as error:
+        raise FitError(
+            f"{device.info().name}: {error}; check that the exciter plays and nobody touches"
+        ) from error
+
+
+def tone_image(frequencies_Hz: Sequence[float], tone_s: float) -> bytes:
+    """Give the program that holds the cap in mid travel, with a steady tone in each slot."""
+    middle_cN = SPRING_cN_mm * TRAVEL_mm / 2
+    hold = Surface("hold", (0.0, TRAVEL_mm), ((-middle_cN, middle_cN),))
+    signals = tuple(Signal(f"{f:g} Hz", tone_s, (Mode(f, float(COUNTS), 0.0),)) for f in frequencies_Hz)
+    program = Program("tones", TRAVEL_mm, "hold", (State("hold", "hold", "hold"),), (hold,), signals)
+    return compile_program(program, replace(Limits(), counts_per_m_s2=1.0)).image
+
+
+def with_lead(settings: Settings, exciter: KnownExciter, lead_s: float | None = None) -> Settings:
+    """Tell settings to start vibrations as early as latency and drive ask for; unchanged without a latency.
+
+    lead_s : of the drive; that of InverseSettings if None.
+    """
+    if exciter.latency_s is None:
+        return settings
+    lead = InverseSettings().lead_s if lead_s is None else lead_s
+    return replace(settings, vibration_latency_us=round(1e6 * (exciter.latency_s + lead)))
+
+
+def prepare_exciter(device: Device, exciter: KnownExciter) -> None:
+    """Have a device start vibrations as early as with_lead says, if not yet; it forgets its program then."""
+    before = device.settings()
+    wanted = with_lead(before, exciter)
+    if wanted != before:
+        device.configure(wanted)
+
+
+def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> list[Record]:
+    client, port = device.client, device.client.port
+    client.stream(1)
+    try:
+        client.arm()
+        client.listen(port.now_s() + SETTLE_s)
+        found = []
+        for slot in range(count):
+            client.vibrate(slot)
+            client.listen(port.now_s() + START_s)
+            client.telemetry.clear()
+            client.listen(port.now_s() + tone_s - START_s - END_s)
+            told = client.telemetry.columns()
+            if told.tick.size < 20:
+                raise DeviceError(f"{port.name}: no telemetry arrived during a tone")
+            t_s = (told.tick - told.tick[0]) * 1e-6 * device.settings().tick_us
+            found.append((t_s, 1e-3 * told.displacement_mm))
+            client.listen(port.now_s() + END_s + START_s)
+            progress(slot + 1, count)
+        return found
+    finally:
+        device.stop()
+
+
+def _tone(record: Record, frequency_Hz: float) -> Tone:
+    return measure_tone(*record, frequency_Hz)

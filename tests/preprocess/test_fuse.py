@@ -1,0 +1,95 @@
+"""Paths between frames follow from the force, on motions whose truth is integrated finely."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fdvv.errors import ModelError
+from fdvv.preprocess import Fusion, Seen, fuse, table_curve, unknown_curve
+from fdvv.units import FloatArray
+
+MOVING_g = 5.0
+PLACES_mm = np.linspace(0.0, 4.0, 81)
+
+
+def button_cN(x_mm: FloatArray) -> FloatArray:
+    """Give a spring with a bump: 30 cN, 12 cN/mm, 20 cN of bump at 1.5 mm."""
+    return np.asarray(30 + 12 * x_mm + 20 * np.exp(-(((x_mm - 1.5) / 0.35) ** 2)))
+
+
+def press(random: np.random.Generator, speed: float = 1.0) -> tuple[Seen, FloatArray]:
+    """Press the spring with a force that pulls like a finger; frames at 256 Hz with 28 um, force each ms."""
+    step = 1e-5
+    x, v, t = 0.0, 40.0 * speed, 0.0
+    times, places, forces = [], [], []
+    while x < 3.9:
+        wanted = 40.0 * speed + 150 * speed * np.sin(np.pi * min(x / 4.0, 1.0))
+        force_cN = float(button_cN(np.array([x]))[0]) + 0.6 * (wanted - v)
+        acceleration_mm_s2 = (force_cN - float(button_cN(np.array([x]))[0])) * 1e-2 / (MOVING_g * 1e-3) * 1e3
+        times.append(t)
+        places.append(x)
+        forces.append(force_cN)
+        v += step * acceleration_mm_s2
+        x += step * v
+        t += step
+    truth_t, truth_x, truth_f = np.array(times), np.array(places), np.array(forces)
+    t_s = np.arange(0.0, truth_t[-1], 1e-3)
+    frame_s = np.arange(random.uniform(0, 1 / 256), t_s[-1], 1 / 256)
+    frame_mm = np.interp(frame_s, truth_t, truth_x) + 0.028 * random.standard_normal(frame_s.size)
+    force_cN = np.interp(t_s, truth_t, truth_f)
+    seen = Seen(t_s, np.asarray(force_cN), frame_s, frame_mm, np.interp(t_s, frame_s, frame_mm))
+    return seen, np.interp(t_s, truth_t, truth_x)
+
+
+def error_mm(known: bool, seed: int = 1) -> float:
+    random = np.random.default_rng(seed)
+    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
+    curve = table_curve(PLACES_mm, button_cN(PLACES_mm)) if known else unknown_curve
+    settings = Fusion(MOVING_g) if known else Fusion(MOVING_g, pieces=25, unknown_N=1e3)
+    paths, _ = fuse([seen for seen, _ in made], curve, settings)
+    misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
+    return float(np.sqrt(np.mean(np.concatenate(misses) ** 2)))
+
+
+def line_error_mm(seed: int = 1) -> float:
+    random = np.random.default_rng(seed)
+    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
+    return float(np.sqrt(np.mean(np.concatenate([seen.guess_mm - x for seen, x in made]) ** 2)))
+
+
+def test_a_known_button_halves_the_error_of_lines_between_frames() -> None:
+    assert error_mm(known=True) < 0.5 * line_error_mm()
+    assert error_mm(known=True) < 0.025
+
+
+def test_an_unknown_button_is_found_with_the_paths() -> None:
+    assert error_mm(known=False) < line_error_mm()
+
+
+def test_the_button_comes_back_as_a_curve() -> None:
+    random = np.random.default_rng(2)
+    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
+
+    _, curve = fuse([seen for seen, _ in made], unknown_curve, Fusion(MOVING_g, pieces=25, unknown_N=1e3))
+
+    x = np.linspace(0.3, 3.5, 60)
+    force_cN, stiffness_cN_mm = curve(x)
+    assert np.sqrt(np.mean((force_cN - button_cN(x)) ** 2)) < 2.5
+    assert stiffness_cN_mm == pytest.approx(np.gradient(force_cN, x), abs=8)
+
+
+def test_a_wrong_mass_costs_little() -> None:
+    random = np.random.default_rng(1)
+    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
+    known = table_curve(PLACES_mm, button_cN(PLACES_mm))
+
+    paths, _ = fuse([seen for seen, _ in made], known, Fusion(1.4 * MOVING_g))
+
+    misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
+    assert np.sqrt(np.mean(np.concatenate(misses) ** 2)) < 0.03
+
+
+def test_a_stroke_without_frames_is_refused() -> None:
+    with pytest.raises(ModelError, match="needs 4 samples and 2 frames, got 5 and 0"):
+        Seen(np.arange(5.0) * 1e-3, np.zeros(5), np.zeros(0), np.zeros(0), np.zeros(5))
