@@ -37,7 +37,7 @@ def test_a_line_is_json_with_the_checksum_of_the_records_bytes() -> None:
     assert json.loads(line)["record"] == {"a": [1, "ü"]}
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
 @given(part=st.floats(0, 1))
 def test_wherever_it_is_cut_the_whole_lines_are_there_and_it_goes_on(tmp_path: Path, part: float) -> None:
     path = tmp_path / "j.jsonl"

@@ -26,6 +26,7 @@ from fdvv.cli._capture_view import Beeps, CaptureLines, CaptureTable, asked, fra
 from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s
 from fdvv.device import SerialBench
 from fdvv.errors import InputError
+from fdvv.model import load_model
 from fdvv.recording import Recording, Stage, Take, load_recording
 from fdvv.workflow import PaceStanding, Step, TakeAsk, TakeDone, Verdict
 from fdvv.workflow._capture_cue import COUNT_IN_s
@@ -82,6 +83,19 @@ def test_only_a_document_is_printed_where_it_is_asked_for(fdvv: Run) -> None:
     assert (document["button"], document["simulated"], document["device"]) == ("mx-brown", True, "twin")
     assert [pace["good"] + pace["missed"] for pace in document["paces"]] == [2, 2]
     assert document["takes"] == sum(pace["takes"] for pace in document["paces"]) + 2
+
+
+def test_a_model_is_made_of_the_recording_where_one_is_asked_for(fdvv: Run, tmp_path: Path) -> None:
+    session = ("capture", FILE, "--paces", "100,200", "--presses", "4", "--participant", "steady")
+    ran = fdvv(*session, "-o", "x.fdvv.json")
+    assert ran.status == 0, ran.err
+    assert ran.out.splitlines()[-2:] == [f"recorded in {FILE}", "written to x.fdvv.json"]
+    model = load_model(tmp_path / "x.fdvv.json")
+    assert model.travel_mm == pytest.approx(4.0, abs=0.03)
+    assert model.provenance.simulated
+    assert fdvv(*session, "-o", "x.fdvv.json", "--json").json["model"] == "x.fdvv.json"
+    refused = fdvv(*session, "-o", "x.csv")
+    assert (refused.status, refused.err.count("\n")) == (2, 1)
 
 
 def test_a_finished_recording_is_not_written_to_again(fdvv: Run, tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ def takes(draw: st.DrawFn, number: int) -> Take:
 @st.composite
 def recordings(draw: st.DrawFn) -> Recording:
     positive = st.floats(0, 1e4)
-    bench = st.builds(Bench, positive, positive, positive, positive, positive, st.booleans())
+    bench = st.builds(Bench, *[positive] * 6, st.booleans())
     return Recording(
         draw(NAME),
         tuple(draw(takes(number)) for number in range(1, 1 + draw(st.integers(0, 3)))),

@@ -34,6 +34,7 @@ def head(**changes: object) -> dict[str, object]:
         "sound_filter_ms": 0,
         "force_play_cN": 0,
         "tip_mass_g": 0,
+        "sound_V_s_m": 0,
         "exposure_ms": 0,
         "clocks_go_on": True,
     }

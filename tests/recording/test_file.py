@@ -28,7 +28,7 @@ from fdvv.recording import (
     save_recording,
 )
 
-SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None)
+SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
 
 
 def written(path: Path, takes: int = 3) -> Path:

@@ -17,7 +17,7 @@ from fdvv.errors import InputError
 from fdvv.journal import line_of
 from fdvv.recording import Recording, read_log
 
-EXAMPLES = int(os.environ.get("FDVV_EXAMPLES", "30"))
+EXAMPLES = int(os.environ.get("FDVV_EXAMPLES", "15"))
 SETTINGS = settings(
     max_examples=EXAMPLES,
     deadline=None,

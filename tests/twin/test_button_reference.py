@@ -86,3 +86,16 @@ def test_two_presses_with_the_same_noise_are_the_same_to_the_bit() -> None:
     p = a_plan("hp-pr1101u", 0.05, None)
     first, second = (simulate_button(p.button, p.finger, p.gesture, p.noise) for _ in range(2))
     assert np.array_equal(first.acceleration_m_s2, second.acceleration_m_s2)
+
+
+@pytest.mark.slow
+def test_a_detour_agrees_with_the_adaptive_solver() -> None:
+    p = a_plan("mx-clear", 0.05, ForceSensor())
+    ticks = np.arange(p.noise.effort_ratio.size) - 20
+    detour_m = 5e-4 * (1 - np.cos(0.1 * ticks)) * (ticks > 0)
+    trace = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor, detour_m=detour_m)
+    reference = reference_button(p.button, p.finger, p.gesture, p.noise, p.sensor, detour_m=detour_m)
+    plain = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
+    assert np.abs(trace.displacement_mm - reference.displacement_mm).max() < 1e-3
+    assert rms(trace.force_cN - reference.force_cN) < 0.1
+    assert np.abs(trace.displacement_mm - plain.displacement_mm).max() > 0.1

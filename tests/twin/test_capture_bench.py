@@ -273,6 +273,18 @@ def test_the_facts_are_what_a_builder_knows() -> None:
     assert a_bench().facts() == bench_facts(PERFECT, ForceSensor())
 
 
+@pytest.mark.parametrize("lift_m", [0.0, 0.004])
+def test_every_take_shows_rest_before_and_after_the_press(lift_m: float) -> None:
+    finger = replace(Finger(), habit=replace(Finger().habit, lift_m=lift_m))
+    bench = a_bench(participant=Participant(0.2, 0.5), finger=finger)
+    for number in range(1, 13):
+        trace = bench.take(number, Stage.PRESS, (50.0, 200.0)[number % 2]).truth.trace
+        assert trace is not None
+        away = trace.t_s[trace.displacement_mm > trace.displacement_mm[0] + 0.15]
+        assert away[0] > 0.15
+        assert trace.t_s[-1] - away[-1] > 0.08
+
+
 def test_a_press_needs_a_pace_that_fits_between_two_takes() -> None:
     with pytest.raises(ModelError, match="pace"):
         a_bench().take(1, Stage.PRESS)

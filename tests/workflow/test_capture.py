@@ -163,7 +163,8 @@ NOTHING = Take(1, (stream("f", FORCE, np.zeros(50)),), (), Stage.PRESS, 50.0)
 @pytest.mark.parametrize(
     ("take", "words"),
     [
-        (NOTHING, "nothing shows where the cap is"),
+        (replace(NOTHING, streams=()), "nothing shows where the cap is"),
+        (NOTHING, "no press was felt"),
         (replace(NOTHING, streams=(stream("x", WAY, np.full(50, np.nan)),)), "hardly ever seen"),
         (replace(NOTHING, streams=(stream("x", WAY, np.zeros(50)),)), "no press was seen"),
         (replace(NOTHING, streams=(stream("x", Quantity.MARKER, np.zeros((50, 3))),)), "no press was seen"),
@@ -180,6 +181,13 @@ def test_a_take_that_shows_nothing_is_not_good(take: Take, words: str) -> None:
     verdict = quick_look(take, CapturePlan())
     assert not verdict.ok
     assert words in verdict.reason
+
+
+def test_where_cameras_record_for_themselves_the_force_alone_tells_a_press() -> None:
+    felt_cN = np.concatenate([np.full(20, 9.0), np.linspace(10, 150, 10), np.full(20, 9.0)])
+    verdict = quick_look(replace(NOTHING, streams=(stream("f", FORCE, felt_cN),)), CapturePlan())
+    assert verdict.ok
+    assert np.isnan(verdict.achieved_mm_s)
 
 
 # -- the session --

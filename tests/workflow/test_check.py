@@ -167,7 +167,7 @@ def test_a_folder_of_none_and_a_file_that_is_gone_are_refused(tmp_path: Path) ->
 @pytest.mark.parametrize("kind", MAKERS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
 @settings(
-    max_examples=25,
+    max_examples=12,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],

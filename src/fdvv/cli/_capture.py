@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fdvv.cli._capture_view import COLUMNS, capture_view, cells
-from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table
+from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table, print_warnings
 
 if TYPE_CHECKING:
     from fdvv.workflow import CaptureResult, PaceStanding
@@ -103,6 +103,9 @@ class Paces(click.ParamType[tuple[float, ...]]):
 )
 @click.option("--watch", is_flag=True, help="Let the twin take the time that a person takes.")
 @click.option("--player", help="Command that plays a WAV file, as 'aplay -q'; otherwise the terminal's bell.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="The *.fdvv.json of its model to write."
+)
 @json_option
 def capture(
     recording: Path,
@@ -112,6 +115,7 @@ def capture(
     participant: str,
     watch: bool,
     player: str | None,
+    output: Path | None,
     as_json: bool,
     **asked: Any,
 ) -> None:
@@ -123,9 +127,10 @@ def capture(
     whole takes about five minutes; on the twin it runs by itself.
 
     Every press is on the disk before the next is asked for. Ctrl-C stops; the same command goes on where it
-    stopped, also after a crash.
+    stopped, also after a crash. With --output the recording is processed as fdvv process does.
     """
     check_output(recording, SUFFIX)
+    check_output(output, ".fdvv.json")
     from fdvv.device import open_bench
     from fdvv.workflow import CaptureGuide, CapturePlan, capture_session
 
@@ -133,27 +138,46 @@ def capture(
     plan = CapturePlan(**asked, shuffled=shuffled, seed=seed)
     twin = spec == "twin"
     device = open_bench(spec, button or TWIN_BUTTON, participant, seed, watch)
-    name = Path(button).stem if button else TWIN_BUTTON if twin else recording.name.removesuffix(SUFFIX)
+    name = (button and Path(button).name.removesuffix(".toml")) or (
+        TWIN_BUTTON if twin else recording.name.removesuffix(SUFFIX)
+    )
     try:
         with capture_view(watch or not twin, as_json, player) as view:
             guide = CaptureGuide(view.cue, view.done, view.notice)
             result = capture_session(device, recording, name, plan, guide)
     finally:
         device.close()
-    _print(result, as_json)
+    warnings = _write_model(result.path, output) if output else ()
+    _print(result, output, as_json)
+    print_warnings(warnings)
 
 
-def _print(result: CaptureResult, as_json: bool) -> None:
+def _write_model(recording: Path, output: Path) -> tuple[str, ...]:
+    """Process the recording into a model file; give what should be known of it."""
+    from fdvv.model import save_model
+    from fdvv.workflow import process_recording
+
+    found = process_recording(recording)
+    save_model(found.model, output)
+    return found.warnings
+
+
+def _print(result: CaptureResult, output: Path | None, as_json: bool) -> None:
     found = result.recording
     if as_json:
         paces = [_row(pace) for pace in result.paces]
+        model = {"model": str(output)} if output else {}
         document = {"recording": str(result.path), "button": found.name, "device": result.device}
-        print_json({**document, "simulated": found.simulated, "takes": len(found.takes), "paces": paces})
+        print_json(
+            {**document, "simulated": found.simulated, "takes": len(found.takes), "paces": paces, **model}
+        )
         return
     told = " (simulated)" if found.simulated else ""
     click.echo(f"{found.name} on {result.device}{told}, {len(found.takes)} takes")
     print_table(COLUMNS, [cells(pace) for pace in result.paces])
     click.echo(f"recorded in {result.path}")
+    if output:
+        click.echo(f"written to {output}")
 
 
 def _row(pace: PaceStanding) -> dict[str, Any]:

@@ -56,7 +56,7 @@ def exciter(
     check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
     with opened(spec, rig=rig, seed=seed) as found, progress("tones", 14) as advance:
-        result = identify_exciter(found, known, tone_s, advance)
+        result = identify_exciter(found, known, tone_s, advance, lambda text: click.echo(text, err=True))
         name = found.info().name
     if output:
         save_exciter(result, output)

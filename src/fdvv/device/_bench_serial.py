@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 
 from fdvv.device._bench import BenchInfo, Cue
 from fdvv.device._port import Port
-from fdvv.errors import DeviceError, InputError
-from fdvv.recording import Mark, Reading, Stage, Take, read_serial
+from fdvv.errors import DeviceError, ModelError
+from fdvv.recording import Mark, SerialCapture, Stage, Take
 
 HEAD_s = 12.0
 """Time in which a bench must tell what it is; boards that do not answer do so every ten seconds."""
@@ -23,7 +23,7 @@ GLANCE_s = 0.004
 AFTER_s = 0.8
 """Recorded after the cue, for a person who is late."""
 ANCHOR_us = 20 * 60 * 1_000_000
-"""The board's counter turns every 71.6 minutes; anchors so far apart leave no doubt how often it did."""
+"""The board's counter turns every 71.6 minutes; times so far apart leave no doubt how often it did."""
 TURN_us = 2**32
 ASK, BLINK = b"?\n", b"L\n"
 """What the host sends: write your head again; blink the light before a press."""
@@ -47,13 +47,17 @@ class SerialBench:
 
     def __init__(self, port: Port) -> None:
         self._port, self._rest, self._cut, self._clock = port, b"", True, ""
+        self._capture = SerialCapture()
         try:
-            self._head, self._first_us = self._heard()
-            self._bench = self._read([f"F {self._first_us} 0"]).bench
+            self._feed(self._heard())
+            self._capture.take(1)
+            self._bench = self._capture.bench
+        except ModelError as error:
+            port.close()
+            raise DeviceError(f"{port.name}: {error}") from error
         except BaseException:
             port.close()
             raise
-        self._begun_s = port.now_s()
 
     def facts(self) -> BenchInfo:
         """Tell who this is, as its head says."""
@@ -64,33 +68,37 @@ class SerialBench:
         self._clock = self._clock or ("board" if number == 1 else f"board from take {number}")
         made = datetime.now(UTC).isoformat(timespec="seconds")
         self._drain()
+        self._feed(self._anchors())
+        known = len(self._capture.warnings)
         self._port.write(BLINK)
-        lines = self._recorded(cue)
-        reading = self._read([*self._anchors(), *lines])
-        streams = tuple(replace(stream, clock=self._clock) for stream in reading.streams)
-        marks = [replace(m, clock=self._clock) for m in reading.marks if m.name != ANCHOR]
-        begun_s = min(float(stream.t_s[0]) for stream in streams)
+        self._feed(self._recorded(cue))
+        take = self._capture.take(number, stage, velocity_mm_s, made)
+        if not any(stream.t_s.size for stream in take.streams):
+            raise DeviceError(f"{self._port.name}: no sample came; check the board's program")
+        begun_s = min(float(stream.t_s[0]) for stream in take.streams if stream.t_s.size)
+        marks = [replace(mark, clock=self._clock) for mark in take.marks if mark.name != ANCHOR]
         marks += [Mark(name, self._clock, begun_s + t_s) for name, t_s in cue.events]
-        return Take(number, streams, tuple(marks), stage, velocity_mm_s, made, "; ".join(reading.warnings))
+        streams = tuple(replace(stream, clock=self._clock) for stream in take.streams)
+        return replace(
+            take, streams=streams, marks=tuple(marks), remark="; ".join(self._capture.warnings[known:])
+        )
 
     def close(self) -> None:
         """Let the port go."""
         self._port.close()
 
-    def _heard(self) -> tuple[list[str], int]:
-        """Listen until the head and a line with a time have come."""
+    def _heard(self) -> list[str]:
+        """Listen until the head and some samples have come; give them."""
         self._port.write(ASK)
-        until_s, head, heard, body = self._port.now_s() + HEAD_s, list[str](), False, 0
+        until_s, lines, heard, body = self._port.now_s() + HEAD_s, list[str](), False, 0
         while self._port.now_s() < until_s:
             data = self._port.read(self._port.now_s() + GLANCE_s)
             heard |= bool(data)
             for line in self._lines(data):
-                if line.startswith("#"):
-                    head, body = [line] if line.startswith(MAGIC) else [*head, line], 0
-                elif head and head[0].startswith(MAGIC) and (timed := _TIME.match(line)):
-                    body += 1
-                    if body == BODY:
-                        return head, int(timed[1]) % TURN_us
+                lines = [line] if line.startswith(MAGIC) else [*lines, line] if lines else []
+                body = body + 1 if lines and _TIME.match(line) else 0
+                if body == BODY:
+                    return lines
         found = "something else than a capture bench writes there" if heard else "no answer"
         raise DeviceError(
             f"{self._port.name}: {found}; check the port's name, the cable and the board's program"
@@ -122,13 +130,13 @@ class SerialBench:
             pass
         self._rest, self._cut = b"", True
 
-    def _anchors(self) -> list[str]:
-        """Write lines that lead the board's counter from the first one heard to now."""
-        count = int((self._port.now_s() - self._begun_s) * 1e6) // ANCHOR_us
-        return [f"! {(self._first_us + i * ANCHOR_us) % TURN_us} {ANCHOR}" for i in range(count + 1)]
+    def _feed(self, lines: Sequence[str]) -> None:
+        """Hand lines on, and remember the last time among them and when it was heard."""
+        for line in lines:
+            if self._capture.feed(line) and (timed := _TIME.match(line)):
+                self._last_us, self._last_s = int(timed[1]), self._port.now_s()
 
-    def _read(self, lines: list[str]) -> Reading:
-        try:
-            return read_serial(Path(self._port.name), [*self._head, *lines])
-        except InputError as error:
-            raise DeviceError(f"{self._port.name}: {error.reason}; {error.remedy}") from error
+    def _anchors(self) -> list[str]:
+        """Write events that lead the board's counter over the time in which nobody listened."""
+        count = int((self._port.now_s() - self._last_s) * 1e6) // ANCHOR_us
+        return [f"! {(self._last_us + i * ANCHOR_us) % TURN_us} {ANCHOR}" for i in range(1, count + 1)]

@@ -10,6 +10,7 @@ from fdvv.plot._rendering_figures import PAPER_ERROR_cN, plot_convergence, plot_
 from fdvv.plot._report import Section, Table, render_html, write_report
 from fdvv.plot._style import house_style
 from fdvv.plot._svg import figure_of, figure_png, figure_svg
+from fdvv.plot._vibration_figures import plot_heard
 
 __all__ = [
     "ErrorHistory",
@@ -31,6 +32,7 @@ __all__ = [
     "plot_feasibility",
     "plot_fit",
     "plot_force",
+    "plot_heard",
     "plot_model",
     "plot_paces",
     "plot_registration",

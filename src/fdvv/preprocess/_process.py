@@ -31,6 +31,9 @@ UNKNOWN_PIECES = 25
 UNKNOWN_N = 1e3
 """Nothing is known of it."""
 
+LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
+"""A frame is never surer than the first; the second is taken where fewer steps at rest tell."""
+
 GAIN_OFF = 0.1
 """Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
 
@@ -44,8 +47,8 @@ class Settings:
 
     Attributes
     ----------
-    cap_g : mass of the moving cap, its stem, markers and a third of its spring; 40 % off changes the peak by
-        0.2 cN, since only the tip's share of the motion is taken back.
+    cap_g : mass of the moving cap, its stem, markers and a third of its spring; 40 % off changes a curve by
+        0.7 cN rms at most, since only the tip's share of the motion is taken back.
     limits : when a press is left out.
     """
 
@@ -256,7 +259,10 @@ class _Work:
     ) -> tuple[list[StrokeTrack], CurveOfForce]:
         """Find the paths between frames, then once more with what lies between the stop and a frame."""
         moving_g = self.settings.cap_g + self.bench.tip_mass_g
-        fusion = Fusion(moving_g) if known else Fusion(moving_g, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
+        noise_mm = _frame_noise_mm([one for one, _ in whole])
+        fusion = Fusion(moving_g, noise_mm)
+        if known is None:
+            fusion = replace(fusion, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
         known = known or unknown_curve
         paths, shape = fuse([seen for _, seen in whole], known, fusion)
         longer = [
@@ -300,6 +306,18 @@ def _slipped(pooled: Pooled) -> list[int]:
     off = np.abs(np.array(gains) - np.median(gains))
     far = np.flatnonzero(off > max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))
     return [int(i) for i in far if off[i] >= 0.5 * off.max()] if len(gains) > FEWEST else []
+
+
+def _frame_noise_mm(used: Sequence[Judged]) -> float:
+    """Tell the noise of a frame from frames that followed each other while the cap rested."""
+    steps = []
+    for one in used:
+        rest = one.press.frame_mm[one.press.frame_s < one.spans.start_s - 0.02]
+        steps.append(np.diff(rest))
+    joined = np.concatenate(steps) if steps else np.zeros(0)
+    if joined.size < LEAST_STEPS:
+        return USUAL_NOISE_mm
+    return max(1.4826 * float(np.median(np.abs(joined))) / float(np.sqrt(2)), LEAST_NOISE_mm)
 
 
 def _end_mm(tracks: Sequence[StrokeTrack]) -> float:

@@ -8,9 +8,8 @@ from fdvv.recording._join import join
 from fdvv.recording._log import RecordingLog
 from fdvv.recording._mend import Mend
 from fdvv.recording._read import log_formats, read_log
-from fdvv.recording._reading import Reading
 from fdvv.recording._records import schema
-from fdvv.recording._serial import SerialCapture, read_serial
+from fdvv.recording._serial import SerialCapture
 from fdvv.recording._types import UNITS, Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 __all__ = [
@@ -22,7 +21,6 @@ __all__ = [
     "Mend",
     "Problem",
     "Quantity",
-    "Reading",
     "Recording",
     "RecordingLog",
     "SerialCapture",
@@ -36,7 +34,6 @@ __all__ = [
     "load_recording",
     "log_formats",
     "read_log",
-    "read_serial",
     "save_recording",
     "schema",
     "unusable",

@@ -50,31 +50,40 @@ def read_counts(source: Path, lines: Sequence[str], rate_Hz: float | None) -> Re
     if rate is None:
         reason = "numbers alone, and neither file nor name tells their rate"
         raise refusal(source, "whole file", reason, "give rate_Hz, or name the file as in key_2kHz.txt")
+    values = _values(source, lines)
+    warnings = ["the numbers are counts of a converter whose scale nobody stated"]
+    if rate_Hz is None:
+        warnings.append(f"the rate of {rate:g} Hz is that of the file's name")
+    bad = int(np.isnan(values).any(axis=1).sum())
+    if bad:
+        warnings.append(f"{counted(bad, 'line')} of no number read as gaps")
+    most = np.nanmax(np.abs(values))
+    if bits and most >= 2**bits:
+        warnings.append(f"the name tells of {bits} bits, but the numbers reach {most:.0f}")
+    t_s = np.arange(values.shape[0]) / rate
+    columns = values.T
+    names = ["counts"] if len(columns) == 1 else [f"counts {i + 1}" for i in range(len(columns))]
+    streams = [
+        Stream(name, Quantity.COUNTS, CLOCK, t_s, _whole(column))
+        for name, column in zip(names, columns, strict=True)
+    ]
+    return Reading("counts", streams, (), warnings)
+
+
+def _values(source: Path, lines: Sequence[str]) -> FloatArray:
+    """Read the numbers, a line that holds no number as NaN. InputError if that are too many."""
     rows = [_cells(line) for line in lines]
     while rows and not rows[-1]:
         rows.pop()
     width = max((len(row) for row in rows[:60]), default=0)
     if not width:
         raise refusal(source, "whole file", "it holds no number")
-    values = np.array([[number(c) for c in row] if len(row) == width else [np.nan] * width for row in rows])
+    gap = [np.nan] * width
+    values = np.array([[number(c) for c in row] if len(row) == width else gap for row in rows])
     bad = int(np.isnan(values).any(axis=1).sum())
     if bad > MOST_BAD * len(rows):
         raise refusal(source, "whole file", f"{bad} of {counted(len(rows), 'line')} hold no number")
-    warnings = ["the numbers are counts of a converter whose scale nobody stated"]
-    if rate_Hz is None:
-        warnings.append(f"the rate of {rate:g} Hz is that of the file's name")
-    if bad:
-        warnings.append(f"{counted(bad, 'line')} of no number read as gaps")
-    most = np.nanmax(np.abs(values))
-    if bits and most >= 2**bits:
-        warnings.append(f"the name tells of {bits} bits, but the numbers reach {most:.0f}")
-    t_s = np.arange(len(rows)) / rate
-    names = ["counts"] if width == 1 else [f"counts {i + 1}" for i in range(width)]
-    streams = [
-        Stream(name, Quantity.COUNTS, CLOCK, t_s, _whole(column))
-        for name, column in zip(names, values.T, strict=True)
-    ]
-    return Reading("counts", streams, (), warnings)
+    return values
 
 
 def _whole(column: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int32]] | FloatArray:

@@ -25,6 +25,7 @@ class BenchRecord(msgspec.Struct, forbid_unknown_fields=True):
     sound_filter_ms: float
     force_play_cN: float
     tip_mass_g: float
+    sound_V_s_m: float
     exposure_ms: float
     clocks_go_on: bool
 

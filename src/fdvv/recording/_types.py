@@ -175,6 +175,8 @@ class Bench:
     sound_filter_ms : the same for the microphone.
     force_play_cN : by how much the force sensor reads more on the way back than on the way there.
     tip_mass_g : what the force sensor accelerates with the cap: cone and plunger.
+    sound_V_s_m : what the microphone gives per speed of the cap; 0 if nobody calibrated it, and then sound
+        tells when and how a vibration rings, but not how strongly.
     exposure_ms : over which a camera averages a frame; frames are stamped at its start.
     clocks_go_on : the clocks run through all takes, so that one alignment serves them all.
     """
@@ -183,6 +185,7 @@ class Bench:
     sound_filter_ms: float = 0.0
     force_play_cN: float = 0.0
     tip_mass_g: float = 0.0
+    sound_V_s_m: float = 0.0
     exposure_ms: float = 0.0
     clocks_go_on: bool = True
 

@@ -1,5 +1,14 @@
 """Helpers for tests, shipped: devices without physics, random programs, what devices and rigs must honour."""
 
+from fdvv.testing._captured import (
+    PERFECT_RIG,
+    PERFECT_SENSOR,
+    CapturedSession,
+    PACES_mm_s,
+    captured_session,
+    top_mm,
+    true_stroke_cN,
+)
 from fdvv.testing._closed_forms import coil_error_ratio, mean_response, ripple_N
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
 from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
@@ -20,15 +29,20 @@ from fdvv.testing._scripted import ScriptedDevice
 
 __all__ = [
     "AWAY",
+    "PERFECT_RIG",
+    "PERFECT_SENSOR",
+    "CapturedSession",
     "DeviceConformance",
     "Felt",
     "LinearLoop",
+    "PACES_mm_s",
     "ProgramConformance",
     "SNAP_AT_mm",
     "SNAP_DURATION_s",
     "SNAP_Hz",
     "ScriptedDevice",
     "bare_loop",
+    "captured_session",
     "coil_error_ratio",
     "cycles",
     "draw_fast_rig",
@@ -48,5 +62,7 @@ __all__ = [
     "ripple_N",
     "snap",
     "swings_held",
+    "top_mm",
+    "true_stroke_cN",
     "ways",
 ]

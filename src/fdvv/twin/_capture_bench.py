@@ -137,6 +137,7 @@ def bench_facts(rig: CaptureRig, sensor: ForceSensor) -> Bench:
         force_filter_ms=round(1e3 * sensor.filter_s, 2),
         force_play_cN=round(float(cN_from_N(sensor.hysteresis_N)), 1),
         sound_filter_ms=round(1e3 * rig.sound_filter_s, 2),
+        sound_V_s_m=rig.sound_V_s_m,
         tip_mass_g=round(1e3 * sensor.mass_kg, 1),
         exposure_ms=round(1e3 * rig.exposure_s, 2),
     )

@@ -1,5 +1,8 @@
 """Vibration from recording to rendering: onsets, damped modes, exciter and inverse, templates, likeness."""
 
+from fdvv.vibration._damped import DampedFit, DampedMode, cramer_rao, duration_s, fit_damped
+from fdvv.vibration._energy import SnapEnergy, snap_energy
+from fdvv.vibration._events import Burst, KeyEvents, key_events
 from fdvv.vibration._exciter import (
     FULL_SCALE_V,
     LIMIT_V,
@@ -15,7 +18,14 @@ from fdvv.vibration._inverse import (
     drive_for,
 )
 from fdvv.vibration._likeness import correlation, delay_samples, spectral_similarity, spqi, st_sim
+from fdvv.vibration._modes import fit_modes
 from fdvv.vibration._observer import SimulatedObserver
+from fdvv.vibration._onset import Turn, find_turn, noise_rms
+from fdvv.vibration._pool import Measured, MeasuredVibration, measure_vibration
+from fdvv.vibration._ring import Ring, fit_ring
+from fdvv.vibration._scaling import Scaling, fit_scaling
+from fdvv.vibration._sinusoid import fit_decaying_sinusoid
+from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
 from fdvv.vibration._templates import Template, TemplateGrid, paper_templates, templates_around
 from fdvv.vibration._tone import Tone, clear_frequencies_Hz, clock_ratio, measure_tone
 from fdvv.vibration._tune import Answered, Job, Method, Preferred, Question, Standing
@@ -37,25 +47,38 @@ __all__ = [
     "FULL_SCALE_V",
     "LIMIT_V",
     "Answered",
+    "Burst",
     "Comparing",
     "ComparingState",
+    "DampedFit",
+    "DampedMode",
     "Drive",
+    "HeardPress",
     "InverseSettings",
     "Job",
+    "KeyEvents",
     "KnownExciter",
     "LISTEN_Hz",
+    "Measured",
+    "MeasuredVibration",
     "Method",
+    "NotFound",
     "Preferred",
     "Question",
     "Rating",
     "RatingState",
+    "Ring",
+    "Scaling",
     "SimulatedObserver",
+    "Snap",
+    "SnapEnergy",
     "Sound",
     "Standing",
     "Template",
     "TemplateGrid",
     "Tone",
     "ToneBench",
+    "Turn",
     "Wav",
     "acceleration_m_s2",
     "board_counts",
@@ -63,14 +86,27 @@ __all__ = [
     "clear_frequencies_Hz",
     "clock_ratio",
     "correlation",
+    "cramer_rao",
     "delay_samples",
     "drive_for",
+    "duration_s",
+    "find_snap",
+    "find_turn",
+    "fit_damped",
+    "fit_decaying_sinusoid",
     "fit_exciter",
+    "fit_modes",
+    "fit_ring",
+    "fit_scaling",
+    "key_events",
     "load_exciter",
     "measure_tone",
+    "measure_vibration",
+    "noise_rms",
     "paper_templates",
     "read_wav",
     "save_exciter",
+    "snap_energy",
     "spectral_similarity",
     "spqi",
     "st_sim",

@@ -106,9 +106,9 @@ def acceleration_m_s2(exciter: KnownExciter, volts: FloatArray) -> FloatArray:
     count = volts.shape[0]
     size = 1 << int(np.ceil(np.log2(2 * count + RING_s * RATE_Hz)))
     response = exciter.response(np.fft.rfftfreq(size, 1 / RATE_Hz))
-    shaped = response.reshape(-1, *([1] * (volts.ndim - 1)))
-    found: FloatArray = np.fft.irfft(np.fft.rfft(volts, size, axis=0) * shaped, size, axis=0)[:count]
-    return found
+    # rows are faster to transform than columns
+    found: FloatArray = np.fft.irfft(np.fft.rfft(np.ascontiguousarray(volts.T), size) * response, size)
+    return found[..., :count].T
 
 
 def _wanted(vibration: Vibration, lead_s: float, count: int) -> FloatArray:

@@ -103,9 +103,9 @@ def _errors(rated: list[FloatArray]) -> FloatArray:
 
 
 def _alike(scores: FloatArray, errors: FloatArray, free: int) -> list[int]:
-    from scipy.stats import t as student
+    from scipy.special import stdtrit
 
     top = int(np.argmax(scores))
-    bound = float(student.ppf(1 - 0.05 / 2 / max(scores.size - 1, 1), max(free, 1)))
+    bound = float(stdtrit(max(free, 1), 1 - 0.05 / 2 / max(scores.size - 1, 1)))
     apart = (scores[top] - scores) > bound * np.hypot(errors[top], errors)
     return [i for i in range(scores.size) if not apart[i]]

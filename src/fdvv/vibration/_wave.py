@@ -54,7 +54,7 @@ class Sound:
 
 def vibration_samples(vibration: Vibration, rate_Hz: int = LISTEN_Hz, quiet_s: float = QUIET_s) -> FloatArray:
     """Give a vibration's acceleration (m/s²) at a rate, with silence before and after."""
-    count = int(np.ceil((vibration.duration_s + 2 * quiet_s) * rate_Hz))
+    count = round((vibration.duration_s + 2 * quiet_s) * rate_Hz)
     return vibration.acceleration_m_s2(np.arange(count) / rate_Hz - quiet_s)
 
 

@@ -14,7 +14,7 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
-from fdvv.workflow._exciter import identify_exciter, prepare_exciter, with_lead
+from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
     FeasibilityReport,
@@ -131,6 +131,7 @@ __all__ = [
     "slot_volts",
     "spread_reports",
     "summarise",
+    "tone_image",
     "tune_vibration",
     "tuned_model",
     "uncompensated",

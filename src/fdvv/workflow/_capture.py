@@ -86,10 +86,11 @@ class Progress:
     def _pace(self, step: Step) -> PaceStanding:
         assert step.velocity_mm_s is not None
         found = [verdict for other, verdict in self.judged if other == step]
-        good = tuple(verdict.achieved_mm_s for verdict in found if verdict.ok)
+        good = [verdict.achieved_mm_s for verdict in found if verdict.ok]
+        known = tuple(speed for speed in good if np.isfinite(speed))
         settled = sum(o.settled for o in self.outcomes if o.step == step)
         missed = max(settled - len(good), 0)
-        return PaceStanding(step.velocity_mm_s, len(good), self.plan.presses, len(found), missed, good)
+        return PaceStanding(step.velocity_mm_s, len(good), self.plan.presses, len(found), missed, known)
 
 
 def capture_session(

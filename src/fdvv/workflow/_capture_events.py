@@ -31,7 +31,14 @@ class TakeAsk:
 
 @dataclass(frozen=True)
 class PaceStanding:
-    """How far one pace is: good presses of those wanted, presses made, those done without."""
+    """How far one pace is.
+
+    Attributes
+    ----------
+    good, wanted : presses.
+    made, missed : all that were made at this pace, and how many the session does without.
+    achieved_mm_s : of the good ones, as far as their speed is known.
+    """
 
     velocity_mm_s: float
     good: int

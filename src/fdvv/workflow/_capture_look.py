@@ -67,8 +67,7 @@ def _felt(take: Take, unseen: Verdict) -> Verdict:
         return unseen
     force_cN = take.of(Quantity.FORCE)[0].values
     pressed = force_cN > np.median(force_cN[: force_cN.size // REST_PART]) + FELT_cN
-    count = int(np.sum(np.diff(pressed.astype(int)) == 1))
-    if not count:
+    if not pressed.any():
         return Verdict(False, reason="no press was felt; press when the bar goes down")
     return Verdict(True)
 

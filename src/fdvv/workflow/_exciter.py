@@ -25,6 +25,7 @@ from fdvv.vibration import (
     fit_exciter,
     measure_tone,
 )
+from fdvv.workflow._session_run import clear_latched
 
 TONES_Hz = np.arange(260.0, 861.0, 40.0)
 """Below them friction grips, above them the cap hardly moves."""
@@ -45,10 +46,12 @@ def identify_exciter(
     rig: KnownRig | None = None,
     tone_s: float = 3.0,
     progress: Progress = lambda _done, _total: None,
+    notice: Callable[[str], None] = lambda _text: None,
 ) -> KnownExciter:
     """Play tones one after the other on a cap that nobody touches, and fit the exciter to how it moves.
 
     rig : tells the lag of the position sensor; without it the gain is known to a third only.
+    progress, notice : told of every tone, and of what a person should know.
     tone_s : of each of 14 tones or so; errors fall with its root. The device is left without force, and its
     program is that of the tones. Raises InputError if it cannot play on command, DeviceError, FitError.
     """
@@ -59,6 +62,7 @@ def identify_exciter(
         raise InputError("--tone-s", f"{tone_s:g}", "out of range", f"choose 0.3 to {LONGEST_s:g} s")
     settings = device.settings()
     frequencies = clear_frequencies_Hz(TONES_Hz, 1e6 / settings.tick_us, APART_Hz).tolist()
+    clear_latched(device, notice)
     device.upload_program(tone_image(frequencies, tone_s))
     records = _records(device, len(frequencies), tone_s, progress)
     ratio = clock_ratio(records, frequencies)

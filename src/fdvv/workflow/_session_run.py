@@ -147,10 +147,7 @@ def _refuse(log: PressLog, kept: Kept, reason: str) -> NoReturn:
 def _pressed(device: Device, course: Course[S], state: S, log: PressLog) -> S:
     """Press until the plan is finished."""
     before, in_a_row = None, 0
-    if _faulted(device):
-        course.guide.notice(
-            f"warning: {device.info().name} had fallen to zero force, {_cleared(device)}; cleared"
-        )
+    clear_latched(device, course.guide.notice)
     while (trial := course.plan.trial(state)) is not None:
         prepare(device, trial, course.travel_mm, before)
         count = course.plan.count(state)
@@ -178,6 +175,12 @@ def _made(device: Device, trial: Trial) -> tuple[Press | None, str]:
         if not _faulted(device):
             raise
         return None, str(error)
+
+
+def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
+    """Clear a fault that was latched before, and tell of it. DeviceError while its cause lasts."""
+    if _faulted(device):
+        notice(f"warning: {device.info().name} had fallen to zero force, {_cleared(device)}; cleared")
 
 
 def _faulted(device: Device) -> bool:

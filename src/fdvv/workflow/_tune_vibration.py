@@ -23,7 +23,7 @@ from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide
 from fdvv.workflow._session_log import REMEDY
 from fdvv.workflow._session_manifest import make_manifest, now, plain, table_digest
-from fdvv.workflow._session_run import let_go
+from fdvv.workflow._session_run import clear_latched, let_go
 from fdvv.workflow._tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
 
 State = Any
@@ -184,8 +184,12 @@ def _uploader(
         reason = "it runs tables of force only"
         raise InputError("--device", device.info().name, reason, "use twin, host or serial:PORT")
 
+    images: dict[Vibration, bytes] = {}
+
     def upload(vibration: Vibration) -> None:
-        device.upload_program(candidate_image(model, surface, vibration, exciter))
+        if vibration not in images:
+            images[vibration] = candidate_image(model, surface, vibration, exciter)
+        device.upload_program(images[vibration])
 
     return upload
 
@@ -235,6 +239,7 @@ def _greet(guide: Guide, log: AnswerLog, done: bool) -> None:
 def _asked(course: _Course, method: Rating | Comparing, state: State, log: AnswerLog) -> State:
     """Press and ask until nothing is left to ask."""
     one: Any = method
+    clear_latched(course.device, course.guide.notice)
     try:
         while (asked := one.ask(state)) is not None:
             told, speeds = _answered(course, asked)

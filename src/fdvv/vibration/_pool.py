@@ -1,0 +1,206 @@
+"""The vibration of one stroke at one velocity, pooled over its presses; each figure with its spread."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import Mode, Stroke, Vibration
+from fdvv.units import FloatArray
+from fdvv.vibration._damped import duration_s
+from fdvv.vibration._energy import SnapEnergy
+from fdvv.vibration._ring import Ring, fit_ring
+from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
+
+LEAST_SHARE = 0.5
+"""A snap that fewer presses show is not one of the button's."""
+
+
+ROUNDS = 2
+"""Searches with the modes that the search before told."""
+
+KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
+"""A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
+mode), and frequency apart from that of the first."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A figure and its spread: standard deviation over presses, or standard error, as its owner says."""
+
+    value: float
+    sd: float
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredVibration:
+    """What the presses of one stroke at one velocity tell of its snap.
+
+    Attributes
+    ----------
+    stroke, velocity_mm_s : of all the presses; the pace that was asked for.
+    energy : the fall of force that drives it.
+    onset_mm : median, and the spread over presses (scaled from the median deviation).
+    snap_velocity_mm_s : of the cap at the onset: median and spread over presses.
+    shown, presses : presses that showed it, and all.
+    heard, snaps : the presses that showed it, and where.
+    ring : its modes, or why they could not be told.
+    acceleration : the sensor gives acceleration, not velocity.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    energy: SnapEnergy
+    onset_mm: Measured
+    snap_velocity_mm_s: Measured
+    shown: int
+    presses: int
+    heard: tuple[HeardPress, ...]
+    snaps: tuple[Snap, ...]
+    ring: Ring | NotFound
+    acceleration: bool
+
+    @property
+    def amplitude(self) -> Measured | None:
+        """Get the principal mode's amplitude in the signal's unit, median and spread, or None."""
+        return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes)
+
+    @property
+    def rings(self) -> tuple[tuple[float, float], ...]:
+        """Get frequency and decay of the modes that measure_vibration() of other presses can build on."""
+        return known_rings(self.ring)
+
+    @property
+    def duration_s(self) -> Measured | None:
+        """Get the time until a tenth of the amplitude is left, with its standard error; None if unknown."""
+        if isinstance(self.ring, NotFound):
+            return None
+        return Measured(duration_s(self.ring.mode.decay_1_s), self.ring.duration_sd_s)
+
+    def vibration(self, scale: float | None = None) -> Vibration:
+        """Give the vibration as models hold it, its amplitudes as accelerations of the cap.
+
+        scale : what the sensor gives per m/s (V s/m) or, of an accelerometer, per m/s2. Without it the unit
+            of the signal says nothing of the cap: None is refused unless it is an acceleration in m/s2.
+
+        Raises ModelError if the ring was not found or a microphone's scale is unknown.
+        """
+        if isinstance(self.ring, NotFound):
+            raise ModelError(
+                f"no vibration of {self.stroke} at {self.velocity_mm_s:g} mm/s: {self.ring.reason}"
+            )
+        if scale is None and not self.acceleration:
+            raise ModelError(
+                "the microphone's scale (V s/m) is unknown: state it, or set the amplitude by what is felt"
+            )
+        return Vibration(
+            self.stroke,
+            self.velocity_mm_s,
+            self.onset_mm.value,
+            duration_s(min(mode.decay_1_s for mode in self.ring.modes)),
+            tuple(
+                _mode(
+                    m.frequency_Hz, m.decay_1_s, m.amplitude / (scale or 1.0), m.phase_rad, self.acceleration
+                )
+                for m in self.ring.modes
+            ),
+        )
+
+
+def _mode(
+    frequency_Hz: float, decay_1_s: float, amplitude: float, phase_rad: float, acceleration: bool
+) -> Mode:
+    """Turn a mode of velocity into one of acceleration: times -d + i 2 pi f."""
+    if acceleration:
+        return Mode(frequency_Hz, amplitude, decay_1_s, phase_rad)
+    factor = complex(-decay_1_s, 2 * math.pi * frequency_Hz)
+    return Mode(
+        frequency_Hz, amplitude * abs(factor), decay_1_s, phase_rad + math.atan2(factor.imag, factor.real)
+    )
+
+
+def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
+    """Give frequency and decay of the principal mode and of one other, those that are known well enough."""
+    if isinstance(ring, NotFound):
+        return ()
+    sure = [
+        mode
+        for mode in ring.modes
+        if mode.frequency_sd_Hz < KNOWN_ratio * mode.frequency_Hz
+        and mode.decay_1_s < FREE_ratio * 2 * math.pi * mode.frequency_Hz
+    ]
+    apart = [m for m in sure[1:] if not 1 / APART_ratio < m.frequency_Hz / sure[0].frequency_Hz < APART_ratio]
+    return tuple((mode.frequency_Hz, mode.decay_1_s) for mode in [*sure[:1], *apart[:1]])
+
+
+def measure_vibration(
+    presses: Sequence[HeardPress],
+    velocity_mm_s: float,
+    energy: SnapEnergy | None,
+    acceleration: bool = False,
+    rings: Sequence[tuple[float, float]] = (),
+) -> MeasuredVibration | NotFound:
+    """Measure onset, frequency, decay, duration and amplitude of the snap of one stroke at one velocity.
+
+    presses : all of one stroke.
+    energy : of the force curve of that stroke, from snap_energy(); None where its force does not fall: then
+        there is no snap to look for.
+    acceleration : the signal is an acceleration, not a velocity.
+
+    rings : frequency (Hz) and decay (1/s) of modes that this button is known to ring in, as other velocities
+        or the other stroke told (MeasuredVibration.rings); they sharpen the search.
+
+    Each press is searched by itself; the modes that the pooled presses ring in then sharpen the search. The
+    ring is fitted to all presses together.
+    """
+    if not presses or any(press.stroke is not presses[0].stroke for press in presses):
+        raise ModelError("a vibration is measured from one or more presses, all of one stroke")
+    if energy is None:
+        return NotFound("force does not fall between contact and bottom-out: there is no snap to look for")
+    looked = [find_snap(press, energy.window_mm, rings) for press in presses]
+    heard, snaps = _shown(presses, looked)
+    ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
+    for _ in range(ROUNDS):
+        known = known_rings(ring)
+        # known modes part beginning from going on only where a sample is short beside their periods
+        if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:
+            break
+        again = [find_snap(press, energy.window_mm, known) for press in presses]
+        if len(_shown(presses, again)[0]) < len(heard):
+            break
+        looked = again
+        heard, snaps = _shown(presses, looked)
+        ring = fit_ring(heard, snaps, acceleration)
+    if len(snaps) < LEAST_SHARE * len(presses):
+        reasons = [snap.reason for snap in looked if isinstance(snap, NotFound)]
+        return NotFound(f"{len(snaps)} of {len(presses)} presses show a snap; of the others: {reasons[0]}")
+    return MeasuredVibration(
+        presses[0].stroke,
+        velocity_mm_s,
+        energy,
+        _median(np.array([snap.onset_mm for snap in snaps])),
+        _median(np.array([snap.velocity_mm_s for snap in snaps])),
+        len(snaps),
+        len(presses),
+        tuple(heard),
+        tuple(snaps),
+        ring,
+        acceleration,
+    )
+
+
+def _shown(
+    presses: Sequence[HeardPress], looked: Sequence[Snap | NotFound]
+) -> tuple[list[HeardPress], list[Snap]]:
+    pairs = [(press, snap) for press, snap in zip(presses, looked, strict=True) if isinstance(snap, Snap)]
+    return [press for press, _ in pairs], [snap for _, snap in pairs]
+
+
+def _median(values: FloatArray) -> Measured:
+    """Give the median, and the spread from the median deviation, which a few outliers do not move."""
+    middle = float(np.median(values))
+    return Measured(middle, 1.4826 * float(np.median(np.abs(values - middle))))

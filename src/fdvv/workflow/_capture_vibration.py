@@ -1,0 +1,128 @@
+"""The vibrations of a recording: what its microphone heard of the snaps, at every pace, on both strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import ModeSpread, Stroke, Vibration, VibrationSpread
+from fdvv.preprocess import AveragedCurve, Processed, RawPress, StrokeTrack
+from fdvv.recording import Quantity, Recording, Stream
+from fdvv.vibration import HeardPress, MeasuredVibration, NotFound, SnapEnergy, measure_vibration, snap_energy
+
+CONTACT_mm, STOP_mm = 0.3, 0.1
+"""Parts of a curve beside contact and stop in which no fall of force is looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class HeardStroke:
+    """One stroke at one pace, and what was heard of its snap; NotFound says why nothing was."""
+
+    stroke: Stroke
+    velocity_mm_s: float | None
+    found: MeasuredVibration | NotFound
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedVibrations:
+    """What a recording tells of vibration.
+
+    Attributes
+    ----------
+    heard : every stroke and pace, presses before releases, slow before fast.
+    vibrations : those whose modes and amplitude are known, as a model holds them.
+    warnings : why the others are missing, one sentence each.
+    """
+
+    heard: tuple[HeardStroke, ...]
+    vibrations: tuple[Vibration, ...]
+    warnings: tuple[str, ...]
+
+
+def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedVibrations:
+    """Search the sound of a recording for snaps, pooled over the presses of each stroke and pace.
+
+    A mode that one pace told sharpens the search at the others. Without a sound there is nothing, said once.
+    """
+    sounds = {take.number: take.of(Quantity.SOUND)[0] for take in recording.takes if take.of(Quantity.SOUND)}
+    if not sounds:
+        return RecordedVibrations((), (), ("nothing was heard: the recording has no sound",))
+    heard = list(_heard(recording, processed, sounds))
+    scale = recording.bench.sound_V_s_m or None
+    vibrations, warnings = [], []
+    for one in heard:
+        try:
+            vibrations.append(_vibration(one, scale))
+        except ModelError as error:
+            warnings.append(
+                f"no vibration on the {one.stroke} at {one.velocity_mm_s or 'unknown'} mm/s: {error}"
+            )
+    return RecordedVibrations(tuple(heard), tuple(vibrations), tuple(warnings))
+
+
+def _heard(recording: Recording, processed: Processed, sounds: dict[int, Stream]) -> Iterator[HeardStroke]:
+    presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
+    delay_s = 1e-3 * recording.bench.sound_filter_ms
+    rings: tuple[tuple[float, float], ...] = ()
+    for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
+        heard = [
+            heard_press(presses[key], track, sounds[track.take], delay_s)
+            for track in tracks
+            if (key := (track.take, track.part)) in presses and track.take in sounds
+        ]
+        found: MeasuredVibration | NotFound = NotFound("no press of it was heard")
+        if heard:
+            found = measure_vibration(
+                heard, curve.velocity_mm_s or curve.achieved_mm_s, _energy(curve), rings=rings
+            )
+        if isinstance(found, MeasuredVibration) and found.rings and not rings:
+            rings = found.rings
+        yield HeardStroke(curve.stroke, curve.velocity_mm_s, found)
+
+
+def heard_press(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: float) -> HeardPress:
+    """Bring sound and place of one stroke together on the clock of the board.
+
+    delay_s : of the filter before the microphone's converter, taken off. Where the stroke was reconstructed
+    its path counts, beside it the frames.
+    """
+    t_s = sound.t_s - delay_s
+    here = (t_s >= press.frame_s[0]) & (t_s <= press.frame_s[-1])
+    beside = (press.frame_s < track.t_s[0]) | (press.frame_s > track.t_s[-1])
+    place_s = np.concatenate([press.frame_s[beside], track.t_s])
+    place_mm = np.concatenate([press.frame_mm[beside], track.displacement_mm])
+    order = np.argsort(place_s)
+    return HeardPress(t_s[here], sound.values[here], place_s[order], place_mm[order], track.stroke)
+
+
+def _energy(curve: AveragedCurve) -> SnapEnergy | None:
+    inside = curve.displacement_mm >= CONTACT_mm
+    inside &= curve.displacement_mm <= curve.displacement_mm[-1] - STOP_mm
+    return snap_energy(curve.displacement_mm[inside], curve.force_cN[inside])
+
+
+def _vibration(one: HeardStroke, scale_V_s_m: float | None) -> Vibration:
+    """Give a found vibration with its spread. ModelError, or what was said of one that was not found."""
+    missing = one.found if isinstance(one.found, NotFound) else one.found.ring
+    if isinstance(one.found, NotFound) or isinstance(missing, NotFound):
+        assert isinstance(missing, NotFound)
+        raise ModelError(missing.reason)
+    vibration = one.found.vibration(scale_V_s_m)
+    return replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=_spread(one.found, vibration))
+
+
+def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:
+    """Give what is known of how presses differ: onset and amplitude press by press, the ring's as a whole."""
+    amplitude = found.amplitude
+    if found.shown < 2 or amplitude is None:
+        return None
+    ratio = amplitude.sd / amplitude.value if amplitude.value else 0.0
+    first = ModeSpread(amplitude_m_s2=abs(vibration.modes[0].amplitude_m_s2) * ratio)
+    return VibrationSpread(
+        found.shown,
+        onset_mm=found.onset_mm.sd,
+        modes=(first, *(ModeSpread() for _ in vibration.modes[1:])),
+    )

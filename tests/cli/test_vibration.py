@@ -1,0 +1,87 @@
+"""fdvv vibration, and a known exciter on the command line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.model import load_builtin
+from fdvv.vibration import KnownExciter, load_exciter, read_wav, save_exciter
+
+from .conftest import Run
+
+EXCITER = KnownExciter(24.0, 670.0, 2.0, latency_s=0.007)
+
+
+@pytest.fixture
+def exciter(tmp_path: Path) -> str:
+    save_exciter(EXCITER, tmp_path / "rig.exciter.json")
+    return "rig.exciter.json"
+
+
+def test_a_models_vibrations_are_listed(fdvv: Run) -> None:
+    ran = fdvv("vibration", "mx-clear")
+    assert ran.status == 0
+    assert "press, any speed" in ran.out
+    assert "239.00" in ran.out
+    assert "likeness" not in ran.out
+
+
+def test_with_an_exciter_it_is_told_how_alike_they_become(fdvv: Run, exciter: str) -> None:
+    (press, release) = fdvv("vibration", "mx-clear", "--exciter", exciter, "--json").json["vibrations"]
+    assert press["expected"]["way"] == "inverse"
+    assert 0.9 < press["expected"]["likeness"] < 1
+    assert release["stroke"] == "release"
+
+
+def test_a_sound_is_written_and_its_scale_told(fdvv: Run, tmp_path: Path) -> None:
+    told = fdvv("vibration", "mx-clear", "--wav", "snap.wav", "--json").json["wav"]
+    sound = read_wav(tmp_path / "snap.wav")
+    wanted = load_builtin("mx-clear").vibration("press", 100.0)
+    assert wanted is not None
+    peak = np.abs(wanted.acceleration_m_s2(np.arange(0, 0.016, 1 / 48_000))).max()
+    assert sound.rate_Hz == 48_000
+    assert told["full_scale"] == pytest.approx(peak, rel=1e-6)
+    assert told["unit"] == "m/s2"
+
+
+def test_the_boards_samples_are_written_at_their_rate(fdvv: Run, tmp_path: Path, exciter: str) -> None:
+    ran = fdvv("vibration", "mx-clear", "--wav", "b.wav", "--board", "--exciter", exciter)
+    assert ran.out.endswith("written to b.wav; full scale is 2048 count\n")
+    assert read_wav(tmp_path / "b.wav").rate_Hz == 16_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("mx-red",), "it has none"),
+        (("mx-clear", "--wav", "x.mp3"), "end it in .wav"),
+        (("none",), "no such file or built-in button"),
+    ],
+)
+def test_what_cannot_be_shown_is_told_in_one_line(fdvv: Run, arguments: tuple[str, ...], told: str) -> None:
+    ran = fdvv("vibration", *arguments)
+    assert ran.status == 2
+    assert told in ran.err
+    assert ran.err.count("\n") == 1
+
+
+def test_a_program_is_uploaded_through_the_inverse_of_a_known_exciter(fdvv: Run, exciter: str) -> None:
+    plain = fdvv("device", "upload", "mx-clear", "--device", "host", "--json").json
+    inverse = fdvv("device", "upload", "mx-clear", "--device", "host", "--exciter", exciter, "--json").json
+    assert inverse["bytes"] > plain["bytes"]
+
+
+def test_the_exciter_of_a_simulated_rig_is_known_and_written(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("device", "exciter", "--device", "host", "--tone-s", "1", "-o", "e.exciter.json")
+    assert ran.status == 0, ran.err
+    assert ran.out.startswith("host (simulated), 14 tones")
+    found = load_exciter(tmp_path / "e.exciter.json")
+    assert found.simulated
+    assert 500 < found.resonance_Hz < 900
+
+
+def test_a_device_that_plays_in_presses_only_is_refused(fdvv: Run) -> None:
+    ran = fdvv("device", "exciter", "--device", "twin")
+    assert (ran.status, ran.err.count("\n")) == (2, 1)
+    assert "use host or serial:PORT" in ran.err

@@ -1,0 +1,100 @@
+"""The inverse of an exciter."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fdvv.errors import ModelError
+from fdvv.model import Mode, Stroke, Vibration
+from fdvv.units import FloatArray
+from fdvv.vibration import InverseSettings, KnownExciter, acceleration_m_s2, correlation, drive_for
+
+EXCITER = KnownExciter(24.0, 670.0, 2.0)
+SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 3.0, 100.0),))
+
+
+def played(exciter: KnownExciter, drive_V: FloatArray, rate_Hz: float, count: int = 1200) -> FloatArray:
+    """What a stepwise solution of the equation of motion gives for a wave as the board interpolates it."""
+    times = (np.arange(count) + 0.5) / 16_000
+    volts = np.interp(times * rate_Hz, np.arange(drive_V.size + 1), [*drive_V, 0.0], right=0.0)
+    omega, fine_s = 2 * np.pi * exciter.resonance_Hz, 1 / 16_000 / 20
+    x, v, felt = 0.0, 0.0, []
+    for held in np.repeat(volts, 20):
+        # x is the magnet's place in the cap, in units in which its acceleration is the cap's
+        a = exciter.gain_m_s2_V * held - omega / exciter.quality * v - omega**2 * x
+        v += a * fine_s
+        x += v * fine_s
+        felt.append(a)
+    return np.asarray(np.array(felt).reshape(-1, 20).mean(axis=1), dtype=np.float64)
+
+
+def test_acceleration_is_what_solving_the_equation_of_motion_gives() -> None:
+    drive = drive_for(EXCITER, SNAP)
+    times = (np.arange(1200) + 0.5) / 16_000
+    volts = np.interp(times * drive.rate_Hz, np.arange(drive.volts.size + 1), [*drive.volts, 0.0], right=0.0)
+    ours = acceleration_m_s2(EXCITER, volts)
+    assert correlation(ours, played(EXCITER, drive.volts, drive.rate_Hz)) > 0.999
+
+
+def test_the_drive_makes_the_cap_follow_a_weak_vibration_closely() -> None:
+    drive = drive_for(EXCITER, SNAP, InverseSettings(lead_s=0.002))
+    felt = played(EXCITER, drive.volts, drive.rate_Hz)
+    wanted = SNAP.acceleration_m_s2((np.arange(1200) + 0.5) / 16_000 - drive.lead_s)
+    assert correlation(felt, wanted) > 0.97
+    assert correlation(felt, wanted) == pytest.approx(drive.likeness, abs=0.01)
+    assert 0.9 < drive.strength_ratio < 1.05
+
+
+def test_it_beats_playing_the_waveform_as_it_is() -> None:
+    times = (np.arange(1200) + 0.5) / 16_000
+    plain = acceleration_m_s2(EXCITER, SNAP.acceleration_m_s2(times))
+    wanted = SNAP.acceleration_m_s2(times)
+    assert correlation(plain, wanted) < 0.8
+    assert drive_for(EXCITER, SNAP).likeness > 0.95
+
+
+@given(
+    st.floats(80.0, 900.0), st.floats(0.1, 200.0), st.floats(0.0, 400.0), st.floats(0.004, 0.05),
+    st.floats(300.0, 900.0), st.floats(0.5, 6.0),
+)  # fmt: skip
+@settings(max_examples=15, deadline=None)
+def test_no_drive_exceeds_the_limit_and_what_is_too_strong_is_told(
+    frequency: float, amplitude: float, decay: float, lasts_s: float, resonance: float, quality: float
+) -> None:
+    vibration = Vibration(Stroke.PRESS, None, 1.0, lasts_s, (Mode(frequency, amplitude, decay),))
+    drive = drive_for(KnownExciter(20.0, resonance, quality), vibration)
+    assert np.abs(drive.volts).max() <= 2.43 * (1 + 1e-9)
+    assert 0 <= drive.likeness <= 1 + 1e-9
+    assert drive.strength_ratio <= 1 + 1e-6
+
+
+def test_a_vibration_beyond_the_volts_is_weakened_and_says_so() -> None:
+    strong = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 60.0, 100.0),))
+    drive = drive_for(EXCITER, strong)
+    assert np.abs(drive.volts).max() == pytest.approx(2.43)
+    assert drive.strength_ratio < 0.6
+    assert drive.likeness < drive_for(EXCITER, SNAP).likeness + 1e-9
+
+
+def test_more_gain_never_makes_the_expected_cap_less_like_a_weak_vibration() -> None:
+    likeness = [drive_for(EXCITER, SNAP, InverseSettings(gain_dB=g)).likeness for g in (0.0, 6.0, 12.0, 18.0)]
+    assert all(b >= a - 1e-3 for a, b in pairwise(likeness))
+
+
+def test_a_long_vibration_is_played_more_slowly_or_refused() -> None:
+    long = Vibration(Stroke.PRESS, None, 2.0, 0.2, (Mode(239.0, 3.0, 10.0),))
+    drive = drive_for(EXCITER, long)
+    assert drive.volts.size <= 512
+    assert drive.rate_Hz < 4095
+    shrill = Vibration(Stroke.PRESS, None, 2.0, 0.2, (Mode(1500.0, 3.0, 10.0),))
+    with pytest.raises(ModelError, match="shorten it or leave out that mode"):
+        drive_for(EXCITER, shrill)
+
+
+@pytest.mark.parametrize("bad", [{"limit_V": 0.0}, {"limit_V": 3.0}, {"lead_s": -1.0}, {"tail_s": 1.0}])
+def test_impossible_settings_are_refused(bad: dict[str, float]) -> None:
+    with pytest.raises(ModelError, match=next(iter(bad))):
+        InverseSettings(**bad)

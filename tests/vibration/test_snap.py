@@ -1,0 +1,130 @@
+"""Snaps of made presses: onset, ring, and honest refusals."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fdvv.errors import ModelError
+from fdvv.model import Stroke
+from fdvv.vibration import (
+    HeardPress,
+    MeasuredVibration,
+    NotFound,
+    Snap,
+    SnapEnergy,
+    find_snap,
+    measure_vibration,
+    noise_rms,
+)
+
+ENERGY = SnapEnergy(drop_cN=20.0, energy_mJ=0.1, peak_mm=1.4, valley_mm=2.0)
+STARTS_s, LASTS_s, TRAVEL_mm = 0.03, 0.08, 4.0
+SNAP_mm, DECAY_1_s, FREQUENCY_Hz = 2.15, 150.0, 239.0
+
+
+def made_press(
+    seed: int,
+    amplitude: float = 1.0,
+    noise: float = 0.03,
+    rate_Hz: float = 10_000.0,
+    stroke: Stroke = Stroke.PRESS,
+) -> tuple[HeardPress, float]:
+    """Make an acceleration: the cap's smooth way, a ring from SNAP_mm on, a loud stop; and the onset."""
+    random = np.random.default_rng(seed)
+    t = np.asarray((np.arange(round(0.2 * rate_Hz)) + random.uniform()) / rate_Hz, dtype=np.float64)
+    u = np.clip((t - STARTS_s) / LASTS_s, 0, 1)
+    gone_mm = TRAVEL_mm * (10 * u**3 - 15 * u**4 + 6 * u**5)
+    place_mm = gone_mm if stroke is Stroke.PRESS else TRAVEL_mm - gone_mm
+    at_mm = SNAP_mm if stroke is Stroke.PRESS else TRAVEL_mm - SNAP_mm
+    onset_s = float(np.interp(at_mm, gone_mm, t))
+    signal = 0.5 * np.sin(2 * np.pi * 8 * t) + noise * random.standard_normal(t.size)
+    for start_s, size, f, d in (
+        (onset_s, amplitude, FREQUENCY_Hz, DECAY_1_s),
+        (STARTS_s + LASTS_s, 50.0, 600.0, 300.0),
+    ):
+        after = np.maximum(t - start_s, 0.0)
+        signal += size * np.exp(-d * after) * np.sin(2 * np.pi * f * after)
+    if stroke is Stroke.RELEASE:
+        # a press before it, so that the turn is known
+        place_mm = np.where(t < STARTS_s / 2, TRAVEL_mm * t / (STARTS_s / 2), place_mm)
+    return HeardPress(t, signal, t, np.asarray(place_mm), stroke, noise), onset_s
+
+
+@pytest.mark.parametrize("stroke", list(Stroke))
+def test_onsets_of_clear_snaps_are_found_to_a_millisecond(stroke: Stroke) -> None:
+    made = [made_press(seed, stroke=stroke) for seed in range(10)]
+    window = ENERGY.window_mm if stroke is Stroke.PRESS else (1.2, 2.6)
+    for press, onset_s in made:
+        snap = find_snap(press, window)
+        assert isinstance(snap, Snap)
+        assert snap.onset_s == pytest.approx(onset_s, abs=1e-3)
+        assert snap.stop_s == pytest.approx(STARTS_s + LASTS_s, abs=1.5e-3)
+
+
+def test_frequency_duration_and_amplitude_of_pooled_presses_meet_their_targets() -> None:
+    made = [made_press(seed) for seed in range(8)]
+    found = measure_vibration([press for press, _ in made], 100.0, ENERGY, acceleration=True)
+    assert isinstance(found, MeasuredVibration)
+    assert not isinstance(found.ring, NotFound)
+    assert found.ring.mode.frequency_Hz == pytest.approx(FREQUENCY_Hz, rel=0.01)
+    assert found.duration_s is not None
+    assert found.duration_s.value == pytest.approx(math.log(10) / DECAY_1_s, rel=0.05)
+    assert found.amplitude is not None
+    assert found.amplitude.value == pytest.approx(1.0, rel=0.15)
+    assert found.onset_mm.value == pytest.approx(SNAP_mm, abs=0.03)
+    vibration = found.vibration()
+    assert vibration.modes[0].frequency_Hz == found.ring.mode.frequency_Hz
+    assert vibration.onset_mm == found.onset_mm.value
+
+
+def test_the_stops_burst_does_not_reach_into_the_ring() -> None:
+    quiet = [made_press(seed, amplitude=0.0)[0] for seed in range(20)]
+    found = [find_snap(press, ENERGY.window_mm) for press in quiet]
+    assert sum(isinstance(snap, Snap) for snap in found) <= 1
+    assert isinstance(measure_vibration(quiet, 100.0, ENERGY), NotFound)
+
+
+def test_a_snap_too_weak_is_refused_with_the_reason() -> None:
+    weak = [made_press(seed, amplitude=0.01)[0] for seed in range(6)]
+    found = measure_vibration(weak, 100.0, ENERGY)
+    assert isinstance(found, NotFound)
+    assert "0 of 6 presses" in found.reason
+    assert "by chance" in found.reason
+
+
+def test_without_a_fall_of_force_there_is_nothing_to_look_for() -> None:
+    found = measure_vibration([made_press(0)[0]], 100.0, None)
+    assert isinstance(found, NotFound)
+    assert "force does not fall" in found.reason
+
+
+def test_a_microphone_of_unknown_scale_gives_no_amplitude_and_a_known_one_the_derivative() -> None:
+    presses = [made_press(seed)[0] for seed in range(6)]
+    found = measure_vibration(presses, 100.0, ENERGY, acceleration=False)
+    assert isinstance(found, MeasuredVibration)
+    with pytest.raises(ModelError, match="scale"):
+        found.vibration()
+    assert not isinstance(found.ring, NotFound)
+    mode = found.ring.mode
+    size = math.hypot(2 * math.pi * mode.frequency_Hz, mode.decay_1_s) * mode.amplitude / 2.0
+    assert found.vibration(scale=2.0).modes[0].amplitude_m_s2 == pytest.approx(size)
+
+
+@pytest.mark.parametrize("noise", [1e-6, 0.01, 100.0])
+def test_noise_is_told_from_the_record_itself(noise: float) -> None:
+    t = np.arange(2000) / 10_000
+    drawn = noise * np.random.default_rng(0).standard_normal(t.size)
+    assert noise_rms(drawn + 3 * noise * np.sin(2 * np.pi * 20 * t)) == pytest.approx(noise, rel=0.1)
+
+
+def test_bad_presses_are_refused() -> None:
+    press, _ = made_press(0)
+    with pytest.raises(ModelError, match="rising times"):
+        HeardPress(press.t_s[::-1], press.signal, press.place_s, press.place_mm, Stroke.PRESS)
+    with pytest.raises(ModelError, match="one or more presses"):
+        measure_vibration([], 100.0, ENERGY)
+    short = find_snap(press, (5.0, 6.0))
+    assert isinstance(short, NotFound)

@@ -1,0 +1,76 @@
+"""The exciter of a rig, known through its own board and position sensor."""
+
+from dataclasses import replace
+
+import pytest
+
+from fdvv.device import HostBoard, LinkedDevice, ScriptedPerson, SimulatedPerson, TwinDevice
+from fdvv.errors import FitError, InputError
+from fdvv.protocol import Settings, head_of
+from fdvv.twin import Exciter, Finger, PositionSensor, Rig
+from fdvv.vibration import KnownExciter
+from fdvv.workflow import identify_exciter, prepare_exciter, with_lead
+from fdvv.workflow._exciter import tone_image
+
+RIG = Rig(exciter=Exciter(latency_s=2e-4))
+RESONANCE_Hz, QUALITY, GAIN_m_s2_V = 669.3, 1.96, 19.6
+"""Of cap against magnet by the rig's numbers: 6 g on 14 g, 560 Hz held, Q 2.5, 2 N/A, 7.3 ohm."""
+
+
+def host(rig: Rig, seed: int = 0) -> LinkedDevice:
+    return LinkedDevice(HostBoard(), SimulatedPerson(rig, Finger(), seed))
+
+
+def test_a_quiet_position_sensor_tells_the_exciter_in_short_tones_and_no_force_is_left() -> None:
+    quiet = replace(RIG, position_sensor=PositionSensor(noise_m=1e-6, converter_bits=14, bandwidth_Hz=500.0))
+    with host(quiet) as device:
+        found = identify_exciter(device, tone_s=0.4)
+        assert not device.port.outputs.enable
+    assert found.resonance_Hz == pytest.approx(RESONANCE_Hz, rel=0.05)
+    assert found.quality == pytest.approx(QUALITY, rel=0.25)
+    assert found.simulated
+    assert found.latency_s == pytest.approx(2e-4)
+    assert found.tones == 14
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_default_sensor_tells_it_within_three_standard_errors(seed: int) -> None:
+    with host(RIG, seed) as device:
+        found = identify_exciter(device, tone_s=3.0)
+    assert found.resonance_Hz == pytest.approx(RESONANCE_Hz, rel=3 * found.error["resonance_Hz"])
+    assert found.gain_m_s2_V == pytest.approx(GAIN_m_s2_V, rel=3 * found.error["gain_m_s2_V"])
+    assert found.error["resonance_Hz"] < 0.05
+
+
+def test_a_rig_without_an_exciter_is_told_so() -> None:
+    silent = LinkedDevice(HostBoard(), ScriptedPerson())
+    with silent as device, pytest.raises(FitError, match="check that the exciter plays and nobody touches"):
+        identify_exciter(device, tone_s=0.3)
+
+
+def test_a_device_that_cannot_play_on_command_is_refused() -> None:
+    with pytest.raises(InputError, match="use host or serial:PORT"):
+        identify_exciter(TwinDevice(RIG))
+
+
+def test_tones_are_slots_of_a_program_that_holds_the_cap() -> None:
+    head = head_of(tone_image([300.0, 340.0], 1.0))
+    assert (head.slots, head.states) == (2, 1)
+
+
+def test_the_board_is_told_to_begin_as_early_as_latency_and_drive_ask_for_once() -> None:
+    known = KnownExciter(20.0, 600.0, 2.0, latency_s=0.007)
+    settings = with_lead(Settings(), known, 0.001)
+    assert settings.vibration_latency_us == 8000
+    assert with_lead(settings, known, 0.001) == settings
+    assert with_lead(Settings(), replace(known, latency_s=None)) == Settings()
+
+
+def test_preparing_a_device_changes_its_settings_only_if_need_be() -> None:
+    device, known = TwinDevice(RIG), KnownExciter(20.0, 600.0, 2.0, latency_s=2e-4)
+    prepare_exciter(device, known)
+    assert device.settings().vibration_latency_us == 1200
+    before = device.settings()
+    prepare_exciter(device, known)
+    assert device.settings() is before
