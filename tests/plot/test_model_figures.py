@@ -9,7 +9,17 @@ from numpy.testing import assert_allclose
 from tests.captures import recorded
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, landmarks, load_builtin
+from fdvv.model import (
+    FDVVModel,
+    ForceCurve,
+    Mode,
+    ModeSpread,
+    Stroke,
+    Vibration,
+    VibrationSpread,
+    landmarks,
+    load_builtin,
+)
 from fdvv.plot import _style as style
 from fdvv.plot import figure_of, plot_comparison, plot_model, plot_surface, plot_vibration
 
@@ -213,3 +223,12 @@ def test_a_comparison_draws_the_bands_of_the_buttons_that_were_measured(gallery:
     ax = plot_comparison([load_builtin("mx-clear"), recorded().model], velocity_mm_s=150.0)
     assert len(bands(ax)) == 2
     assert "mean ± 1 SD,\nn = 6 presses" in gallery.texts(ax)
+
+
+def test_a_vibration_is_named_with_the_spread_of_its_frequency() -> None:
+    spread = VibrationSpread(12, modes=(ModeSpread(6.5),))
+    buzz = Vibration(Stroke.PRESS, 150.0, 2.1, 0.016, (Mode(239.0, 4.0, 150.0),), spread)
+    model = replace(recorded().model, vibrations=(buzz,))
+    assert legend(plot_vibration(model)) == ["press, 150 mm/s: 239 ± 6.5 Hz"]
+    plain = replace(model, vibrations=(replace(buzz, spread=None),))
+    assert legend(plot_vibration(plain)) == ["press, 150 mm/s: 239 Hz"]

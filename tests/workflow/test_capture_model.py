@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from fdvv.model import (
 from fdvv.preprocess import Processed
 from fdvv.recording import RECORDING_SUFFIX, Recording, Stage, save_recording
 from fdvv.workflow import FitSettings, capture_report, model_of_recording, process_recording
+from fdvv.workflow._capture_vibration import RecordedVibrations
 
 
 def without(recording: Recording, *stages: Stage) -> Recording:
@@ -159,14 +159,22 @@ def test_vibrations_are_found_by_what_is_passed() -> None:
     buzz = Vibration(Stroke.PRESS, 150.0, 2.1, 0.016, (Mode(239.0, 4.0, 150.0),))
     asked: list[tuple[Recording, Processed]] = []
 
-    def find(recording: Recording, processed: Processed) -> Sequence[Vibration]:
+    def find(recording: Recording, processed: Processed) -> RecordedVibrations:
         asked.append((recording, processed))
-        return [buzz]
+        return RecordedVibrations((), (buzz,), ("one was faint",))
 
     found = model_of_recording(capture(), find_vibrations=find)
     assert found.model.vibrations == (buzz,)
     assert asked == [(capture(), found.processed)]
-    assert recorded().model.vibrations == ()
+    assert "one was faint" in found.warnings
+
+
+def test_what_was_not_heard_is_told() -> None:
+    found = recorded()
+    heard = {(one.stroke, one.velocity_mm_s) for one in found.heard.heard}
+    assert heard == {(c.stroke, c.velocity_mm_s) for c in found.processed.curves}
+    assert set(found.heard.warnings) <= set(found.warnings)
+    assert len(found.heard.warnings) + len(found.model.vibrations) == len(heard)
 
 
 def test_the_fit_is_that_of_the_settings() -> None:

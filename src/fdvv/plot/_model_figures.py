@@ -235,5 +235,15 @@ def _vibration_text(group: Sequence[Vibration]) -> str:
     strokes = " and ".join(str(s) for s in Stroke if any(v.stroke is s for v in group))
     speeds = sorted({v.velocity_mm_s for v in group if v.velocity_mm_s is not None})
     at = f"{', '.join(f'{s:g}' for s in speeds)} mm/s" if speeds else "every speed"
-    frequencies = ", ".join(f"{mode.frequency_Hz:g}" for mode in group[0].modes)
-    return f"{strokes}, {at}: {frequencies} Hz"
+    return f"{strokes}, {at}: {', '.join(_frequencies(group))} Hz"
+
+
+def _frequencies(group: Sequence[Vibration]) -> list[str]:
+    """Write the frequencies of vibrations that are the same, with the spread of one that stands alone."""
+    first = group[0]
+    known = first.spread.modes if first.spread and len(group) == 1 else ()
+    spreads_Hz = [mode.frequency_Hz for mode in known] or [None] * len(first.modes)
+    return [
+        f"{mode.frequency_Hz:g}" + (f" ± {spread:.2g}" if spread is not None else "")
+        for mode, spread in zip(first.modes, spreads_Hz, strict=True)
+    ]

@@ -18,12 +18,15 @@ from fdvv.plot import (
     plot_paces,
     plot_registration,
     plot_take,
+    plot_vibration,
     render_html,
 )
 from fdvv.preprocess import Judged
 from fdvv.recording import UNITS
+from fdvv.vibration import NotFound
 from fdvv.workflow._capture_model import RecordedModel
 from fdvv.workflow._capture_report import capture_report
+from fdvv.workflow._capture_vibration import HeardStroke
 from fdvv.workflow._capture_words import used_and_left_out
 
 FORCES = ("peak_cN", "valley_cN", "bottom_out_cN", "release_peak_cN", "release_valley_cN")
@@ -40,6 +43,7 @@ def capture_html(recorded: RecordedModel) -> str:
         _presses(recorded),
         _registration(recorded),
         _curves(recorded),
+        _vibration(recorded),
         _model(recorded),
     ]
     simulated = "the takes come from the twin; no hardware was used" if model.provenance.simulated else None
@@ -183,6 +187,27 @@ def _curves(recorded: RecordedModel) -> Section:
     )
     table = Table(columns, rows, "Averaged curves; SD is that between presses.")
     return Section("Averaged curves", (), (figure,), (table,))
+
+
+def _vibration(recorded: RecordedModel) -> Section:
+    """Tell what was heard of every snap, or why nothing was; the model's vibrations where it has some."""
+    rows = tuple(
+        (str(one.stroke), "–" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}", _heard(one))
+        for one in recorded.heard.heard
+    )
+    table = Table(("stroke", "asked (mm/s)", "heard"), rows, "What the microphone heard of the snaps.")
+    figures = (plot_vibration(recorded.model),) if recorded.model.vibrations else ()
+    svgs = tuple(figure_svg(figure, "Vibrations of the model") for figure in figures)
+    text = () if rows else ("The recording has no sound.",)
+    return Section("Vibration", text, svgs, (table,) if rows else ())
+
+
+def _heard(one: HeardStroke) -> str:
+    found = one.found if isinstance(one.found, NotFound) else one.found.ring
+    if isinstance(found, NotFound):
+        return f"nothing: {found.reason}"
+    mode = found.mode
+    return f"{mode.frequency_Hz:.0f} Hz, known to ± {mode.frequency_sd_Hz:.0f} Hz"
 
 
 def _model(recorded: RecordedModel) -> Section:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,19 +17,19 @@ from fdvv.model import (
     PointSpread,
     Provenance,
     Stroke,
-    Vibration,
     fit_curve,
     reading_order,
 )
 from fdvv.preprocess import AveragedCurve, Feature, Probe, Processed, Settings, process
 from fdvv.recording import Recording, load_recording
+from fdvv.workflow._capture_vibration import RecordedVibrations, recorded_vibrations
 from fdvv.workflow._capture_words import assumptions_of, method_of, pace_warnings, source_of
 from fdvv.workflow._fit import DECIMALS_mm, FitSettings, one_line
 
 DECIMALS_cN = 4
 """Of a spread: presses tell it to some per cent, and a file need not hold more digits than that by far."""
 
-FindVibrations = Callable[[Recording, Processed], Sequence[Vibration]]
+FindVibrations = Callable[[Recording, Processed], RecordedVibrations]
 """From a recording and what its force came to, to the vibrations of its presses."""
 
 
@@ -44,6 +44,7 @@ class RecordedModel:
     processed : every step between the streams and the averaged curves.
     fits : one per curve of the model, in the model's order; the probe's are among them.
     measured : the averaged curve behind each fit, in fits' order.
+    heard : what its sound told of vibration, and where it told nothing.
     warnings : what was repaired, left out or could not be found.
     """
 
@@ -52,6 +53,7 @@ class RecordedModel:
     processed: Processed
     fits: tuple[CurveFit, ...]
     measured: tuple[MeasuredCurve, ...]
+    heard: RecordedVibrations
     warnings: tuple[str, ...]
 
 
@@ -71,14 +73,14 @@ def model_of_recording(
     recording: Recording,
     settings: Settings | None = None,
     fit_settings: FitSettings | None = None,
-    find_vibrations: FindVibrations | None = None,
+    find_vibrations: FindVibrations = recorded_vibrations,
 ) -> RecordedModel:
     """Process a recording and fit every averaged curve; the slow probe is the slowest one.
 
     Parameters
     ----------
     settings, fit_settings : of the processing and of the fits; by default those of fdvv process.
-    find_vibrations : finds the vibrations of the presses; without it the model has none.
+    find_vibrations : finds the vibrations of the presses.
 
     Curves carry the pace that was asked for, or the one that was achieved where none was. Raises ModelError
     where a step finds nothing to work on, FitError.
@@ -90,6 +92,8 @@ def model_of_recording(
     parts += _probed(processed.probe, {part.velocity_mm_s for part, _ in parts}, warnings)
     parts.sort(key=lambda pair: reading_order(pair[0]))
     fits = tuple(_fit(part, spread, fit_settings) for part, spread in parts)
+    heard = find_vibrations(recording, processed)
+    warnings += heard.warnings
     travel_mm = round(processed.travel_mm.value, DECIMALS_mm)
     actuation = _switched("actuation", processed.actuation_mm, processed.probe, travel_mm, warnings)
     reset = _switched("reset", processed.reset_mm, processed.probe, travel_mm, warnings)
@@ -99,7 +103,7 @@ def model_of_recording(
         curves=tuple(fit.curve for fit in fits),
         actuation_mm=round(actuation.value, DECIMALS_mm) if actuation else None,
         reset_mm=round(reset.value, DECIMALS_mm) if reset else None,
-        vibrations=tuple(find_vibrations(recording, processed)) if find_vibrations else (),
+        vibrations=heard.vibrations,
         provenance=Provenance(
             source=source_of(recording),
             licence=one_line(recording.licence),
@@ -112,7 +116,7 @@ def model_of_recording(
         reset_spread=_point(reset),
     )
     measured = tuple(part for part, _ in parts)
-    return RecordedModel(recording, model, processed, fits, measured, tuple(dict.fromkeys(warnings)))
+    return RecordedModel(recording, model, processed, fits, measured, heard, tuple(dict.fromkeys(warnings)))
 
 
 def _averaged(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
