@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from fdvv.twin import (
     Finger,
     ForceSensor,
     button_names,
-    capture,
     draw_button_noise,
     load_button,
     simulate_button,
@@ -87,20 +86,29 @@ def heard(
     """Give times (the filter's delay taken off), signal and noise per sample."""
     rig = CaptureRig()
     if sensor == "mic_1k":
-        raw = capture(trace, rig, random)
         lsb = rig.sound_range_V / 2**rig.sound_bits
-        return raw.t_s - rig.sound_filter_s, raw.sound_V, math.hypot(rig.sound_noise_V, lsb / math.sqrt(12))
+        volts = heard_V(trace, rig)[trace.tick] + rig.sound_noise_V * random.standard_normal(trace.tick.sum())
+        noise = math.hypot(rig.sound_noise_V, lsb / math.sqrt(12))
+        return trace.t_s[trace.tick] - rig.sound_filter_s, lsb * np.round(volts / lsb), noise
     step = float(trace.t_s[1])
     if sensor == "plate":
         clean = 1e-3 * np.gradient(trace.plate_velocity_mm_s, step)
         return trace.t_s, clean + PLATE_NOISE_m_s2 * random.standard_normal(clean.size), PLATE_NOISE_m_s2
+    wide = heard_V(trace, replace(rig, sound_filter_s=0.0))
+    lsb = rig.sound_range_V / 2**16
+    volts = wide + rig.sound_noise_V * random.standard_normal(wide.size)
+    return trace.t_s, lsb * np.round(volts / lsb), rig.sound_noise_V
+
+
+def heard_V(trace: ButtonTrace, rig: CaptureRig) -> FloatArray:
+    """Give what the microphone makes of a press before noise and converter, on the trace's rows."""
     from scipy.signal import lfilter
 
+    step = float(trace.t_s[1])
     moved = 1e-3 * rig.sound_V_s_m * (trace.velocity_mm_s + trace.plate_velocity_mm_s)
-    clean = lfilter([1.0, -1.0], [1.0, -math.exp(-2 * math.pi * rig.sound_low_Hz * step)], moved)
-    lsb = rig.sound_range_V / 2**16
-    volts = clean + rig.sound_noise_V * random.standard_normal(clean.size)
-    return trace.t_s, lsb * np.round(volts / lsb), rig.sound_noise_V
+    high = lfilter([1.0, -1.0], [1.0, -math.exp(-2 * math.pi * rig.sound_low_Hz * step)], moved)
+    fade = math.exp(-step / rig.sound_filter_s) if rig.sound_filter_s else 0.0
+    return np.asarray(lfilter([1 - fade], [1.0, -fade], high))
 
 
 def onset_s(trace: ButtonTrace, stroke: Stroke) -> float:

@@ -31,6 +31,7 @@ PERFECT_RIG = CaptureRig(
     frame_Hz=2000.0, exposure_s=0.0, marker_noise_m=0.0, marker_bias_m=0.0, rocking_rad=0.0,
     sideways_m=0.0, askew_rad=0.0, dropped_ratio=0.0, unseen_ratio=0.0, light_noise=0.0, clock_ppm=0.0,
     force_zero_N=0.0, sound_low_Hz=0.0, sound_filter_s=0.0, sound_noise_V=0.0, sound_bits=0,
+    shake_noise_m_s2=0.0, shake_step_m_s2=0.0,
 )  # fmt: skip
 """A bench without an error of its own."""
 

@@ -11,8 +11,9 @@ from fdvv.twin._quantity import check, quantity
 class CaptureRig:
     """What the bench gets wrong, the force sensor's own errors apart; all zeros are a perfect one.
 
-    One microcontroller samples force each millisecond and sound at its own rate; cameras see two markers on
-    the cap and a light that the microcontroller switches, at their own rate and on their own clock.
+    One microcontroller samples force each millisecond, sound and the housing's acceleration at their own
+    rates; cameras see two markers on the cap and a light that the microcontroller switches, at their own rate
+    and on their own clock.
     """
 
     frame_Hz: float = quantity(256.0, "frames of the cameras", "Hz", (240.0, 256.0), (10.0, 2000.0), "paper")
@@ -68,6 +69,16 @@ class CaptureRig:
     sound_noise_V: float = quantity(0.01, "noise of the room, rms", "V", (0.005, 0.02), (0.0, 1.0), "assumed")
     sound_range_V: float = quantity(3.3, "range of its converter", "V", (3.3, 5.0), (0.1, 100.0), "rule")
     sound_bits: int = quantity(10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "paper")
+    shake_Hz: float = quantity(
+        1e4, "samples of the accelerometer on the housing, 0: there is none", "Hz", (8e3, 1e4), (0.0, 1e4),
+        "rule", chosen=True,
+    )  # fmt: skip
+    shake_noise_m_s2: float = quantity(
+        0.03, "its noise per sample, rms: 40 ug per root hertz", "m/s2", (0.02, 0.1), (0.0, 10.0), "class"
+    )
+    shake_step_m_s2: float = quantity(
+        0.01, "step of its converter (0: continuous)", "m/s2", (0.005, 0.02), (0.0, 1.0), "rule"
+    )
 
     def __post_init__(self) -> None:
         check(self)

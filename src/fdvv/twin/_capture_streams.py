@@ -93,7 +93,7 @@ class Instruments:
         lights = [
             Mark(name, BOARD, float(s)) for pair in blinks_s for name, s in zip(LIGHTS, pair, strict=True)
         ]
-        return (*board, *camera), (*lights, *_switching(trace, begin_s))
+        return (*board, *camera, *self._shake(trace, begin_s, random)), (*lights, *_switching(trace, begin_s))
 
     # -- on the board's clock --
 
@@ -122,6 +122,19 @@ class Instruments:
         middle = 2 ** (rig.sound_bits - 1) if rig.sound_bits else 0
         volts = np.clip(volts, -half, half - lsb_V)
         return converted("sound", Quantity.SOUND, BOARD, begin_s + t_s, volts, lsb_V, middle)
+
+    def _shake(self, trace: ButtonTrace, begin_s: float, random: np.random.Generator) -> tuple[Stream, ...]:
+        """Feel the housing shake, if the bench has an accelerometer on it."""
+        rig = self.rig
+        if not rig.shake_Hz:
+            return ()
+        t_s = np.arange(int(trace.t_s[-1] * rig.shake_Hz + 1e-9) + 1) / rig.shake_Hz
+        shaken_m_s2 = np.gradient(m_from_mm(trace.plate_velocity_mm_s), trace.t_s)
+        felt = np.interp(t_s, trace.t_s, shaken_m_s2) + rig.shake_noise_m_s2 * random.standard_normal(
+            t_s.size
+        )
+        shake = converted("shake", Quantity.ACCELERATION, BOARD, begin_s + t_s, felt, rig.shake_step_m_s2, 0)
+        return (shake,)
 
     # -- on the cameras' clock --
 

@@ -1,4 +1,4 @@
-"""The vibrations of a recording: what its microphone heard of the snaps, at every pace, on both strokes."""
+"""The vibrations of a recording: what accelerometer or microphone told of snaps, at every pace and stroke."""
 
 from __future__ import annotations
 
@@ -43,15 +43,22 @@ class RecordedVibrations:
 
 
 def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedVibrations:
-    """Search the sound of a recording for snaps, pooled over the presses of each stroke and pace.
+    """Search the vibration of a recording for snaps, pooled over the presses of each stroke and pace.
 
-    A mode that one pace told sharpens the search at the others. Without a sound there is nothing, said once.
+    An accelerometer is taken before a microphone. A mode that one pace told sharpens the search at the
+    others. Without either there is nothing, said once.
     """
-    sounds = {take.number: take.of(Quantity.SOUND)[0] for take in recording.takes if take.of(Quantity.SOUND)}
-    if not sounds:
-        return RecordedVibrations((), (), ("nothing was heard: the recording has no sound",))
-    heard = list(_heard(recording, processed, sounds))
-    scale = recording.bench.sound_V_s_m or None
+    for quantity in (Quantity.ACCELERATION, Quantity.SOUND):
+        streams = {take.number: take.of(quantity)[0] for take in recording.takes if take.of(quantity)}
+        if streams:
+            break
+    else:
+        return RecordedVibrations(
+            (), (), ("no vibration: nothing listened, neither microphone nor accelerometer",)
+        )
+    shaken = quantity is Quantity.ACCELERATION
+    heard = list(_heard(recording, processed, streams, shaken))
+    scale = None if shaken else recording.bench.sound_V_s_m or None
     vibrations, warnings = [], []
     for one in heard:
         try:
@@ -63,20 +70,22 @@ def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedV
     return RecordedVibrations(tuple(heard), tuple(vibrations), tuple(warnings))
 
 
-def _heard(recording: Recording, processed: Processed, sounds: dict[int, Stream]) -> Iterator[HeardStroke]:
+def _heard(
+    recording: Recording, processed: Processed, streams: dict[int, Stream], shaken: bool
+) -> Iterator[HeardStroke]:
     presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
-    delay_s = 1e-3 * recording.bench.sound_filter_ms
+    delay_s = 0.0 if shaken else 1e-3 * recording.bench.sound_filter_ms
     rings: tuple[tuple[float, float], ...] = ()
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
         heard = [
-            heard_press(presses[key], track, sounds[track.take], delay_s)
+            heard_press(presses[key], track, streams[track.take], delay_s)
             for track in tracks
-            if (key := (track.take, track.part)) in presses and track.take in sounds
+            if (key := (track.take, track.part)) in presses and track.take in streams
         ]
         found: MeasuredVibration | NotFound = NotFound("no press of it was heard")
         if heard:
             found = measure_vibration(
-                heard, curve.velocity_mm_s or curve.achieved_mm_s, _energy(curve), rings=rings
+                heard, curve.velocity_mm_s or curve.achieved_mm_s, _energy(curve), shaken, rings
             )
         if isinstance(found, MeasuredVibration) and found.rings and not rings:
             rings = found.rings
