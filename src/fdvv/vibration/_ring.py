@@ -7,35 +7,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.errors import FitError
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import DampedFit, DampedMode, duration_s, fit_damped, polynomial, shapes
-from fdvv.vibration._modes import pencil_poles
+from fdvv.vibration._count import BACKGROUND_DEGREE, drives, most_likely
+from fdvv.vibration._damped import DampedFit, DampedMode, duration_s
 from fdvv.vibration._snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
 """A snap is over by then (the paper: below 25 ms)."""
 
-MOST_MODES = 4
-BACKGROUND_DEGREE = 2
-"""The cap's own motion after the snap, a polynomial of each press."""
-
-DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.006)
+DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.008)
 """A ring is free once its drive is over: of these delays after the onset the shortest that fits is kept."""
 
-FITS_ratio = 1.2
+FITS_ratio = 1.1
 """What a free ring leaves is noise, up to this."""
 
-DRIVEN_ratio = 3.0
+DRIVEN_ratio = 1.5
 """Where the best fit leaves more than this many times the noise, something keeps driving: no ring is free."""
 
 SURE_ratio = 0.1
 """Standard error of the frequency above which it is not known."""
 
-FEWEST_PER_PERIOD = 8.0
-"""Samples per period of 250 Hz from which the pencil can start; below it a grid of frequencies does."""
+ENDING_ratio = 0.5
+"""Standard error of the decay above which the end of a mode is not known."""
 
-GRID_Hz, GRID_1_s = np.arange(60.0, 460.0, 20.0), (60.0, 150.0, 350.0)
+BACK_ratio = 3.0
+"""An amplitude at the onset is at most this many times what was seen when the ring was free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,26 +73,41 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     if found is None:
         return NotFound("the stop follows too soon: the snap leaves too few samples to fit")
     delay, fit, ratio = found
-    if not fit.modes:
+    if not fit.modes and ratio <= DRIVEN_ratio:
         return NotFound(f"nothing rings above a noise of {fit.noise:.2g} per sample in {len(snaps)} presses")
     if ratio > DRIVEN_ratio:
         return NotFound(
-            f"no free ring: what modes leave is {ratio:.0f} times the noise, something keeps driving"
+            f"no free ring: what modes leave is {ratio:.1f} times the noise, something keeps driving"
         )
-    order = _order(fit, delay, acceleration)
-    modes = tuple(fit.modes[k] for k in order)
-    first = modes[0]
-    if first.frequency_sd_Hz > SURE_ratio * first.frequency_Hz:
-        return NotFound(
-            f"the ring is too weak in its noise: {first.frequency_Hz:.0f} Hz with a standard error of "
-            f"{first.frequency_sd_Hz:.0f} Hz in {len(snaps)} presses"
+    order = [k for k in _order(fit, delay, acceleration) if not drives(fit.modes[k])]
+    if not order:
+        return NotFound(f"nothing rings freely in {len(snaps)} presses, only a drive fades")
+    first = fit.modes[order[0]]
+    reason = _unknown(first, delay)
+    if reason is not None:
+        return NotFound(f"{reason} in {len(snaps)} presses")
+    kept = [k for k in order if _unknown(fit.modes[k], delay) is None]
+    return Ring(first, tuple(fit.modes[k] for k in kept), fit.amplitudes[:, order[0]], delay, ratio)
+
+
+def _unknown(mode: DampedMode, delay_s: float) -> str | None:
+    """Say why a mode is not known well enough to tell of; None if it is."""
+    if mode.frequency_sd_Hz > SURE_ratio * mode.frequency_Hz:
+        return (
+            f"the ring is too weak in its noise: {mode.frequency_Hz:.0f} Hz with a standard error of "
+            f"{mode.frequency_sd_Hz:.0f} Hz"
         )
-    if first.decay_sd_1_s > 0.5 * first.decay_1_s:
-        return NotFound(
-            f"{first.frequency_Hz:.0f} Hz is heard but its end is not: decay {first.decay_1_s:.0f} 1/s with "
-            f"a standard error of {first.decay_sd_1_s:.0f}"
+    if mode.decay_sd_1_s > ENDING_ratio * mode.decay_1_s:
+        return (
+            f"{mode.frequency_Hz:.0f} Hz is heard but its end is not: decay {mode.decay_1_s:.0f} 1/s with a "
+            f"standard error of {mode.decay_sd_1_s:.0f}"
         )
-    return Ring(first, modes, fit.amplitudes[:, order[0]], delay, ratio)
+    if mode.decay_1_s * delay_s > np.log(BACK_ratio):
+        return (
+            f"{mode.frequency_Hz:.0f} Hz is free only {1e3 * delay_s:.0f} ms after the onset, when less than "
+            f"1/{BACK_ratio:g} of it is left"
+        )
+    return None
 
 
 def _best(presses: Sequence[HeardPress], snaps: Sequence[Snap]) -> tuple[float, DampedFit, float] | None:
@@ -137,69 +148,5 @@ def _fit_after(
             noises.append(press.noise_or_own())
     if not times:
         return None
-    fits = [_background(times, signals)]
-    for count in range(1, MOST_MODES + 1):
-        try:
-            start = _starts(times, signals, count, presses[0].period_s)
-            fits.append(fit_damped(times, signals, *start, degree=BACKGROUND_DEGREE))
-        except (FitError, np.linalg.LinAlgError):
-            break
-    # less than a period is motion of the cap, not a ring
-    lowest_Hz = 1 / max(float(t[-1] - t[0]) for t in times)
-    ringing = [fit for fit in fits if all(mode.frequency_Hz > lowest_Hz for mode in fit.modes)]
-    best = min(ringing, key=lambda fit: fit.bic)
+    best = most_likely(times, signals, presses[0].period_s)
     return delay_s, best, best.noise / float(np.sqrt(np.mean(np.square(noises))))
-
-
-def _background(times: list[FloatArray], signals: list[FloatArray]) -> DampedFit:
-    """Fit without any mode."""
-    left = [
-        y - np.polyval(np.polyfit(t, y, BACKGROUND_DEGREE), t) for t, y in zip(times, signals, strict=True)
-    ]
-    total, samples = float(sum(r @ r for r in left)), sum(r.size for r in left)
-    needed = len(times) * (BACKGROUND_DEGREE + 1)
-    bic = samples * np.log(max(total / samples, 1e-300)) + needed * np.log(samples)
-    noise = float(np.sqrt(total / max(samples - needed, 1)))
-    return DampedFit((), np.empty((len(times), 0)), noise, samples, float(bic))
-
-
-def _starts(
-    times: list[FloatArray], signals: list[FloatArray], count: int, period_s: float
-) -> tuple[list[float], list[float]]:
-    """Guess frequencies and decays: from the pencil where samples are dense, else from a grid."""
-    if 1 / period_s < FEWEST_PER_PERIOD * 250.0:
-        return _from_grid(times, signals, count)
-    length = min(t.size for t in times)
-    rows = np.array([y[:length] - y[:length].mean() for y in signals])
-    poles = pencil_poles(rows, min(2 * count + BACKGROUND_DEGREE, length // 3))
-    logs = np.log(poles[poles.imag > 1e-6]) / period_s
-    logs = logs[np.argsort(-logs.real)][:count]
-    if logs.size < count:
-        raise FitError(f"the records hold fewer than {count} rings")
-    return list(logs.imag / (2 * np.pi)), list(np.maximum(-logs.real, 10.0))
-
-
-def _from_grid(
-    times: list[FloatArray], signals: list[FloatArray], count: int
-) -> tuple[list[float], list[float]]:
-    if count > 1:
-        raise FitError("samples this sparse are searched for one ring only")
-    best, power = (0.0, 0.0), np.inf
-    for f in GRID_Hz:
-        for d in GRID_1_s:
-            left = _left(times, signals, float(f), d)
-            if left < power:
-                best, power = (float(f), d), left
-    return [best[0]], [best[1]]
-
-
-def _left(times: list[FloatArray], signals: list[FloatArray], frequency_Hz: float, decay_1_s: float) -> float:
-    """Give the power that one mode and the background leave."""
-    total = 0.0
-    for t, y in zip(times, signals, strict=True):
-        matrix = np.hstack(
-            [shapes(t, np.array([frequency_Hz]), np.array([decay_1_s])), polynomial(t, BACKGROUND_DEGREE)]
-        )
-        left = y - matrix @ np.linalg.lstsq(matrix, y, rcond=None)[0]
-        total += float(left @ left)
-    return total

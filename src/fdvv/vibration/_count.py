@@ -1,0 +1,115 @@
+"""How many modes free records hold: one after the other, as long as each is worth its parameters and is one."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+
+from fdvv.errors import FitError
+from fdvv.units import FloatArray
+from fdvv.vibration._damped import DampedFit, DampedMode, fit_records
+from fdvv.vibration._projection import Records, polynomial, shapes
+
+MOST_MODES = 4
+BACKGROUND_DEGREE = 2
+"""The cap's own motion after the snap, a polynomial of each press."""
+
+LOWEST_Hz, HIGHEST_ratio = 40.0, 0.4
+"""A mode lies between these; the latter in parts of the sampling rate."""
+
+FREE_ratio, MOST_DRIVES = 0.2, 1
+"""Damping, in parts of critical, from which on a term is a fading drive and no mode; and how many are fitted."""
+
+LEAST_FALL = 0.3
+"""A mode decays within the record: its envelope falls by this many nepers."""
+
+FEWEST_PER_PERIOD = 8.0
+"""Samples per period of 250 Hz below which records are searched for one mode only."""
+
+NEXT_ratio, NEXT_DAMPING = 1.06, (0.08, 0.35)
+"""Steps of the frequencies from which a term is searched, and the damping that a mode and a drive start with."""
+
+
+def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: float) -> DampedFit:
+    """Fit free records with as many modes as BIC allows, down to none.
+
+    times_s, signals : of each record, evenly sampled, times after the onset.
+
+    Each mode starts where the residual of those before has most to gain. A fit in which one is no mode of its
+    own ends the search: outside the band, a fading drive, one that does not decay within the record, or half
+    of a pair nearer to each other than records of that length can tell apart (1/T).
+    """
+    records = Records(times_s, signals, BACKGROUND_DEGREE, one_phase=False)
+    longest_s = max(float(t[-1] - t[0]) for t in times_s)
+    best = _background(times_s, signals)
+    if records.even is None:
+        return best
+    theta = np.empty(0)
+    dense = 1 / period_s >= FEWEST_PER_PERIOD * 250.0
+    for _ in range(MOST_MODES if dense else 1):
+        try:
+            fit = fit_records(records, _one_more(records, theta, period_s, longest_s))
+        except FitError:
+            break
+        if fit.bic >= best.bic or not sound(fit, longest_s, period_s):
+            break
+        best = fit
+        theta = np.array([m.frequency_Hz for m in fit.modes] + [m.decay_1_s for m in fit.modes])
+    return best
+
+
+def drives(mode: DampedMode) -> bool:
+    """Tell whether a term fades so fast that it is a drive, not a mode."""
+    return mode.decay_1_s > FREE_ratio * 2 * math.pi * mode.frequency_Hz
+
+
+def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
+    """Tell whether every mode of a fit is one, and none a half of a pair."""
+    modes = [mode for mode in fit.modes if not drives(mode)]
+    f = np.sort([mode.frequency_Hz for mode in modes])
+    apart = bool(np.all(np.diff(f) >= 1 / longest_s))
+    lowest = max(LOWEST_Hz, 1 / longest_s)
+    return apart and len(fit.modes) - len(modes) <= MOST_DRIVES and all(
+        lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and LEAST_FALL <= m.decay_1_s * longest_s
+        for m in modes
+    )
+
+
+def _one_more(records: Records, theta: FloatArray, period_s: float, longest_s: float) -> FloatArray:
+    """Start one more mode where it takes most off the residual. Raises FitError where there is no room."""
+    left, basis = records.typical(theta)
+    f, d, columns = _candidates(round(period_s, 12), left.shape[1])
+    known, decays = np.split(theta, 2)
+    room = np.all(np.abs(f[:, None] - known) >= 1 / longest_s, axis=1)
+    room |= d > FREE_ratio * 2 * np.pi * f
+    free = columns - basis @ (basis.T @ columns)
+    pairs = free.T.reshape(f.size, 2, -1)
+    gram = pairs @ pairs.transpose(0, 2, 1) + 1e-9 * np.eye(2)
+    along = pairs @ left.T
+    gain = np.sum(along * np.linalg.solve(gram, along), axis=(1, 2))
+    k = int(np.argmax(np.where(room, gain, -1.0)))
+    return np.concatenate([known, [f[k]], decays, [d[k]]])
+
+
+@functools.lru_cache(maxsize=64)
+def _candidates(period_s: float, samples: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    highest = HIGHEST_ratio / period_s
+    one = LOWEST_Hz * NEXT_ratio ** np.arange(1 + int(math.log(highest / LOWEST_Hz) / math.log(NEXT_ratio)))
+    f = np.tile(one, len(NEXT_DAMPING))
+    d = 2 * np.pi * f * np.repeat(NEXT_DAMPING, one.size)
+    return f, d, shapes(period_s * np.arange(samples), f, d)
+
+
+def _background(times: list[FloatArray], signals: list[FloatArray]) -> DampedFit:
+    """Fit without any mode."""
+    total = 0.0
+    for t, y in zip(times, signals, strict=True):
+        q, _ = np.linalg.qr(polynomial(t, BACKGROUND_DEGREE))
+        left = y - q @ (q.T @ y)
+        total += float(left @ left)
+    samples, needed = sum(t.size for t in times), len(times) * (BACKGROUND_DEGREE + 1)
+    bic = samples * math.log(max(total / samples, 1e-300)) + needed * math.log(samples)
+    noise = math.sqrt(total / max(samples - needed, 1))
+    return DampedFit((), np.empty((len(times), 0)), noise, samples, bic)
