@@ -24,6 +24,7 @@ from fdvv.vibration._onset import Turn, find_turn, noise_rms
 from fdvv.vibration._pool import Measured, MeasuredVibration, measure_vibration
 from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._scaling import Scaling, fit_scaling
+from fdvv.vibration._shared import SharedMode, shared_mode, shared_rings, with_shared
 from fdvv.vibration._sinusoid import fit_decaying_sinusoid
 from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
 from fdvv.vibration._templates import Template, TemplateGrid, paper_templates, templates_around
@@ -69,6 +70,7 @@ __all__ = [
     "RatingState",
     "Ring",
     "Scaling",
+    "SharedMode",
     "SimulatedObserver",
     "Snap",
     "SnapEnergy",
@@ -106,6 +108,8 @@ __all__ = [
     "paper_templates",
     "read_wav",
     "save_exciter",
+    "shared_mode",
+    "shared_rings",
     "snap_energy",
     "spectral_similarity",
     "spqi",
@@ -113,4 +117,5 @@ __all__ = [
     "templates_around",
     "to_wav",
     "vibration_samples",
+    "with_shared",
 ]

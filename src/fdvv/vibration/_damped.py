@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import FitError, ModelError
 from fdvv.units import FloatArray
@@ -99,26 +100,30 @@ def fit_damped(
     return fit_records(records, start)
 
 
-def fit_records(records: Records, start: FloatArray) -> DampedFit:
-    """Fit decaying sinusoids from a first guess (f..., d...). Raises FitError."""
+def fit_records(
+    records: Records, start: FloatArray, held: npt.NDArray[np.bool_] | None = None
+) -> DampedFit:
+    """Fit decaying sinusoids from a first guess (f..., d...), of which those held stay. Raises FitError."""
     modes = start.size // 2
     needed = records.parameters(modes)
     if records.samples <= needed or not modes:
         raise FitError(f"{modes} decaying sinusoids need more than {needed} samples, got {records.samples}")
     try:
-        return _summary(records, _descend(records, start))
+        free = np.ones(start.size, dtype=bool) if held is None else ~held
+        return _summary(records, _descend(records, start, free), free)
     except np.linalg.LinAlgError as error:
         raise FitError(f"{modes} decaying sinusoids cannot be told apart in the records") from error
 
 
-def _descend(records: Records, start: FloatArray) -> Solved:
+def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -> Solved:
     """Search for the least squares (Levenberg and Marquardt), frequencies and decays never below 0."""
     at, damping = records.at(start), FIRST_DAMPING
-    free = max(records.samples - records.parameters(start.size // 2), 1)
-    for _ in range(MOST_STEPS):
-        slope, curvature = at.slopes.sum(axis=0), at.curvatures.sum(axis=0)
+    freedom = max(records.samples - records.parameters(start.size // 2), 1)
+    for _ in range(MOST_STEPS if free.any() else 0):
+        slope, curvature = at.slopes.sum(axis=0)[free], at.curvatures.sum(axis=0)[np.ix_(free, free)]
         stiff = curvature + damping * np.diag(np.maximum(np.diag(curvature), 1e-300))
-        theta = np.maximum(at.theta + np.linalg.solve(stiff, slope), 0.0)
+        theta = at.theta.copy()
+        theta[free] = np.maximum(theta[free] + np.linalg.solve(stiff, slope), 0.0)
         tried = _try(records, theta)
         if tried is None or tried.power > at.power:
             damping *= 10
@@ -126,7 +131,7 @@ def _descend(records: Records, start: FloatArray) -> Solved:
             gained = at.power - tried.power
             moved = np.max(np.abs(theta - at.theta) / np.maximum(np.abs(theta), 1.0))
             at, damping = tried, 0.1 * damping
-            if moved < NEAR_ratio or gained < SETTLED * at.power / free:
+            if moved < NEAR_ratio or gained < SETTLED * at.power / freedom:
                 break
         if damping > MOST_DAMPING:
             break
@@ -140,13 +145,15 @@ def _try(records: Records, theta: FloatArray) -> Solved | None:
         return None
 
 
-def _summary(records: Records, found: Solved) -> DampedFit:
+def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> DampedFit:
     modes = found.theta.size // 2
     f, d = np.split(found.theta, 2)
     needed = records.parameters(modes)
     power = found.power / (records.samples - needed)
-    covariance = power * np.linalg.pinv(found.curvatures.sum(axis=0), hermitian=True)
-    spreads = between_records(found)
+    inner = np.ix_(free, free)
+    covariance = np.zeros(found.curvatures.shape[1:])
+    covariance[inner] = power * np.linalg.pinv(found.curvatures.sum(axis=0)[inner], hermitian=True)
+    spreads = between_records(found, free)
     sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     if spreads is not None:
         sd = np.maximum(sd, spreads / math.sqrt(len(found.weights)))
@@ -175,19 +182,21 @@ def _summary(records: Records, found: Solved) -> DampedFit:
     )
 
 
-def between_records(found: Solved) -> FloatArray | None:
-    """Give the standard deviations between records of f and d, (p,); None for a single record.
+def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
+    """Give the standard deviations between records of f and d, (p,), 0 where held; None for a single record.
 
     From one step of the search without each record (a jackknife), times the root of their number.
     """
     records = len(found.weights)
     if records < 2:
         return None
-    others = found.curvatures.sum(axis=0) - found.curvatures
+    each = found.curvatures[:, free][:, :, free]
     # small against any curvature, so that a step along what only one record tells stays finite
-    others += 1e-9 * np.trace(found.curvatures.sum(axis=0)) / found.theta.size * np.eye(found.theta.size)
-    steps = -np.linalg.solve(others, found.slopes[:, :, None])[:, :, 0]
-    return np.asarray(math.sqrt(records - 1) * np.sqrt(np.sum((steps - steps.mean(axis=0)) ** 2, axis=0)))
+    least = 1e-9 * np.trace(each.sum(axis=0)) / max(free.sum(), 1) * np.eye(int(free.sum()))
+    steps = -np.linalg.solve(each.sum(axis=0) - each + least, found.slopes[:, free, None])[:, :, 0]
+    spreads = np.zeros(free.size)
+    spreads[free] = math.sqrt(records - 1) * np.sqrt(np.sum((steps - steps.mean(axis=0)) ** 2, axis=0))
+    return spreads
 
 
 def amplitude_variances(

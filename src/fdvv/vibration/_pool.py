@@ -11,7 +11,7 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model import Mode, Stroke, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import duration_s
+from fdvv.vibration._damped import DampedMode
 from fdvv.vibration._energy import SnapEnergy
 from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
@@ -67,7 +67,7 @@ class MeasuredVibration:
     @property
     def amplitude(self) -> Measured | None:
         """Get the principal mode's amplitude in the signal's unit, median and spread, or None."""
-        return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes)
+        return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes[:, 0])
 
     @property
     def rings(self) -> tuple[tuple[float, float], ...]:
@@ -79,7 +79,7 @@ class MeasuredVibration:
         """Get the time until a tenth of the amplitude is left, with its standard error; None if unknown."""
         if isinstance(self.ring, NotFound):
             return None
-        return Measured(duration_s(self.ring.mode.decay_1_s), self.ring.duration_sd_s)
+        return Measured(self.ring.duration_s, self.ring.duration_sd_s)
 
     def vibration(self, scale: float | None = None) -> Vibration:
         """Give the vibration as models hold it, its amplitudes as accelerations of the cap.
@@ -101,26 +101,29 @@ class MeasuredVibration:
             self.stroke,
             self.velocity_mm_s,
             self.onset_mm.value,
-            duration_s(min(mode.decay_1_s for mode in self.ring.modes)),
+            self.ring.duration_s,
             tuple(
-                _mode(
-                    m.frequency_Hz, m.decay_1_s, m.amplitude / (scale or 1.0), m.phase_rad, self.acceleration
-                )
-                for m in self.ring.modes
+                _mode(m, float(np.median(sizes)) / (scale or 1.0), self.acceleration)
+                for m, sizes in zip(self.ring.modes, self.ring.amplitudes.T, strict=True)
             ),
         )
 
 
-def _mode(
-    frequency_Hz: float, decay_1_s: float, amplitude: float, phase_rad: float, acceleration: bool
-) -> Mode:
+def _mode(mode: DampedMode, amplitude: float, acceleration: bool) -> Mode:
     """Turn a mode of velocity into one of acceleration: times -d + i 2 pi f."""
+    f, d = mode.frequency_Hz, mode.decay_1_s
     if acceleration:
-        return Mode(frequency_Hz, amplitude, decay_1_s, phase_rad)
-    factor = complex(-decay_1_s, 2 * math.pi * frequency_Hz)
-    return Mode(
-        frequency_Hz, amplitude * abs(factor), decay_1_s, phase_rad + math.atan2(factor.imag, factor.real)
-    )
+        return Mode(f, amplitude, d, mode.phase_rad)
+    factor = complex(-d, 2 * math.pi * f)
+    return Mode(f, amplitude * abs(factor), d, mode.phase_rad + math.atan2(factor.imag, factor.real))
+
+
+def _beside(
+    own: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]]
+) -> tuple[tuple[float, float], ...]:
+    """Give two modes at most: own ones, then known ones apart from them."""
+    more = [k for k in known if all(not 1 / APART_ratio < k[0] / f < APART_ratio for f, _ in own)]
+    return tuple([*own, *more][:2])
 
 
 def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
@@ -165,15 +168,18 @@ def measure_vibration(
     heard, snaps = _shown(presses, looked)
     ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
     for _ in range(ROUNDS):
-        known = known_rings(ring)
+        known = _beside(known_rings(ring), rings)
         # known modes part beginning from going on only where a sample is short beside their periods
         if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:
             break
         again = [find_snap(press, energy.window_mm, known) for press in presses]
         if len(_shown(presses, again)[0]) < len(heard):
             break
+        before = [snap.onset_s for snap in snaps]
         looked = again
         heard, snaps = _shown(presses, looked)
+        if before == [snap.onset_s for snap in snaps]:
+            break
         ring = fit_ring(heard, snaps, acceleration)
     if len(snaps) < LEAST_SHARE * len(presses):
         reasons = [snap.reason for snap in looked if isinstance(snap, NotFound)]

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.errors import FitError
 from fdvv.units import FloatArray
 from fdvv.vibration._count import BACKGROUND_DEGREE, drives, most_likely
-from fdvv.vibration._damped import DampedFit, DampedMode, duration_s
+from fdvv.vibration._damped import DampedFit, DampedMode, duration_s, fit_records
+from fdvv.vibration._projection import Records
 from fdvv.vibration._snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
@@ -19,10 +21,7 @@ DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.008)
 """A ring is free once its drive is over: of these delays after the onset the shortest that fits is kept."""
 
 FITS_ratio = 1.1
-"""What a free ring leaves is noise, up to this."""
-
-DRIVEN_ratio = 1.5
-"""Where the best fit leaves more than this many times the noise, something keeps driving: no ring is free."""
+"""What a free ring leaves is noise, up to this. Above it something keeps driving."""
 
 SURE_ratio = 0.1
 """Standard error of the frequency above which it is not known."""
@@ -42,7 +41,8 @@ class Ring:
     ----------
     mode : the principal one, with the most kinetic energy once the ring is free.
     modes : all of them, the principal one first.
-    amplitudes : (presses,) of the principal mode at the onset.
+    amplitudes : (presses, modes) at the onset.
+    terms : frequency and decay of all that was fitted: of these modes, of others and of drives.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.
     """
@@ -50,13 +50,19 @@ class Ring:
     mode: DampedMode
     modes: tuple[DampedMode, ...]
     amplitudes: FloatArray
+    terms: tuple[tuple[float, float], ...]
     delay_s: float
     noise_ratio: float
 
     @property
+    def duration_s(self) -> float:
+        """Time in which the principal mode's envelope falls to a tenth, at most the longest of a snap."""
+        return min(duration_s(self.mode.decay_1_s), LONGEST_s)
+
+    @property
     def duration_sd_s(self) -> float:
         """Standard error of the duration, from that of the decay."""
-        return duration_s(self.mode.decay_1_s) * self.mode.decay_sd_1_s / self.mode.decay_1_s
+        return self.duration_s * self.mode.decay_sd_1_s / self.mode.decay_1_s
 
 
 def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration: bool) -> Ring | NotFound:
@@ -73,21 +79,53 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     if found is None:
         return NotFound("the stop follows too soon: the snap leaves too few samples to fit")
     delay, fit, ratio = found
-    if not fit.modes and ratio <= DRIVEN_ratio:
+    if not fit.modes and ratio <= FITS_ratio:
         return NotFound(f"nothing rings above a noise of {fit.noise:.2g} per sample in {len(snaps)} presses")
-    if ratio > DRIVEN_ratio:
+    if ratio > FITS_ratio:
         return NotFound(
             f"no free ring: what modes leave is {ratio:.1f} times the noise, something keeps driving"
         )
-    order = [k for k in _order(fit, delay, acceleration) if not drives(fit.modes[k])]
+    ring = _told(fit, delay, ratio, acceleration)
+    return NotFound(f"{ring} in {len(snaps)} presses") if isinstance(ring, str) else ring
+
+
+def refit_ring(
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], ring: Ring, known: tuple[float, float]
+) -> Ring | None:
+    """Fit a ring again with frequency and decay of its principal mode known; None if that cannot be."""
+    times, signals, noise = _after(presses, snaps, ring.delay_s)
+    own = (ring.mode.frequency_Hz, ring.mode.decay_1_s)
+    terms = [known, *(term for term in ring.terms if term != own)]
+    held = np.tile(np.arange(len(terms)) == 0, 2)
+    try:
+        records = Records(times, signals, BACKGROUND_DEGREE, one_phase=False)
+        fit = fit_records(records, np.ravel(np.transpose(terms)), held)
+    except FitError:
+        return None
+    first = next(k for k, mode in enumerate(fit.modes) if mode.frequency_Hz == known[0])
+    kept = [
+        k
+        for k, mode in enumerate(fit.modes)
+        if k != first and not drives(mode) and _unknown(mode, ring.delay_s) is None
+    ]
+    return _ring(fit, [first, *kept], ring.delay_s, fit.noise / noise)
+
+
+def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
+    """Give the ring that a fit tells of, or why none."""
+    order = [k for k in _order(fit, delay_s, acceleration) if not drives(fit.modes[k])]
     if not order:
-        return NotFound(f"nothing rings freely in {len(snaps)} presses, only a drive fades")
-    first = fit.modes[order[0]]
-    reason = _unknown(first, delay)
+        return "nothing rings freely, only a drive fades"
+    reason = _unknown(fit.modes[order[0]], delay_s)
     if reason is not None:
-        return NotFound(f"{reason} in {len(snaps)} presses")
-    kept = [k for k in order if _unknown(fit.modes[k], delay) is None]
-    return Ring(first, tuple(fit.modes[k] for k in kept), fit.amplitudes[:, order[0]], delay, ratio)
+        return reason
+    return _ring(fit, [k for k in order if _unknown(fit.modes[k], delay_s) is None], delay_s, ratio)
+
+
+def _ring(fit: DampedFit, kept: list[int], delay_s: float, ratio: float) -> Ring:
+    modes = tuple(fit.modes[k] for k in kept)
+    terms = tuple((mode.frequency_Hz, mode.decay_1_s) for mode in fit.modes)
+    return Ring(modes[0], modes, fit.amplitudes[:, kept], terms, delay_s, ratio)
 
 
 def _unknown(mode: DampedMode, delay_s: float) -> str | None:
@@ -137,6 +175,17 @@ def _fit_after(
     presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
 ) -> tuple[float, DampedFit, float] | None:
     """Fit from a delay after the onsets on; give delay, fit and its noise over the sensor's."""
+    times, signals, noise = _after(presses, snaps, delay_s)
+    if not times:
+        return None
+    best = most_likely(times, signals, presses[0].period_s)
+    return delay_s, best, best.noise / noise
+
+
+def _after(
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
+) -> tuple[list[FloatArray], list[FloatArray], float]:
+    """Cut out what is free from a delay after the onsets on: times after the onset, signals, noise."""
     times, signals, noises = [], [], []
     for press, snap in zip(presses, snaps, strict=True):
         low, high = np.searchsorted(
@@ -146,7 +195,4 @@ def _fit_after(
             times.append(press.t_s[low:high] - snap.onset_s)
             signals.append(press.signal[low:high])
             noises.append(press.noise_or_own())
-    if not times:
-        return None
-    best = most_likely(times, signals, presses[0].period_s)
-    return delay_s, best, best.noise / float(np.sqrt(np.mean(np.square(noises))))
+    return times, signals, float(np.sqrt(np.mean(np.square(noises)))) if noises else 0.0

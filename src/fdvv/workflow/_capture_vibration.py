@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +10,18 @@ from fdvv.errors import ModelError
 from fdvv.model import ModeSpread, Stroke, Vibration, VibrationSpread
 from fdvv.preprocess import AveragedCurve, Processed, RawPress, StrokeTrack
 from fdvv.recording import Quantity, Recording, Stream
-from fdvv.vibration import HeardPress, MeasuredVibration, NotFound, SnapEnergy, measure_vibration, snap_energy
+from fdvv.vibration import (
+    HeardPress,
+    MeasuredVibration,
+    NotFound,
+    Ring,
+    SnapEnergy,
+    measure_vibration,
+    shared_mode,
+    shared_rings,
+    snap_energy,
+    with_shared,
+)
 
 CONTACT_mm, STOP_mm = 0.3, 0.1
 """Parts of a curve beside contact and stop in which no fall of force is looked for."""
@@ -57,7 +67,7 @@ def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedV
             (), (), ("no vibration: nothing listened, neither microphone nor accelerometer",)
         )
     shaken = quantity is Quantity.ACCELERATION
-    heard = list(_heard(recording, processed, streams, shaken))
+    heard = _heard(recording, processed, streams, shaken)
     scale = None if shaken else recording.bench.sound_V_s_m or None
     vibrations, warnings = [], []
     for one in heard:
@@ -72,24 +82,53 @@ def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedV
 
 def _heard(
     recording: Recording, processed: Processed, streams: dict[int, Stream], shaken: bool
-) -> Iterator[HeardStroke]:
+) -> list[HeardStroke]:
+    """Measure every stroke and pace; again where others tell of modes that it did not; then with one mode."""
     presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
     delay_s = 0.0 if shaken else 1e-3 * recording.bench.sound_filter_ms
-    rings: tuple[tuple[float, float], ...] = ()
+    heard = []
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
-        heard = [
+        found = [
             heard_press(presses[key], track, streams[track.take], delay_s)
             for track in tracks
             if (key := (track.take, track.part)) in presses and track.take in streams
         ]
-        found: MeasuredVibration | NotFound = NotFound("no press of it was heard")
-        if heard:
-            found = measure_vibration(
-                heard, curve.velocity_mm_s or curve.achieved_mm_s, _energy(curve), shaken, rings
-            )
-        if isinstance(found, MeasuredVibration) and found.rings and not rings:
-            rings = found.rings
-        yield HeardStroke(curve.stroke, curve.velocity_mm_s, found)
+        heard.append((curve, found, _energy(curve)))
+    first = [_measured(*one, shaken, ()) for one in heard]
+    known = shared_rings(_rings(first))
+    again = [
+        was if len(_known(was)) >= len(known) else _measured(*one, shaken, known)
+        for one, was in zip(heard, first, strict=True)
+    ]
+    mode = shared_mode(_rings(again))
+    if mode is not None:
+        again = [one if isinstance(one, NotFound) else with_shared(one, mode) for one in again]
+    return [
+        HeardStroke(curve.stroke, curve.velocity_mm_s, found)
+        for (curve, _, _), found in zip(heard, again, strict=True)
+    ]
+
+
+def _measured(
+    curve: AveragedCurve,
+    heard: list[HeardPress],
+    energy: SnapEnergy | None,
+    shaken: bool,
+    known: tuple[tuple[float, float], ...],
+) -> MeasuredVibration | NotFound:
+    if not heard:
+        return NotFound("no press of it was heard")
+    return measure_vibration(heard, curve.velocity_mm_s or curve.achieved_mm_s, energy, shaken, known)
+
+
+def _rings(found: list[MeasuredVibration | NotFound]) -> list[Ring]:
+    return [
+        one.ring for one in found if isinstance(one, MeasuredVibration) and isinstance(one.ring, Ring)
+    ]
+
+
+def _known(found: MeasuredVibration | NotFound) -> tuple[tuple[float, float], ...]:
+    return () if isinstance(found, NotFound) else found.rings
 
 
 def heard_press(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: float) -> HeardPress:
