@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 
 import numpy as np
@@ -12,14 +13,14 @@ from fdvv.units import FloatArray
 from fdvv.vibration._damped import DampedFit, DampedMode, fit_records
 from fdvv.vibration._projection import Records, polynomial, shapes
 
-MOST_MODES = 4
+MOST_TERMS = 5
 BACKGROUND_DEGREE = 2
 """The cap's own motion after the snap, a polynomial of each press."""
 
 LOWEST_Hz, HIGHEST_ratio = 40.0, 0.4
 """A mode lies between these; the latter in parts of the sampling rate."""
 
-FREE_ratio, MOST_DRIVES = 0.2, 1
+FREE_ratio, MOST_DRIVES = 0.2, 2
 """Damping, in parts of critical, from which on a term is a fading drive and no mode; and how many are fitted."""
 
 LEAST_FALL = 0.3
@@ -38,8 +39,9 @@ def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: 
     times_s, signals : of each record, evenly sampled, times after the onset.
 
     Each mode starts where the residual of those before has most to gain. A fit in which one is no mode of its
-    own ends the search: outside the band, a fading drive, one that does not decay within the record, or half
-    of a pair nearer to each other than records of that length can tell apart (1/T).
+    own ends the search: outside the band, one that does not decay within the record, or half of a pair nearer
+    to each other than records of that length can tell apart (1/T) or than they are wide (decay / pi). Terms
+    that fade as a drive does are fitted beside modes, so that modes do not bend to them, and are none.
     """
     records = Records(times_s, signals, BACKGROUND_DEGREE, one_phase=False)
     longest_s = max(float(t[-1] - t[0]) for t in times_s)
@@ -48,7 +50,7 @@ def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: 
         return best
     theta = np.empty(0)
     dense = 1 / period_s >= FEWEST_PER_PERIOD * 250.0
-    for _ in range(MOST_MODES if dense else 1):
+    for _ in range(MOST_TERMS if dense else 1):
         try:
             fit = fit_records(records, _one_more(records, theta, period_s, longest_s))
         except FitError:
@@ -66,14 +68,22 @@ def drives(mode: DampedMode) -> bool:
 
 
 def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
-    """Tell whether every mode of a fit is one, and none a half of a pair."""
+    """Tell whether every mode of a fit is one, and none a half of a pair: as near as 1/T or as they are wide."""
     modes = [mode for mode in fit.modes if not drives(mode)]
-    f = np.sort([mode.frequency_Hz for mode in modes])
-    apart = bool(np.all(np.diff(f) >= 1 / longest_s))
+    modes.sort(key=lambda mode: mode.frequency_Hz)
+    apart = all(
+        high.frequency_Hz - low.frequency_Hz
+        >= max(1 / longest_s, (low.decay_1_s + high.decay_1_s) / math.tau)
+        for low, high in itertools.pairwise(modes)
+    )
     lowest = max(LOWEST_Hz, 1 / longest_s)
-    return apart and len(fit.modes) - len(modes) <= MOST_DRIVES and all(
-        lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and LEAST_FALL <= m.decay_1_s * longest_s
-        for m in modes
+    return (
+        apart
+        and len(fit.modes) - len(modes) <= MOST_DRIVES
+        and all(
+            lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and m.decay_1_s * longest_s >= LEAST_FALL
+            for m in modes
+        )
     )
 
 

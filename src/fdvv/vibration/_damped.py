@@ -17,7 +17,7 @@ MOST_STEPS = 25
 """Of the search; a fit that needs more has no clear minimum, and its standard errors say so."""
 
 FIRST_DAMPING, MOST_DAMPING = 1e-2, 1e6
-NEAR_ratio, SETTLED = 1e-9, 1e-6
+NEAR_ratio, SETTLED = 1e-9, 1e-4
 """A search ends with a step this small, or that gains this part of the noise power of one sample."""
 
 
@@ -100,9 +100,7 @@ def fit_damped(
     return fit_records(records, start)
 
 
-def fit_records(
-    records: Records, start: FloatArray, held: npt.NDArray[np.bool_] | None = None
-) -> DampedFit:
+def fit_records(records: Records, start: FloatArray, held: npt.NDArray[np.bool_] | None = None) -> DampedFit:
     """Fit decaying sinusoids from a first guess (f..., d...), of which those held stay. Raises FitError."""
     modes = start.size // 2
     needed = records.parameters(modes)
@@ -116,7 +114,7 @@ def fit_records(
 
 
 def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -> Solved:
-    """Search for the least squares (Levenberg and Marquardt), frequencies and decays never below 0."""
+    """Search for the least squares (Levenberg and Marquardt), neither frequencies nor decays below 0."""
     at, damping = records.at(start), FIRST_DAMPING
     freedom = max(records.samples - records.parameters(start.size // 2), 1)
     for _ in range(MOST_STEPS if free.any() else 0):
@@ -124,6 +122,7 @@ def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -
         stiff = curvature + damping * np.diag(np.maximum(np.diag(curvature), 1e-300))
         theta = at.theta.copy()
         theta[free] = np.maximum(theta[free] + np.linalg.solve(stiff, slope), 0.0)
+        theta[theta.size // 2 :] = np.minimum(theta[theta.size // 2 :], records.most_decay_1_s)
         tried = _try(records, theta)
         if tried is None or tried.power > at.power:
             damping *= 10
@@ -178,7 +177,11 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
     mean_power = max(records.size**2 * found.power / records.samples, 1e-300)
     bic = records.samples * math.log(mean_power) + needed * math.log(records.samples)
     return DampedFit(
-        tuple(made), records.size * amplitudes[:, order], records.size * math.sqrt(power), records.samples, bic
+        tuple(made),
+        records.size * amplitudes[:, order],
+        records.size * math.sqrt(power),
+        records.samples,
+        bic,
     )
 
 
@@ -199,9 +202,7 @@ def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | 
     return spreads
 
 
-def amplitude_variances(
-    records: Records, found: Solved, covariance: FloatArray, power: float
-) -> FloatArray:
+def amplitude_variances(records: Records, found: Solved, covariance: FloatArray, power: float) -> FloatArray:
     """Give the variance of the logarithm of each amplitude, (records, modes): its own, and that of f and d."""
     modes = found.theta.size // 2
     variances = np.zeros((len(found.weights), modes))

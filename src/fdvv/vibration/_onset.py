@@ -129,7 +129,11 @@ def chi_square_tail(value: float, freedom: int) -> float:
 
 
 def _gains(
-    y: FloatArray, halves: npt.NDArray[np.int64], noise: float, reach: float, rings: tuple[tuple[float, float], ...]
+    y: FloatArray,
+    halves: npt.NDArray[np.int64],
+    noise: float,
+    reach: float,
+    rings: tuple[tuple[float, float], ...],
 ) -> FloatArray:
     """Give for turns at each of these half samples the fall of the residual power, over the noise power.
 

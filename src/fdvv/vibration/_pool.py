@@ -21,7 +21,7 @@ LEAST_SHARE = 0.5
 
 
 ROUNDS = 2
-"""Searches with the modes that the search before told."""
+"""Searches with the modes that the search before told; none where two modes were known beforehand."""
 
 KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
 """A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
@@ -167,7 +167,7 @@ def measure_vibration(
     looked = [find_snap(press, energy.window_mm, rings) for press in presses]
     heard, snaps = _shown(presses, looked)
     ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
-    for _ in range(ROUNDS):
+    for _ in range(0 if len(rings) > 1 else ROUNDS):
         known = _beside(known_rings(ring), rings)
         # known modes part beginning from going on only where a sample is short beside their periods
         if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:

@@ -88,6 +88,8 @@ class Records:
             self.times_s, self.signals = own, signals
             backgrounds = [polynomial(t, degree) for t in own]
         self.backgrounds = backgrounds
+        # what falls faster is over within a sample
+        self.most_decay_1_s = 1 / max(float(np.median(np.diff(np.concatenate(times_s)))), 1e-6)
         self.own_powers = np.array([float(y @ y) for y in self.signals])
         self._ends = np.array([y.size for y in self.signals])
         self._padded = np.zeros((self._ends.max(), len(self.signals)))
@@ -105,12 +107,11 @@ class Records:
         gram, along = self._products(theta)
         m = gram.shape[1] - p
         inside, cross, late = gram[:, :m, :m], gram[:, :m, m:], gram[:, m:, m:]
-        weights = np.linalg.solve(inside, along[:, :m, None])
+        inverse = np.linalg.inv(inside)
+        weights = inverse @ along[:, :m, None]
         turned = _turned(weights[:, :p, 0])
         pushed = cross @ turned
-        unit = np.broadcast_to(np.eye(m)[:, :p], (len(gram), m, p))
-        solved = np.linalg.solve(inside, np.concatenate([pushed, unit], axis=2))
-        followed, doubt = solved[:, :, :p], solved[:, :p, p:]
+        followed, doubt = inverse @ pushed, inverse[:, :p, :p]
         curvatures = turned.transpose(0, 2, 1) @ late @ turned - pushed.transpose(0, 2, 1) @ followed
         rest = along[:, m:, None] - cross.transpose(0, 2, 1) @ weights
         slopes = (turned.transpose(0, 2, 1) @ rest)[:, :, 0]

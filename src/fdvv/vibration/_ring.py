@@ -92,8 +92,27 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
 def refit_ring(
     presses: Sequence[HeardPress], snaps: Sequence[Snap], ring: Ring, known: tuple[float, float]
 ) -> Ring | None:
-    """Fit a ring again with frequency and decay of its principal mode known; None if that cannot be."""
-    times, signals, noise = _after(presses, snaps, ring.delay_s)
+    """Fit a ring again with frequency and decay of its principal mode known, as soon after onsets as it fits.
+
+    None where it never leaves noise alone.
+    """
+    for delay in (delay for delay in DELAYS_s if delay >= ring.delay_s):
+        again = _refit_after(presses, snaps, ring, known, delay)
+        if again is not None and again.noise_ratio <= FITS_ratio:
+            return None if known[1] * delay > np.log(BACK_ratio) else again
+    return None
+
+
+def _refit_after(
+    presses: Sequence[HeardPress],
+    snaps: Sequence[Snap],
+    ring: Ring,
+    known: tuple[float, float],
+    delay_s: float,
+) -> Ring | None:
+    times, signals, noise = _after(presses, snaps, delay_s)
+    if not times:
+        return None
     own = (ring.mode.frequency_Hz, ring.mode.decay_1_s)
     terms = [known, *(term for term in ring.terms if term != own)]
     held = np.tile(np.arange(len(terms)) == 0, 2)
@@ -106,13 +125,13 @@ def refit_ring(
     kept = [
         k
         for k, mode in enumerate(fit.modes)
-        if k != first and not drives(mode) and _unknown(mode, ring.delay_s) is None
+        if k != first and not drives(mode) and _unknown(mode, delay_s) is None
     ]
-    return _ring(fit, [first, *kept], ring.delay_s, fit.noise / noise)
+    return _ring(fit, [first, *kept], delay_s, fit.noise / noise)
 
 
 def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
-    """Give the ring that a fit tells of, or why none."""
+    """Give the ring that a fit tells of, the principal mode first, or why none."""
     order = [k for k in _order(fit, delay_s, acceleration) if not drives(fit.modes[k])]
     if not order:
         return "nothing rings freely, only a drive fades"

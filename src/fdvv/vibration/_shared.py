@@ -9,14 +9,14 @@ import numpy as np
 
 from fdvv.units import FloatArray
 from fdvv.vibration._pool import MeasuredVibration, known_rings
-from fdvv.vibration._ring import FITS_ratio, Ring, refit_ring
+from fdvv.vibration._ring import Ring, refit_ring
 from fdvv.vibration._snap import NotFound
 
 SAME_ratio = 0.15
 """Principal modes that lie within this part of the middle frequency are one mode of the housing."""
 
-FLOOR_ratio = 0.05
-"""No decay of one pace is weighed as known better than this: drives that go on are in no standard error."""
+FLOOR_ratio = (0.005, 0.05)
+"""No frequency and no decay of one pace is weighed as known better: drives that go on are in no standard error."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +39,12 @@ def shared_mode(rings: Sequence[Ring]) -> SharedMode | None:
     modes = [ring.mode for ring in rings]
     if len(modes) < 2:
         return None
-    middle, _ = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes])
+    middle, _ = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes], FLOOR_ratio[0])
     modes = [m for m in modes if abs(m.frequency_Hz / middle - 1) <= SAME_ratio]
     if len(modes) < 2:
         return None
-    f, f_sd = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes])
-    d, d_sd = _middle([m.decay_1_s for m in modes], [m.decay_sd_1_s for m in modes])
+    f, f_sd = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes], FLOOR_ratio[0])
+    d, d_sd = _middle([m.decay_1_s for m in modes], [m.decay_sd_1_s for m in modes], FLOOR_ratio[1])
     return SharedMode(f, d, f_sd, d_sd, len(modes))
 
 
@@ -66,7 +66,7 @@ def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration
     if isinstance(ring, NotFound) or abs(ring.mode.frequency_Hz / mode.frequency_Hz - 1) > SAME_ratio:
         return found
     again = refit_ring(found.heard, found.snaps, ring, (mode.frequency_Hz, mode.decay_1_s))
-    if again is None or again.noise_ratio > max(FITS_ratio, ring.noise_ratio):
+    if again is None:
         return found
     first = replace(
         again.mode,
@@ -78,11 +78,11 @@ def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration
     return replace(found, ring=replace(again, mode=first, modes=(first, *again.modes[1:])))
 
 
-def _middle(values: Sequence[float], sds: Sequence[float]) -> tuple[float, float]:
+def _middle(values: Sequence[float], sds: Sequence[float], floor_ratio: float) -> tuple[float, float]:
     """Give the weighted median of values and its standard error, from the errors or from the scatter."""
     order = np.argsort(values)
     value: FloatArray = np.asarray(values, dtype=np.float64)[order]
-    sd = np.maximum(np.asarray(sds, dtype=np.float64)[order], FLOOR_ratio * value)
+    sd = np.maximum(np.asarray(sds, dtype=np.float64)[order], floor_ratio * value)
     weight = 1 / sd**2
     share = (np.cumsum(weight) - 0.5 * weight) / weight.sum()
     middle = float(np.interp(0.5, share, value))
