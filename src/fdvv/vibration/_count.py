@@ -1,10 +1,10 @@
-"""How many modes free records hold: one after the other, as long as each is worth its parameters and is one."""
+"""How many modes free records hold: one after the other, while each is worth its parameters and is one."""
 
 from __future__ import annotations
 
 import functools
-import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,7 +21,7 @@ LOWEST_Hz, HIGHEST_ratio = 40.0, 0.4
 """A mode lies between these; the latter in parts of the sampling rate."""
 
 FREE_ratio, MOST_DRIVES = 0.2, 2
-"""Damping, in parts of critical, from which on a term is a fading drive and no mode; and how many are fitted."""
+"""Damping, in parts of critical, above which a term is a fading drive and no mode; how many at most."""
 
 LEAST_FALL = 0.3
 """A mode decays within the record: its envelope falls by this many nepers."""
@@ -30,7 +30,7 @@ FEWEST_PER_PERIOD = 8.0
 """Samples per period of 250 Hz below which records are searched for one mode only."""
 
 NEXT_ratio, NEXT_DAMPING = 1.06, (0.08, 0.35)
-"""Steps of the frequencies from which a term is searched, and the damping that a mode and a drive start with."""
+"""Steps of the frequencies from which a term is searched; damping that a mode and a drive start with."""
 
 
 def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: float) -> DampedFit:
@@ -40,8 +40,8 @@ def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: 
 
     Each mode starts where the residual of those before has most to gain. A fit in which one is no mode of its
     own ends the search: outside the band, one that does not decay within the record, or half of a pair nearer
-    to each other than records of that length can tell apart (1/T) or than they are wide (decay / pi). Terms
-    that fade as a drive does are fitted beside modes, so that modes do not bend to them, and are none.
+    to each other than records of that length can tell apart (1/T). Terms that fade as a drive does are fitted
+    beside modes, so that modes do not bend to them, and are none.
     """
     records = Records(times_s, signals, BACKGROUND_DEGREE, one_phase=False)
     longest_s = max(float(t[-1] - t[0]) for t in times_s)
@@ -67,15 +67,19 @@ def drives(mode: DampedMode) -> bool:
     return mode.decay_1_s > FREE_ratio * 2 * math.pi * mode.frequency_Hz
 
 
-def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
-    """Tell whether every mode of a fit is one, and none a half of a pair: as near as 1/T or as they are wide."""
-    modes = [mode for mode in fit.modes if not drives(mode)]
-    modes.sort(key=lambda mode: mode.frequency_Hz)
-    apart = all(
-        high.frequency_Hz - low.frequency_Hz
-        >= max(1 / longest_s, (low.decay_1_s + high.decay_1_s) / math.tau)
-        for low, high in itertools.pairwise(modes)
+def overlapped(mode: DampedMode, modes: Sequence[DampedMode]) -> bool:
+    """Tell whether another mode lies nearer than both are wide (decay / pi): two halves of what is one."""
+    return any(
+        abs(other.frequency_Hz - mode.frequency_Hz) < (other.decay_1_s + mode.decay_1_s) / math.tau
+        for other in modes
+        if other is not mode and not drives(other)
     )
+
+
+def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
+    """Tell whether every mode of a fit is one: in the band, falling, and none nearer to another than 1/T."""
+    modes = [mode for mode in fit.modes if not drives(mode)]
+    apart = bool(np.all(np.diff(np.sort([mode.frequency_Hz for mode in modes])) >= 1 / longest_s))
     lowest = max(LOWEST_Hz, 1 / longest_s)
     return (
         apart
@@ -106,10 +110,11 @@ def _one_more(records: Records, theta: FloatArray, period_s: float, longest_s: f
 @functools.lru_cache(maxsize=64)
 def _candidates(period_s: float, samples: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     highest = HIGHEST_ratio / period_s
-    one = LOWEST_Hz * NEXT_ratio ** np.arange(1 + int(math.log(highest / LOWEST_Hz) / math.log(NEXT_ratio)))
+    steps = np.arange(1 + int(math.log(highest / LOWEST_Hz) / math.log(NEXT_ratio)))
+    one: FloatArray = np.asarray(LOWEST_Hz * NEXT_ratio**steps, dtype=np.float64)
     f = np.tile(one, len(NEXT_DAMPING))
-    d = 2 * np.pi * f * np.repeat(NEXT_DAMPING, one.size)
-    return f, d, shapes(period_s * np.arange(samples), f, d)
+    d: FloatArray = np.asarray(math.tau * f * np.repeat(NEXT_DAMPING, one.size), dtype=np.float64)
+    return f, d, shapes(np.asarray(period_s * np.arange(samples)), f, d)
 
 
 def _background(times: list[FloatArray], signals: list[FloatArray]) -> DampedFit:

@@ -28,7 +28,7 @@ class DampedMode:
     Attributes
     ----------
     frequency_Hz, decay_1_s : f and d.
-    amplitude : A in the signal's own unit; of several records, the root mean square over them.
+    amplitude : A in the signal's own unit; of several records, the median over them.
     phase_rad : of the first record.
     frequency_sd_Hz, decay_sd_1_s, amplitude_sd : standard errors, from the noise that the fit left, or from
         how records differ where that says more.
@@ -161,9 +161,11 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
     amplitudes = np.hypot(sines, cosines) * np.exp(d * records.starts_s[:, None])
     phases = np.arctan2(cosines[0], sines[0]) - 2 * np.pi * f * records.starts_s[0]
     doubts = np.sqrt(amplitude_variances(records, found, covariance, power))
-    total = np.sqrt(np.mean(amplitudes**2, axis=0))
-    shares = amplitudes / np.maximum(total, 1e-300)
-    spread = np.sqrt(np.mean((shares * amplitudes * doubts) ** 2, axis=0) / len(amplitudes))
+    # of the median: a record that ends early may tell of no amplitude at all
+    total = np.median(amplitudes, axis=0)
+    spread = np.median(amplitudes * doubts, axis=0) * math.sqrt(
+        (np.pi / 2 if len(doubts) > 2 else 1) / len(doubts)
+    )
     order = np.argsort(-total)
     made = [
         DampedMode(
@@ -203,7 +205,7 @@ def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | 
 
 
 def amplitude_variances(records: Records, found: Solved, covariance: FloatArray, power: float) -> FloatArray:
-    """Give the variance of the logarithm of each amplitude, (records, modes): its own, and that of f and d."""
+    """Give variances of the logarithms of amplitudes, (records, modes): their own, and those of f and d."""
     modes = found.theta.size // 2
     variances = np.zeros((len(found.weights), modes))
     for k in range(modes):

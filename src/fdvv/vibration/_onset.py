@@ -108,7 +108,7 @@ def _search(
     reach, turned = reach_s / period, tuple((f * period, d * period) for f, d in rings)
     # finer than a fortieth of the reach nothing changes
     stride = max(1, int(2 * reach / 40))
-    first, last = (int(math.ceil(2 * (at - t_s[0]) / period)) for at in span_s)
+    first, last = (math.ceil(2 * (at - t_s[0]) / period) for at in span_s)
     halves = np.arange(max(first, 0), min(last, 2 * t_s.size), stride)
     gain = _gains(signal, halves, noise, reach, turned)
     if not halves.size or not gain.max() > 0:
@@ -137,9 +137,9 @@ def _gains(
 ) -> FloatArray:
     """Give for turns at each of these half samples the fall of the residual power, over the noise power.
 
-    reach in samples, rings per sample. Where even the turn leaves more than the noise, what it leaves is taken
-    as the noise, so that lively motion does not pass for a turn. Turns that have as many samples either side
-    share one table.
+    reach in samples, rings per sample. Where even the turn leaves more than the noise, what it leaves is
+    taken as the noise, so that lively motion does not pass for a turn. Turns that have as many samples either
+    side share one table.
     """
     low = np.maximum(np.ceil(0.5 * halves - reach).astype(int), 0)
     high = np.minimum(np.ceil(0.5 * halves + reach).astype(int), y.size)
@@ -166,7 +166,7 @@ def _basis(
 
     first : half samples from the turn to the first sample, below 0. None where a turn cannot be told.
     """
-    after = 0.5 * first + np.arange(count)
+    after: FloatArray = np.asarray(0.5 * first + np.arange(count), dtype=np.float64)
     u = after / reach
     smooth = np.polynomial.legendre.legvander(u, SMOOTH_DEGREE)
     if rings:

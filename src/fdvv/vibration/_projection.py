@@ -1,4 +1,4 @@
-"""Records that share decaying sinusoids: what remains once each has its best weights, by inner products alone."""
+"""Records that share decaying sinusoids: what their best weights leave, by inner products alone."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ class Records:
         gram, along = self._products(theta)
         m = gram.shape[1] - p
         inside, cross, late = gram[:, :m, :m], gram[:, :m, m:], gram[:, m:, m:]
-        inverse = np.linalg.inv(inside)
+        inverse: FloatArray = np.asarray(np.linalg.inv(inside), dtype=np.float64)
         weights = inverse @ along[:, :m, None]
         turned = _turned(weights[:, :p, 0])
         pushed = cross @ turned
@@ -155,7 +155,7 @@ def _grid(times_s: list[FloatArray]) -> FloatArray | None:
     if longest.size < 2:
         return None
     period = float(longest[-1]) / (longest.size - 1)
-    grid = period * np.arange(longest.size)
+    grid: FloatArray = np.asarray(period * np.arange(longest.size), dtype=np.float64)
     even = all(np.abs(t - grid[: t.size]).max() <= EVEN_ratio * period for t in times_s)
     return grid if even else None
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fdvv.errors import FitError
 from fdvv.units import FloatArray
-from fdvv.vibration._count import BACKGROUND_DEGREE, drives, most_likely
+from fdvv.vibration._count import BACKGROUND_DEGREE, drives, most_likely, overlapped
 from fdvv.vibration._damped import DampedFit, DampedMode, duration_s, fit_records
 from fdvv.vibration._projection import Records
 from fdvv.vibration._snap import HeardPress, NotFound, Snap
@@ -127,7 +127,7 @@ def _refit_after(
         for k, mode in enumerate(fit.modes)
         if k != first and not drives(mode) and _unknown(mode, delay_s) is None
     ]
-    return _ring(fit, [first, *kept], delay_s, fit.noise / noise)
+    return _ring(fit, [first, *_single(fit, kept)], delay_s, fit.noise / noise)
 
 
 def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
@@ -138,7 +138,13 @@ def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> R
     reason = _unknown(fit.modes[order[0]], delay_s)
     if reason is not None:
         return reason
-    return _ring(fit, [k for k in order if _unknown(fit.modes[k], delay_s) is None], delay_s, ratio)
+    side = [k for k in order[1:] if _unknown(fit.modes[k], delay_s) is None]
+    return _ring(fit, [order[0], *_single(fit, side)], delay_s, ratio)
+
+
+def _single(fit: DampedFit, side: list[int]) -> list[int]:
+    """Give those modes beside the principal one that are no halves of a pair."""
+    return [k for k in side if not overlapped(fit.modes[k], fit.modes)]
 
 
 def _ring(fit: DampedFit, kept: list[int], delay_s: float, ratio: float) -> Ring:

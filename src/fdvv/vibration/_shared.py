@@ -16,7 +16,7 @@ SAME_ratio = 0.15
 """Principal modes that lie within this part of the middle frequency are one mode of the housing."""
 
 FLOOR_ratio = (0.005, 0.05)
-"""No frequency and no decay of one pace is weighed as known better: drives that go on are in no standard error."""
+"""No frequency and no decay of one pace is weighed as known better: drives are in no standard error."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,20 @@ def shared_mode(rings: Sequence[Ring]) -> SharedMode | None:
 def shared_rings(rings: Sequence[Ring]) -> tuple[tuple[float, float], ...]:
     """Give frequency and decay of two modes at most that searches of all paces can build on.
 
-    Of the rings that tell of most modes, the one whose principal mode is known best.
+    The principal one that is known best, and of the others that most rings tell of.
     """
-    told = [(known_rings(ring), ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz) for ring in rings]
-    return max(told, key=lambda pair: (len(pair[0]), -pair[1]), default=((), 0.0))[0]
+    told = [known_rings(ring) for ring in rings]
+    first = [
+        (ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz, t[0])
+        for ring, t in zip(rings, told, strict=True)
+        if t
+    ]
+    if not first:
+        return ()
+    others = [mode for t in told for mode in t[1:]]
+    votes = [sum(abs(other[0] / mode[0] - 1) <= SAME_ratio for other in others) for mode in others]
+    second = others[int(np.argmax(votes))] if others else None
+    return (min(first)[1], second) if second else (min(first)[1],)
 
 
 def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration:

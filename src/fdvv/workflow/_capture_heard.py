@@ -10,8 +10,8 @@ from fdvv.model import Stroke
 from fdvv.vibration import MeasuredVibration, NotFound, Ring, SharedMode, SnapEnergy
 
 ON_HOUSING = (
-    "the accelerometer sat on the housing: amplitudes of vibration are the housing's acceleration, taken for the "
-    "cap's"
+    "the accelerometer sat on the housing: amplitudes of vibration are the housing's acceleration, taken for "
+    "the cap's"
 )
 
 
@@ -85,7 +85,7 @@ def missing_words(missing: Sequence[tuple[HeardStroke, str]]) -> list[str]:
 
 
 def _places(ones: Sequence[HeardStroke]) -> str:
-    parts = []
+    parts = {}
     for stroke in Stroke:
         paces = [
             "unknown" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}"
@@ -93,16 +93,16 @@ def _places(ones: Sequence[HeardStroke]) -> str:
             if one.stroke is stroke
         ]
         if paces:
-            parts.append(f"{stroke} at {', '.join(paces)} mm/s")
-    if len(parts) == 2 and (paces := parts[0].split(" at ")[1]) == parts[1].split(" at ")[1]:
-        return f"press and release at {paces}"
-    return " and ".join(parts)
+            parts[str(stroke)] = f"at {', '.join(paces)} mm/s"
+    if len(set(parts.values())) == 1:
+        return f"{' and '.join(parts)} {next(iter(parts.values()))}"
+    return " and ".join(f"{stroke} {places}" for stroke, places in parts.items())
 
 
 def shared_words(mode: SharedMode) -> str:
     """Say what paces were taken to share."""
     return (
-        f"the housing rings alike at every pace: {mode.frequency_Hz:.0f} Hz and a decay of {mode.decay_1_s:.0f} "
-        f"1/s are the middle of {mode.paces} rings (standard errors {mode.frequency_sd_Hz:.1f} Hz and "
-        f"{mode.decay_sd_1_s:.0f} 1/s)"
+        f"the housing rings alike at every pace: {mode.frequency_Hz:.0f} Hz with a decay of "
+        f"{mode.decay_1_s:.0f} 1/s, the middle of {mode.paces} rings (standard errors "
+        f"{mode.frequency_sd_Hz:.1f} Hz and {mode.decay_sd_1_s:.0f} 1/s)"
     )

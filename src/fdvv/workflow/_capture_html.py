@@ -204,7 +204,8 @@ def _vibration(recorded: RecordedModel) -> Section:
         for told in (vibration_spread(v),)
     )
     columns = (
-        "stroke", "asked (mm/s)", "onset (mm)", "frequency (Hz)", "duration (ms)", "amplitude (m/s²)", "presses",
+        "stroke", "asked (mm/s)", "onset (mm)", "frequency (Hz)", "duration (ms)", "amplitude (m/s²)",
+        "presses",
     )  # fmt: skip
     table = Table(
         columns, rows, "Vibrations of the model by their principal mode; ± is that between presses."

@@ -109,6 +109,7 @@ def scaling_words(scaling: StrokeScaling, made: Sequence[Vibration]) -> str:
     paces = ", ".join(f"{v.velocity_mm_s:g}" for v in made if v.stroke is scaling.stroke)
     known = f"± {law.exponent_sd:.2f}" if math.isfinite(law.exponent_sd) else "of unknown error"
     return (
-        f"vibration on the {scaling.stroke} at {paces} mm/s was not found but scaled from other paces: amplitude as "
-        f"the cap's speed at the snap to the power {law.exponent:.2f} ({known}) and the root of its energy"
+        f"vibration on the {scaling.stroke} at {paces} mm/s was not found but scaled from other paces: "
+        f"amplitude as the cap's speed at the snap to the power {law.exponent:.2f} ({known}) and the root of "
+        "its energy"
     )

@@ -39,11 +39,11 @@ class RecordedVibrations:
     Attributes
     ----------
     heard : every stroke and pace, presses before releases, slow before fast.
-    vibrations : those whose modes and amplitude are known, as a model holds them; and those that a law gave, if
-        that was asked for.
+    vibrations : those whose modes and amplitude are known, as a model holds them; and those that a law gave,
+        if that was asked for.
     warnings : why the others are missing, one sentence for each reason.
     assumptions : what no measurement backs, one sentence each.
-    scalings : how amplitude grows with the cap's speed at the snap, of every stroke heard at two paces or more.
+    scalings : how amplitude grows with the cap's speed at the snap, of strokes heard at two paces or more.
     """
 
     heard: tuple[HeardStroke, ...]
@@ -58,7 +58,7 @@ def recorded_vibrations(
 ) -> RecordedVibrations:
     """Search the vibration of a recording for snaps, pooled over the presses of each stroke and pace.
 
-    An accelerometer is taken before a microphone. Modes that some paces told sharpen the search at the others.
+    An accelerometer is taken before a microphone. Modes that some paces told sharpen the search at others.
     Without either there is nothing, said once.
 
     extrapolate : paces without a vibration of their own get that of the nearest pace, its amplitude scaled.
@@ -117,8 +117,8 @@ def _heard(
     known = shared_rings(_rings(first))
     told = iter(first)
     again = [
-        was
-        if one[0].stroke is Stroke.PRESS and len(_known(was := next(told))) >= len(known)
+        _sharper(next(told), one, shaken, known)
+        if one[0].stroke is Stroke.PRESS
         else _measured(*one, shaken, known)
         for one in heard
     ]
@@ -130,6 +130,21 @@ def _heard(
         for (curve, _, energy), found in zip(heard, again, strict=True)
     ]
     return strokes, mode
+
+
+def _sharper(
+    was: MeasuredVibration | NotFound,
+    heard: tuple[AveragedCurve, list[HeardPress], SnapEnergy | None],
+    shaken: bool,
+    known: tuple[tuple[float, float], ...],
+) -> MeasuredVibration | NotFound:
+    """Measure again where more modes are known than it told of itself; kept if as many presses show it."""
+    if isinstance(was, MeasuredVibration) and len(was.rings) >= len(known):
+        return was
+    again = _measured(*heard, shaken, known) if known else was
+    if isinstance(was, MeasuredVibration) and (isinstance(again, NotFound) or again.shown < was.shown):
+        return was
+    return again
 
 
 def _measured(
@@ -146,10 +161,6 @@ def _measured(
 
 def _rings(found: list[MeasuredVibration | NotFound]) -> list[Ring]:
     return [one.ring for one in found if isinstance(one, MeasuredVibration) and isinstance(one.ring, Ring)]
-
-
-def _known(found: MeasuredVibration | NotFound) -> tuple[tuple[float, float], ...]:
-    return () if isinstance(found, NotFound) else found.rings
 
 
 def heard_press(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: float) -> HeardPress:
@@ -184,7 +195,7 @@ def _vibration(one: HeardStroke, scale_V_s_m: float | None) -> Vibration:
 
 
 def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:
-    """Give how presses differ: in onset and amplitude each by itself, in frequency and decay by leaving out."""
+    """Give how presses differ: in onset and amplitude one by one, in frequency and decay by leaving out."""
     ring = found.ring
     if found.shown < 2 or isinstance(ring, NotFound):
         return None
