@@ -33,29 +33,37 @@ NEXT_ratio, NEXT_DAMPING = 1.06, (0.08, 0.35)
 """Steps of the frequencies from which a term is searched; damping that a mode and a drive start with."""
 
 
-def most_likely(times_s: list[FloatArray], signals: list[FloatArray], period_s: float) -> DampedFit:
+def most_likely(
+    times_s: list[FloatArray],
+    signals: list[FloatArray],
+    period_s: float,
+    known: tuple[float, float] | None = None,
+    most_drives: int = MOST_DRIVES,
+) -> DampedFit:
     """Fit free records with as many modes as BIC allows, down to none.
 
     times_s, signals : of each record, evenly sampled, times after the onset.
+    known : frequency and decay of a mode that is there and stays as it is.
+    most_drives : terms that fade as a drive does, fitted beside modes so that these do not bend to them.
 
-    Each mode starts where the residual of those before has most to gain. A fit in which one is no mode of its
+    Each term starts where the residual of those before has most to gain. A fit in which a mode is none of its
     own ends the search: outside the band, one that does not decay within the record, or half of a pair nearer
-    to each other than records of that length can tell apart (1/T). Terms that fade as a drive does are fitted
-    beside modes, so that modes do not bend to them, and are none.
+    to each other than records of that length can tell apart (1/T). Raises FitError if the records are too
+    short for the known mode.
     """
     records = Records(times_s, signals, BACKGROUND_DEGREE, one_phase=False)
     longest_s = max(float(t[-1] - t[0]) for t in times_s)
-    best = _background(times_s, signals)
-    if records.even is None:
-        return best
-    theta = np.empty(0)
+    theta = np.asarray(known if known else (), dtype=np.float64)
+    best = fit_records(records, theta, np.full(2, True)) if known else _background(times_s, signals)
     dense = 1 / period_s >= FEWEST_PER_PERIOD * 250.0
-    for _ in range(MOST_TERMS if dense else 1):
+    for _ in range((MOST_TERMS if dense else 1) - theta.size // 2 if records.even is not None else 0):
         try:
-            fit = fit_records(records, _one_more(records, theta, period_s, longest_s))
+            start = _one_more(records, theta, period_s, longest_s, most_drives > 0)
+            held = np.tile(start[: start.size // 2] == (known[0] if known else 0.0), 2)
+            fit = fit_records(records, start, held)
         except FitError:
             break
-        if fit.bic >= best.bic or not sound(fit, longest_s, period_s):
+        if fit.bic >= best.bic or not sound(fit, longest_s, period_s, most_drives):
             break
         best = fit
         theta = np.array([m.frequency_Hz for m in fit.modes] + [m.decay_1_s for m in fit.modes])
@@ -76,14 +84,14 @@ def overlapped(mode: DampedMode, modes: Sequence[DampedMode]) -> bool:
     )
 
 
-def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
+def sound(fit: DampedFit, longest_s: float, period_s: float, most_drives: int) -> bool:
     """Tell whether every mode of a fit is one: in the band, falling, and none nearer to another than 1/T."""
     modes = [mode for mode in fit.modes if not drives(mode)]
     apart = bool(np.all(np.diff(np.sort([mode.frequency_Hz for mode in modes])) >= 1 / longest_s))
     lowest = max(LOWEST_Hz, 1 / longest_s)
     return (
         apart
-        and len(fit.modes) - len(modes) <= MOST_DRIVES
+        and len(fit.modes) - len(modes) <= most_drives
         and all(
             lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and m.decay_1_s * longest_s >= LEAST_FALL
             for m in modes
@@ -91,13 +99,16 @@ def sound(fit: DampedFit, longest_s: float, period_s: float) -> bool:
     )
 
 
-def _one_more(records: Records, theta: FloatArray, period_s: float, longest_s: float) -> FloatArray:
-    """Start one more mode where it takes most off the residual. Raises FitError where there is no room."""
+def _one_more(
+    records: Records, theta: FloatArray, period_s: float, longest_s: float, drive: bool
+) -> FloatArray:
+    """Start one more term where it takes most off the residual. Raises FitError where there is no room."""
     left, basis = records.typical(theta)
     f, d, columns = _candidates(round(period_s, 12), left.shape[1])
     known, decays = np.split(theta, 2)
     room = np.all(np.abs(f[:, None] - known) >= 1 / longest_s, axis=1)
-    room |= d > FREE_ratio * 2 * np.pi * f
+    fading = d > FREE_ratio * math.tau * f
+    room = np.where(fading, drive, room)
     free = columns - basis @ (basis.T @ columns)
     pairs = free.T.reshape(f.size, 2, -1)
     gram = pairs @ pairs.transpose(0, 2, 1) + 1e-9 * np.eye(2)

@@ -23,6 +23,9 @@ LEAST_SHARE = 0.5
 ROUNDS = 2
 """Searches with the modes that the search before told; none where two modes were known beforehand."""
 
+SAME_ratio = 0.15
+"""Frequencies within this part of each other are one mode of the housing."""
+
 KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
 """A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
 mode), and frequency apart from that of the first."""
@@ -73,6 +76,10 @@ class MeasuredVibration:
     def rings(self) -> tuple[tuple[float, float], ...]:
         """Get frequency and decay of the modes that measure_vibration() of other presses can build on."""
         return known_rings(self.ring)
+
+    def rings_in(self, frequency_Hz: float) -> bool:
+        """Tell whether one of rings lies near a frequency."""
+        return any(abs(f / frequency_Hz - 1) <= SAME_ratio for f, _ in self.rings)
 
     @property
     def duration_s(self) -> Measured | None:

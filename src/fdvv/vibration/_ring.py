@@ -9,9 +9,8 @@ import numpy as np
 
 from fdvv.errors import FitError
 from fdvv.units import FloatArray
-from fdvv.vibration._count import BACKGROUND_DEGREE, drives, most_likely, overlapped
-from fdvv.vibration._damped import DampedFit, DampedMode, duration_s, fit_records
-from fdvv.vibration._projection import Records
+from fdvv.vibration._count import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlapped
+from fdvv.vibration._damped import DampedFit, DampedMode, duration_s
 from fdvv.vibration._snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
@@ -42,7 +41,6 @@ class Ring:
     mode : the principal one, with the most kinetic energy once the ring is free.
     modes : all of them, the principal one first.
     amplitudes : (presses, modes) at the onset.
-    terms : frequency and decay of all that was fitted: of these modes, of others and of drives.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.
     """
@@ -50,7 +48,6 @@ class Ring:
     mode: DampedMode
     modes: tuple[DampedMode, ...]
     amplitudes: FloatArray
-    terms: tuple[tuple[float, float], ...]
     delay_s: float
     noise_ratio: float
 
@@ -90,44 +87,25 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
 
 
 def refit_ring(
-    presses: Sequence[HeardPress], snaps: Sequence[Snap], ring: Ring, known: tuple[float, float]
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], known: tuple[float, float]
 ) -> Ring | None:
-    """Fit a ring again with frequency and decay of its principal mode known, as soon after onsets as it fits.
+    """Tell a ring again, frequency and decay of its principal mode known, as soon after onsets as it fits.
 
-    None where it never leaves noise alone.
+    Without any drive beside it if that ever leaves noise alone: a drive takes as much of the amplitude as it
+    likes. None where neither does before too little of the ring is left.
     """
-    for delay in (delay for delay in DELAYS_s if delay >= ring.delay_s):
-        again = _refit_after(presses, snaps, ring, known, delay)
-        if again is not None and again.noise_ratio <= FITS_ratio:
-            return None if known[1] * delay > np.log(BACK_ratio) else again
+    for most_drives in (0, MOST_DRIVES):
+        for delay in (delay for delay in DELAYS_s if known[1] * delay <= np.log(BACK_ratio)):
+            times, signals, noise = _after(presses, snaps, delay)
+            try:
+                fit = most_likely(times, signals, presses[0].period_s, known, most_drives) if times else None
+            except FitError:
+                fit = None
+            if fit is not None and fit.noise <= FITS_ratio * noise:
+                first = next(k for k, mode in enumerate(fit.modes) if mode.frequency_Hz == known[0])
+                side = [k for k in range(len(fit.modes)) if k != first]
+                return _ring(fit, [first, *_single(fit, side, delay)], delay, fit.noise / noise)
     return None
-
-
-def _refit_after(
-    presses: Sequence[HeardPress],
-    snaps: Sequence[Snap],
-    ring: Ring,
-    known: tuple[float, float],
-    delay_s: float,
-) -> Ring | None:
-    times, signals, noise = _after(presses, snaps, delay_s)
-    if not times:
-        return None
-    own = (ring.mode.frequency_Hz, ring.mode.decay_1_s)
-    terms = [known, *(term for term in ring.terms if term != own)]
-    held = np.tile(np.arange(len(terms)) == 0, 2)
-    try:
-        records = Records(times, signals, BACKGROUND_DEGREE, one_phase=False)
-        fit = fit_records(records, np.ravel(np.transpose(terms)), held)
-    except FitError:
-        return None
-    first = next(k for k, mode in enumerate(fit.modes) if mode.frequency_Hz == known[0])
-    kept = [
-        k
-        for k, mode in enumerate(fit.modes)
-        if k != first and not drives(mode) and _unknown(mode, delay_s) is None
-    ]
-    return _ring(fit, [first, *_single(fit, kept)], delay_s, fit.noise / noise)
 
 
 def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
@@ -138,19 +116,23 @@ def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> R
     reason = _unknown(fit.modes[order[0]], delay_s)
     if reason is not None:
         return reason
-    side = [k for k in order[1:] if _unknown(fit.modes[k], delay_s) is None]
-    return _ring(fit, [order[0], *_single(fit, side)], delay_s, ratio)
+    return _ring(fit, [order[0], *_single(fit, order[1:], delay_s)], delay_s, ratio)
 
 
-def _single(fit: DampedFit, side: list[int]) -> list[int]:
-    """Give those modes beside the principal one that are no halves of a pair."""
-    return [k for k in side if not overlapped(fit.modes[k], fit.modes)]
+def _single(fit: DampedFit, side: list[int], delay_s: float) -> list[int]:
+    """Give those terms beside the principal one that are modes, known, and no halves of a pair."""
+    return [
+        k
+        for k in side
+        if not drives(fit.modes[k])
+        and not overlapped(fit.modes[k], fit.modes)
+        and _unknown(fit.modes[k], delay_s) is None
+    ]
 
 
 def _ring(fit: DampedFit, kept: list[int], delay_s: float, ratio: float) -> Ring:
     modes = tuple(fit.modes[k] for k in kept)
-    terms = tuple((mode.frequency_Hz, mode.decay_1_s) for mode in fit.modes)
-    return Ring(modes[0], modes, fit.amplitudes[:, kept], terms, delay_s, ratio)
+    return Ring(modes[0], modes, fit.amplitudes[:, kept], delay_s, ratio)
 
 
 def _unknown(mode: DampedMode, delay_s: float) -> str | None:

@@ -8,12 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.units import FloatArray
-from fdvv.vibration._pool import MeasuredVibration, known_rings
+from fdvv.vibration._pool import SAME_ratio, MeasuredVibration, known_rings
 from fdvv.vibration._ring import Ring, refit_ring
 from fdvv.vibration._snap import NotFound
-
-SAME_ratio = 0.15
-"""Principal modes that lie within this part of the middle frequency are one mode of the housing."""
 
 FLOOR_ratio = (0.005, 0.05)
 """No frequency and no decay of one pace is weighed as known better: drives are in no standard error."""
@@ -75,7 +72,7 @@ def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration
     ring = found.ring
     if isinstance(ring, NotFound) or abs(ring.mode.frequency_Hz / mode.frequency_Hz - 1) > SAME_ratio:
         return found
-    again = refit_ring(found.heard, found.snaps, ring, (mode.frequency_Hz, mode.decay_1_s))
+    again = refit_ring(found.heard, found.snaps, (mode.frequency_Hz, mode.decay_1_s))
     if again is None:
         return found
     first = replace(

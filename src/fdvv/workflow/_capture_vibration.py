@@ -138,8 +138,8 @@ def _sharper(
     shaken: bool,
     known: tuple[tuple[float, float], ...],
 ) -> MeasuredVibration | NotFound:
-    """Measure again where more modes are known than it told of itself; kept if as many presses show it."""
-    if isinstance(was, MeasuredVibration) and len(was.rings) >= len(known):
+    """Measure again where it did not tell of all that is known; kept if as many presses show it."""
+    if isinstance(was, MeasuredVibration) and all(was.rings_in(f) for f, _ in known):
         return was
     again = _measured(*heard, shaken, known) if known else was
     if isinstance(was, MeasuredVibration) and (isinstance(again, NotFound) or again.shown < was.shown):
