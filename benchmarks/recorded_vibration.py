@@ -2,7 +2,7 @@
 
 Run as ``python -m benchmarks.recorded_vibration``, or with the first seed and how many. A session is the
 paper's: 15 presses at each of 50, 100, 150 and 200 mm/s, on the bench with a 10 kHz accelerometer on the
-housing. Truth: onset is when the leaf first strikes the fixed contact; the plate's first mode rings at 237.8 Hz
+housing. Truth: onset is when the leaf first strikes the fixed contact; the first mode rings at 237.8 Hz
 and falls to a tenth in 15.3 ms. Errors are those of what a model holds.
 """
 

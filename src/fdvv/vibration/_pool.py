@@ -139,7 +139,7 @@ def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
         return ()
     sure = [
         mode
-        for mode in ring.modes
+        for mode in ring.heard
         if mode.frequency_sd_Hz < KNOWN_ratio * mode.frequency_Hz
         and mode.decay_1_s < FREE_ratio * 2 * math.pi * mode.frequency_Hz
     ]

@@ -39,7 +39,8 @@ class Ring:
     Attributes
     ----------
     mode : the principal one, with the most kinetic energy once the ring is free.
-    modes : all of them, the principal one first.
+    modes : all that are known at the onset, the principal one first.
+    heard : these, and those that are known but had faded too far by the time the ring was free.
     amplitudes : (presses, modes) at the onset.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.
@@ -47,6 +48,7 @@ class Ring:
 
     mode: DampedMode
     modes: tuple[DampedMode, ...]
+    heard: tuple[DampedMode, ...]
     amplitudes: FloatArray
     delay_s: float
     noise_ratio: float
@@ -103,8 +105,8 @@ def refit_ring(
                 fit = None
             if fit is not None and fit.noise <= FITS_ratio * noise:
                 first = next(k for k, mode in enumerate(fit.modes) if mode.frequency_Hz == known[0])
-                side = [k for k in range(len(fit.modes)) if k != first]
-                return _ring(fit, [first, *_single(fit, side, delay)], delay, fit.noise / noise)
+                order = [first, *(k for k in range(len(fit.modes)) if k != first)]
+                return _ring(fit, order, delay, fit.noise / noise)
     return None
 
 
@@ -116,23 +118,22 @@ def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> R
     reason = _unknown(fit.modes[order[0]], delay_s)
     if reason is not None:
         return reason
-    return _ring(fit, [order[0], *_single(fit, order[1:], delay_s)], delay_s, ratio)
+    return _ring(fit, order, delay_s, ratio)
 
 
-def _single(fit: DampedFit, side: list[int], delay_s: float) -> list[int]:
-    """Give those terms beside the principal one that are modes, known, and no halves of a pair."""
-    return [
+def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
+    """Give the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
+    first, *side = order
+    single = [
         k
         for k in side
         if not drives(fit.modes[k])
         and not overlapped(fit.modes[k], fit.modes)
-        and _unknown(fit.modes[k], delay_s) is None
+        and _unknown(fit.modes[k], 0.0) is None
     ]
-
-
-def _ring(fit: DampedFit, kept: list[int], delay_s: float, ratio: float) -> Ring:
-    modes = tuple(fit.modes[k] for k in kept)
-    return Ring(modes[0], modes, fit.amplitudes[:, kept], delay_s, ratio)
+    kept = [first, *(k for k in single if _unknown(fit.modes[k], delay_s) is None)]
+    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *single]))
+    return Ring(modes[0], modes, heard, fit.amplitudes[:, kept], delay_s, ratio)
 
 
 def _unknown(mode: DampedMode, delay_s: float) -> str | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.units import FloatArray
-from fdvv.vibration._pool import SAME_ratio, MeasuredVibration, known_rings
+from fdvv.vibration._pool import MeasuredVibration, SAME_ratio, known_rings
 from fdvv.vibration._ring import Ring, refit_ring
 from fdvv.vibration._snap import NotFound
 
