@@ -12,7 +12,7 @@ from fdvv.vibration._pool import MeasuredVibration, SAME_ratio, known_rings
 from fdvv.vibration._ring import Ring, refit_ring
 from fdvv.vibration._snap import NotFound
 
-FLOOR_ratio = (0.005, 0.05)
+FLOOR_ratio = (0.005, 0.02)
 """No frequency and no decay of one pace is weighed as known better: drives are in no standard error."""
 
 
@@ -89,7 +89,7 @@ def _middle(values: Sequence[float], sds: Sequence[float], floor_ratio: float) -
     """Give the weighted median of values and its standard error, from the errors or from the scatter."""
     order = np.argsort(values)
     value: FloatArray = np.asarray(values, dtype=np.float64)[order]
-    sd = np.maximum(np.asarray(sds, dtype=np.float64)[order], floor_ratio * value)
+    sd = np.maximum(np.asarray(sds, dtype=np.float64)[order], floor_ratio * np.median(value))
     weight = 1 / sd**2
     share = (np.cumsum(weight) - 0.5 * weight) / weight.sum()
     middle = float(np.interp(0.5, share, value))
