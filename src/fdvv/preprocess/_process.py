@@ -34,6 +34,9 @@ UNKNOWN_N = 1e3
 LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
 """A frame is never surer than the first; the second is taken where fewer steps at rest tell."""
 
+FIRST_cN, FIRST_mm = 12.0, 0.4
+"""The first give of the cap is read from so much force above the resting finger's, within this depth."""
+
 GAIN_OFF = 0.1
 """Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
 
@@ -144,7 +147,7 @@ def _arrival_cN(curves: Sequence[AveragedCurve]) -> float:
 def _zero_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
     """Tell how deep the cap was before presses began, under the finger that rested on it.
 
-    With a probe from its curve; without one from the slope of the first force of the slowest presses.
+    With a probe from its curve; without one from how the place goes with the first force of slow presses.
     """
     used = [one for one in judged if one.reason is None]
     rests = [one.press.force_cN[one.press.t_s < one.spans.start_s - 0.02] for one in used]
@@ -152,21 +155,23 @@ def _zero_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
     if probe is not None:
         return probe.rest_mm(rest_cN)
     slowest = sorted(used, key=lambda one: one.achieved_mm_s)[: max(FEWEST, len(used) // 4)]
-    slopes = [slope for one in slowest if (slope := _first_slope_cN_mm(one)) > 0]
-    return rest_cN / float(np.median(slopes)) if slopes else 0.0
+    return max(rest_cN, 0.0) * _first_give_mm_cN(slowest, rest_cN)
 
 
-def _first_slope_cN_mm(one: Judged) -> float:
-    press = one.press
-    first = (
-        (press.frame_s > one.spans.start_s - 0.02)
-        & (press.frame_mm < 0.2)
-        & (press.frame_s < one.spans.bottom_s)
-    )
-    if first.sum() < 4 or np.ptp(press.frame_mm[first]) < 0.1:
+def _first_give_mm_cN(used: Sequence[Judged], rest_cN: float) -> float:
+    """Tell by how much the cap gives way at first: the slope of place on force, which is known far better."""
+    places, forces = [], []
+    for one in used:
+        press = one.press
+        place = np.interp(press.t_s, press.frame_s, press.frame_mm)
+        first = (press.t_s > one.spans.start_s - 0.1) & (press.t_s < one.spans.bottom_s) & (place < FIRST_mm)
+        first &= (press.force_cN > rest_cN - 1) & (press.force_cN < rest_cN + FIRST_cN)
+        places.append(place[first])
+        forces.append(press.force_cN[first])
+    place, force = np.concatenate([*places, np.zeros(0)]), np.concatenate([*forces, np.zeros(0)])
+    if place.size < LEAST_STEPS or np.ptp(force) < 0.5 * FIRST_cN:
         return 0.0
-    force = np.interp(press.frame_s[first], press.t_s, press.force_cN)
-    return float(np.polyfit(press.frame_mm[first], force, 1)[0])
+    return max(float(np.polyfit(force, place, 1)[0]), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,9 +240,10 @@ class _Work:
         if stroke is Stroke.PRESS:
             inside = (press.frame_s <= end_s) & ~near & (press.frame_s >= begin_s - 0.01)
         else:
-            inside = (
-                (press.frame_s >= begin_s) & ~near & (press.frame_mm > LEFT_mm) & (press.frame_s <= end_s)
-            )
+            # one frame of the cap back at rest tells when it must have arrived
+            after = press.frame_s[press.frame_s > end_s]
+            last_s = float(after[0]) if after.size else end_s
+            inside = (press.frame_s >= begin_s) & ~near & (press.frame_s <= last_s)
         frames = np.flatnonzero(inside)
         if frames.size < 2:
             return None
@@ -266,33 +272,36 @@ class _Work:
         known = known or unknown_curve
         paths, shape = fuse([seen for _, seen in whole], known, fusion)
         longer = [
-            extend(
-                seen,
-                path,
-                stroke,
-                (one.press.t_s, one.press.force_cN),
-                shape,
-                moving_g,
-                one.spans.bottom_mm + self.zero_mm - LEFT_mm,
-            )
+            self._longer(one, stroke, seen, path, shape, moving_g)
             for (one, seen), path in zip(whole, paths, strict=True)
         ]
         paths, shape = fuse(longer, known, fusion)
         ends = zip(whole, longer, paths, strict=True)
         return [self._track(one, stroke, seen, path) for (one, _), seen, path in ends], shape
 
+    def _longer(
+        self, one: Judged, stroke: Stroke, seen: Seen, path: Path, shape: CurveOfForce, moving_g: float
+    ) -> Seen:
+        """Add what no frame shows, between the stop and the nearest frame."""
+        felt = one.press.t_s, one.press.force_cN
+        ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
+        return extend(seen, path, stroke is Stroke.PRESS, felt, shape, moving_g, ends_mm)
+
     def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
         """Give a stroke with the force between finger and cap: the tip's own motion is taken back."""
         tip_kg = 1e-3 * self.bench.tip_mass_g
+        back = np.flatnonzero(path.displacement_mm < LEFT_mm) if stroke is Stroke.RELEASE else np.zeros(0)
+        # what follows the return to rest is the upper stop's
+        until = slice(None, int(back[0]) if back.size and back[0] > 3 else None)
         return StrokeTrack(
             one.press.take,
             one.press.part,
             stroke,
-            seen.t_s,
-            path.displacement_mm,
-            path.velocity_mm_s,
-            path.acceleration_m_s2,
-            seen.force_cN - cN_from_N(tip_kg * path.acceleration_m_s2),
+            seen.t_s[until],
+            path.displacement_mm[until],
+            path.velocity_mm_s[until],
+            path.acceleration_m_s2[until],
+            (seen.force_cN - cN_from_N(tip_kg * path.acceleration_m_s2))[until],
         )
 
 
