@@ -17,6 +17,9 @@ PARTS = 10
 DOUBT_s = 2.5e-4
 """A cap that moves is near an end earlier: its place is known to what it covers in this time."""
 
+JUMP_cN = 10.0
+"""Where the force changes within a sample by so much more than the button's could, the stop has been hit."""
+
 LONGEST = 12
 """Samples that are added at most: beyond three frames of the slowest camera something else is wrong."""
 
@@ -44,6 +47,7 @@ def extend(
     places: list[float] = []
     i = here
     while 0 <= i + way < t_s.size and len(places) < LONGEST:
+        before_cN = float(shape(np.array([x]))[0][0])
         for k in range(PARTS):
             pull_cN = force_cN[i] + (force_cN[i + way] - force_cN[i]) * (k + 0.5) / PARTS
             button_cN = float(shape(np.array([x]))[0][0])
@@ -51,8 +55,11 @@ def extend(
             v += step_s * 1e6 * float(N_from_cN(pull_cN - button_cN)) / moving_g
             x += step_s * v
         margin_mm = DOUBT_s * abs(v)
-        # a cap that turns round is no longer in the stroke
+        # a cap that turns round, or that something other than the button holds up, is no longer in the stroke
         if not ends_mm[0] + margin_mm <= x <= ends_mm[1] - margin_mm or (v > 0) != down:
+            break
+        told_cN = abs(button_cN - before_cN)
+        if abs(force_cN[i + way] - force_cN[i]) > JUMP_cN + 2 * told_cN:
             break
         i += way
         places.append(x)
