@@ -37,6 +37,9 @@ LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
 FIRST_cN, FIRST_mm = 12.0, 0.4
 """The first give of the cap is read from so much force above the resting finger's, within this depth."""
 
+NEAREST_ratio = 1.5
+"""A press further than this from every pace belongs to none."""
+
 GAIN_OFF = 0.1
 """Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
 
@@ -53,14 +56,19 @@ class Settings:
     cap_g : mass of the moving cap, its stem, markers and a third of its spring; 40 % off changes a curve by
         0.7 cN rms at most, since only the tip's share of the motion is taken back.
     limits : when a press is left out.
+    paces_mm_s : presses that were not asked for at a pace are given the nearest of these, if it is within
+        half as much again; without any they are averaged together.
     """
 
     cap_g: float = 3.0
     limits: Limits = field(default_factory=Limits)
+    paces_mm_s: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.cap_g) and self.cap_g > 0):
             raise ModelError(f"cap_g must be above 0, got {self.cap_g}")
+        if not all(np.isfinite(pace) and pace > 0 for pace in self.paces_mm_s):
+            raise ModelError(f"paces_mm_s must be above 0, got {self.paces_mm_s}")
 
 
 @dataclass(frozen=True)
@@ -112,7 +120,7 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
         raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(found.lost[:3])}")
     probe = probe_of(recording, idle_cN(recording))
     spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in found.presses]
-    judged = judge(found.presses, spans, settings.limits)
+    judged = _paced(judge(found.presses, spans, settings.limits), settings.paces_mm_s)
     zero_mm = _zero_mm(judged, probe)
     work = _Work(judged, probe, recording.bench, settings, zero_mm)
     curves, tracks = work.curves()
@@ -137,6 +145,22 @@ def _feature(values: Sequence[float]) -> Feature:
     finite = np.array([v for v in values if np.isfinite(v)])
     spread = float(np.std(finite, ddof=1)) if finite.size > 1 else 0.0
     return Feature(float(np.median(finite)), spread, int(finite.size))
+
+
+def _paced(judged: Sequence[Judged], paces_mm_s: Sequence[float]) -> list[Judged]:
+    """Give presses of no pace the nearest one, in ratio; leave out those that are near none."""
+    return [
+        _nearest(one, paces_mm_s) if paces_mm_s and one.press.velocity_mm_s is None else one for one in judged
+    ]
+
+
+def _nearest(one: Judged, paces_mm_s: Sequence[float]) -> Judged:
+    if not np.isfinite(one.achieved_mm_s):
+        return replace(one, reason=one.reason or Reason.OFF_PACE)
+    apart = np.abs(np.log(np.array(paces_mm_s) / one.achieved_mm_s))
+    pace = paces_mm_s[int(np.argmin(apart))]
+    off = Reason.OFF_PACE if apart.min() > np.log(NEAREST_ratio) else None
+    return replace(one, press=replace(one.press, velocity_mm_s=pace), reason=one.reason or off)
 
 
 def _arrival_cN(curves: Sequence[AveragedCurve]) -> float:
