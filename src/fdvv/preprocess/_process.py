@@ -43,6 +43,9 @@ NEAREST_ratio = 1.5
 GAIN_OFF = 0.1
 """Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
 
+FEWEST_FRAMES = 2
+"""Frames that must show a stroke on its way: one leaves its speed to the equation alone."""
+
 FEWEST = 3
 """Of presses of one kind: fewer give no spread."""
 
@@ -269,7 +272,7 @@ class _Work:
             last_s = float(after[0]) if after.size else end_s
             inside = (press.frame_s >= begin_s) & ~near & (press.frame_s <= last_s)
         frames = np.flatnonzero(inside)
-        if frames.size < 2:
+        if np.sum(inside & (press.frame_mm > LEFT_mm)) < FEWEST_FRAMES:
             return None
         low, high = press.frame_s[frames[0]], press.frame_s[frames[-1]]
         step_s = float(press.t_s[1] - press.t_s[0])
