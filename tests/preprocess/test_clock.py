@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.preprocess import Edges, align_clocks
+from fdvv.preprocess._clock import _polygon
 from fdvv.units import FloatArray
 
 EXPOSURE_s = 3e-4
@@ -103,3 +104,17 @@ def test_a_camera_that_saw_only_the_second_half_is_aligned() -> None:
 
     half = edges.t_s[edges.t_s.size // 2 :]
     assert np.abs(fit.board_s(3.0 + (1 + 2e-4) * half) - half).max() < 3e-4
+
+
+def test_bounds_that_contradict_by_less_than_a_solver_tells_apart_are_joined_with_a_doubt() -> None:
+    # of a recording: no line passes all three, but one that misses each by 0.03 us does
+    edge_s = np.array([47.926792, 115.974631, 147.967624])
+    low_s = np.array([89.972301738, 158.015270488, 190.011364238])
+    high_s = np.array([89.975968334, 158.0189370838, 190.0150308338])
+
+    fit = _polygon(edge_s, low_s, high_s, 0)
+
+    line_s = fit.offset_s + fit.rate * edge_s
+    assert np.all(line_s > low_s - 2e-7)
+    assert np.all(line_s < high_s + 2e-7)
+    assert fit.doubt_s > 2e-8

@@ -21,6 +21,7 @@ from fdvv.cli._output import (
     print_wrapped,
     with_spread,
 )
+from fdvv.cli._paces import Paces
 
 if TYPE_CHECKING:
     from fdvv.workflow import RecordedModel
@@ -35,6 +36,12 @@ if TYPE_CHECKING:
     help="Mass of cap, stem, markers and a third of the spring.",
 )  # fmt: skip
 @click.option(
+    "--paces",
+    "paces_mm_s",
+    type=Paces(),
+    help="Paces for presses that were not asked for at one, as those of a log: each is given the nearest.",
+)
+@click.option(
     "--extrapolate-vibration", "extrapolate", is_flag=True,
     help="Give paces where no vibration was found that of other paces, scaled with speed.",
 )  # fmt: skip
@@ -44,6 +51,7 @@ def process(
     output: Path | None,
     report: Path | None,
     cap_mass_g: float,
+    paces_mm_s: tuple[float, ...] | None,
     extrapolate: bool,
     as_json: bool,
 ) -> None:
@@ -61,7 +69,7 @@ def process(
     check_output(report, ".html")
     found = process_recording(
         recording,
-        Settings(cap_g=cap_mass_g),
+        Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()),
         find_vibrations=functools.partial(recorded_vibrations, extrapolate=extrapolate),
     )
     if output:

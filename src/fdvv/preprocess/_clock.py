@@ -103,9 +103,10 @@ def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused:
     sides = np.concatenate(
         [np.column_stack([-np.ones(away.size), -away]), np.column_stack([np.ones(away.size), away])]
     )
+    # in microseconds: the solver takes what differs by 1e-7 for the same
     # the slack that a few good edges need (noise of brightness) widens all bounds alike
-    widen = np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
-    most = PPM_LARGEST * 1e-6 * span
+    widen = 1e6 * np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
+    most = PPM_LARGEST * span
     least = linprog(
         [0.0, 0.0, 1.0],
         np.column_stack([sides, -np.ones(widen.size)]),
@@ -114,15 +115,17 @@ def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused:
         method="highs",
     )
     assert least.x is not None
-    limits = widen + float(least.x[2]) * (1 + 1e-6) + 1e-9
+    # with the least slack a single line is left, which would be told without doubt: as much again is doubt
+    limits = widen + 2 * float(least.x[2]) + 1e-3
     corners = []
     for at in (away.min(), 0.0, away.max()):
         for sign in (1.0, -1.0):
             found = linprog(
                 [sign, sign * at], sides, limits, bounds=[(None, None), (-most, most)], method="highs"
             )
+            assert found.x is not None
             corners.append(found.x)
-    points = np.array(corners)
+    points = 1e-6 * np.array(corners)
     offset, tilt = points.mean(axis=0)
     widths = [
         0.5 * abs(np.diff(points[2 * i : 2 * i + 2] @ [1.0, at])[0])

@@ -40,7 +40,8 @@ class Ring:
     ----------
     mode : the principal one, with the most kinetic energy once the ring is free.
     modes : all that are known at the onset, the principal one first.
-    heard : these, and those that are known but had faded too far by the time the ring was free.
+    heard : these, and modes that sharpen a search but go into no model: they had faded too far by the time the
+        ring was free, or are halves of a pair.
     amplitudes : (presses, modes) at the onset.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.
@@ -124,15 +125,10 @@ def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> R
 def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
     """Give the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
     first, *side = order
-    single = [
-        k
-        for k in side
-        if not drives(fit.modes[k])
-        and not overlapped(fit.modes[k], fit.modes)
-        and _unknown(fit.modes[k], 0.0) is None
-    ]
+    told = [k for k in side if not drives(fit.modes[k]) and _unknown(fit.modes[k], 0.0) is None]
+    single = [k for k in told if not overlapped(fit.modes[k], fit.modes)]
     kept = [first, *(k for k in single if _unknown(fit.modes[k], delay_s) is None)]
-    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *single]))
+    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *told]))
     return Ring(modes[0], modes, heard, fit.amplitudes[:, kept], delay_s, ratio)
 
 
