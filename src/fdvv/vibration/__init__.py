@@ -21,6 +21,7 @@ from fdvv.vibration._likeness import correlation, delay_samples, spectral_simila
 from fdvv.vibration._modes import fit_modes
 from fdvv.vibration._observer import SimulatedObserver
 from fdvv.vibration._onset import Turn, find_turn, noise_rms
+from fdvv.vibration._paces import PacePresses, measure_paces
 from fdvv.vibration._pool import Measured, MeasuredVibration, measure_vibration
 from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._scaling import Scaling, fit_scaling
@@ -64,6 +65,7 @@ __all__ = [
     "MeasuredVibration",
     "Method",
     "NotFound",
+    "PacePresses",
     "Preferred",
     "Question",
     "Rating",
@@ -102,6 +104,7 @@ __all__ = [
     "fit_scaling",
     "key_events",
     "load_exciter",
+    "measure_paces",
     "measure_tone",
     "measure_vibration",
     "noise_rms",

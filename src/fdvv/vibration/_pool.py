@@ -134,7 +134,7 @@ def _beside(
 
 
 def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
-    """Give frequency and decay of the principal mode and of one other, those that are known well enough."""
+    """Give frequency and decay of the principal mode and of the surest other, if known well enough."""
     if isinstance(ring, NotFound):
         return ()
     sure = [
@@ -144,6 +144,7 @@ def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
         and mode.decay_1_s < FREE_ratio * 2 * math.pi * mode.frequency_Hz
     ]
     apart = [m for m in sure[1:] if not 1 / APART_ratio < m.frequency_Hz / sure[0].frequency_Hz < APART_ratio]
+    apart.sort(key=lambda mode: mode.frequency_sd_Hz / mode.frequency_Hz)
     return tuple((mode.frequency_Hz, mode.decay_1_s) for mode in [*sure[:1], *apart[:1]])
 
 

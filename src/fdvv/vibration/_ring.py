@@ -40,8 +40,8 @@ class Ring:
     ----------
     mode : the principal one, with the most kinetic energy once the ring is free.
     modes : all that are known at the onset, the principal one first.
-    heard : these, and modes that sharpen a search but go into no model: they had faded too far by the time the
-        ring was free, or are halves of a pair.
+    heard : these, and modes that sharpen a search but go into no model: they had faded too far by the time
+        the ring was free, or are halves of a pair.
     amplitudes : (presses, modes) at the onset.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.

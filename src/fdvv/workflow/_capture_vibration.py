@@ -16,14 +16,11 @@ from fdvv.vibration import (
     HeardPress,
     MeasuredVibration,
     NotFound,
-    Ring,
+    PacePresses,
     SharedMode,
     SnapEnergy,
-    measure_vibration,
-    shared_mode,
-    shared_rings,
+    measure_paces,
     snap_energy,
-    with_shared,
 )
 from fdvv.workflow._capture_heard import ON_HOUSING, HeardStroke, missing_words, shared_words
 from fdvv.workflow._capture_scaling import StrokeScaling, scaled_vibrations, scaling_words, stroke_scaling
@@ -102,65 +99,24 @@ def _vibrations(
 def _heard(
     recording: Recording, processed: Processed, streams: dict[int, Stream], shaken: bool
 ) -> tuple[list[HeardStroke], SharedMode | None]:
-    """Measure every stroke and pace; again where others tell of modes that it did not; then with one mode."""
+    """Measure every stroke and pace; with the mode that they share."""
     presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
     delay_s = 0.0 if shaken else 1e-3 * recording.bench.sound_filter_ms
-    heard = []
+    paces = []
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
-        found = [
+        heard = tuple(
             heard_press(presses[key], track, streams[track.take], delay_s)
             for track in tracks
             if (key := (track.take, track.part)) in presses and track.take in streams
-        ]
-        heard.append((curve, found, _energy(curve)))
-    first = [_measured(*one, shaken, ()) for one in heard if one[0].stroke is Stroke.PRESS]
-    known = shared_rings(_rings(first))
-    told = iter(first)
-    again = [
-        _sharper(next(told), one, shaken, known)
-        if one[0].stroke is Stroke.PRESS
-        else _measured(*one, shaken, known)
-        for one in heard
-    ]
-    mode = shared_mode(_rings(again))
-    if mode is not None:
-        again = [one if isinstance(one, NotFound) else with_shared(one, mode) for one in again]
+        )
+        pace_mm_s = curve.velocity_mm_s or curve.achieved_mm_s
+        paces.append(PacePresses(curve.stroke, pace_mm_s, heard, _energy(curve)))
+    found, mode = measure_paces(paces, shaken)
     strokes = [
-        HeardStroke(curve.stroke, curve.velocity_mm_s, curve.achieved_mm_s, found, energy)
-        for (curve, _, energy), found in zip(heard, again, strict=True)
+        HeardStroke(curve.stroke, curve.velocity_mm_s, curve.achieved_mm_s, one, pace.energy)
+        for curve, pace, one in zip(processed.curves, paces, found, strict=True)
     ]
     return strokes, mode
-
-
-def _sharper(
-    was: MeasuredVibration | NotFound,
-    heard: tuple[AveragedCurve, list[HeardPress], SnapEnergy | None],
-    shaken: bool,
-    known: tuple[tuple[float, float], ...],
-) -> MeasuredVibration | NotFound:
-    """Measure again where it did not tell of all that is known; kept if as many presses show it."""
-    if isinstance(was, MeasuredVibration) and all(was.rings_in(f) for f, _ in known):
-        return was
-    again = _measured(*heard, shaken, known) if known else was
-    if isinstance(was, MeasuredVibration) and (isinstance(again, NotFound) or again.shown < was.shown):
-        return was
-    return again
-
-
-def _measured(
-    curve: AveragedCurve,
-    heard: list[HeardPress],
-    energy: SnapEnergy | None,
-    shaken: bool,
-    known: tuple[tuple[float, float], ...],
-) -> MeasuredVibration | NotFound:
-    if not heard:
-        return NotFound("no press of it was heard")
-    return measure_vibration(heard, curve.velocity_mm_s or curve.achieved_mm_s, energy, shaken, known)
-
-
-def _rings(found: list[MeasuredVibration | NotFound]) -> list[Ring]:
-    return [one.ring for one in found if isinstance(one, MeasuredVibration) and isinstance(one.ring, Ring)]
 
 
 def heard_press(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: float) -> HeardPress:
