@@ -57,15 +57,11 @@ def errors(session: CapturedSession, told: RecordedVibrations, vibration: Vibrat
 def main(first_seed: int = FIRST_SEED, seeds: int = SEEDS) -> None:
     print(f"seeds {first_seed} to {first_seed + seeds - 1}, simulated; median (least to most) over seeds")
     for name in button_names():
-        rows, spent, skipped = defaultdict[tuple[str, float], list[tuple[float, ...]]](list), list[float](), 0
+        rows, spent = defaultdict[tuple[str, float], list[tuple[float, ...]]](list), list[float]()
         releases, exponents = 0, list[float]()
         for seed in range(first_seed, first_seed + seeds):
             session = captured_session(name, seed)
-            try:
-                processed = process(session.recording)
-            except ValueError:
-                skipped += 1
-                continue
+            processed = process(session.recording)
             start = time.process_time()
             told = recorded_vibrations(session.recording, processed)
             spent.append(time.process_time() - start)
@@ -78,7 +74,7 @@ def main(first_seed: int = FIRST_SEED, seeds: int = SEEDS) -> None:
             f"{np.median(exponents):.2f} ({min(exponents):.2f} to {max(exponents):.2f})" if exponents else "–"
         )
         print(
-            f"{name}: {len(spent)} sessions ({skipped} could not be processed), {np.median(spent):.2f} s of "
+            f"{name}: {len(spent)} sessions, {np.median(spent):.2f} s of "
             f"processor (at most {max(spent):.2f}), {releases} vibrations on releases, exponent {law}"
         )
         for (_, pace), found in sorted(rows.items()):
