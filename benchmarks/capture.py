@@ -31,7 +31,7 @@ from fdvv.twin import PARTICIPANTS, CaptureRig, Finger, ForceSensor, Habit, butt
 from fdvv.units import FloatArray
 from fdvv.workflow import model_of_recording
 
-FIRST_SEED, SEEDS = 500, 6
+FIRST_SEED, SEEDS = 700, 6
 FROM_mm = 0.15
 """Errors count from here on: above it the upper stop has part in the force."""
 

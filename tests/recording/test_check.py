@@ -10,7 +10,17 @@ import numpy as np
 import pytest
 from tests.recording.takes import ABOUT, take
 
-from fdvv.recording import Bench, Mend, Recording, RecordingLog, Take, check_recording, save_recording
+from fdvv.recording import (
+    RECORDING_SUFFIX,
+    Bench,
+    Mend,
+    Recording,
+    RecordingLog,
+    Take,
+    check_recording,
+    save_recording,
+)
+from fdvv.testing import captured_session
 
 
 def saved(path: Path, *takes: Take, about: Recording = ABOUT) -> Path:
@@ -92,7 +102,7 @@ def early(one: Take) -> Take:
 FAULTS: dict[str, tuple[Callable[[Take], Take], str]] = {
     "blind": (blind, "take 2, left: nothing was seen in any sample"),
     "empty": (empty, "take 2, force: holds no sample"),
-    "lacking": (lacking, "take 2: lacks force, which other takes hold"),
+    "lacking": (lacking, "take 2: lacks force, which other takes of its stage hold"),
     "early": (early, "take 2, force: begins before take 1 ended"),
 }
 
@@ -113,3 +123,11 @@ def test_clocks_that_begin_anew_may_do_so(tmp_path: Path) -> None:
 def test_a_recording_without_a_take_says_so(tmp_path: Path) -> None:
     found = check_recording(saved(tmp_path / "a"))
     assert (found.status, str(found.problems[0])) == (1, "whole file: holds no take; go on with the capture")
+
+
+def test_a_probe_may_be_recorded_by_other_instruments_than_presses(tmp_path: Path) -> None:
+    session = captured_session("mx-red", 2, presses=1, paces_mm_s=(100.0,))
+    path = tmp_path / f"a{RECORDING_SUFFIX}"
+    save_recording(session.recording, path)
+
+    assert check_recording(path).problems == ()

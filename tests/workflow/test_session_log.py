@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from fdvv.errors import InputError
 from fdvv.model import ForceSurface, Press, load_builtin
 from fdvv.testing import ScriptedDevice
-from fdvv.workflow._session_log import PRESSES, Entry, Kept, PressLog, Run, read_log
+from fdvv.workflow._session_file import Run
+from fdvv.workflow._session_log import PRESSES, Entry, Kept, PressLog, read_log
 
 SURFACE = ForceSurface.of_model(load_builtin("mx-clear"), [50.0, 100.0])
 RUN = Run("2026-01-01T10:00:00.000+00:00", 3, {"fdvv": "0"}, {"pace_ratio": 0.35, "patience": 10})

@@ -20,6 +20,7 @@ from fdvv.cli._output import (
     print_wrapped,
     with_spread,
 )
+from fdvv.cli._paces import Paces
 
 if TYPE_CHECKING:
     from fdvv.workflow import RecordedModel
@@ -33,9 +34,20 @@ if TYPE_CHECKING:
     "--cap-mass-g", type=Finite(min=0, max=1000, min_open=True), default=3.0, show_default=True,
     help="Mass of cap, stem, markers and a third of the spring.",
 )  # fmt: skip
+@click.option(
+    "--paces",
+    "paces_mm_s",
+    type=Paces(),
+    help="Paces for presses that were not asked for at one, as those of a log: each is given the nearest.",
+)
 @json_option
 def process(
-    recording: Path, output: Path | None, report: Path | None, cap_mass_g: float, as_json: bool
+    recording: Path,
+    output: Path | None,
+    report: Path | None,
+    cap_mass_g: float,
+    paces_mm_s: tuple[float, ...] | None,
+    as_json: bool,
 ) -> None:
     """Turn recorded presses into a model, with its spread over presses.
 
@@ -49,7 +61,7 @@ def process(
 
     check_output(output, SUFFIX)
     check_output(report, ".html")
-    found = process_recording(recording, Settings(cap_g=cap_mass_g))
+    found = process_recording(recording, Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()))
     if output:
         save_model(found.model, output)
     if report:

@@ -9,8 +9,9 @@ from fdvv.preprocess._fuse import Fusion, Seen, fuse, table_curve, unknown_curve
 from fdvv.preprocess._paper import AS_PRINTED, Gaussian, PaperRecipe, SigmaUnit, paper_average
 from fdvv.preprocess._press import RawPress, Spans, StrokeTrack
 from fdvv.preprocess._probe import Probe, probe_of
-from fdvv.preprocess._process import Feature, Processed, Settings, process
+from fdvv.preprocess._process import Feature, Processed, process
 from fdvv.preprocess._reject import Judged, Limits, Reason, judge
+from fdvv.preprocess._settings import Settings
 from fdvv.preprocess._strokes import spans_of
 from fdvv.preprocess._takes import Presses, idle_cN, presses_of
 

@@ -28,7 +28,7 @@ ROUNDS, SETTLED_N = 8, 2e-4
 TABLE = 1001
 """Points of a tabulated force: 5 um apart on a key."""
 
-SEATED = 0.05
+SEATED = 0.02
 """Weight of the equation while the cap is at its upper stop."""
 
 OUTSIDE_mm = 0.3

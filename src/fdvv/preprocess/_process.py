@@ -2,62 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.model import Stroke
-from fdvv.preprocess._average import AveragedCurve, Pooled, averaged, pool
+from fdvv.preprocess._average import AveragedCurve
 from fdvv.preprocess._clock import ClockFit
-from fdvv.preprocess._extend import extend
-from fdvv.preprocess._fuse import CurveOfForce, Fusion, Path, Seen, fuse, unknown_curve
+from fdvv.preprocess._curves import Curves
+from fdvv.preprocess._paths import FEWEST, Paths
 from fdvv.preprocess._press import StrokeTrack
 from fdvv.preprocess._probe import Probe, probe_of
-from fdvv.preprocess._reject import Judged, Limits, Reason, judge
-from fdvv.preprocess._strokes import LEFT_mm, spans_of, whole_press
+from fdvv.preprocess._reject import Judged, Reason, judge
+from fdvv.preprocess._settings import Settings
+from fdvv.preprocess._strokes import spans_of, whole_press
 from fdvv.preprocess._takes import idle_cN, presses_of
 from fdvv.preprocess._travel import travels_mm
-from fdvv.recording import Bench, Recording
-from fdvv.units import cN_from_N
+from fdvv.preprocess._zero import resting_mm
+from fdvv.recording import Recording
 
-OFF_STOP_mm = 0.12
-"""Frames nearer to the stop than this tell of the stop, not of the stroke."""
-
-UNKNOWN_PIECES = 25
-"""Spans of the button's force where nothing was known of it."""
-
-UNKNOWN_N = 1e3
-"""Nothing is known of it."""
-
-LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
-"""A frame is never surer than the first; the second is taken where fewer steps at rest tell."""
-
-GAIN_OFF = 0.1
-"""Presses at one pace differ in force as a whole by less: that is the pace's own spread."""
-
-FEWEST = 3
-"""Of presses of one kind: fewer give no spread."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What the processing takes for granted.
-
-    Attributes
-    ----------
-    cap_g : mass of the moving cap, its stem, markers and a third of its spring; 40 % off changes a curve by
-        0.7 cN rms at most, since only the tip's share of the motion is taken back.
-    limits : when a press is left out.
-    """
-
-    cap_g: float = 3.0
-    limits: Limits = field(default_factory=Limits)
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.cap_g) and self.cap_g > 0):
-            raise ModelError(f"cap_g must be above 0, got {self.cap_g}")
+NEAREST_ratio = 1.5
+"""A press further than this from every pace belongs to none."""
 
 
 @dataclass(frozen=True)
@@ -109,10 +76,11 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
         raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(found.lost[:3])}")
     probe = probe_of(recording, idle_cN(recording))
     spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in found.presses]
-    judged = judge(found.presses, spans, settings.limits)
-    zero_mm = _zero_mm(judged, probe)
-    work = _Work(judged, probe, recording.bench, settings, zero_mm)
-    curves, tracks = work.curves()
+    judged = _paced(judge(found.presses, spans, settings.limits), settings.paces_mm_s)
+    zero_mm = resting_mm(judged, probe)
+    paths = Paths(settings.cap_g, recording.bench.tip_mass_g, zero_mm)
+    work = Curves(judged, probe, paths, settings.limits.unlike)
+    curves, tracks = work.average()
     if not curves:
         raise ModelError(f"recording {recording.name!r}: fewer than {FEWEST} presses of any pace can be used")
     used = [one for one in work.judged if one.reason is None]
@@ -136,205 +104,25 @@ def _feature(values: Sequence[float]) -> Feature:
     return Feature(float(np.median(finite)), spread, int(finite.size))
 
 
+def _paced(judged: Sequence[Judged], paces_mm_s: Sequence[float]) -> list[Judged]:
+    """Give presses of no pace the nearest one, in ratio; leave out those that are near none."""
+    return [
+        _nearest(one, paces_mm_s) if paces_mm_s and one.press.velocity_mm_s is None else one for one in judged
+    ]
+
+
+def _nearest(one: Judged, paces_mm_s: Sequence[float]) -> Judged:
+    if not np.isfinite(one.achieved_mm_s):
+        return replace(one, reason=one.reason or Reason.OFF_PACE)
+    apart = np.abs(np.log(np.array(paces_mm_s) / one.achieved_mm_s))
+    pace = paces_mm_s[int(np.argmin(apart))]
+    off = Reason.OFF_PACE if apart.min() > np.log(NEAREST_ratio) else None
+    return replace(one, press=replace(one.press, velocity_mm_s=pace), reason=one.reason or off)
+
+
 def _arrival_cN(curves: Sequence[AveragedCurve]) -> float:
     """Give the force with which a cap arrives at its stop, the middle of all presses' curves."""
     return float(np.median([c.force_cN[-1] for c in curves if c.stroke is Stroke.PRESS] or [0.0]))
-
-
-def _zero_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
-    """Tell how deep the cap was before presses began, under the finger that rested on it.
-
-    With a probe from its curve; without one from the slope of the first force of the slowest presses.
-    """
-    used = [one for one in judged if one.reason is None]
-    rests = [one.press.force_cN[one.press.t_s < one.spans.start_s - 0.02] for one in used]
-    rest_cN = float(np.median([np.median(rest) for rest in rests if rest.size])) if rests else 0.0
-    if probe is not None:
-        return probe.rest_mm(rest_cN)
-    slowest = sorted(used, key=lambda one: one.achieved_mm_s)[: max(FEWEST, len(used) // 4)]
-    slopes = [slope for one in slowest if (slope := _first_slope_cN_mm(one)) > 0]
-    return rest_cN / float(np.median(slopes)) if slopes else 0.0
-
-
-def _first_slope_cN_mm(one: Judged) -> float:
-    press = one.press
-    first = (
-        (press.frame_s > one.spans.start_s - 0.02)
-        & (press.frame_mm < 0.2)
-        & (press.frame_s < one.spans.bottom_s)
-    )
-    if first.sum() < 4 or np.ptp(press.frame_mm[first]) < 0.1:
-        return 0.0
-    force = np.interp(press.frame_s[first], press.t_s, press.force_cN)
-    return float(np.polyfit(press.frame_mm[first], force, 1)[0])
-
-
-@dataclass(frozen=True, eq=False)
-class _Curve:
-    """One averaged curve, what it is made of, the button's force behind it, and presses unlike the others."""
-
-    average: AveragedCurve
-    tracks: list[StrokeTrack]
-    shape: CurveOfForce
-    strange: list[Judged]
-
-
-class _Work:
-    """Curves of every stroke and pace, slow ones first, since each tells the next what to expect."""
-
-    def __init__(
-        self, judged: list[Judged], probe: Probe | None, bench: Bench, settings: Settings, zero_mm: float
-    ) -> None:
-        self.judged, self.probe, self.bench, self.settings = judged, probe, bench, settings
-        self.zero_mm = zero_mm
-        self.warnings: list[str] = []
-
-    def curves(self) -> tuple[list[AveragedCurve], list[list[StrokeTrack]]]:
-        """Average both strokes at every pace that has enough presses, in reading order."""
-        known = {stroke: self.probe.curve(stroke) if self.probe else None for stroke in Stroke}
-        found: dict[Stroke, list[_Curve]] = {stroke: [] for stroke in Stroke}
-        for pace in sorted({one.press.velocity_mm_s for one in self.judged}, key=lambda v: v or 0.0):
-            for stroke, curve in self._pace(pace, known).items():
-                known[stroke] = curve.shape
-                found[stroke].append(curve)
-        ordered = [curve for stroke in Stroke for curve in found[stroke]]
-        return [c.average for c in ordered], [c.tracks for c in ordered]
-
-    def _pace(self, pace: float | None, known: Mapping[Stroke, CurveOfForce | None]) -> dict[Stroke, _Curve]:
-        """Average both strokes at one pace; presses unlike the others are left out, and it is done again."""
-        while True:
-            used = [o for o in self.judged if o.reason is None and o.press.velocity_mm_s == pace]
-            curves = {stroke: self._curve(used, stroke, pace, known[stroke]) for stroke in Stroke}
-            strange = [one for curve in curves.values() if curve for one in curve.strange]
-            if not strange:
-                break
-            self.judged = [replace(o, reason=Reason.FORCE) if o in strange else o for o in self.judged]
-        if len(used) < FEWEST:
-            self.warnings.append(f"{pace or 'unknown'} mm/s: {len(used)} presses can be used, no curve")
-        return {stroke: curve for stroke, curve in curves.items() if curve}
-
-    def _curve(
-        self, used: Sequence[Judged], stroke: Stroke, pace: float | None, known: CurveOfForce | None
-    ) -> _Curve | None:
-        """Average one stroke at one pace; None if too few presses show it."""
-        seen = [self._seen(one, stroke) for one in used]
-        whole = [(one, s) for one, s in zip(used, seen, strict=True) if s is not None]
-        if len(whole) < FEWEST:
-            return None
-        tracks, shape = self._paths(whole, stroke, known)
-        pooled = pool(tracks, shape, _end_mm(tracks))
-        speeds = np.array([one.achieved_mm_s for one, _ in whole])
-        strange = [whole[i][0] for i in _unlike(pooled, self.settings.limits.unlike)]
-        return _Curve(averaged(tracks, pooled, pace, speeds), tracks, shape, strange)
-
-    def _seen(self, one: Judged, stroke: Stroke) -> Seen | None:
-        """Cut one stroke out: from where the cap has left its rest to the last frame before the stop."""
-        press, spans = one.press, one.spans
-        near = press.frame_mm > spans.bottom_mm - OFF_STOP_mm
-        begin_s, end_s = spans.of(stroke)
-        if stroke is Stroke.PRESS:
-            inside = (press.frame_s <= end_s) & ~near & (press.frame_s >= begin_s - 0.01)
-        else:
-            inside = (
-                (press.frame_s >= begin_s) & ~near & (press.frame_mm > LEFT_mm) & (press.frame_s <= end_s)
-            )
-        frames = np.flatnonzero(inside)
-        if frames.size < 2:
-            return None
-        low, high = press.frame_s[frames[0]], press.frame_s[frames[-1]]
-        step_s = float(press.t_s[1] - press.t_s[0])
-        felt = (press.t_s >= low - 0.2 * step_s) & (press.t_s <= high + 0.2 * step_s)
-        t_s = press.t_s[felt]
-        if t_s.size < 4:
-            return None
-        shown = (press.frame_s >= t_s[0]) & (press.frame_s <= t_s[-1])
-        if shown.sum() < 2:
-            return None
-        depth_mm = press.frame_mm + self.zero_mm
-        guess = np.interp(t_s, press.frame_s, depth_mm)
-        return Seen(t_s, press.force_cN[felt], press.frame_s[shown], depth_mm[shown], guess)
-
-    def _paths(
-        self, whole: Sequence[tuple[Judged, Seen]], stroke: Stroke, known: CurveOfForce | None
-    ) -> tuple[list[StrokeTrack], CurveOfForce]:
-        """Find the paths between frames, then once more with what lies between the stop and a frame."""
-        moving_g = self.settings.cap_g + self.bench.tip_mass_g
-        noise_mm = _frame_noise_mm([one for one, _ in whole])
-        fusion = Fusion(moving_g, noise_mm)
-        if known is None:
-            fusion = replace(fusion, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
-        known = known or unknown_curve
-        paths, shape = fuse([seen for _, seen in whole], known, fusion)
-        longer = [
-            extend(
-                seen,
-                path,
-                stroke,
-                (one.press.t_s, one.press.force_cN),
-                shape,
-                moving_g,
-                one.spans.bottom_mm + self.zero_mm - LEFT_mm,
-            )
-            for (one, seen), path in zip(whole, paths, strict=True)
-        ]
-        paths, shape = fuse(longer, known, fusion)
-        ends = zip(whole, longer, paths, strict=True)
-        return [self._track(one, stroke, seen, path) for (one, _), seen, path in ends], shape
-
-    def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
-        """Give a stroke with the force between finger and cap: the tip's own motion is taken back."""
-        tip_kg = 1e-3 * self.bench.tip_mass_g
-        return StrokeTrack(
-            one.press.take,
-            one.press.part,
-            stroke,
-            seen.t_s,
-            path.displacement_mm,
-            path.velocity_mm_s,
-            path.acceleration_m_s2,
-            seen.force_cN - cN_from_N(tip_kg * path.acceleration_m_s2),
-        )
-
-
-def _slipped(pooled: Pooled) -> list[int]:
-    """Find presses whose force is that of the others times a number: the sensor slipped, or was tilted."""
-    gains = []
-    for apart in pooled.apart_cN:
-        seen = np.isfinite(apart)
-        mean = pooled.force_cN[seen]
-        gains.append(1 + float(apart[seen] @ mean) / max(float(mean @ mean), 1e-9))
-    off = np.abs(np.array(gains) - np.median(gains))
-    far = np.flatnonzero(off > max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))
-    return [int(i) for i in far if off[i] >= 0.5 * off.max()] if len(gains) > FEWEST else []
-
-
-def _frame_noise_mm(used: Sequence[Judged]) -> float:
-    """Tell the noise of a frame from frames that followed each other while the cap rested."""
-    steps = []
-    for one in used:
-        rest = one.press.frame_mm[one.press.frame_s < one.spans.start_s - 0.02]
-        steps.append(np.diff(rest))
-    joined = np.concatenate(steps) if steps else np.zeros(0)
-    if joined.size < LEAST_STEPS:
-        return USUAL_NOISE_mm
-    return max(1.4826 * float(np.median(np.abs(joined))) / float(np.sqrt(2)), LEAST_NOISE_mm)
-
-
-def _end_mm(tracks: Sequence[StrokeTrack]) -> float:
-    """Tell to what depth at least three presses, or a third of them, have samples."""
-    deepest = sorted(float(track.displacement_mm.max()) for track in tracks)
-    return deepest[-max(FEWEST, len(deepest) // 3)]
-
-
-def _unlike(pooled: Pooled, limit: float) -> list[int]:
-    """Find presses that differ from the mean by much more than presses do, the worst first."""
-    slipped = _slipped(pooled)
-    if slipped:
-        return slipped
-    apart = np.sqrt(np.nanmean(pooled.apart_cN**2, axis=1))
-    usual = float(np.median(apart))
-    far = np.flatnonzero(apart > limit * max(usual, 1.0))
-    return [int(i) for i in far if apart[i] >= 0.5 * apart.max()] if apart.size > FEWEST else []
 
 
 def _switched(

@@ -9,6 +9,7 @@ from fdvv.recording._log import RecordingLog
 from fdvv.recording._mend import Mend
 from fdvv.recording._read import log_formats, read_log
 from fdvv.recording._records import schema
+from fdvv.recording._select import select
 from fdvv.recording._serial import SerialCapture
 from fdvv.recording._types import UNITS, Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
@@ -36,5 +37,6 @@ __all__ = [
     "read_log",
     "save_recording",
     "schema",
+    "select",
     "unusable",
 ]

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.journal import read_records
-from fdvv.recording._facts import facts_of, missing, streams_of
+from fdvv.recording._facts import facts_of, missing
 from fdvv.recording._file import CUT, KIND, REMEDY, read_file
 from fdvv.recording._file_check import FileCheck, Problem, unusable
 from fdvv.recording._records import VERSION
-from fdvv.recording._types import Recording, Take
+from fdvv.recording._types import Recording, Stage, Take
 
 A_RECORDING = "a recording"
 
@@ -37,15 +37,21 @@ def _cut(takes: int) -> Problem:
     return Problem("end of file", CUT, remedy)
 
 
+def _usual(recording: Recording, stage: Stage) -> list[str]:
+    """Name the streams that takes of one stage hold; a probe has other instruments than a press."""
+    takes = [take for take in recording.takes if take.stage is stage]
+    return list(dict.fromkeys(stream.name for take in takes for stream in take.streams))
+
+
 def _problems(recording: Recording) -> Iterator[Problem]:
     if not recording.takes:
         yield Problem("whole file", "holds no take", "go on with the capture")
-    names = list(streams_of(recording))
+    usual = {take.stage: _usual(recording, take.stage) for take in recording.takes}
     for take in recording.takes:
         there = {stream.name for stream in take.streams}
-        lost = [name for name in names if name not in there]
+        lost = [name for name in usual[take.stage] if name not in there]
         if lost:
-            told = f"lacks {', '.join(lost)}, which other takes hold"
+            told = f"lacks {', '.join(lost)}, which other takes of its stage hold"
             yield Problem(f"take {take.number}", told, "leave the take out, or say why in a remark")
         yield from _blind(take)
     if recording.bench.clocks_go_on:

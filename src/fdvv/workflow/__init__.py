@@ -24,6 +24,7 @@ from fdvv.workflow._feasibility import (
 )
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
+from fdvv.workflow._join_logs import join_logs
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
@@ -108,6 +109,7 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
+    "join_logs",
     "load_actuation",
     "make_program",
     "measured_files",

@@ -12,8 +12,9 @@ from typing import Any, TypeVar
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.workflow._session_log import REMEDY, Entry, Run
+from fdvv.journal import JournalKind, read_records
+from fdvv.workflow._session_file import Run, SessionFile
+from fdvv.workflow._session_log import REMEDY, Entry
 
 ANSWERS = "answers.jsonl"
 Read = TypeVar("Read")
@@ -46,7 +47,7 @@ class Given(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return Entry(self.number, self.velocity_mm_s, "", achieved, self.made)
 
 
-class AnswerLog:
+class AnswerLog(SessionFile):
     """The answers of a session, in memory, and on file if there is a folder for it.
 
     Parameters
@@ -55,58 +56,34 @@ class AnswerLog:
 
     Attributes
     ----------
-    runs, answers : so far, those of earlier runs among them.
-    warnings : what a person should know of the file.
-
-    Raises InputError on a file that is damaged or in use, OSError if it cannot be written.
+    answers : so far, those of earlier runs among them.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder
-        self.runs: list[Run] = []
         self.answers: list[Given] = []
-        self.warnings: list[str] = []
-        self._journal: Journal | None = None
-        if folder:
-            reason = "another process is at work on this session"
-            busy = InputError(folder, "session", reason, "wait for it, or name another folder")
-            self._journal = Journal(folder / ANSWERS, busy)
-            try:
-                self._read(self._journal)
-            except BaseException:
-                self.close()
-                raise
+        super().__init__(folder / ANSWERS if folder else None)
 
-    def _read(self, journal: Journal) -> None:
-        """Learn what is there; cut off a record that was not finished."""
+    def _read(self, path: Path) -> int:
         end = 0
-        for record, after in read_records(journal.path, KIND):
+        for record, after in read_records(path, KIND):
             end = after
             if "run" in record:
-                self.runs.append(_converted(journal.path, "run", record["run"], Run))
+                self.runs.append(_converted(path, "run", record["run"], Run))
             else:
-                self.answers.append(_answer(journal.path, len(self.answers) + 1, record["answer"]))
-        if journal.cut(end):
-            kept = f"answers kept: {len(self.answers)}"
-            self.warnings.append(f"{journal.path}: the last record is not whole and is left out; {kept}")
+                self.answers.append(_answer(path, len(self.answers) + 1, record["answer"]))
+        return end
 
-    def begin(self, run: Run) -> None:
-        """Note that the session is begun, or gone on with."""
-        if self._journal:
-            self._journal.write({"run": msgspec.to_builtins(run)})
-        self.runs.append(run)
+    def _count(self) -> int:
+        return len(self.answers)
+
+    def _kept_word(self) -> str:
+        return "answers"
 
     def add(self, given: Given) -> None:
         """Keep an answer."""
-        if self._journal:
-            self._journal.write({"answer": msgspec.to_builtins(given)})
+        self._write({"answer": msgspec.to_builtins(given)})
         self.answers.append(given)
-
-    def close(self) -> None:
-        """Let go of the file; a second time does nothing."""
-        if self._journal:
-            self._journal.close()
-            self._journal = None
 
 
 def read_answers(path: Path) -> tuple[list[Run], list[Entry], int]:

@@ -14,7 +14,8 @@ from fdvv.device import read_session, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.recording import FileCheck, Problem, unusable
 from fdvv.workflow._receipt import RECEIPT, read_receipt
-from fdvv.workflow._session_log import PRESSES, Entry, Run, read_log
+from fdvv.workflow._session_file import Run
+from fdvv.workflow._session_log import PRESSES, Entry, read_log
 from fdvv.workflow._session_manifest import MANIFEST, Manifest, read_manifest
 
 A_SESSION, A_DEVICE_RECORDING = "a session", "a recording of a device"

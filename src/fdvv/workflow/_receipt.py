@@ -14,7 +14,8 @@ from fdvv.compensate import CurveOutcome
 from fdvv.documents import Kind, pretty, read_document
 from fdvv.files import read_limited, write_atomic
 from fdvv.workflow._answer_log import ANSWERS, read_answers
-from fdvv.workflow._session_log import PRESSES, Entry, Run, read_log
+from fdvv.workflow._session_file import Run
+from fdvv.workflow._session_log import PRESSES, Entry, read_log
 from fdvv.workflow._session_manifest import MANIFEST, LARGEST_bytes, Manifest, ModelName, read_manifest
 
 RECEIPT = "receipt.json"

@@ -16,7 +16,8 @@ from fdvv.errors import InputError
 from fdvv.files import write_atomic
 from fdvv.workflow._answer_log import ANSWERS, AnswerLog
 from fdvv.workflow._devices import open_device
-from fdvv.workflow._session_log import PRESSES, PressLog, Run
+from fdvv.workflow._session_file import Run
+from fdvv.workflow._session_log import PRESSES, PressLog
 from fdvv.workflow._session_manifest import (
     KIND,
     MANIFEST,

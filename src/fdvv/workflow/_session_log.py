@@ -17,21 +17,13 @@ import msgspec
 from fdvv.compensate import UNTUNED, Tuning
 from fdvv.device import pack_record, unpack_press, unpack_surface
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, read_records
+from fdvv.journal import JournalKind, read_records
 from fdvv.model import ForceSurface, Press
+from fdvv.workflow._session_file import Run, SessionFile
 
 PRESSES = "presses.jsonl"
 REMEDY = "begin a new session in another folder"
 KIND = JournalKind(frozenset({"run", "press"}), REMEDY)
-
-
-class Run(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One start of the program on a session: when, with which versions, seed and bounds."""
-
-    started: str
-    seed: int | None
-    versions: dict[str, str]
-    acceptance: dict[str, int | float]
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -73,7 +65,7 @@ class Kept:
     tuning: Tuning = UNTUNED
 
 
-class PressLog:
+class PressLog(SessionFile):
     """The presses of a session, in memory, and on file if there is a folder for it.
 
     Parameters
@@ -82,33 +74,23 @@ class PressLog:
 
     Attributes
     ----------
-    runs, entries : so far, those of earlier runs among them.
-    warnings : what a person should know of the file.
-
-    Raises InputError on a file that is damaged or in use, OSError if it cannot be written.
+    entries : so far, those of earlier runs among them.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder
-        self.path = folder / PRESSES if folder else None
-        self.runs: list[Run] = []
         self.entries: list[Entry] = []
-        self.warnings: list[str] = []
-        self._journal: Journal | None = None
-        if self.path:
-            self._journal = Journal(self.path, _busy(self.path))
-            try:
-                self._read(self._journal)
-            except BaseException:
-                self.close()
-                raise
+        super().__init__(folder / PRESSES if folder else None)
 
-    def _read(self, journal: Journal) -> None:
-        """Learn what is there; cut off a record that was not finished."""
-        self.runs, self.entries, end = read_log(journal.path)
-        if journal.cut(end):
-            kept = f"presses kept: {len(self.entries)}"
-            self.warnings.append(f"{journal.path}: the last record is not whole and is left out; {kept}")
+    def _read(self, path: Path) -> int:
+        self.runs, self.entries, end = read_log(path)
+        return end
+
+    def _count(self) -> int:
+        return len(self.entries)
+
+    def _kept_word(self) -> str:
+        return "presses"
 
     def kept(self) -> Iterator[Kept]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""
@@ -125,22 +107,11 @@ class PressLog:
         """Count the presses that were used."""
         return sum(entry.used for entry in self.entries)
 
-    def begin(self, run: Run) -> None:
-        """Note that the session is begun, or gone on with."""
-        if self._journal:
-            self._journal.write({"run": msgspec.to_builtins(run)})
-        self.runs.append(run)
-
     def add(self, kept: Kept) -> None:
         """Keep a press."""
-        if self._journal:
-            self._journal.write({"press": _packed(kept)})
+        if self.path is not None:
+            self._write({"press": _packed(kept)})
         self.entries.append(kept.entry)
-
-    def close(self) -> None:
-        """Let go of the file; a second time does nothing."""
-        if self._journal:
-            self._journal.close()
 
 
 def read_log(path: Path) -> tuple[list[Run], list[Entry], int]:
@@ -162,11 +133,6 @@ def _packed(kept: Kept) -> dict[str, Any]:
     tuning = {} if kept.tuning == UNTUNED else {"tuning": asdict(kept.tuning)}
     found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
     return found | tuning
-
-
-def _busy(path: Path) -> InputError:
-    reason = "another process is at work on this session"
-    return InputError(path.parent, "session", reason, "wait for it, or name another folder")
 
 
 def _run(path: Path, found: Any) -> Run:

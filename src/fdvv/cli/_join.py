@@ -1,0 +1,77 @@
+"""fdvv join."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table, print_warnings
+
+SUFFIX = ".recording.jsonl"
+
+
+def _fact(name: str, told: str) -> click.Option:
+    """Make the option of one fact of the bench."""
+    return click.Option(
+        [f"--{name.replace('_', '-').lower()}", name], type=Finite(min=0), default=0.0, help=told
+    )
+
+
+FACTS = (
+    _fact("force_filter_ms", "Time constant of the force sensor's RC filter, undone."),
+    _fact("force_play_cN", "By how much the force sensor reads more on the way back, undone."),
+    _fact("tip_mass_g", "Mass of the force sensor's tip, whose inertia is taken off."),
+    _fact("sound_filter_ms", "Time constant of the microphone's filter, taken off as a delay."),
+    _fact("sound_V_s_m", "What the microphone gives per speed of the cap."),
+    _fact("exposure_ms", "Of a frame of the cameras, which is stamped at its start."),
+)
+
+
+@click.command()
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option(
+    "-o", "--output", required=True, type=click.Path(path_type=Path), help="The recording to write."
+)
+@click.option("--name", required=True, help="Of the button.")
+@click.option("--marker", "markers", multiple=True, help="A marker on the cap; once or twice. Default: all.")
+@click.option("--light", default="", help="The marker that cameras see only while the light is on.")
+@click.option("--licence", default="", help="Of the data, as its owner states it.")
+@click.option("--person", default="", help="A word for who pressed, never a name.")
+@json_option
+def join(
+    logs: tuple[Path, ...],
+    output: Path,
+    name: str,
+    markers: tuple[str, ...],
+    light: str,
+    licence: str,
+    person: str,
+    as_json: bool,
+    **facts: float,
+) -> None:
+    """Put logs of one session into a recording: motion capture, force, sound.
+
+    LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
+    (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
+    """
+    from fdvv.recording import Bench, facts_of, save_recording
+    from fdvv.workflow import join_logs
+
+    check_output(output, SUFFIX)
+    recording = join_logs(logs, name, markers, light, Bench(**facts), licence, person)  # type: ignore[arg-type]
+    save_recording(recording, output)
+    if as_json:
+        print_json({"recording": str(output), **facts_of(recording), "warnings": list(recording.warnings)})
+        return
+    take = recording.takes[0]
+    print_table(
+        ["stream", "quantity", "clock", "samples", "rate Hz"],
+        [[s.name, str(s.quantity), s.clock, str(s.t_s.size), f"{s.rate_Hz:.1f}"] for s in take.streams],
+        left=3,
+    )
+    click.echo(f"written to {output}")
+    print_warnings(recording.warnings)
+
+
+join.params.extend(FACTS)

@@ -1,0 +1,140 @@
+"""The paths of strokes: cut out of presses, found between frames, extended beside the stop."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fdvv.model import Stroke
+from fdvv.preprocess._extend import extend
+from fdvv.preprocess._fuse import CurveOfForce, Fusion, Path, Seen, fuse, unknown_curve
+from fdvv.preprocess._press import StrokeTrack
+from fdvv.preprocess._reject import Judged
+from fdvv.preprocess._strokes import LEFT_mm
+from fdvv.units import cN_from_N
+
+OFF_STOP_mm = 0.12
+"""Frames nearer to the stop than this tell of the stop, not of the stroke."""
+
+UNKNOWN_PIECES, UNKNOWN_N = 25, 1e3
+"""Spans of the button's force, and what it may be, where nothing was known of it."""
+
+LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
+"""A frame is never surer than the first; the second is taken where fewer steps at rest tell."""
+
+FEWEST_FRAMES = 2
+"""Frames that must show a stroke on its way: one leaves its speed to the equation alone."""
+
+FEWEST = 3
+"""Presses of one kind: fewer give no spread."""
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Finds paths.
+
+    Attributes
+    ----------
+    cap_g, tip_g : masses of the cap and of the force sensor's tip.
+    zero_mm : added to all depths.
+    """
+
+    cap_g: float
+    tip_g: float
+    zero_mm: float
+
+    def _seen(self, one: Judged, stroke: Stroke) -> Seen | None:
+        """Cut one stroke out: from where the cap has left its rest to the last frame before the stop."""
+        press, spans = one.press, one.spans
+        near = press.frame_mm > spans.bottom_mm - OFF_STOP_mm
+        begin_s, end_s = spans.of(stroke)
+        if stroke is Stroke.PRESS:
+            inside = (press.frame_s <= end_s) & ~near & (press.frame_s >= begin_s - 0.01)
+        else:
+            # one frame of the cap back at rest tells when it must have arrived
+            after = press.frame_s[press.frame_s > end_s]
+            last_s = float(after[0]) if after.size else end_s
+            inside = (press.frame_s >= begin_s) & ~near & (press.frame_s <= last_s)
+        frames = np.flatnonzero(inside)
+        if np.sum(inside & (press.frame_mm > LEFT_mm)) < FEWEST_FRAMES:
+            return None
+        low, high = press.frame_s[frames[0]], press.frame_s[frames[-1]]
+        step_s = float(press.t_s[1] - press.t_s[0])
+        felt = (press.t_s >= low - 0.2 * step_s) & (press.t_s <= high + 0.2 * step_s)
+        t_s = press.t_s[felt]
+        if t_s.size < 4:
+            return None
+        shown = (press.frame_s >= t_s[0]) & (press.frame_s <= t_s[-1])
+        if shown.sum() < 2:
+            return None
+        depth_mm = press.frame_mm + self.zero_mm
+        guess = np.interp(t_s, press.frame_s, depth_mm)
+        return Seen(t_s, press.force_cN[felt], press.frame_s[shown], depth_mm[shown], guess)
+
+    def find(
+        self, used: Sequence[Judged], stroke: Stroke, known: CurveOfForce | None
+    ) -> tuple[list[Judged], list[StrokeTrack], CurveOfForce] | None:
+        """Find the paths of one stroke of presses at one pace, and the button's force behind them.
+
+        known : the button's force as far as it is known; None if nothing is. Gives None if fewer than three
+        presses show the stroke, else those that do, their tracks and the force. First between frames, then
+        once more with what lies between the stop and a frame.
+        """
+        seen = [self._seen(one, stroke) for one in used]
+        whole = [(one, s) for one, s in zip(used, seen, strict=True) if s is not None]
+        if len(whole) < FEWEST:
+            return None
+        moving_g = self.cap_g + self.tip_g
+        noise_mm = _frame_noise_mm([one for one, _ in whole])
+        fusion = Fusion(moving_g, noise_mm)
+        if known is None:
+            fusion = replace(fusion, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
+        known = known or unknown_curve
+        paths, shape = fuse([seen for _, seen in whole], known, fusion)
+        longer = [
+            self._longer(one, stroke, seen, path, shape, moving_g)
+            for (one, seen), path in zip(whole, paths, strict=True)
+        ]
+        paths, shape = fuse(longer, known, fusion)
+        ends = zip(whole, longer, paths, strict=True)
+        tracks = [self._track(one, stroke, seen, path) for (one, _), seen, path in ends]
+        return [one for one, _ in whole], tracks, shape
+
+    def _longer(
+        self, one: Judged, stroke: Stroke, seen: Seen, path: Path, shape: CurveOfForce, moving_g: float
+    ) -> Seen:
+        """Add what no frame shows, between the stop and the nearest frame."""
+        felt = one.press.t_s, one.press.force_cN
+        ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
+        return extend(seen, path, stroke is Stroke.PRESS, felt, shape, moving_g, ends_mm)
+
+    def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
+        """Give a stroke with the force between finger and cap: the tip's own motion is taken back."""
+        tip_kg = 1e-3 * self.tip_g
+        back = np.flatnonzero(path.displacement_mm < LEFT_mm) if stroke is Stroke.RELEASE else np.zeros(0)
+        # what follows the return to rest is the upper stop's
+        until = slice(None, int(back[0]) if back.size and back[0] > 3 else None)
+        return StrokeTrack(
+            one.press.take,
+            one.press.part,
+            stroke,
+            seen.t_s[until],
+            path.displacement_mm[until],
+            path.velocity_mm_s[until],
+            path.acceleration_m_s2[until],
+            (seen.force_cN - cN_from_N(tip_kg * path.acceleration_m_s2))[until],
+        )
+
+
+def _frame_noise_mm(used: Sequence[Judged]) -> float:
+    """Tell the noise of a frame from frames that followed each other while the cap rested."""
+    steps = []
+    for one in used:
+        rest = one.press.frame_mm[one.press.frame_s < one.spans.start_s - 0.02]
+        steps.append(np.diff(rest))
+    joined = np.concatenate(steps) if steps else np.zeros(0)
+    if joined.size < LEAST_STEPS:
+        return USUAL_NOISE_mm
+    return max(1.4826 * float(np.median(np.abs(joined))) / float(np.sqrt(2)), LEAST_NOISE_mm)
