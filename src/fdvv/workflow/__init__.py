@@ -8,6 +8,7 @@ from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
 from fdvv.workflow._capture_plan import CapturePlan, Step
 from fdvv.workflow._capture_report import capture_report
+from fdvv.workflow._capture_vibration import HeardStroke, RecordedVibrations, recorded_vibrations
 from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
@@ -66,6 +67,7 @@ __all__ = [
     "FolderFit",
     "FolderSummary",
     "Guide",
+    "HeardStroke",
     "ModelFit",
     "PaceStanding",
     "PressDone",
@@ -73,6 +75,7 @@ __all__ = [
     "ProbeResult",
     "Receipt",
     "RecordedModel",
+    "RecordedVibrations",
     "RenderedVibration",
     "Rendering",
     "Session",
@@ -126,6 +129,7 @@ __all__ = [
     "process_recording",
     "program_image",
     "quick_look",
+    "recorded_vibrations",
     "render_vibration",
     "save_actuation",
     "settings_with",
