@@ -1,4 +1,4 @@
-"""How well is the vibration of a snap measured from presses of the twin's buttons? Simulated; ten minutes.
+"""How well is the vibration of a snap measured from presses of the twin's buttons? Simulated; four minutes.
 
 Run as ``python -m benchmarks.vibration``, or with the sensors wanted and the first seed. Truth: onset is when
 the leaf first strikes the fixed contact (press) or the cam begins to take its load off it (release);
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,12 +38,13 @@ from fdvv.vibration import (
     HeardPress,
     MeasuredVibration,
     NotFound,
+    PacePresses,
     Snap,
     SnapEnergy,
     cramer_rao,
     duration_s,
     find_snap,
-    measure_vibration,
+    measure_paces,
     snap_energy,
 )
 
@@ -177,7 +178,7 @@ def pooled(found: list[Case], measured: MeasuredVibration | NotFound, button: Bu
     if isinstance(measured.ring, NotFound):
         return f"{text}; ring not found ({measured.ring.reason})"
     f, d = true_mode(button)
-    told, lasts = measured.ring.mode, duration_s(measured.ring.mode.decay_1_s)
+    told, lasts = measured.ring.mode, measured.ring.duration_s
     return (
         f"{text}; {told.frequency_Hz:.0f} +- {told.frequency_sd_Hz:.1f} Hz "
         f"({100 * (told.frequency_Hz / f - 1):+.1f} %), {1e3 * lasts:.1f} +- "
@@ -229,31 +230,24 @@ def main(sensors: Sequence[str] = SENSORS, first_seed: int = FIRST_SEED) -> None
     seeds = range(first_seed, first_seed + PRESSES)
     print(f"{PRESSES} presses a case, seeds {seeds.start} to {seeds.stop - 1}, simulated")
     for name in button_names():
-        button, known = load_button(name), dict[str, tuple[tuple[float, float], ...]]()
-        for pace in PACES_mm_s:
-            made = traces(name, pace, seeds)
-            for stroke in Stroke:
-                for sensor in sensors:
-                    told = line(button, cases(made, stroke, sensor), pace, sensor, known)
-                    print(f"{name} {stroke} {pace:g} mm/s {sensor}: {told}", flush=True)
+        made = {pace: traces(name, pace, seeds) for pace in PACES_mm_s}
+        for sensor in sensors:
+            for told in lines(load_button(name), made, sensor):
+                print(f"{name} {told}", flush=True)
 
 
-def line(
-    button: ButtonPhysics,
-    found: list[Case],
-    pace_mm_s: float,
-    sensor: str,
-    known: dict[str, tuple[tuple[float, float], ...]],
-) -> str:
-    """Measure one stroke at one pace; modes once known serve the searches after it."""
-    presses = [case.press for case in found]
-    energy = energy_of(button, presses[0].stroke)
-    measured = measure_vibration(presses, pace_mm_s, energy, sensor == "plate", known.get(sensor, ()))
-    if isinstance(measured, MeasuredVibration) and sensor not in known and measured.rings:
-        known[sensor] = measured.rings
-    blind = "" if energy else " (no fall of force, searched blindly)"
-    parts = single(found, window_of(button, energy)) + blind, pooled(found, measured, button)
-    return "; ".join([*parts, bound(found, sensor, button)])
+def lines(button: ButtonPhysics, made: dict[float, list[ButtonTrace]], sensor: str) -> Iterator[str]:
+    """Measure both strokes at all paces; what one tells serves the others."""
+    found = [(stroke, pace, cases(made[pace], stroke, sensor)) for stroke in Stroke for pace in made]
+    paces = [
+        PacePresses(stroke, pace, tuple(case.press for case in group), energy_of(button, stroke))
+        for stroke, pace, group in found
+    ]
+    measured, _ = measure_paces(paces, sensor == "plate")
+    for (stroke, pace, group), one, presses in zip(found, measured, paces, strict=True):
+        blind = "" if presses.energy else " (no fall of force, searched blindly)"
+        parts = single(group, window_of(button, presses.energy)) + blind, pooled(group, one, button)
+        yield f"{stroke} {pace:g} mm/s {sensor}: {'; '.join([*parts, bound(group, sensor, button)])}"
 
 
 if __name__ == "__main__":

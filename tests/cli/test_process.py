@@ -10,6 +10,7 @@ from tests.cli.conftest import Ran, Run
 
 from fdvv.model import load_model
 from fdvv.recording import RECORDING_SUFFIX, save_recording
+from fdvv.workflow import capture_report
 
 
 def warned(ran: Ran) -> tuple[str, ...]:
@@ -49,6 +50,32 @@ def test_the_document_tells_curves_with_spread_and_every_press(fdvv: Run, record
 def test_the_mass_of_the_cap_is_taken_and_told(fdvv: Run, recording: Path) -> None:
     report = fdvv("process", recording, "--json", "--cap-mass-g", "2.5").json
     assert any("moves 2.5 g" in told for told in report["assumptions"])
+
+
+def test_vibrations_are_listed_with_spread_and_presses_and_missing_ones_with_the_reason(
+    fdvv: Run, recording: Path
+) -> None:
+    report, ran = capture_report(recorded()), fdvv("process", recording)
+    told = report["vibrations"]
+    assert len(told["in_model"]) == len(recorded().model.vibrations) > 0
+    for vibration in told["in_model"]:
+        assert vibration["presses"] > 1
+        assert vibration["onset_spread_mm"] > 0
+    missing = [h for h in told["heard"] if h["reason"]]
+    assert missing
+    assert all(any(h["reason"] in line for line in report["warnings"]) for h in missing)
+    assert "vibration" in ran.out
+    assert f"{told['in_model'][0]['frequency_Hz']:.0f} ±" in ran.out
+
+
+def test_missing_vibrations_are_scaled_only_if_asked(fdvv: Run, recording: Path) -> None:
+    plain = capture_report(recorded())
+    asked = fdvv("process", recording, "--json", "--extrapolate-vibration").json
+    assert not any("scaled from other paces" in told for told in plain["assumptions"])
+    scaled = [v for v in asked["vibrations"]["in_model"] if v["presses"] is None]
+    said = [told for told in asked["assumptions"] if "scaled from other paces" in told]
+    assert bool(scaled) == bool(said)
+    assert len(asked["vibrations"]["in_model"]) == len(plain["vibrations"]["in_model"]) + len(scaled)
 
 
 @pytest.mark.parametrize(

@@ -109,7 +109,8 @@ def test_a_microphone_of_unknown_scale_gives_no_amplitude_and_a_known_one_the_de
         found.vibration()
     assert not isinstance(found.ring, NotFound)
     mode = found.ring.mode
-    size = math.hypot(2 * math.pi * mode.frequency_Hz, mode.decay_1_s) * mode.amplitude / 2.0
+    assert found.amplitude is not None
+    size = math.hypot(2 * math.pi * mode.frequency_Hz, mode.decay_1_s) * found.amplitude.value / 2.0
     assert found.vibration(scale=2.0).modes[0].amplitude_m_s2 == pytest.approx(size)
 
 

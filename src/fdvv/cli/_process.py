@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -40,6 +41,10 @@ if TYPE_CHECKING:
     type=Paces(),
     help="Paces for presses that were not asked for at one, as those of a log: each is given the nearest.",
 )
+@click.option(
+    "--extrapolate-vibration", "extrapolate", is_flag=True,
+    help="Give paces where no vibration was found that of other paces, scaled with speed.",
+)  # fmt: skip
 @json_option
 def process(
     recording: Path,
@@ -47,6 +52,7 @@ def process(
     report: Path | None,
     cap_mass_g: float,
     paces_mm_s: tuple[float, ...] | None,
+    extrapolate: bool,
     as_json: bool,
 ) -> None:
     """Turn recorded presses into a model, with its spread over presses.
@@ -57,11 +63,15 @@ def process(
     """
     from fdvv.model import SUFFIX, save_model
     from fdvv.preprocess import Settings
-    from fdvv.workflow import capture_report, process_recording
+    from fdvv.workflow import capture_report, process_recording, recorded_vibrations
 
     check_output(output, SUFFIX)
     check_output(report, ".html")
-    found = process_recording(recording, Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()))
+    found = process_recording(
+        recording,
+        Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()),
+        find_vibrations=functools.partial(recorded_vibrations, extrapolate=extrapolate),
+    )
     if output:
         save_model(found.model, output)
     if report:
@@ -104,6 +114,7 @@ def _print(found: RecordedModel) -> None:
         value, spread = getattr(found.model, f"{name}_mm"), getattr(found.model, f"{name}_spread")
         told = f", {counted(spread.presses, 'press')}" if spread else ""
         click.echo(f"{name} {with_spread(value, spread.spread_mm if spread else None, 3)} mm{told}")
+    _print_vibrations(document["vibrations"]["in_model"])
     left = [p for p in document["presses"] if p["reason"]]
     if left:
         print_table(
@@ -112,3 +123,25 @@ def _print(found: RecordedModel) -> None:
             left=3,
         )
     print_warnings(found.warnings)
+
+
+def _print_vibrations(vibrations: list[dict[str, Any]]) -> None:
+    if not vibrations:
+        return
+    print_table(
+        ["vibration", "mm/s", "onset mm", "Hz", "ms", "m/s²", "presses"],
+        [
+            [
+                v["stroke"],
+                number(v["velocity_mm_s"], 0),
+                with_spread(v["onset_mm"], v["onset_spread_mm"], 3),
+                with_spread(v["frequency_Hz"], v["frequency_spread_Hz"], 0),
+                with_spread(
+                    1e3 * v["duration_s"], v["duration_spread_s"] and 1e3 * v["duration_spread_s"], 1
+                ),
+                with_spread(v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
+                "scaled" if v["presses"] is None else str(v["presses"]),
+            ]
+            for v in vibrations
+        ],
+    )

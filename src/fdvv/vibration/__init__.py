@@ -21,9 +21,11 @@ from fdvv.vibration._likeness import correlation, delay_samples, spectral_simila
 from fdvv.vibration._modes import fit_modes
 from fdvv.vibration._observer import SimulatedObserver
 from fdvv.vibration._onset import Turn, find_turn, noise_rms
+from fdvv.vibration._paces import PacePresses, measure_paces
 from fdvv.vibration._pool import Measured, MeasuredVibration, measure_vibration
 from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._scaling import Scaling, fit_scaling
+from fdvv.vibration._shared import SharedMode, shared_mode, shared_rings, with_shared
 from fdvv.vibration._sinusoid import fit_decaying_sinusoid
 from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
 from fdvv.vibration._templates import Template, TemplateGrid, paper_templates, templates_around
@@ -63,12 +65,14 @@ __all__ = [
     "MeasuredVibration",
     "Method",
     "NotFound",
+    "PacePresses",
     "Preferred",
     "Question",
     "Rating",
     "RatingState",
     "Ring",
     "Scaling",
+    "SharedMode",
     "SimulatedObserver",
     "Snap",
     "SnapEnergy",
@@ -100,12 +104,15 @@ __all__ = [
     "fit_scaling",
     "key_events",
     "load_exciter",
+    "measure_paces",
     "measure_tone",
     "measure_vibration",
     "noise_rms",
     "paper_templates",
     "read_wav",
     "save_exciter",
+    "shared_mode",
+    "shared_rings",
     "snap_energy",
     "spectral_similarity",
     "spqi",
@@ -113,4 +120,5 @@ __all__ = [
     "templates_around",
     "to_wav",
     "vibration_samples",
+    "with_shared",
 ]

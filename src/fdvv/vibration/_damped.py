@@ -7,12 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import FitError, ModelError
 from fdvv.units import FloatArray
+from fdvv.vibration._projection import Records, Solved, polynomial, shapes
 
 MOST_STEPS = 25
 """Of the search; a fit that needs more has no clear minimum, and its standard errors say so."""
+
+FIRST_DAMPING, MOST_DAMPING = 1e-2, 1e6
+NEAR_ratio, SETTLED = 1e-9, 1e-4
+"""A search ends with a step this small, or that gains this part of the noise power of one sample."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +28,11 @@ class DampedMode:
     Attributes
     ----------
     frequency_Hz, decay_1_s : f and d.
-    amplitude : A in the signal's own unit; of several records, the root mean square over them.
+    amplitude : A in the signal's own unit; of several records, the median over them.
     phase_rad : of the first record.
-    frequency_sd_Hz, decay_sd_1_s, amplitude_sd : standard errors, from the noise that the fit left.
+    frequency_sd_Hz, decay_sd_1_s, amplitude_sd : standard errors, from the noise that the fit left, or from
+        how records differ where that says more.
+    frequency_spread_Hz, decay_spread_1_s : standard deviations between records; None for a single one.
     """
 
     frequency_Hz: float
@@ -34,6 +42,8 @@ class DampedMode:
     frequency_sd_Hz: float
     decay_sd_1_s: float
     amplitude_sd: float
+    frequency_spread_Hz: float | None = None
+    decay_spread_1_s: float | None = None
 
     @property
     def duration_s(self) -> float:
@@ -66,79 +76,6 @@ def duration_s(decay_1_s: float) -> float:
     return math.log(10.0) / decay_1_s if decay_1_s > 0 else math.inf
 
 
-def shapes(t_s: FloatArray, frequency_Hz: FloatArray, decay_1_s: FloatArray) -> FloatArray:
-    """Give exp(-d t) sin and exp(-d t) cos of each mode, (n, 2 modes), 0 before t = 0."""
-    t = np.maximum(t_s, 0.0)[:, None]
-    fall = np.exp(-decay_1_s * t) * (t_s >= 0)[:, None]
-    turn = 2 * np.pi * frequency_Hz * t
-    return np.stack([fall * np.sin(turn), fall * np.cos(turn)], axis=2).reshape(t_s.size, -1)
-
-
-def polynomial(t_s: FloatArray, degree: int) -> FloatArray:
-    """Give Legendre polynomials over the span of t_s, (n, degree + 1); none for degree -1."""
-    if degree < 0 or t_s.size == 0:
-        return np.empty((t_s.size, 0))
-    middle, half = 0.5 * (t_s[0] + t_s[-1]), 0.5 * max(float(t_s[-1] - t_s[0]), 1e-12)
-    return np.polynomial.legendre.legvander((t_s - middle) / half, degree)
-
-
-def _slopes(t_s: FloatArray, own: FloatArray, weight: FloatArray) -> FloatArray:
-    """Give the slopes of the weighted shapes by each f, then by each d, (n, 2 modes)."""
-    sines, cosines = own[:, 0::2], own[:, 1::2]
-    by_f = 2 * np.pi * t_s[:, None] * (cosines * weight[0::2] - sines * weight[1::2])
-    by_d = -t_s[:, None] * (sines * weight[0::2] + cosines * weight[1::2])
-    return np.hstack([by_f, by_d])
-
-
-def _block_diagonal(blocks: list[FloatArray]) -> FloatArray:
-    whole = np.zeros((sum(len(b) for b in blocks), sum(b.shape[1] for b in blocks)))
-    row = column = 0
-    for block in blocks:
-        whole[row : row + len(block), column : column + block.shape[1]] = block
-        row, column = row + len(block), column + block.shape[1]
-    return whole
-
-
-class _Records:
-    """Several records that share frequencies and decays; amplitudes, phases and background are their own."""
-
-    def __init__(
-        self, times_s: Sequence[FloatArray], signals: Sequence[FloatArray], degree: int, one_phase: bool
-    ) -> None:
-        # the search stops at an absolute slope, so that it needs signals of a size of its own
-        self.size = (
-            math.sqrt(sum(float(y @ y) for y in signals) / max(sum(y.size for y in signals), 1)) or 1.0
-        )
-        self.times_s, self.signals = times_s, [y / self.size for y in signals]
-        self.backgrounds = [polynomial(t, degree) for t in times_s]
-        if one_phase:
-            # one record with all samples, in which each press keeps a background of its own
-            self.times_s, self.signals = [np.concatenate(times_s)], [np.concatenate(self.signals)]
-            self.backgrounds = [_block_diagonal(self.backgrounds)]
-        self.samples = sum(t.size for t in times_s)
-
-    def solve(self, theta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Give residuals, their slopes by f and d, and (records, 2 modes) weights of sin and cos.
-
-        The slopes are Kaufman's (1975): those of the shapes, with what the weights can follow taken off.
-        """
-        f, d = np.split(theta, 2)
-        left, slopes, weights = [], [], []
-        for t, y, background in zip(self.times_s, self.signals, self.backgrounds, strict=True):
-            own = shapes(t, f, d)
-            q, r = np.linalg.qr(np.hstack([own, background]))
-            along = q.T @ y
-            weight = np.linalg.lstsq(r, along, rcond=None)[0][: own.shape[1]]
-            left.append(y - q @ along)
-            slope = _slopes(t, own, weight)
-            slopes.append(q @ (q.T @ slope) - slope)
-            weights.append(weight)
-        return np.concatenate(left), np.concatenate(slopes), np.array(weights)
-
-    def parameters(self, modes: int) -> int:
-        return 2 * modes + sum(2 * modes + int(b.shape[1]) for b in self.backgrounds)
-
-
 def fit_damped(
     times_s: Sequence[FloatArray],
     signals: Sequence[FloatArray],
@@ -158,72 +95,128 @@ def fit_damped(
     Weights are solved exactly at each step (variable projection, Golub and Pereyra 1973), so only f and d
     are searched. Raises FitError if there are fewer samples than parameters.
     """
-    from scipy.optimize import least_squares
-
-    records = _Records(times_s, signals, degree, one_phase)
-    f0, d0 = np.asarray(frequency_Hz, dtype=np.float64), np.asarray(decay_1_s, dtype=np.float64)
-    needed = records.parameters(f0.size)
-    if records.samples <= needed or not f0.size:
-        raise FitError(f"{f0.size} decaying sinusoids need more than {needed} samples, got {records.samples}")
-    start = np.concatenate([f0, np.maximum(d0, 1e-3)])
-
-    def left(theta: FloatArray) -> FloatArray:
-        return records.solve(theta)[0]
-
-    def slopes(theta: FloatArray) -> FloatArray:
-        return records.solve(theta)[1]
-
-    scale = np.maximum(np.abs(start), 1.0)
-    found = least_squares(left, start, jac=slopes, x_scale=scale, bounds=(0.0, np.inf), max_nfev=MOST_STEPS)
-    return _summary(records, np.asarray(found.x))
+    records = Records(times_s, signals, degree, one_phase)
+    start = np.concatenate([np.asarray(frequency_Hz, dtype=np.float64), np.maximum(decay_1_s, 1e-3)])
+    return fit_records(records, start)
 
 
-def _summary(records: _Records, theta: FloatArray) -> DampedFit:
-    left, jacobian, weights = records.solve(theta)
-    modes, needed = theta.size // 2, records.parameters(theta.size // 2)
-    power = float(left @ left) / (records.samples - needed)
-    covariance = np.asarray(power * np.linalg.pinv(jacobian.T @ jacobian), dtype=np.float64)
+def fit_records(records: Records, start: FloatArray, held: npt.NDArray[np.bool_] | None = None) -> DampedFit:
+    """Fit decaying sinusoids from a first guess (f..., d...), of which those held stay. Raises FitError."""
+    modes = start.size // 2
+    needed = records.parameters(modes)
+    if records.samples <= needed or not modes:
+        raise FitError(f"{modes} decaying sinusoids need more than {needed} samples, got {records.samples}")
+    try:
+        free = np.ones(start.size, dtype=bool) if held is None else ~held
+        return _summary(records, _descend(records, start, free), free)
+    except np.linalg.LinAlgError as error:
+        raise FitError(f"{modes} decaying sinusoids cannot be told apart in the records") from error
+
+
+def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -> Solved:
+    """Search for the least squares (Levenberg and Marquardt), neither frequencies nor decays below 0."""
+    at, damping = records.at(start), FIRST_DAMPING
+    freedom = max(records.samples - records.parameters(start.size // 2), 1)
+    for _ in range(MOST_STEPS if free.any() else 0):
+        slope, curvature = at.slopes.sum(axis=0)[free], at.curvatures.sum(axis=0)[np.ix_(free, free)]
+        stiff = curvature + damping * np.diag(np.maximum(np.diag(curvature), 1e-300))
+        theta = at.theta.copy()
+        theta[free] = np.maximum(theta[free] + np.linalg.solve(stiff, slope), 0.0)
+        theta[theta.size // 2 :] = np.minimum(theta[theta.size // 2 :], records.most_decay_1_s)
+        tried = _try(records, theta)
+        if tried is None or tried.power > at.power:
+            damping *= 10
+        else:
+            gained = at.power - tried.power
+            moved = np.max(np.abs(theta - at.theta) / np.maximum(np.abs(theta), 1.0))
+            at, damping = tried, 0.1 * damping
+            if moved < NEAR_ratio or gained < SETTLED * at.power / freedom:
+                break
+        if damping > MOST_DAMPING:
+            break
+    return at
+
+
+def _try(records: Records, theta: FloatArray) -> Solved | None:
+    try:
+        return records.at(theta)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> DampedFit:
+    modes = found.theta.size // 2
+    f, d = np.split(found.theta, 2)
+    needed = records.parameters(modes)
+    power = found.power / (records.samples - needed)
+    inner = np.ix_(free, free)
+    covariance = np.zeros(found.curvatures.shape[1:])
+    covariance[inner] = power * np.linalg.pinv(found.curvatures.sum(axis=0)[inner], hermitian=True)
+    spreads = between_records(found, free)
     sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    sines, cosines = weights[:, 0::2], weights[:, 1::2]
-    amplitudes = np.hypot(sines, cosines)
-    errors = _weight_variance(records, theta, covariance, power)
-    total = np.sqrt(np.mean(amplitudes**2, axis=0))
-    spread = np.sqrt(np.mean((amplitudes / np.maximum(total, 1e-300)) ** 2 * errors, axis=0) / len(weights))
+    if spreads is not None:
+        sd = np.maximum(sd, spreads / math.sqrt(len(found.weights)))
+    sines, cosines = found.weights[:, 0::2], found.weights[:, 1::2]
+    # what each record has at its first sample, drawn back to the moment that the modes start
+    amplitudes = np.hypot(sines, cosines) * np.exp(d * records.starts_s[:, None])
+    phases = np.arctan2(cosines[0], sines[0]) - 2 * np.pi * f * records.starts_s[0]
+    doubts = np.sqrt(amplitude_variances(records, found, covariance, power))
+    # of the median: a record that ends early may tell of no amplitude at all
+    total = np.median(amplitudes, axis=0)
+    spread = np.median(amplitudes * doubts, axis=0) * math.sqrt(
+        (np.pi / 2 if len(doubts) > 2 else 1) / len(doubts)
+    )
+    order = np.argsort(-total)
     made = [
         DampedMode(
-            float(theta[k]), float(theta[modes + k]), records.size * float(total[k]),
-            float(math.atan2(cosines[0, k], sines[0, k])), float(sd[k]), float(sd[modes + k]),
+            float(f[k]), float(d[k]), records.size * float(total[k]),
+            float(np.angle(np.exp(1j * phases[k]))), float(sd[k]), float(sd[modes + k]),
             records.size * float(spread[k]),
+            *(None if spreads is None else float(spreads[i]) for i in (k, modes + k)),
         )
-        for k in np.argsort(-total)
+        for k in order
     ]  # fmt: skip
-    mean_power = max(records.size**2 * float(left @ left) / records.samples, 1e-300)
+    mean_power = max(records.size**2 * found.power / records.samples, 1e-300)
     bic = records.samples * math.log(mean_power) + needed * math.log(records.samples)
-    sizes, noise = records.size * amplitudes[:, np.argsort(-total)], records.size * math.sqrt(power)
-    return DampedFit(tuple(made), sizes, noise, records.samples, bic)
+    return DampedFit(
+        tuple(made),
+        records.size * amplitudes[:, order],
+        records.size * math.sqrt(power),
+        records.samples,
+        bic,
+    )
 
 
-def _weight_variance(
-    records: _Records, theta: FloatArray, covariance: FloatArray, power: float
-) -> FloatArray:
-    """Give the variance of each amplitude, (records, modes): of the weights, and what f and d add to it."""
-    modes = theta.size // 2
-    base = records.solve(theta)[2]
-    steps = 1e-5 * np.maximum(np.abs(theta), 1.0)
-    slopes = np.array(
-        [(records.solve(theta + step * unit)[2] - base) / step
-         for step, unit in zip(steps, np.eye(theta.size), strict=True)]
-    )  # fmt: skip
-    found = np.zeros((len(base), modes))
-    for r, (t, background) in enumerate(zip(records.times_s, records.backgrounds, strict=True)):
-        matrix = np.hstack([shapes(t, *np.split(theta, 2)), background])
-        own = power * np.linalg.pinv(matrix.T @ matrix)[: 2 * modes, : 2 * modes]
-        total = own + slopes[:, r].T @ covariance @ slopes[:, r]
-        for k in range(modes):
-            pair = slice(2 * k, 2 * k + 2)
-            way = base[r, pair] / max(float(np.hypot(*base[r, pair])), 1e-300)
-            found[r, k] = way @ total[pair, pair] @ way
-    return found
+def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
+    """Give the standard deviations between records of f and d, (p,), 0 where held; None for a single record.
+
+    From one step of the search without each record (a jackknife), times the root of their number.
+    """
+    records = len(found.weights)
+    if records < 2:
+        return None
+    each = found.curvatures[:, free][:, :, free]
+    # small against any curvature, so that a step along what only one record tells stays finite
+    least = 1e-9 * np.trace(each.sum(axis=0)) / max(free.sum(), 1) * np.eye(int(free.sum()))
+    steps = -np.linalg.solve(each.sum(axis=0) - each + least, found.slopes[:, free, None])[:, :, 0]
+    spreads = np.zeros(free.size)
+    spreads[free] = math.sqrt(records - 1) * np.sqrt(np.sum((steps - steps.mean(axis=0)) ** 2, axis=0))
+    return spreads
+
+
+def amplitude_variances(records: Records, found: Solved, covariance: FloatArray, power: float) -> FloatArray:
+    """Give variances of the logarithms of amplitudes, (records, modes): their own, and those of f and d."""
+    modes = found.theta.size // 2
+    variances = np.zeros((len(found.weights), modes))
+    for k in range(modes):
+        pair = slice(2 * k, 2 * k + 2)
+        size = np.maximum(np.hypot(*found.weights[:, pair].T), 1e-300)
+        way = found.weights[:, pair] / size[:, None]
+        by_theta = np.einsum("ri,rip->rp", way, found.weights_by_theta[:, pair]) / size[:, None]
+        by_theta[:, modes + k] += records.starts_s
+        own = power * np.einsum("ri,rij,rj->r", way, found.weight_doubt[:, pair, pair], way) / size**2
+        variances[:, k] = own + np.einsum("rp,pq,rq->r", by_theta, covariance, by_theta)
+    return np.maximum(variances, 0.0)
 
 
 def cramer_rao(

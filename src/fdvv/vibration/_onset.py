@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import shapes
+from fdvv.vibration._projection import shapes
 
 SMOOTH_DEGREE = 3
 """Motion without a snap is a polynomial of this degree over the window around a candidate."""
@@ -20,9 +21,6 @@ REACHES_samples, LONGEST_REACH_s, RING_REACH_s = (8.0, 32.0, 64.0), 0.008, 0.002
 """Windows either side of a candidate. The shortest has samples enough for the unknowns and tells most sharply
 when; a noisier sensor needs longer ones. With known rings it is half a period of 250 Hz, so that their going
 on can be told from their beginning."""
-
-STEP_samples = 0.5
-"""Candidates lie this far apart: a turn falls between samples."""
 
 FIRST_ratio = 0.3
 """The first candidate with this part of the largest gain is taken: a blow sets off turns that follow it."""
@@ -107,17 +105,21 @@ def _search(
 ) -> Turn | None:
     """Scan a span for turns with one reach."""
     period = float(t_s[-1] - t_s[0]) / (t_s.size - 1)
+    reach, turned = reach_s / period, tuple((f * period, d * period) for f, d in rings)
     # finer than a fortieth of the reach nothing changes
-    candidates = np.arange(*span_s, max(STEP_samples * period, reach_s / 40))
-    gain = np.array([_gain(t_s, signal, at, noise, reach_s, rings) for at in candidates])
-    if not candidates.size or not gain.max() > 0:
+    stride = max(1, int(2 * reach / 40))
+    first, last = (math.ceil(2 * (at - t_s[0]) / period) for at in span_s)
+    halves = np.arange(max(first, 0), min(last, 2 * t_s.size), stride)
+    gain = _gains(signal, halves, noise, reach, turned)
+    if not halves.size or not gain.max() > 0:
         return None
     first = int(np.argmax(gain >= FIRST_ratio * gain.max()))
-    best = first + int(np.argmax(gain[first : np.searchsorted(candidates, candidates[first] + reach_s / 2)]))
+    near = int(np.searchsorted(halves, halves[first] + reach))
+    best = first + int(np.argmax(gain[first:near]))
     # gains a third of the reach apart are nearly independent
     tried = 1 + 3 * (span_s[1] - span_s[0]) / reach_s
     chance = min(1.0, tried * chi_square_tail(float(gain[best]), 2 * len(rings) or 2))
-    return Turn(float(candidates[best]), float(gain[best]), chance)
+    return Turn(float(t_s[0] + 0.5 * period * halves[best]), float(gain[best]), chance)
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
@@ -126,35 +128,56 @@ def chi_square_tail(value: float, freedom: int) -> float:
     return float(math.exp(-half) * math.fsum(half**j / math.factorial(j) for j in terms))
 
 
-def _gain(
-    t: FloatArray,
+def _gains(
     y: FloatArray,
-    at_s: float,
+    halves: npt.NDArray[np.int64],
     noise: float,
-    reach_s: float,
-    rings: Sequence[tuple[float, float]],
-) -> float:
-    """Give the fall of the residual power by a turn, over the noise power.
+    reach: float,
+    rings: tuple[tuple[float, float], ...],
+) -> FloatArray:
+    """Give for turns at each of these half samples the fall of the residual power, over the noise power.
 
-    Where even the turn leaves more than the noise, what it leaves is taken as the noise, so that lively
-    motion does not pass for a turn.
+    reach in samples, rings per sample. Where even the turn leaves more than the noise, what it leaves is
+    taken as the noise, so that lively motion does not pass for a turn. Turns that have as many samples either
+    side share one table.
     """
-    low, high = np.searchsorted(t, [at_s - reach_s, at_s + reach_s])
-    t, y = t[low:high], y[low:high]
-    u = (t - at_s) / reach_s
+    low = np.maximum(np.ceil(0.5 * halves - reach).astype(int), 0)
+    high = np.minimum(np.ceil(0.5 * halves + reach).astype(int), y.size)
+    cuts = np.stack([2 * low - halves, high - low], axis=1)
+    gains = np.zeros(halves.size)
+    for cut in np.unique(cuts, axis=0):
+        found = _basis(int(cut[0]), int(cut[1]), reach, rings)
+        if found is None:
+            continue
+        smooth, q = found
+        which = np.all(cuts == cut, axis=1)
+        windows = np.lib.stride_tricks.sliding_window_view(y, int(cut[1]))[low[which]]
+        parts = (windows @ q) ** 2
+        left = (np.sum(windows**2, axis=1) - parts.sum(axis=1)) / (int(cut[1]) - q.shape[1])
+        gains[which] = parts[:, smooth:].sum(axis=1) / np.maximum(noise**2, left)
+    return gains
+
+
+@functools.lru_cache(maxsize=1024)
+def _basis(
+    first: int, count: int, reach: float, rings: tuple[tuple[float, float], ...]
+) -> tuple[int, FloatArray] | None:
+    """Give the columns that smooth motion takes and an orthonormal basis of it and a turn after it, (n, p).
+
+    first : half samples from the turn to the first sample, below 0. None where a turn cannot be told.
+    """
+    after: FloatArray = np.asarray(0.5 * first + np.arange(count), dtype=np.float64)
+    u = after / reach
     smooth = np.polynomial.legendre.legvander(u, SMOOTH_DEGREE)
     if rings:
-        modes = np.array(rings).T
-        before = np.hstack([smooth, shapes(t - t[0], *modes)]) if t.size else smooth
-        turn = shapes(t - at_s, *modes)
+        f, d = np.array(rings).T
+        before, turn = np.hstack([smooth, shapes(after - after[:1], f, d)]), shapes(after, f, d)
     else:
         rise = np.maximum(u, 0.0)
         before, turn = smooth, np.column_stack([rise, rise**2])
-    free, edge = t.size - before.shape[1] - turn.shape[1], 1 + turn.shape[1]
+    free, edge = count - before.shape[1] - turn.shape[1], 1 + turn.shape[1]
     # a turn at the edge of the stretch cannot be told from its smooth motion
     if free < 1 or not u[edge - 1] < 0 < u[-edge]:
-        return 0.0
+        return None
     q, _ = np.linalg.qr(np.hstack([before, turn]))
-    parts = q.T @ y
-    left = (float(y @ y) - float(parts @ parts)) / free
-    return float(np.sum(parts[before.shape[1] :] ** 2) / max(noise**2, left))
+    return before.shape[1], q

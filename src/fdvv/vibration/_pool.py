@@ -11,7 +11,7 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model import Mode, Stroke, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import duration_s
+from fdvv.vibration._damped import DampedMode
 from fdvv.vibration._energy import SnapEnergy
 from fdvv.vibration._ring import Ring, fit_ring
 from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
@@ -21,7 +21,10 @@ LEAST_SHARE = 0.5
 
 
 ROUNDS = 2
-"""Searches with the modes that the search before told."""
+"""Searches with the modes that the search before told; none where two modes were known beforehand."""
+
+SAME_ratio = 0.15
+"""Frequencies within this part of each other are one mode of the housing."""
 
 KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
 """A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
@@ -67,19 +70,23 @@ class MeasuredVibration:
     @property
     def amplitude(self) -> Measured | None:
         """Get the principal mode's amplitude in the signal's unit, median and spread, or None."""
-        return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes)
+        return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes[:, 0])
 
     @property
     def rings(self) -> tuple[tuple[float, float], ...]:
         """Get frequency and decay of the modes that measure_vibration() of other presses can build on."""
         return known_rings(self.ring)
 
+    def rings_in(self, frequency_Hz: float) -> bool:
+        """Tell whether one of rings lies near a frequency."""
+        return any(abs(f / frequency_Hz - 1) <= SAME_ratio for f, _ in self.rings)
+
     @property
     def duration_s(self) -> Measured | None:
         """Get the time until a tenth of the amplitude is left, with its standard error; None if unknown."""
         if isinstance(self.ring, NotFound):
             return None
-        return Measured(duration_s(self.ring.mode.decay_1_s), self.ring.duration_sd_s)
+        return Measured(self.ring.duration_s, self.ring.duration_sd_s)
 
     def vibration(self, scale: float | None = None) -> Vibration:
         """Give the vibration as models hold it, its amplitudes as accelerations of the cap.
@@ -101,39 +108,43 @@ class MeasuredVibration:
             self.stroke,
             self.velocity_mm_s,
             self.onset_mm.value,
-            duration_s(min(mode.decay_1_s for mode in self.ring.modes)),
+            self.ring.duration_s,
             tuple(
-                _mode(
-                    m.frequency_Hz, m.decay_1_s, m.amplitude / (scale or 1.0), m.phase_rad, self.acceleration
-                )
-                for m in self.ring.modes
+                _mode(m, float(np.median(sizes)) / (scale or 1.0), self.acceleration)
+                for m, sizes in zip(self.ring.modes, self.ring.amplitudes.T, strict=True)
             ),
         )
 
 
-def _mode(
-    frequency_Hz: float, decay_1_s: float, amplitude: float, phase_rad: float, acceleration: bool
-) -> Mode:
+def _mode(mode: DampedMode, amplitude: float, acceleration: bool) -> Mode:
     """Turn a mode of velocity into one of acceleration: times -d + i 2 pi f."""
+    f, d = mode.frequency_Hz, mode.decay_1_s
     if acceleration:
-        return Mode(frequency_Hz, amplitude, decay_1_s, phase_rad)
-    factor = complex(-decay_1_s, 2 * math.pi * frequency_Hz)
-    return Mode(
-        frequency_Hz, amplitude * abs(factor), decay_1_s, phase_rad + math.atan2(factor.imag, factor.real)
-    )
+        return Mode(f, amplitude, d, mode.phase_rad)
+    factor = complex(-d, 2 * math.pi * f)
+    return Mode(f, amplitude * abs(factor), d, mode.phase_rad + math.atan2(factor.imag, factor.real))
+
+
+def _beside(
+    own: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]]
+) -> tuple[tuple[float, float], ...]:
+    """Give two modes at most: own ones, then known ones apart from them."""
+    more = [k for k in known if all(not 1 / APART_ratio < k[0] / f < APART_ratio for f, _ in own)]
+    return tuple([*own, *more][:2])
 
 
 def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
-    """Give frequency and decay of the principal mode and of one other, those that are known well enough."""
+    """Give frequency and decay of the principal mode and of the surest other, if known well enough."""
     if isinstance(ring, NotFound):
         return ()
     sure = [
         mode
-        for mode in ring.modes
+        for mode in ring.heard
         if mode.frequency_sd_Hz < KNOWN_ratio * mode.frequency_Hz
         and mode.decay_1_s < FREE_ratio * 2 * math.pi * mode.frequency_Hz
     ]
     apart = [m for m in sure[1:] if not 1 / APART_ratio < m.frequency_Hz / sure[0].frequency_Hz < APART_ratio]
+    apart.sort(key=lambda mode: mode.frequency_sd_Hz / mode.frequency_Hz)
     return tuple((mode.frequency_Hz, mode.decay_1_s) for mode in [*sure[:1], *apart[:1]])
 
 
@@ -164,16 +175,19 @@ def measure_vibration(
     looked = [find_snap(press, energy.window_mm, rings) for press in presses]
     heard, snaps = _shown(presses, looked)
     ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
-    for _ in range(ROUNDS):
-        known = known_rings(ring)
+    for _ in range(0 if len(rings) > 1 else ROUNDS):
+        known = _beside(known_rings(ring), rings)
         # known modes part beginning from going on only where a sample is short beside their periods
         if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:
             break
         again = [find_snap(press, energy.window_mm, known) for press in presses]
         if len(_shown(presses, again)[0]) < len(heard):
             break
+        before = [snap.onset_s for snap in snaps]
         looked = again
         heard, snaps = _shown(presses, looked)
+        if before == [snap.onset_s for snap in snaps]:
+            break
         ring = fit_ring(heard, snaps, acceleration)
     if len(snaps) < LEAST_SHARE * len(presses):
         reasons = [snap.reason for snap in looked if isinstance(snap, NotFound)]

@@ -9,33 +9,27 @@ import numpy as np
 
 from fdvv.errors import FitError
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import DampedFit, DampedMode, duration_s, fit_damped, polynomial, shapes
-from fdvv.vibration._modes import pencil_poles
+from fdvv.vibration._count import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlapped
+from fdvv.vibration._damped import DampedFit, DampedMode, duration_s
 from fdvv.vibration._snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
 """A snap is over by then (the paper: below 25 ms)."""
 
-MOST_MODES = 4
-BACKGROUND_DEGREE = 2
-"""The cap's own motion after the snap, a polynomial of each press."""
-
-DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.006)
+DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.008)
 """A ring is free once its drive is over: of these delays after the onset the shortest that fits is kept."""
 
-FITS_ratio = 1.2
-"""What a free ring leaves is noise, up to this."""
-
-DRIVEN_ratio = 3.0
-"""Where the best fit leaves more than this many times the noise, something keeps driving: no ring is free."""
+FITS_ratio = 1.1
+"""What a free ring leaves is noise, up to this. Above it something keeps driving."""
 
 SURE_ratio = 0.1
 """Standard error of the frequency above which it is not known."""
 
-FEWEST_PER_PERIOD = 8.0
-"""Samples per period of 250 Hz from which the pencil can start; below it a grid of frequencies does."""
+ENDING_ratio = 0.5
+"""Standard error of the decay above which the end of a mode is not known."""
 
-GRID_Hz, GRID_1_s = np.arange(60.0, 460.0, 20.0), (60.0, 150.0, 350.0)
+BACK_ratio = 3.0
+"""An amplitude at the onset is at most this many times what was seen when the ring was free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,22 +39,30 @@ class Ring:
     Attributes
     ----------
     mode : the principal one, with the most kinetic energy once the ring is free.
-    modes : all of them, the principal one first.
-    amplitudes : (presses,) of the principal mode at the onset.
+    modes : all that are known at the onset, the principal one first.
+    heard : these, and modes that sharpen a search but go into no model: they had faded too far by the time
+        the ring was free, or are halves of a pair.
+    amplitudes : (presses, modes) at the onset.
     delay_s : after the onset from which the ring was free and was fitted.
     noise_ratio : what the fit leaves over the noise of the sensor; well above 1 the drive goes on.
     """
 
     mode: DampedMode
     modes: tuple[DampedMode, ...]
+    heard: tuple[DampedMode, ...]
     amplitudes: FloatArray
     delay_s: float
     noise_ratio: float
 
     @property
+    def duration_s(self) -> float:
+        """Time in which the principal mode's envelope falls to a tenth, at most the longest of a snap."""
+        return min(duration_s(self.mode.decay_1_s), LONGEST_s)
+
+    @property
     def duration_sd_s(self) -> float:
         """Standard error of the duration, from that of the decay."""
-        return duration_s(self.mode.decay_1_s) * self.mode.decay_sd_1_s / self.mode.decay_1_s
+        return self.duration_s * self.mode.decay_sd_1_s / self.mode.decay_1_s
 
 
 def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration: bool) -> Ring | NotFound:
@@ -77,26 +79,77 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     if found is None:
         return NotFound("the stop follows too soon: the snap leaves too few samples to fit")
     delay, fit, ratio = found
-    if not fit.modes:
+    if not fit.modes and ratio <= FITS_ratio:
         return NotFound(f"nothing rings above a noise of {fit.noise:.2g} per sample in {len(snaps)} presses")
-    if ratio > DRIVEN_ratio:
+    if ratio > FITS_ratio:
         return NotFound(
-            f"no free ring: what modes leave is {ratio:.0f} times the noise, something keeps driving"
+            f"no free ring: what modes leave is {ratio:.1f} times the noise, something keeps driving"
         )
-    order = _order(fit, delay, acceleration)
-    modes = tuple(fit.modes[k] for k in order)
-    first = modes[0]
-    if first.frequency_sd_Hz > SURE_ratio * first.frequency_Hz:
-        return NotFound(
-            f"the ring is too weak in its noise: {first.frequency_Hz:.0f} Hz with a standard error of "
-            f"{first.frequency_sd_Hz:.0f} Hz in {len(snaps)} presses"
+    ring = _told(fit, delay, ratio, acceleration)
+    return NotFound(f"{ring} in {len(snaps)} presses") if isinstance(ring, str) else ring
+
+
+def refit_ring(
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], known: tuple[float, float]
+) -> Ring | None:
+    """Tell a ring again, frequency and decay of its principal mode known, as soon after onsets as it fits.
+
+    Without any drive beside it if that ever leaves noise alone: a drive takes as much of the amplitude as it
+    likes. None where neither does before too little of the ring is left.
+    """
+    for most_drives in (0, MOST_DRIVES):
+        for delay in (delay for delay in DELAYS_s if known[1] * delay <= np.log(BACK_ratio)):
+            times, signals, noise = _after(presses, snaps, delay)
+            try:
+                fit = most_likely(times, signals, presses[0].period_s, known, most_drives) if times else None
+            except FitError:
+                fit = None
+            if fit is not None and fit.noise <= FITS_ratio * noise:
+                first = next(k for k, mode in enumerate(fit.modes) if mode.frequency_Hz == known[0])
+                order = [first, *(k for k in range(len(fit.modes)) if k != first)]
+                return _ring(fit, order, delay, fit.noise / noise)
+    return None
+
+
+def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
+    """Give the ring that a fit tells of, the principal mode first, or why none."""
+    order = [k for k in _order(fit, delay_s, acceleration) if not drives(fit.modes[k])]
+    if not order:
+        return "nothing rings freely, only a drive fades"
+    reason = _unknown(fit.modes[order[0]], delay_s)
+    if reason is not None:
+        return reason
+    return _ring(fit, order, delay_s, ratio)
+
+
+def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
+    """Give the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
+    first, *side = order
+    told = [k for k in side if not drives(fit.modes[k]) and _unknown(fit.modes[k], 0.0) is None]
+    single = [k for k in told if not overlapped(fit.modes[k], fit.modes)]
+    kept = [first, *(k for k in single if _unknown(fit.modes[k], delay_s) is None)]
+    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *told]))
+    return Ring(modes[0], modes, heard, fit.amplitudes[:, kept], delay_s, ratio)
+
+
+def _unknown(mode: DampedMode, delay_s: float) -> str | None:
+    """Say why a mode is not known well enough to tell of; None if it is."""
+    if mode.frequency_sd_Hz > SURE_ratio * mode.frequency_Hz:
+        return (
+            f"the ring is too weak in its noise: {mode.frequency_Hz:.0f} Hz with a standard error of "
+            f"{mode.frequency_sd_Hz:.0f} Hz"
         )
-    if first.decay_sd_1_s > 0.5 * first.decay_1_s:
-        return NotFound(
-            f"{first.frequency_Hz:.0f} Hz is heard but its end is not: decay {first.decay_1_s:.0f} 1/s with "
-            f"a standard error of {first.decay_sd_1_s:.0f}"
+    if mode.decay_sd_1_s > ENDING_ratio * mode.decay_1_s:
+        return (
+            f"{mode.frequency_Hz:.0f} Hz is heard but its end is not: decay {mode.decay_1_s:.0f} 1/s with a "
+            f"standard error of {mode.decay_sd_1_s:.0f}"
         )
-    return Ring(first, modes, fit.amplitudes[:, order[0]], delay, ratio)
+    if mode.decay_1_s * delay_s > np.log(BACK_ratio):
+        return (
+            f"{mode.frequency_Hz:.0f} Hz is free only {1e3 * delay_s:.0f} ms after the onset, when less than "
+            f"1/{BACK_ratio:g} of it is left"
+        )
+    return None
 
 
 def _best(presses: Sequence[HeardPress], snaps: Sequence[Snap]) -> tuple[float, DampedFit, float] | None:
@@ -126,6 +179,17 @@ def _fit_after(
     presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
 ) -> tuple[float, DampedFit, float] | None:
     """Fit from a delay after the onsets on; give delay, fit and its noise over the sensor's."""
+    times, signals, noise = _after(presses, snaps, delay_s)
+    if not times:
+        return None
+    best = most_likely(times, signals, presses[0].period_s)
+    return delay_s, best, best.noise / noise
+
+
+def _after(
+    presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
+) -> tuple[list[FloatArray], list[FloatArray], float]:
+    """Cut out what is free from a delay after the onsets on: times after the onset, signals, noise."""
     times, signals, noises = [], [], []
     for press, snap in zip(presses, snaps, strict=True):
         low, high = np.searchsorted(
@@ -135,71 +199,4 @@ def _fit_after(
             times.append(press.t_s[low:high] - snap.onset_s)
             signals.append(press.signal[low:high])
             noises.append(press.noise_or_own())
-    if not times:
-        return None
-    fits = [_background(times, signals)]
-    for count in range(1, MOST_MODES + 1):
-        try:
-            start = _starts(times, signals, count, presses[0].period_s)
-            fits.append(fit_damped(times, signals, *start, degree=BACKGROUND_DEGREE))
-        except (FitError, np.linalg.LinAlgError):
-            break
-    # less than a period is motion of the cap, not a ring
-    lowest_Hz = 1 / max(float(t[-1] - t[0]) for t in times)
-    ringing = [fit for fit in fits if all(mode.frequency_Hz > lowest_Hz for mode in fit.modes)]
-    best = min(ringing, key=lambda fit: fit.bic)
-    return delay_s, best, best.noise / float(np.sqrt(np.mean(np.square(noises))))
-
-
-def _background(times: list[FloatArray], signals: list[FloatArray]) -> DampedFit:
-    """Fit without any mode."""
-    left = [
-        y - np.polyval(np.polyfit(t, y, BACKGROUND_DEGREE), t) for t, y in zip(times, signals, strict=True)
-    ]
-    total, samples = float(sum(r @ r for r in left)), sum(r.size for r in left)
-    needed = len(times) * (BACKGROUND_DEGREE + 1)
-    bic = samples * np.log(max(total / samples, 1e-300)) + needed * np.log(samples)
-    noise = float(np.sqrt(total / max(samples - needed, 1)))
-    return DampedFit((), np.empty((len(times), 0)), noise, samples, float(bic))
-
-
-def _starts(
-    times: list[FloatArray], signals: list[FloatArray], count: int, period_s: float
-) -> tuple[list[float], list[float]]:
-    """Guess frequencies and decays: from the pencil where samples are dense, else from a grid."""
-    if 1 / period_s < FEWEST_PER_PERIOD * 250.0:
-        return _from_grid(times, signals, count)
-    length = min(t.size for t in times)
-    rows = np.array([y[:length] - y[:length].mean() for y in signals])
-    poles = pencil_poles(rows, min(2 * count + BACKGROUND_DEGREE, length // 3))
-    logs = np.log(poles[poles.imag > 1e-6]) / period_s
-    logs = logs[np.argsort(-logs.real)][:count]
-    if logs.size < count:
-        raise FitError(f"the records hold fewer than {count} rings")
-    return list(logs.imag / (2 * np.pi)), list(np.maximum(-logs.real, 10.0))
-
-
-def _from_grid(
-    times: list[FloatArray], signals: list[FloatArray], count: int
-) -> tuple[list[float], list[float]]:
-    if count > 1:
-        raise FitError("samples this sparse are searched for one ring only")
-    best, power = (0.0, 0.0), np.inf
-    for f in GRID_Hz:
-        for d in GRID_1_s:
-            left = _left(times, signals, float(f), d)
-            if left < power:
-                best, power = (float(f), d), left
-    return [best[0]], [best[1]]
-
-
-def _left(times: list[FloatArray], signals: list[FloatArray], frequency_Hz: float, decay_1_s: float) -> float:
-    """Give the power that one mode and the background leave."""
-    total = 0.0
-    for t, y in zip(times, signals, strict=True):
-        matrix = np.hstack(
-            [shapes(t, np.array([frequency_Hz]), np.array([decay_1_s])), polynomial(t, BACKGROUND_DEGREE)]
-        )
-        left = y - matrix @ np.linalg.lstsq(matrix, y, rcond=None)[0]
-        total += float(left @ left)
-    return total
+    return times, signals, float(np.sqrt(np.mean(np.square(noises)))) if noises else 0.0

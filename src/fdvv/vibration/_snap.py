@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,9 +61,13 @@ class HeardPress:
         """Time between samples of the signal."""
         return float(self.t_s[-1] - self.t_s[0]) / (self.t_s.size - 1)
 
+    @cached_property
+    def _own_noise(self) -> float:
+        return noise_rms(self.signal)
+
     def noise_or_own(self) -> float:
         """Give the noise that was stated, else the record's own."""
-        return noise_rms(self.signal) if self.noise is None else self.noise
+        return self._own_noise if self.noise is None else self.noise
 
     def passing_s(self, at_mm: float) -> float | None:
         """Give when the stroke passes a displacement; None if it never does."""

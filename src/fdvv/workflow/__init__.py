@@ -3,6 +3,7 @@
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._capture import CaptureResult, capture_session
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
+from fdvv.workflow._capture_heard import HeardStroke
 from fdvv.workflow._capture_html import capture_html
 from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording

@@ -23,11 +23,10 @@ from fdvv.plot import (
 )
 from fdvv.preprocess import Judged
 from fdvv.recording import UNITS
-from fdvv.vibration import NotFound
 from fdvv.workflow._capture_model import RecordedModel
 from fdvv.workflow._capture_report import capture_report
-from fdvv.workflow._capture_vibration import HeardStroke
 from fdvv.workflow._capture_words import used_and_left_out
+from fdvv.workflow._spread_report import vibration_spread
 
 FORCES = ("peak_cN", "valley_cN", "bottom_out_cN", "release_peak_cN", "release_valley_cN")
 
@@ -190,24 +189,35 @@ def _curves(recorded: RecordedModel) -> Section:
 
 
 def _vibration(recorded: RecordedModel) -> Section:
-    """Tell what was heard of every snap, or why nothing was; the model's vibrations where it has some."""
+    """Tell the vibrations of the model with their spreads, and where and why there is none."""
     rows = tuple(
-        (str(one.stroke), "–" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}", _heard(one))
-        for one in recorded.heard.heard
+        (
+            str(v.stroke),
+            "–" if v.velocity_mm_s is None else f"{v.velocity_mm_s:g}",
+            _with(told["onset_mm"], told["onset_spread_mm"], 3),
+            _with(told["frequency_Hz"], told["frequency_spread_Hz"], 0),
+            _with(1e3 * told["duration_s"], told["duration_spread_s"] and 1e3 * told["duration_spread_s"], 1),
+            _with(told["amplitude_m_s2"], told["amplitude_spread_m_s2"], 2),
+            "–" if told["presses"] is None else str(told["presses"]),
+        )
+        for v in recorded.model.vibrations
+        for told in (vibration_spread(v),)
     )
-    table = Table(("stroke", "asked (mm/s)", "heard"), rows, "What the microphone heard of the snaps.")
+    columns = (
+        "stroke", "asked (mm/s)", "onset (mm)", "frequency (Hz)", "duration (ms)", "amplitude (m/s²)",
+        "presses",
+    )  # fmt: skip
+    table = Table(
+        columns, rows, "Vibrations of the model by their principal mode; ± is that between presses."
+    )
     figures = (plot_vibration(recorded.model),) if recorded.model.vibrations else ()
     svgs = tuple(figure_svg(figure, "Vibrations of the model") for figure in figures)
-    text = () if rows else ("The recording has no sound.",)
+    text = tuple(f"{told[0].upper()}{told[1:]}." for told in recorded.heard.warnings)
     return Section("Vibration", text, svgs, (table,) if rows else ())
 
 
-def _heard(one: HeardStroke) -> str:
-    found = one.found if isinstance(one.found, NotFound) else one.found.ring
-    if isinstance(found, NotFound):
-        return f"nothing: {found.reason}"
-    mode = found.mode
-    return f"{mode.frequency_Hz:.0f} Hz, known to ± {mode.frequency_sd_Hz:.0f} Hz"
+def _with(value: float, spread: float | None, decimals: int) -> str:
+    return f"{value:.{decimals}f}" + ("" if spread is None else f" ± {spread:.{decimals}f}")
 
 
 def _model(recorded: RecordedModel) -> Section:

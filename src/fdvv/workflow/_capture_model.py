@@ -44,7 +44,7 @@ class RecordedModel:
     processed : every step between the streams and the averaged curves.
     fits : one per curve of the model, in the model's order; the probe's are among them.
     measured : the averaged curve behind each fit, in fits' order.
-    heard : what its sound told of vibration, and where it told nothing.
+    heard : what microphone or accelerometer told of vibration, and where it told nothing.
     warnings : what was repaired, left out or could not be found.
     """
 
@@ -58,12 +58,15 @@ class RecordedModel:
 
 
 def process_recording(
-    path: Path | str, settings: Settings | None = None, fit_settings: FitSettings | None = None
+    path: Path | str,
+    settings: Settings | None = None,
+    fit_settings: FitSettings | None = None,
+    find_vibrations: FindVibrations = recorded_vibrations,
 ) -> RecordedModel:
     """Read a file of a recording and make its model. Raises InputError."""
     recording = load_recording(path)
     try:
-        return model_of_recording(recording, settings, fit_settings)
+        return model_of_recording(recording, settings, fit_settings, find_vibrations)
     except FdvvError as error:
         remedy = "check that its takes hold force, displacement and what joins their clocks"
         raise InputError(path, "recording", str(error), remedy) from error
@@ -108,7 +111,7 @@ def model_of_recording(
             source=source_of(recording),
             licence=one_line(recording.licence),
             method=f"{method_of(recording, processed)}; {fit_settings.describe()}",
-            assumptions=assumptions_of(recording, settings),
+            assumptions=(*assumptions_of(recording, settings), *heard.assumptions),
             simulated=recording.simulated,
         ),
         travel_spread=_point(processed.travel_mm),

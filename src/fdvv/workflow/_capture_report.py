@@ -8,7 +8,7 @@ from fdvv.model import Stroke, landmark_errors, landmarks
 from fdvv.preprocess import Processed
 from fdvv.workflow._capture_model import RecordedModel
 from fdvv.workflow._fit import fit_report
-from fdvv.workflow._spread_report import curve_spread
+from fdvv.workflow._spread_report import curve_spread, spread_reports
 
 
 def capture_report(recorded: RecordedModel) -> dict[str, Any]:
@@ -24,6 +24,11 @@ def capture_report(recorded: RecordedModel) -> dict[str, Any]:
         "presses": press_reports(recorded.processed),
         "landmarks": landmarks(model).to_dict() if pressed else {"travel_mm": model.travel_mm},
         "landmark_errors": {name: vars(error) for name, error in errors.items()},
+        "vibrations": {
+            "heard": [one.report() for one in recorded.heard.heard],
+            "in_model": spread_reports(model)["vibrations"],
+            "scalings": [scaling.report() for scaling in recorded.heard.scalings],
+        },
         "method": model.provenance.method,
         "assumptions": list(model.provenance.assumptions),
         "warnings": list(recorded.warnings),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,19 +11,22 @@ from fdvv.errors import ModelError
 from fdvv.model import ModeSpread, Stroke, Vibration, VibrationSpread
 from fdvv.preprocess import AveragedCurve, Processed, RawPress, StrokeTrack
 from fdvv.recording import Quantity, Recording, Stream
-from fdvv.vibration import HeardPress, MeasuredVibration, NotFound, SnapEnergy, measure_vibration, snap_energy
+from fdvv.units import FloatArray
+from fdvv.vibration import (
+    HeardPress,
+    MeasuredVibration,
+    NotFound,
+    PacePresses,
+    SharedMode,
+    SnapEnergy,
+    measure_paces,
+    snap_energy,
+)
+from fdvv.workflow._capture_heard import ON_HOUSING, HeardStroke, missing_words, shared_words
+from fdvv.workflow._capture_scaling import StrokeScaling, scaled_vibrations, scaling_words, stroke_scaling
 
 CONTACT_mm, STOP_mm = 0.3, 0.1
 """Parts of a curve beside contact and stop in which no fall of force is looked for."""
-
-
-@dataclass(frozen=True, eq=False)
-class HeardStroke:
-    """One stroke at one pace, and what was heard of its snap; NotFound says why nothing was."""
-
-    stroke: Stroke
-    velocity_mm_s: float | None
-    found: MeasuredVibration | NotFound
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,20 +36,29 @@ class RecordedVibrations:
     Attributes
     ----------
     heard : every stroke and pace, presses before releases, slow before fast.
-    vibrations : those whose modes and amplitude are known, as a model holds them.
-    warnings : why the others are missing, one sentence each.
+    vibrations : those whose modes and amplitude are known, as a model holds them; and those that a law gave,
+        if that was asked for.
+    warnings : why the others are missing, one sentence for each reason.
+    assumptions : what no measurement backs, one sentence each.
+    scalings : how amplitude grows with the cap's speed at the snap, of strokes heard at two paces or more.
     """
 
     heard: tuple[HeardStroke, ...]
     vibrations: tuple[Vibration, ...]
     warnings: tuple[str, ...]
+    assumptions: tuple[str, ...] = ()
+    scalings: tuple[StrokeScaling, ...] = ()
 
 
-def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedVibrations:
+def recorded_vibrations(
+    recording: Recording, processed: Processed, extrapolate: bool = False
+) -> RecordedVibrations:
     """Search the vibration of a recording for snaps, pooled over the presses of each stroke and pace.
 
-    An accelerometer is taken before a microphone. A mode that one pace told sharpens the search at the
-    others. Without either there is nothing, said once.
+    An accelerometer is taken before a microphone. Modes that some paces told sharpen the search at others.
+    Without either there is nothing, said once.
+
+    extrapolate : paces without a vibration of their own get that of the nearest pace, its amplitude scaled.
     """
     for quantity in (Quantity.ACCELERATION, Quantity.SOUND):
         streams = {take.number: take.of(quantity)[0] for take in recording.takes if take.of(quantity)}
@@ -57,39 +69,54 @@ def recorded_vibrations(recording: Recording, processed: Processed) -> RecordedV
             (), (), ("no vibration: nothing listened, neither microphone nor accelerometer",)
         )
     shaken = quantity is Quantity.ACCELERATION
-    heard = list(_heard(recording, processed, streams, shaken))
-    scale = None if shaken else recording.bench.sound_V_s_m or None
-    vibrations, warnings = [], []
+    heard, mode = _heard(recording, processed, streams, shaken)
+    own, missing = _vibrations(heard, None if shaken else recording.bench.sound_V_s_m or None)
+    scalings = tuple(s for s in (stroke_scaling(heard, own, stroke) for stroke in Stroke) if s is not None)
+    told = [*([ON_HOUSING] if own and shaken else []), *([shared_words(mode)] if own and mode else [])]
+    warnings = missing_words(missing)
+    if extrapolate:
+        more = [v for s in scalings for v in scaled_vibrations(s, heard, own)]
+        told += [scaling_words(s, more) for s in scalings if any(v.stroke is s.stroke for v in more)]
+        own = sorted([*own, *more], key=lambda v: (v.stroke is Stroke.RELEASE, v.velocity_mm_s or 0.0))
+    elif any(one.stroke is s.stroke for s in scalings for one, _ in missing):
+        warnings.append("strokes that lack it at some paces only can be given it by --extrapolate-vibration")
+    return RecordedVibrations(tuple(heard), tuple(own), tuple(warnings), tuple(told), scalings)
+
+
+def _vibrations(
+    heard: Sequence[HeardStroke], scale_V_s_m: float | None
+) -> tuple[list[Vibration], list[tuple[HeardStroke, str]]]:
+    """Give vibrations that are known, and strokes where none is with the reason."""
+    found, missing = [], []
     for one in heard:
         try:
-            vibrations.append(_vibration(one, scale))
+            found.append(_vibration(one, scale_V_s_m))
         except ModelError as error:
-            warnings.append(
-                f"no vibration on the {one.stroke} at {one.velocity_mm_s or 'unknown'} mm/s: {error}"
-            )
-    return RecordedVibrations(tuple(heard), tuple(vibrations), tuple(warnings))
+            missing.append((one, str(error)))
+    return found, missing
 
 
 def _heard(
     recording: Recording, processed: Processed, streams: dict[int, Stream], shaken: bool
-) -> Iterator[HeardStroke]:
+) -> tuple[list[HeardStroke], SharedMode | None]:
+    """Measure every stroke and pace; with the mode that they share."""
     presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
     delay_s = 0.0 if shaken else 1e-3 * recording.bench.sound_filter_ms
-    rings: tuple[tuple[float, float], ...] = ()
+    paces = []
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
-        heard = [
+        heard = tuple(
             heard_press(presses[key], track, streams[track.take], delay_s)
             for track in tracks
             if (key := (track.take, track.part)) in presses and track.take in streams
-        ]
-        found: MeasuredVibration | NotFound = NotFound("no press of it was heard")
-        if heard:
-            found = measure_vibration(
-                heard, curve.velocity_mm_s or curve.achieved_mm_s, _energy(curve), shaken, rings
-            )
-        if isinstance(found, MeasuredVibration) and found.rings and not rings:
-            rings = found.rings
-        yield HeardStroke(curve.stroke, curve.velocity_mm_s, found)
+        )
+        pace_mm_s = curve.velocity_mm_s or curve.achieved_mm_s
+        paces.append(PacePresses(curve.stroke, pace_mm_s, heard, _energy(curve)))
+    found, mode = measure_paces(paces, shaken)
+    strokes = [
+        HeardStroke(curve.stroke, curve.velocity_mm_s, curve.achieved_mm_s, one, pace.energy)
+        for curve, pace, one in zip(processed.curves, paces, found, strict=True)
+    ]
+    return strokes, mode
 
 
 def heard_press(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: float) -> HeardPress:
@@ -124,14 +151,33 @@ def _vibration(one: HeardStroke, scale_V_s_m: float | None) -> Vibration:
 
 
 def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:
-    """Give what is known of how presses differ: onset and amplitude press by press, the ring's as a whole."""
-    amplitude = found.amplitude
-    if found.shown < 2 or amplitude is None:
+    """Give how presses differ: in onset and amplitude one by one, in frequency and decay by leaving out."""
+    ring = found.ring
+    if found.shown < 2 or isinstance(ring, NotFound):
         return None
-    ratio = amplitude.sd / amplitude.value if amplitude.value else 0.0
-    first = ModeSpread(amplitude_m_s2=abs(vibration.modes[0].amplitude_m_s2) * ratio)
+    first = ring.mode
+    lasting = first.decay_spread_1_s / first.decay_1_s if first.decay_spread_1_s is not None else None
     return VibrationSpread(
         found.shown,
-        onset_mm=found.onset_mm.sd,
-        modes=(first, *(ModeSpread() for _ in vibration.modes[1:])),
+        onset_mm=_rounded(found.onset_mm.sd),
+        duration_s=_rounded(lasting and vibration.duration_s * lasting),
+        modes=tuple(
+            ModeSpread(
+                _rounded(mode.frequency_spread_Hz),
+                _rounded(_deviation_ratio(sizes) * abs(told.amplitude_m_s2)),
+                _rounded(mode.decay_spread_1_s),
+            )
+            for mode, told, sizes in zip(ring.modes, vibration.modes, ring.amplitudes.T, strict=True)
+        ),
     )
+
+
+def _deviation_ratio(sizes: FloatArray) -> float:
+    """Give the spread over the median, from the median deviation, which a few outliers do not move."""
+    middle = float(np.median(sizes))
+    return 1.4826 * float(np.median(np.abs(sizes - middle))) / middle if middle else 0.0
+
+
+def _rounded(value: float | None) -> float | None:
+    """Keep four digits of a spread: presses tell it to some per cent."""
+    return None if value is None else float(f"{value:.4g}")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.model import FDVVModel, ForceCurve
+from fdvv.model import FDVVModel, ForceCurve, ModeSpread, Vibration
 
 
 def spread_reports(model: FDVVModel) -> dict[str, Any]:
@@ -15,16 +15,7 @@ def spread_reports(model: FDVVModel) -> dict[str, Any]:
     return {
         "curves": [curve_spread(curve) for curve in model.curves],
         "points": {name: vars(spread) for name, spread in points.items() if spread},
-        "vibrations": [
-            {
-                "stroke": str(v.stroke),
-                "velocity_mm_s": v.velocity_mm_s,
-                "onset_mm": v.onset_mm,
-                "onset_spread_mm": v.spread.onset_mm if v.spread else None,
-                "presses": v.spread.presses if v.spread else None,
-            }
-            for v in model.vibrations
-        ],
+        "vibrations": [vibration_spread(v) for v in model.vibrations],
     }
 
 
@@ -39,4 +30,23 @@ def curve_spread(curve: ForceCurve) -> dict[str, Any]:
         "presses": spread.presses if spread else None,
         "median_spread_cN": float(np.median(spread.spread_cN)) if spread else None,
         "largest_spread_cN": float(spread.spread_cN.max()) if spread else None,
+    }
+
+
+def vibration_spread(vibration: Vibration) -> dict[str, Any]:
+    """Give a vibration by its principal mode, with how presses differ; null where that was not measured."""
+    spread, first = vibration.spread, vibration.modes[0]
+    mode = spread.modes[0] if spread and spread.modes else ModeSpread()
+    return {
+        "stroke": str(vibration.stroke),
+        "velocity_mm_s": vibration.velocity_mm_s,
+        "onset_mm": vibration.onset_mm,
+        "onset_spread_mm": spread.onset_mm if spread else None,
+        "duration_s": vibration.duration_s,
+        "duration_spread_s": spread.duration_s if spread else None,
+        "frequency_Hz": first.frequency_Hz,
+        "frequency_spread_Hz": mode.frequency_Hz,
+        "amplitude_m_s2": first.amplitude_m_s2,
+        "amplitude_spread_m_s2": mode.amplitude_m_s2,
+        "presses": spread.presses if spread else None,
     }
