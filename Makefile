@@ -7,6 +7,9 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/boards/host/*.[ch])
 
+# matrices here are small: threads of BLAS would only wait for each other
+export OPENBLAS_NUM_THREADS ?= 1
+
 .PHONY: help demo test check format bench setup firmware firmware-tools clean
 
 help: ## Show this list

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.recording import Recording, Stage, Take
+from fdvv.recording import Quantity, Recording, Stage, Take
 from fdvv.twin import PARTICIPANTS, CaptureBench, CaptureRig, Finger, ForceSensor, load_button
 from fdvv.workflow import RecordedModel, model_of_recording
 
@@ -29,16 +29,21 @@ def capture(plan: tuple[tuple[Stage, float | None, int], ...] = PLAN) -> Recordi
         load_button("mx-clear"), CaptureRig(), Finger(), ForceSensor(), PARTICIPANTS["steady"], random
     )
     stages = [(stage, pace) for stage, pace, count in plan for _ in range(count)]
-    takes = [bench.take(number, *what).take for number, what in enumerate(stages, 1)]
+    takes = [unshaken(bench.take(number, *what).take) for number, what in enumerate(stages, 1)]
     takes[SHORT_STROKE - 1] = shallower(takes[SHORT_STROKE - 1])
     return Recording("mx-clear", tuple(takes), bench.facts(), simulated=True)
+
+
+def unshaken(take: Take) -> Take:
+    """Leave the accelerometer out: what the paper's bench had is force, sound, two markers and the light."""
+    return replace(take, streams=tuple(s for s in take.streams if s.quantity is not Quantity.ACCELERATION))
 
 
 def shallower(take: Take) -> Take:
     """Make the cap of a take go four fifths of its way."""
     streams = tuple(
         replace(s, raw=np.nanmedian(s.raw[:20], axis=0) + 0.8 * (s.raw - np.nanmedian(s.raw[:20], axis=0)))
-        if s.quantity == "marker"
+        if s.quantity is Quantity.MARKER
         else s
         for s in take.streams
     )

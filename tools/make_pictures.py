@@ -23,12 +23,16 @@ from fdvv.plot import (
     figure_png,
     figure_svg,
     house_style,
+    plot_averages,
     plot_fit,
     plot_model,
+    plot_registration,
     plot_scan,
     plot_surface,
     plot_vibration,
 )
+from fdvv.preprocess import process
+from fdvv.testing import captured_session
 from fdvv.units import cN_from_gf
 
 ROOT = Path(__file__).parents[1]
@@ -37,6 +41,7 @@ SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared" / "data"))
 RAW = SHARED / "bluepylons-parsed" / "Cherry-MX-Hyperglide-Brown.csv"
 CREDIT = "data: bluepylons, CC BY 4.0"
 LARGEST_PNG = 150_000
+CAPTURE_SEED = 2
 
 
 def read_press(path: Path) -> MeasuredCurve:
@@ -92,6 +97,15 @@ def draw_model_pictures() -> None:
     save_svg("vibration", plot_vibration(model), f"Vibration {what}")
 
 
+def draw_capture_pictures() -> None:
+    """Draw what becomes of a simulated recording of the procedure."""
+    processed = process(captured_session("mx-clear", CAPTURE_SEED).recording)
+    registered = plot_registration(processed, Stroke.PRESS, 200.0, simulated=True)
+    save_svg("registration", registered, "Samples of presses at 200 mm/s, their mean and spread; simulated")
+    averages = plot_averages(processed, simulated=True)
+    save_svg("averages", averages, "Averaged curves of four paces with their spread; simulated")
+
+
 def draw_fit_pictures(raw: Path) -> None:
     """Draw the overview and what the fit does to a raw switch."""
     measured, name = read_press(raw), raw.stem.replace("-", " ")
@@ -113,6 +127,7 @@ def draw_fit_pictures(raw: Path) -> None:
 if __name__ == "__main__":
     raw_file = Path(sys.argv[1]) if len(sys.argv) > 1 else RAW
     draw_model_pictures()
+    draw_capture_pictures()
     if not raw_file.exists():
         raise SystemExit(f"{raw_file} is not there: pass a bench file to draw overview, fit and scan")
     draw_fit_pictures(raw_file)

@@ -32,7 +32,7 @@ def line(ax: Any, label: str) -> Any:
 def test_every_stream_of_a_take_has_a_panel_with_its_unit_and_its_clock() -> None:
     take = capture().takes[FAST - 1]
     figure = plot_take(capture(), FAST)
-    assert len(figure.axes) == len(take.streams) == 6
+    assert len(figure.axes) == len(take.streams)
     for ax, stream in zip(figure.axes, take.streams, strict=True):
         assert ax.get_ylabel().startswith(stream.name)
         assert f"clock of the {stream.clock} (s)" in ax.get_xlabel()

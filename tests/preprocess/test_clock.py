@@ -46,7 +46,7 @@ def test_offset_and_drift_are_found_within_the_doubt_that_is_told(
     seed: int, offset_s: float, drift: float, exposure_s: float
 ) -> None:
     random = np.random.default_rng(seed)
-    edges, frames, light = session(20, offset_s, 1 + drift, random, exposure_s)
+    edges, frames, light = session(30, offset_s, 1 + drift, random, exposure_s)
 
     fit = align_clocks(edges, frames, light, exposure_s)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -75,7 +76,7 @@ class Pooled:
     width_mm: float
 
 
-def pool(tracks: Sequence[StrokeTrack], shape: CurveOfForce, end_mm: float) -> Pooled:
+def pool(tracks: Sequence[StrokeTrack], shape: CurveOfForce, end_mm: float, start_mm: float = 0.0) -> Pooled:
     """Average strokes at the moments of their samples, without drawing lines between samples.
 
     What differs from the button's own curve ``shape`` is fitted by a spline on 50 um with a penalty on its
@@ -86,7 +87,8 @@ def pool(tracks: Sequence[StrokeTrack], shape: CurveOfForce, end_mm: float) -> P
     x: FloatArray = np.concatenate([track.displacement_mm for track in tracks]).astype(np.float64)
     who = np.concatenate([np.full(track.t_s.size, i) for i, track in enumerate(tracks)])
     rest_cN: FloatArray = np.concatenate([track.force_cN for track in tracks]) - shape(x)[0]
-    low, high = 0.0, GRID_mm * int(end_mm / GRID_mm + 1e-9)
+    low = GRID_mm * math.ceil(start_mm / GRID_mm - 1e-9)
+    high = GRID_mm * int(end_mm / GRID_mm + 1e-9)
     inside = (x >= low - GRID_mm) & (x <= high + GRID_mm)
     x, who, rest_cN = x[inside], who[inside], rest_cN[inside]
     basis = EvenBasis(low, GRID_mm, round((high - low) / GRID_mm))

@@ -72,13 +72,15 @@ class Curves:
         if found is None:
             return None
         whole, tracks, shape = found
-        pooled = pool(tracks, shape, _end_mm(tracks))
+        pooled = pool(tracks, shape, *_extent_mm(tracks))
         speeds = np.array([one.achieved_mm_s for one in whole])
         strange = [whole[i] for i in unlike(pooled, self._limit)]
         return _Done(averaged(tracks, pooled, pace, speeds), tracks, shape, strange)
 
 
-def _end_mm(tracks: Sequence[StrokeTrack]) -> float:
-    """Tell to what depth at least three presses, or a third of them, have samples."""
+def _extent_mm(tracks: Sequence[StrokeTrack]) -> tuple[float, float]:
+    """Tell to what depth, and from where on, at least three presses or a third of them have samples."""
+    enough = max(FEWEST, len(tracks) // 3)
     deepest = sorted(float(track.displacement_mm.max()) for track in tracks)
-    return deepest[-max(FEWEST, len(deepest) // 3)]
+    shallowest = sorted(float(track.displacement_mm.min()) for track in tracks)
+    return deepest[-enough], max(shallowest[enough - 1], 0.0)

@@ -38,6 +38,8 @@ def press_axis(takes: Sequence[Take]) -> FloatArray | None:
     for take in takes:
         markers = [stream for stream in take.of(Quantity.MARKER) if stream.raw.ndim == 2]
         for marker in markers:
+            if not np.isfinite(marker.values).any():
+                continue
             place = marker.values - np.nanmedian(marker.values, axis=0)
             seen = np.isfinite(place).all(axis=1)
             moved.append(place[seen])
