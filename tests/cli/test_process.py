@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,8 @@ from tests.captures import SHORT_STROKE, capture, recorded
 from tests.cli.conftest import Ran, Run
 
 from fdvv.model import load_model
-from fdvv.recording import RECORDING_SUFFIX, save_recording
-from fdvv.workflow import capture_report
+from fdvv.recording import RECORDING_SUFFIX, Quantity, save_recording
+from fdvv.testing import captured_session
 
 
 def warned(ran: Ran) -> tuple[str, ...]:
@@ -52,30 +53,40 @@ def test_the_mass_of_the_cap_is_taken_and_told(fdvv: Run, recording: Path) -> No
     assert any("moves 2.5 g" in told for told in report["assumptions"])
 
 
-def test_vibrations_are_listed_with_spread_and_presses_and_missing_ones_with_the_reason(
-    fdvv: Run, recording: Path
-) -> None:
-    report, ran = capture_report(recorded()), fdvv("process", recording)
-    told = report["vibrations"]
-    assert len(told["in_model"]) == len(recorded().model.vibrations) > 0
+@pytest.fixture
+def shaken(tmp_path: Path) -> Path:
+    """A recording with an accelerometer on the housing, that heard nothing at one pace."""
+    made = captured_session("mx-brown", 300, presses=5, paces_mm_s=(50.0, 100.0, 200.0)).recording
+    takes = tuple(
+        replace(t, streams=tuple(s for s in t.streams if s.quantity is not Quantity.ACCELERATION))
+        if t.velocity_mm_s == 100.0
+        else t
+        for t in made.takes
+    )
+    path = tmp_path / f"brown{RECORDING_SUFFIX}"
+    save_recording(replace(made, takes=takes), path)
+    return path
+
+
+def test_vibrations_are_listed_and_missing_ones_told_or_scaled_if_asked(fdvv: Run, shaken: Path) -> None:
+    plain, text = fdvv("process", shaken, "--json").json, fdvv("process", shaken).out
+    told = plain["vibrations"]
+    assert [(v["stroke"], v["velocity_mm_s"]) for v in told["in_model"]] == [
+        ("press", 50.0),
+        ("press", 200.0),
+    ]
     for vibration in told["in_model"]:
         assert vibration["presses"] > 1
         assert vibration["onset_spread_mm"] > 0
+        assert f"{vibration['frequency_Hz']:.0f} ± {vibration['frequency_spread_Hz']:.0f}" in text
     missing = [h for h in told["heard"] if h["reason"]]
-    assert missing
-    assert all(any(h["reason"] in line for line in report["warnings"]) for h in missing)
-    assert "vibration" in ran.out
-    assert f"{told['in_model'][0]['frequency_Hz']:.0f} ±" in ran.out
-
-
-def test_missing_vibrations_are_scaled_only_if_asked(fdvv: Run, recording: Path) -> None:
-    plain = capture_report(recorded())
-    asked = fdvv("process", recording, "--json", "--extrapolate-vibration").json
-    assert not any("scaled from other paces" in told for told in plain["assumptions"])
-    scaled = [v for v in asked["vibrations"]["in_model"] if v["presses"] is None]
-    said = [told for told in asked["assumptions"] if "scaled from other paces" in told]
-    assert bool(scaled) == bool(said)
-    assert len(asked["vibrations"]["in_model"]) == len(plain["vibrations"]["in_model"]) + len(scaled)
+    assert all(any(h["reason"] in line for line in plain["warnings"]) for h in missing)
+    assert [s["stroke"] for s in told["scalings"]] == ["press"]
+    assert not any("scaled from other paces" in line for line in plain["assumptions"])
+    asked = fdvv("process", shaken, "--json", "--extrapolate-vibration").json
+    (scaled,) = [v for v in asked["vibrations"]["in_model"] if v["presses"] is None]
+    assert (scaled["stroke"], scaled["velocity_mm_s"]) == ("press", 100.0)
+    assert any("press at 100 mm/s was not found but scaled" in line for line in asked["assumptions"])
 
 
 @pytest.mark.parametrize(
