@@ -9,7 +9,7 @@ from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_model import FindVibrations, RecordedModel, model_of_recording, process_recording
 from fdvv.workflow._capture_plan import CapturePlan, Step
 from fdvv.workflow._capture_report import capture_report
-from fdvv.workflow._capture_vibration import HeardStroke, RecordedVibrations, recorded_vibrations
+from fdvv.workflow._capture_vibration import RecordedVibrations, recorded_vibrations
 from fdvv.workflow._check import check_file
 from fdvv.workflow._compare import Comparison, Difference, compare
 from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
