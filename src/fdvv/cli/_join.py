@@ -50,7 +50,7 @@ def join(
     as_json: bool,
     **facts: float,
 ) -> None:
-    """Put logs of one session into a recording: motion capture, force, sound.
+    """Join logs of instruments that ran at once into a recording.
 
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
