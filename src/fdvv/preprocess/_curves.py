@@ -79,8 +79,12 @@ class Curves:
 
 
 def _extent_mm(tracks: Sequence[StrokeTrack]) -> tuple[float, float]:
-    """Tell to what depth, and from where on, at least three presses or a third of them have samples."""
+    """Tell to what depth, and from where on, at least three presses or a third of them have samples.
+
+    A press begins at the resting cap, so its curve begins at 0: that is the button's contact.
+    """
     enough = max(FEWEST, len(tracks) // 3)
     deepest = sorted(float(track.displacement_mm.max()) for track in tracks)
     shallowest = sorted(float(track.displacement_mm.min()) for track in tracks)
-    return deepest[-enough], max(shallowest[enough - 1], 0.0)
+    start_mm = shallowest[enough - 1] if tracks[0].stroke is Stroke.RELEASE else 0.0
+    return deepest[-enough], max(start_mm, 0.0)
