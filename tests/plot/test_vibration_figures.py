@@ -26,7 +26,7 @@ def test_the_fitted_ring_lies_on_the_signal_that_it_was_made_from() -> None:
     assert at_ms[0] == pytest.approx(50.0)
     assert at_ms[-1] == pytest.approx(50 + 1e3 * np.log(10) / 150)
     assert_allclose(shown, np.interp(at_ms, 1e3 * T_s, signal_V()), atol=0.02)
-    assert np.max(envelope.get_ydata()) <= 2.0
+    assert np.max(np.asarray(envelope.get_ydata())) <= 2.0
     assert [np.asarray(line.get_xdata())[0] for line in (snap, bottom)] == [50.0, 120.0]
     assert ax.get_title(loc="right") == "simulated"
 

@@ -144,7 +144,7 @@ def _again(board: Edges, seen: SeenEdges, pairs: Sequence[tuple[int, int]]) -> n
     own, theirs = board.t_s[found[:, 0]], seen.t_s[found[:, 1]]
     middle = own.mean()
     rate = np.polyfit(own - middle, theirs, 1)
-    at_s = np.polyval(rate, board.t_s - middle)
+    at_s = np.asarray(np.polyval(rate, board.t_s - middle), dtype=np.float64)
     near = _nearest(seen.t_s, at_s)
     hit = (at_s >= seen.low_s[near] - CLOSE_s) & (at_s <= seen.high_s[near] + CLOSE_s)
     hit &= seen.on[near] == board.on
