@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -101,3 +102,14 @@ def pretty(value: object, one_line: Collection[str] = (), indent: str = "") -> s
     if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
         return "[\n" + ",\n".join(deeper + pretty(v, one_line, deeper) for v in value) + f"\n{indent}]"
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def tidy_schema(value: Any) -> Any:
+    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
+    if isinstance(value, dict):
+        # a property may itself be called "description"; then it is an object
+        return {
+            k: inspect.cleandoc(v) if k == "description" and isinstance(v, str) else tidy_schema(v)
+            for k, v in value.items()
+        }
+    return [tidy_schema(v) for v in value] if isinstance(value, list) else value

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
+from fdvv.documents import tidy_schema
 from fdvv.model._curve import Stroke
 from fdvv.model._spread_records import CurveSpreadRecord, PointSpreadRecord, VibrationSpreadRecord
 from fdvv.model._velocity import Interpolation
@@ -117,11 +117,4 @@ class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
 def schema() -> dict[str, Any]:
     """Give the JSON schema of the file format, as published in docs/reference/fdvv.schema.json."""
     found = msgspec.json.schema(ModelRecord)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_tidy(found)}
-
-
-def _tidy(value: Any) -> Any:
-    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
-    if isinstance(value, dict):
-        return {k: inspect.cleandoc(v) if k == "description" else _tidy(v) for k, v in value.items()}
-    return [_tidy(v) for v in value] if isinstance(value, list) else value
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **tidy_schema(found)}

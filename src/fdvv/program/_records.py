@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 from msgspec import Meta
 
+from fdvv.documents import tidy_schema
 from fdvv.program._program import During, Velocity
 
 FORMAT = "fdvv-program"
@@ -138,12 +138,4 @@ class ProgramRecord(msgspec.Struct, forbid_unknown_fields=True):
 def schema() -> dict[str, Any]:
     """Give the JSON schema of the file, as published in docs/reference/fdvv-program.schema.json."""
     found = msgspec.json.schema(ProgramRecord)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_tidy(found)}
-
-
-def _tidy(value: Any) -> Any:
-    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
-    if isinstance(value, dict):
-        told = isinstance(value.get("description"), str)
-        return {k: inspect.cleandoc(v) if told and k == "description" else _tidy(v) for k, v in value.items()}
-    return [_tidy(v) for v in value] if isinstance(value, list) else value
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **tidy_schema(found)}

@@ -10,6 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from fdvv.columns import pack_column, unpack_column
+from fdvv.documents import tidy_schema
 from fdvv.errors import ModelError
 from fdvv.recording._types import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
@@ -103,7 +104,7 @@ def schema() -> dict[str, Any]:
         for key, ref in zip(kinds, found, strict=True)
     ]
     checksum = {"type": "integer", "minimum": 0, "maximum": 2**32 - 1}
-    return {
+    line = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A line of a recording",
         "type": "object",
@@ -112,6 +113,7 @@ def schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": parts,
     }
+    return dict(tidy_schema(line))
 
 
 def pack_head(recording: Recording) -> dict[str, Any]:
