@@ -9,6 +9,7 @@ each is a pair of bounds, ``low <= offset + rate * edge <= high``, and what fits
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -74,19 +75,19 @@ def _fits(
     edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Keep edges that one line fits: that line which the least total slack asks for."""
+    from scipy import sparse
     from scipy.optimize import linprog
 
     n, middle = edge_s.size, float(edge_s.mean())
     ones, away = np.ones(n), edge_s - middle
     base = float(np.median(0.5 * (low_s + high_s) - edge_s))
     # unknown: offset at the middle, rate - 1, slack of each edge
-    above = np.column_stack([-ones, -away, -np.eye(n)])
-    below = np.column_stack([ones, away, -np.eye(n)])
+    line, slack = sparse.csr_array(np.column_stack([ones, away])), sparse.eye_array(n, format="csr")
+    sides: Any = sparse.block_array([[-line, -slack], [line, -slack]], format="csr")
     limits = np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
     bounds = [(None, None), (-PPM_LARGEST * 1e-6, PPM_LARGEST * 1e-6), *[(0, None)] * n]
-    found = linprog(
-        np.concatenate([[0.0, 0.0], ones]), np.vstack([above, below]), limits, bounds=bounds, method="highs"
-    )
+    costs = np.concatenate([[0.0, 0.0], ones])
+    found = linprog(costs, sides, limits, bounds=bounds, method="highs")
     if not found.success:
         raise ModelError(f"the two clocks cannot be joined by a line: {found.message}")
     assert found.x is not None

@@ -28,7 +28,7 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """When a press is left out; none of them looks at the force, so that none can shape a curve.
+    """When a press is left out; all but the last look at the motion alone, so that they cannot shape a curve.
 
     Attributes
     ----------
