@@ -10,17 +10,8 @@ import numpy as np
 
 from benchmarks.button_lines import Line, rms
 from fdvv.recording import Quantity, Stage
+from fdvv.testing import PERFECT_RIG, PERFECT_SENSOR
 from fdvv.twin import PARTICIPANTS, CaptureBench, CaptureRig, Finger, ForceSensor, SimulatedTake, load_button
-
-PERFECT_SENSOR = ForceSensor(
-    mass_kg=2e-4, filter_s=2e-5, noise_N=0.0, hysteresis_N=0.0, converter_bits=0, contact_stiffness_N_m=2e4,
-    contact_loss_s_m=1.0,
-)  # fmt: skip
-PERFECT = CaptureRig(
-    frame_Hz=2000.0, exposure_s=0.0, marker_noise_m=0.0, marker_bias_m=0.0, rocking_rad=0.0,
-    sideways_m=0.0, askew_rad=0.0, dropped_ratio=0.0, unseen_ratio=0.0, light_noise=0.0, clock_ppm=0.0,
-    force_zero_N=0.0, sound_low_Hz=0.0, sound_filter_s=0.0, sound_noise_V=0.0, sound_bits=0,
-)  # fmt: skip
 
 
 def curve_error_cN(made: SimulatedTake, synced: bool) -> float:
@@ -72,10 +63,10 @@ def budget(velocity_mm_s: float = 100.0) -> Iterator[Line]:
         "clocks: 50 ppm": {"clock_ppm": rig.clock_ppm},
     }  # fmt: skip
     for what, changes in sensors.items():
-        yield _budget_line(what, replace(PERFECT_SENSOR, **changes), PERFECT, True, velocity_mm_s)
+        yield _budget_line(what, replace(PERFECT_SENSOR, **changes), PERFECT_RIG, True, velocity_mm_s)
     for what, changes in rigs.items():
-        yield _budget_line(what, PERFECT_SENSOR, replace(PERFECT, **changes), True, velocity_mm_s)
-    slow = replace(PERFECT, frame_Hz=rig.frame_Hz)
+        yield _budget_line(what, PERFECT_SENSOR, replace(PERFECT_RIG, **changes), True, velocity_mm_s)
+    slow = replace(PERFECT_RIG, frame_Hz=rig.frame_Hz)
     yield _budget_line("clocks: light seen at 256 frames/s", PERFECT_SENSOR, slow, False, velocity_mm_s)
     yield _budget_line("all of it", sensor, rig, False, velocity_mm_s)
 

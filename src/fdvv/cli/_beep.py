@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-import io
-import math
 import shlex
 import subprocess
 import tempfile
-import wave
-from array import array
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 RATE_Hz = 22050
 LENGTH_s = 0.06
+LOUDNESS = 20000 / 32767
 TONES_Hz = {"cue contact": 880.0, "cue bottom": 440.0}
 """High at contact, low at the bottom."""
 
 
 def tone(frequency_Hz: float) -> bytes:
     """Make a short WAV: a sine that fades in and out."""
-    count = round(LENGTH_s * RATE_Hz)
-    loud = (math.sin(math.pi * i / count) for i in range(count))
-    wave_ = (math.sin(2 * math.pi * frequency_Hz * i / RATE_Hz) for i in range(count))
-    samples = array("h", (round(20000 * a * b) for a, b in zip(loud, wave_, strict=True)))
-    written = io.BytesIO()
-    with wave.open(written, "wb") as file:
-        file.setnchannels(1)
-        file.setsampwidth(2)
-        file.setframerate(RATE_Hz)
-        file.writeframes(samples.tobytes())
-    return written.getvalue()
+    import numpy as np
+
+    from fdvv.vibration import to_wav
+
+    part = np.arange(round(LENGTH_s * RATE_Hz), dtype=np.float64)
+    fade = np.sin(np.pi * part / part.size)
+    return to_wav(LOUDNESS * fade * np.sin(2 * np.pi * frequency_Hz * part / RATE_Hz), RATE_Hz, 1.0).data
 
 
 @contextmanager

@@ -15,7 +15,6 @@ from fdvv.cli._paces import Paces
 if TYPE_CHECKING:
     from fdvv.workflow import CaptureResult, PaceStanding
 
-SUFFIX = ".recording.jsonl"
 TWIN_BUTTON = "mx-clear"
 
 
@@ -109,17 +108,19 @@ def capture(
     Every press is on the disk before the next is asked for. Ctrl-C stops; the same command goes on where it
     stopped, also after a crash. With --output the recording is processed as fdvv process does.
     """
-    check_output(recording, SUFFIX)
-    check_output(output, ".fdvv.json")
     from fdvv.device import open_bench
+    from fdvv.model import SUFFIX
+    from fdvv.recording import RECORDING_SUFFIX
     from fdvv.workflow import CaptureGuide, CapturePlan, capture_session
 
+    check_output(recording, RECORDING_SUFFIX)
+    check_output(output, SUFFIX)
     shuffled = asked.pop("shuffle")
     plan = CapturePlan(**asked, shuffled=shuffled, seed=seed)
     twin = spec == "twin"
     device = open_bench(spec, button or TWIN_BUTTON, participant, seed, watch)
     name = (button and Path(button).name.removesuffix(".toml")) or (
-        TWIN_BUTTON if twin else recording.name.removesuffix(SUFFIX)
+        TWIN_BUTTON if twin else recording.name.removesuffix(RECORDING_SUFFIX)
     )
     try:
         with capture_view(watch or not twin, as_json, player) as view:

@@ -8,8 +8,6 @@ import click
 
 from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table, print_warnings
 
-SUFFIX = ".recording.jsonl"
-
 
 def _fact(name: str, told: str) -> click.Option:
     """Make the option of one fact of the bench."""
@@ -55,10 +53,10 @@ def join(
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
-    from fdvv.recording import Bench, facts_of, save_recording
+    from fdvv.recording import RECORDING_SUFFIX, Bench, facts_of, save_recording
     from fdvv.workflow import join_logs
 
-    check_output(output, SUFFIX)
+    check_output(output, RECORDING_SUFFIX)
     recording = join_logs(logs, name, markers, light, Bench(**facts), licence, person)  # type: ignore[arg-type]
     save_recording(recording, output)
     if as_json:

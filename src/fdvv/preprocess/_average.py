@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import MeasuredCurve, Stroke
+from fdvv.model import Stroke
 from fdvv.preprocess._basis import EvenBasis, rough
 from fdvv.preprocess._fuse import CurveOfForce
 from fdvv.preprocess._press import StrokeTrack
@@ -53,10 +53,6 @@ class AveragedCurve:
     def error_cN(self) -> FloatArray:
         """Standard error of the mean, (n,)."""
         return np.asarray(self.spread_cN / np.sqrt(self.presses))
-
-    def measured(self) -> MeasuredCurve:
-        """Give what a fit takes."""
-        return MeasuredCurve(self.displacement_mm, self.force_cN, self.stroke, self.velocity_mm_s)
 
 
 @dataclass(frozen=True, eq=False)

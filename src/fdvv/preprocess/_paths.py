@@ -12,11 +12,8 @@ from fdvv.preprocess._extend import extend
 from fdvv.preprocess._fuse import CurveOfForce, Fusion, Path, Seen, fuse, unknown_curve
 from fdvv.preprocess._press import StrokeTrack
 from fdvv.preprocess._reject import Judged
-from fdvv.preprocess._strokes import LEFT_mm
+from fdvv.preprocess._strokes import LEFT_mm, NEAR_mm
 from fdvv.units import cN_from_N
-
-OFF_STOP_mm = 0.12
-"""Frames nearer to the stop than this tell of the stop, not of the stroke."""
 
 UNKNOWN_PIECES, UNKNOWN_N = 25, 1e3
 """Spans of the button's force, and what it may be, where nothing was known of it."""
@@ -48,7 +45,8 @@ class Paths:
     def _seen(self, one: Judged, stroke: Stroke) -> Seen | None:
         """Cut one stroke out: from where the cap has left its rest to the last frame before the stop."""
         press, spans = one.press, one.spans
-        near = press.frame_mm > spans.bottom_mm - OFF_STOP_mm
+        # frames so near to the stop tell of the stop, not of the stroke
+        near = press.frame_mm > spans.bottom_mm - NEAR_mm
         begin_s, end_s = spans.of(stroke)
         if stroke is Stroke.PRESS:
             inside = (press.frame_s <= end_s) & ~near & (press.frame_s >= begin_s - 0.01)
@@ -132,7 +130,7 @@ def _frame_noise_mm(used: Sequence[Judged]) -> float:
     """Tell the noise of a frame from frames that followed each other while the cap rested."""
     steps = []
     for one in used:
-        rest = one.press.frame_mm[one.press.frame_s < one.spans.start_s - 0.02]
+        rest = one.press.frame_mm[one.press.frame_s < one.spans.rested_s]
         steps.append(np.diff(rest))
     joined = np.concatenate(steps) if steps else np.zeros(0)
     if joined.size < LEAST_STEPS:

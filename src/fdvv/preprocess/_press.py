@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from fdvv.model import Stroke
 from fdvv.units import FloatArray
+
+GUARD_s = 0.02
+"""Rest ends this long before the cap is seen to move, and begins this long after it came back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,11 @@ class Spans:
     end_s: float
     bottom_mm: float
 
+    @property
+    def rested_s(self) -> float:
+        """Until when the cap surely rests before the press."""
+        return self.start_s - GUARD_s
+
     def of(self, stroke: Stroke) -> tuple[float, float]:
         """Give begin and end of one stroke."""
         return (self.start_s, self.bottom_s) if stroke is Stroke.PRESS else (self.leave_s, self.end_s)
@@ -84,14 +90,3 @@ class StrokeTrack:
     velocity_mm_s: FloatArray
     acceleration_m_s2: FloatArray
     force_cN: FloatArray
-
-    def crossing_s(self, displacement_mm: float) -> float:
-        """Tell when the cap passes a place, NaN if it does not; between samples on a line."""
-        x = self.displacement_mm if self.stroke is Stroke.PRESS else -self.displacement_mm
-        level = displacement_mm if self.stroke is Stroke.PRESS else -displacement_mm
-        after = np.flatnonzero(x >= level)
-        if not after.size or after[0] == 0:
-            return float("nan")
-        i = int(after[0])
-        part = (level - x[i - 1]) / (x[i] - x[i - 1])
-        return float(self.t_s[i - 1] + part * (self.t_s[i] - self.t_s[i - 1]))

@@ -18,7 +18,7 @@ from fdvv.preprocess._probe import Probe, probe_of
 from fdvv.preprocess._reject import Judged, Reason, judge
 from fdvv.preprocess._settings import Settings
 from fdvv.preprocess._strokes import spans_of, whole_press
-from fdvv.preprocess._takes import idle_cN, presses_of
+from fdvv.preprocess._takes import presses_of
 from fdvv.preprocess._travel import travels_mm
 from fdvv.preprocess._zero import resting_mm
 from fdvv.recording import Recording
@@ -74,7 +74,7 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
     found = presses_of(recording)
     if not found.presses:
         raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(found.lost[:3])}")
-    probe = probe_of(recording, idle_cN(recording))
+    probe = probe_of(recording, found.zero_cN)
     spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in found.presses]
     judged = _paced(judge(found.presses, spans, settings.limits), settings.paces_mm_s)
     zero_mm = resting_mm(judged, probe)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
 from fdvv.preprocess._press import RawPress, Spans
 from fdvv.preprocess._strokes import NEAR_mm, achieved_mm_s, common_bottom_mm
-from fdvv.units import FloatArray
 
 
 class Reason(StrEnum):
@@ -128,18 +127,17 @@ def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
 
 def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
     """Leave out what was much slower or faster than the others of the same pace."""
-    judged = []
+    speeds: dict[float, list[float]] = {}
     for one in found:
-        asked = one.press.velocity_mm_s
-        speeds = np.array(
-            [o.achieved_mm_s for o in found if o.press.velocity_mm_s == asked and o.reason is None]
-        )
-        ratio = one.achieved_mm_s / _middle(speeds) if asked is not None and speeds.size else 1.0
-        off = not limits.slowest_ratio <= ratio <= limits.fastest_ratio
-        reason = Reason.OFF_PACE if one.reason is None and off else one.reason
-        judged.append(Judged(one.press, one.spans, one.achieved_mm_s, reason))
-    return judged
+        if one.press.velocity_mm_s is not None and one.reason is None:
+            speeds.setdefault(one.press.velocity_mm_s, []).append(one.achieved_mm_s)
+    usual = {pace: float(np.nanmedian(achieved)) for pace, achieved in speeds.items()}
+    return [replace(one, reason=Reason.OFF_PACE) if _off(one, usual, limits) else one for one in found]
 
 
-def _middle(speeds: FloatArray) -> float:
-    return float(np.nanmedian(speeds))
+def _off(one: Judged, usual_mm_s: Mapping[float, float], limits: Limits) -> bool:
+    if one.press.velocity_mm_s is None or one.reason is not None:
+        return False
+    ratio = one.achieved_mm_s / usual_mm_s[one.press.velocity_mm_s]
+    # a speed that cannot be told is off, too
+    return not limits.slowest_ratio <= ratio <= limits.fastest_ratio

@@ -97,7 +97,7 @@ def achieved_mm_s(press: RawPress, spans: Spans) -> float:
 
 
 def common_bottom_mm(bottoms_mm: Sequence[float]) -> float:
-    """Find the stop from the lowest places of many presses: the middle of the densest 0.1 mm.
+    """Find the stop from the lowest places of many presses: the middle of the densest 0.12 mm.
 
     Presses that did not reach the stop end anywhere, those that did end together.
     """

@@ -12,13 +12,10 @@ from fdvv.preprocess._clock import ClockFit, align_clocks
 from fdvv.preprocess._edges import Edges
 from fdvv.preprocess._force import even, undo_filter, undo_play
 from fdvv.preprocess._markers import Depth, depth_of, press_axis
-from fdvv.preprocess._press import RawPress
+from fdvv.preprocess._press import GUARD_s, RawPress
 from fdvv.preprocess._strokes import excursions
 from fdvv.recording import Bench, Quantity, Recording, Stage, Stream, Take
 from fdvv.units import FloatArray
-
-GUARD_s = 0.02
-"""Rest ends this long before the cap is seen to move, and begins this long after it came back."""
 
 LEAST_REST = 5
 """Fewer frames tell no place of rest."""
@@ -35,11 +32,13 @@ class Presses:
     ----------
     presses : in the order they were made.
     clock : how the camera's clock runs against it; that of identity where one clock is all.
+    zero_cN : what the force sensor reads of nothing, taken off already.
     lost : takes without a press, and why, one sentence each.
     """
 
     presses: tuple[RawPress, ...]
     clock: ClockFit
+    zero_cN: float
     lost: tuple[str, ...] = field(default_factory=tuple)
 
 
@@ -62,7 +61,7 @@ def presses_of(recording: Recording) -> Presses:
         found += here
         if not here:
             lost.append(f"take {take.number}: no press was seen")
-    return Presses(tuple(found), clock, tuple(lost))
+    return Presses(tuple(found), clock, zero_cN, tuple(lost))
 
 
 def join_clocks(recording: Recording) -> ClockFit:

@@ -25,7 +25,7 @@ def resting_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
     With a probe from its curve; without one from how the place goes with the first force of slow presses.
     """
     used = [one for one in judged if one.reason is None]
-    rests = [one.press.force_cN[one.press.t_s < one.spans.start_s - 0.02] for one in used]
+    rests = [one.press.force_cN[one.press.t_s < one.spans.rested_s] for one in used]
     rest_cN = float(np.median([np.median(rest) for rest in rests if rest.size])) if rests else 0.0
     if probe is not None:
         return probe.rest_mm(rest_cN)

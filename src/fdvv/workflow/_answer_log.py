@@ -65,13 +65,7 @@ class AnswerLog(SessionFile):
         super().__init__(folder / ANSWERS if folder else None)
 
     def _read(self, path: Path) -> int:
-        end = 0
-        for record, after in read_records(path, KIND):
-            end = after
-            if "run" in record:
-                self.runs.append(_converted(path, "run", record["run"], Run))
-            else:
-                self.answers.append(_answer(path, len(self.answers) + 1, record["answer"]))
+        self.runs, self.answers, end = _given(path)
         return end
 
     def _count(self) -> int:
@@ -91,16 +85,22 @@ def read_answers(path: Path) -> tuple[list[Run], list[Entry], int]:
 
     Raises InputError on a damaged file.
     """
+    runs, answers, end = _given(path)
+    return runs, [given.entry for given in answers], end
+
+
+def _given(path: Path) -> tuple[list[Run], list[Given], int]:
+    """Read runs and answers, and where the last whole record ends."""
     runs: list[Run] = []
-    entries: list[Entry] = []
+    answers: list[Given] = []
     end = 0
     for record, after in read_records(path, KIND):
         end = after
         if "run" in record:
             runs.append(_converted(path, "run", record["run"], Run))
         else:
-            entries.append(_answer(path, len(entries) + 1, record["answer"]).entry)
-    return runs, entries, end
+            answers.append(_answer(path, len(answers) + 1, record["answer"]))
+    return runs, answers, end
 
 
 def _answer(path: Path, number: int, found: Any) -> Given:

@@ -89,10 +89,16 @@ def _vibrations(
     """Give vibrations that are known, and strokes where none is with the reason."""
     found, missing = [], []
     for one in heard:
+        if isinstance(one.found, NotFound) or one.reason is not None:
+            missing.append((one, one.reason or ""))
+            continue
         try:
-            found.append(_vibration(one, scale_V_s_m))
+            vibration = one.found.vibration(scale_V_s_m)
         except ModelError as error:
             missing.append((one, str(error)))
+            continue
+        spread = _spread(one.found, vibration)
+        found.append(replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=spread))
     return found, missing
 
 
@@ -138,16 +144,6 @@ def _energy(curve: AveragedCurve) -> SnapEnergy | None:
     inside = curve.displacement_mm >= CONTACT_mm
     inside &= curve.displacement_mm <= curve.displacement_mm[-1] - STOP_mm
     return snap_energy(curve.displacement_mm[inside], curve.force_cN[inside])
-
-
-def _vibration(one: HeardStroke, scale_V_s_m: float | None) -> Vibration:
-    """Give a found vibration with its spread. ModelError, or what was said of one that was not found."""
-    missing = one.found if isinstance(one.found, NotFound) else one.found.ring
-    if isinstance(one.found, NotFound) or isinstance(missing, NotFound):
-        assert isinstance(missing, NotFound)
-        raise ModelError(missing.reason)
-    vibration = one.found.vibration(scale_V_s_m)
-    return replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=_spread(one.found, vibration))
 
 
 def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:

@@ -12,7 +12,7 @@ import numpy as np
 from fdvv.compensate import judge
 from fdvv.device import Device
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.model import FDVVModel, ForceSurface, Press, Vibration
+from fdvv.model import FDVVModel, ForceSurface, Vibration
 from fdvv.vibration import Comparing, Job, KnownExciter, Preferred, Question, Rating, Standing, TemplateGrid
 from fdvv.workflow._answer_log import AnswerLog, Given
 from fdvv.workflow._compensate import check_speeds
@@ -276,16 +276,13 @@ def _pressed(course: _Course, asked: Question, template: int) -> float | None:
     for _ in range(PATIENCE):
         course.upload(found.vibrations[template])
         course.guide.ask(Ask(found.velocity_mm_s, course.travel_mm, asked.number, asked.total))
-        verdict = judge(_press(course, found.velocity_mm_s), course.travel_mm, course.session.acceptance)
+        press = course.device.press(found.velocity_mm_s)
+        verdict = judge(press, course.travel_mm, course.session.acceptance)
         if not verdict.reason:
             return float(verdict.achieved_mm_s) if np.isfinite(verdict.achieved_mm_s) else None
         course.guide.notice(f"not used, {verdict.reason}")
     name = course.device.info().name
     raise DeviceError(f"{name}: {PATIENCE} presses in a row could not be used; the last {verdict.reason}")
-
-
-def _press(course: _Course, velocity_mm_s: float) -> Press:
-    return course.device.press(velocity_mm_s)
 
 
 def _how_to_go_on(log: AnswerLog) -> str:
