@@ -1,0 +1,22 @@
+import { defineConfig } from "vitest/config";
+
+// Names carry no hash: the page is committed beside the server, which tells browsers to revalidate.
+export default defineConfig({
+  root: import.meta.dirname,
+  base: "./",
+  test: { include: ["tests/**/*.test.ts"] },
+  build: {
+    outDir: "../src/fdvv/studio/static",
+    emptyOutDir: true,
+    target: "es2022",
+    modulePreload: { polyfill: false },
+    assetsInlineLimit: 0,
+    rollupOptions: {
+      output: {
+        entryFileNames: "studio.js",
+        chunkFileNames: "[name].js",
+        assetFileNames: "[name][extname]",
+      },
+    },
+  },
+});
