@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Lock
 
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, builtin_names, load_builtin, load_model
+from fdvv.model import SUFFIX, FDVVModel, builtin_names, load_builtin, load_model
 from fdvv.workflow._fit import fit_file
 from fdvv.workflow._kind import MODEL, own_kind
 from fdvv.workflow._shelf_files import ShelfFile, own_files, source_files
@@ -18,7 +18,7 @@ KEPT = 64
 """Opened buttons kept in memory; a model takes some 20 kB."""
 
 
-OWN = "buttons"
+BUTTONS = "buttons"
 """The folder of a project that holds the person's own models."""
 
 
@@ -41,7 +41,7 @@ class Shelf:
 
     def scan(self) -> tuple[ShelfFile, ...]:
         """List the files that may hold a button as they are now: the person's own, then the sources'."""
-        found = (*own_files(self.project / OWN), *source_files(self.sources))
+        found = (*own_files(self.project / BUTTONS), *source_files(self.sources))
         self._files = {file.id: file for file in found}
         return found
 
@@ -85,6 +85,6 @@ class Shelf:
 
 
 def _read(path: Path, fitted: bool) -> FDVVModel:
-    if own_kind(path) == MODEL:
+    if path.name.endswith(SUFFIX) or own_kind(path) == MODEL:
         return load_model(path)
     return fit_file(path).model if fitted else measured_button(path)[0]
