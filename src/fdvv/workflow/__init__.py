@@ -36,6 +36,12 @@ from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._shelf import Shelf
+from fdvv.workflow._shelf_curves import sample_strokes
+from fdvv.workflow._shelf_index import ShelfIndex, ShelfStand
+from fdvv.workflow._shelf_read import row_of_model
+from fdvv.workflow._shelf_row import NUMBERS as SHELF_NUMBERS
+from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow
+from fdvv.workflow._shelf_search import ShelfFound, ShelfQuery, ShelfSearch
 from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
@@ -51,8 +57,10 @@ from fdvv.workflow._vibration_slots import (
 )
 
 __all__ = [
+    "SHELF_NUMBERS",
     "Ask",
     "ButtonPress",
+    "ButtonType",
     "Candidates",
     "CaptureGuide",
     "CapturePlan",
@@ -71,6 +79,7 @@ __all__ = [
     "Guide",
     "HeardStroke",
     "ModelFit",
+    "Origin",
     "PaceStanding",
     "PressDone",
     "Presses",
@@ -82,6 +91,12 @@ __all__ = [
     "Rendering",
     "Session",
     "Shelf",
+    "ShelfFound",
+    "ShelfIndex",
+    "ShelfQuery",
+    "ShelfRow",
+    "ShelfSearch",
+    "ShelfStand",
     "Standing",
     "Step",
     "SwitchFit",
@@ -134,6 +149,8 @@ __all__ = [
     "quick_look",
     "recorded_vibrations",
     "render_vibration",
+    "row_of_model",
+    "sample_strokes",
     "save_actuation",
     "settings_with",
     "simulated_observer",

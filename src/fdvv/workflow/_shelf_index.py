@@ -32,7 +32,7 @@ class Refused:
 
 
 @dataclass
-class Stand:
+class ShelfStand:
     """What the index knows: rows and refusals only grow, until another scan replaces the whole.
 
     Attributes
@@ -67,10 +67,10 @@ class ShelfIndex:
         self,
         shelf: Shelf,
         cache: Path,
-        tell: Callable[[Stand], None] = lambda _: None,
+        tell: Callable[[ShelfStand], None] = lambda _: None,
         workers: int | None = None,
     ) -> None:
-        self.stand = Stand(epoch=0)
+        self.stand = ShelfStand(epoch=0)
         self._shelf, self._cache, self._tell = shelf, cache, tell
         self._workers = workers or min(4, os.cpu_count() or 1)
         self._wanted, self._closing = Event(), Event()
@@ -107,7 +107,7 @@ class ShelfIndex:
             return
         cached = read_cache(self._cache)
         known = [line for file in files if (line := cached.get(file.place)) and line.stamp == file.stamp]
-        stand = Stand(self.stand.epoch + 1, _builtin_rows(), total=len(files))
+        stand = ShelfStand(self.stand.epoch + 1, _builtin_rows(), total=len(files))
         for line in known:
             _take(stand, line)
         self.stand = stand
@@ -121,7 +121,7 @@ class ShelfIndex:
             stand.ended, self._content = True, content
         self._tell(stand)
 
-    def _read(self, files: Sequence[ShelfFile], stand: Stand) -> None:
+    def _read(self, files: Sequence[ShelfFile], stand: ShelfStand) -> None:
         """Read files into the stand and, every now and then, into the cache."""
         unsaved: list[CacheLine] = []
         told = saved = time.monotonic()
@@ -137,12 +137,12 @@ class ShelfIndex:
                 self._add(stand, unsaved)
         self._add(stand, unsaved)
 
-    def _add(self, stand: Stand, unsaved: list[CacheLine]) -> None:
+    def _add(self, stand: ShelfStand, unsaved: list[CacheLine]) -> None:
         lines = tuple(unsaved)
         unsaved.clear()
         self._save(stand, lambda: add_to_cache(self._cache, lines))
 
-    def _save(self, stand: Stand, write: Callable[[], None]) -> None:
+    def _save(self, stand: ShelfStand, write: Callable[[], None]) -> None:
         try:
             write()
         except OSError as error:
@@ -174,7 +174,7 @@ class ShelfIndex:
                 reader.close()
 
 
-def _take(stand: Stand, line: CacheLine) -> None:
+def _take(stand: ShelfStand, line: CacheLine) -> None:
     """Count a file, with its row or its refusal."""
     if line.row is not None:
         stand.rows.append(line.row)

@@ -104,9 +104,10 @@ class ShelfSearch:
         self._numbers = np.vstack([self._numbers, np.array(table, dtype=np.float64)])
         self._ends = _ends(self._numbers)
 
-    def row(self, button_id: str) -> ShelfRow:
-        """Give the row of a button. Raises InputError."""
-        return self.rows[self._position(button_id)]
+    def row(self, button_id: str) -> ShelfRow | None:
+        """Give the row of a button; None if it is not among them."""
+        at = self._at.get(button_id)
+        return None if at is None else self.rows[at]
 
     def _position(self, button_id: str) -> int:
         if button_id not in self._at:
