@@ -27,8 +27,9 @@ SUDDEN_ratio, SUDDEN_drop_cN = 0.5, 10.0
 """Click bars, leaves and buckling springs lose 0.64 to 0.93 of their fall within 50 um, tactile switches and
 MX Blue's jacket at most 0.36. Below 10 cN a jerk of the stage does the same."""
 
-DOME_rise_mm = 0.14
-"""Domes take 0.15 to 0.39 mm to reach half of their peak, switches with a contact step 0.03 to 0.12 mm."""
+DOME_rise_mm, DOME_fall_ratio = 0.14, 0.25
+"""Domes take 0.15 to 0.39 mm to reach half of their peak, switches with a contact step 0.03 to 0.12 mm; and
+they collapse over 0.29 to 0.45 of their travel, switches of that kind of rise over 0.1 to 0.18."""
 
 
 @dataclass(frozen=True)
@@ -85,10 +86,10 @@ def kind_of(model: FDVVModel) -> Kind:
         if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
             return Kind(ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN")
         return Kind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
-    return _bumpy(bump, fall, *found)
+    return _bumpy(bump, fall, model.travel_mm, *found)
 
 
-def _bumpy(bump: Bump, fall: str, x: FloatArray, force: FloatArray) -> Kind:
+def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatArray) -> Kind:
     sudden = _sudden_ratio(bump, x, force)
     if sudden >= SUDDEN_ratio:
         share = f"{fall}, {100 * sudden:.0f} % of it within 50 um"
@@ -96,8 +97,12 @@ def _bumpy(bump: Bump, fall: str, x: FloatArray, force: FloatArray) -> Kind:
             return Kind(ButtonType.UNCLEAR, f"{share}: so small a jump may be the bench")
         return Kind(ButtonType.CLICKY, f"{share}; force alone does not tell the sound")
     rise_mm = float(x[int(np.argmax(force >= 0.5 * bump.peak_cN))] - x[0])
-    if rise_mm >= DOME_rise_mm:
-        reason = f"{fall}; half of the peak is reached after {rise_mm:.2f} mm, without a contact step"
+    long_ratio = (bump.valley_mm - bump.peak_mm) / travel_mm
+    if rise_mm >= DOME_rise_mm and long_ratio >= DOME_fall_ratio:
+        reason = (
+            f"{fall} over {100 * long_ratio:.0f} % of the travel; half of the peak is reached after "
+            f"{rise_mm:.2f} mm, without a contact step"
+        )
         return Kind(ButtonType.DOME, reason)
     return Kind(ButtonType.TACTILE, fall)
 

@@ -93,7 +93,7 @@ class ReadProcess:
 
 
 def _started() -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "fdvv.workflow._shelf_worker"]
+    command = [sys.executable, "-c", "from fdvv.workflow._shelf_worker import main; main()"]
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
 
@@ -105,7 +105,3 @@ def main() -> None:
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(read(msgspec.json.decode(line, type=ReadAsk))) + b"\n")
         answers.flush()
-
-
-if __name__ == "__main__":
-    main()
