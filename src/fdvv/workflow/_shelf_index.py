@@ -17,7 +17,7 @@ from fdvv.workflow._shelf_cache import CacheLine, add_to_cache, read_cache, writ
 from fdvv.workflow._shelf_files import ShelfFile
 from fdvv.workflow._shelf_read import row_of_model
 from fdvv.workflow._shelf_row import Origin, ShelfRow
-from fdvv.workflow._shelf_worker import ReadAsk, ReadProcess
+from fdvv.workflow._shelf_worker import ReadAsk, ReadProcess, read
 
 TELL_s, SAVE_s = 0.1, 2.0
 """How often progress is told and what was read is saved."""
@@ -60,7 +60,7 @@ class ShelfIndex:
     shelf : whose buttons.
     cache : the file that survives a restart.
     tell : called from the background whenever something changed, at most ten times a second.
-    workers : processes that read files; by default one for every core, at most four.
+    workers : processes that read files, by default one for every core, at most four; 0 reads without any.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class ShelfIndex:
     ) -> None:
         self.stand = ShelfStand(epoch=0)
         self._shelf, self._cache, self._tell = shelf, cache, tell
-        self._workers = workers or min(4, os.cpu_count() or 1)
+        self._workers = min(4, os.cpu_count() or 1) if workers is None else workers
         self._wanted, self._closing = Event(), Event()
         self._content: list[tuple[str, str]] | None = None
         self._thread = Thread(target=self._run, name="shelf-index", daemon=True)
@@ -158,9 +158,11 @@ class ShelfIndex:
         def one(file: ShelfFile) -> CacheLine | None:
             if self._closing.is_set():
                 return None
-            reader = free.get()
-            answer = reader.read(ReadAsk(os.fsencode(file.path), file.id, file.collection, file.origin))
-            free.put(reader)
+            ask = ReadAsk(os.fsencode(file.path), file.id, file.collection, file.origin)
+            reader = free.get() if readers else None
+            answer = reader.read(ask) if reader else read(ask)
+            if reader:
+                free.put(reader)
             return CacheLine(file.place, file.stamp, answer.row, answer.reason)
 
         try:

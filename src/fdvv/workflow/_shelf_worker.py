@@ -58,15 +58,18 @@ def read(ask: ReadAsk) -> ReadAnswer:
 class ReadProcess:
     """The parent's side of a process that reads; it is started on the first file, and again if it dies."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest_s: float = LONGEST_s) -> None:
+        self._longest_s = longest_s
         self._process: subprocess.Popen[bytes] | None = None
 
     def read(self, ask: ReadAsk) -> ReadAnswer:
         """Have one file read; one that kills the reader or takes too long is answered with that reason."""
+        if self._process is not None and self._process.poll() is not None:
+            self.close()
         process = self._process = self._process or _started()
         assert process.stdin is not None
         assert process.stdout is not None
-        watch = Timer(LONGEST_s, process.kill)
+        watch = Timer(self._longest_s, process.kill)
         watch.daemon = True
         watch.start()
         try:
@@ -76,7 +79,9 @@ class ReadProcess:
             return msgspec.json.decode(line, type=ReadAnswer)
         except (OSError, ValueError, msgspec.MsgspecError):
             self.close()
-            return ReadAnswer(reason=f"whole file: reading it failed or took over {LONGEST_s:g} s")
+            return ReadAnswer(
+                reason=f"whole file: reading it failed or took over {self._longest_s:g} s; check it"
+            )
         finally:
             watch.cancel()
 
@@ -93,15 +98,21 @@ class ReadProcess:
 
 
 def _started() -> subprocess.Popen[bytes]:
+    """Start a process and wait until it can read, so that its start is not counted as a file's time."""
     command = [sys.executable, "-c", "from fdvv.workflow._shelf_worker import main; main()"]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    process.stdout.readline()
+    return process
 
 
 def main() -> None:
-    """Answer until the input ends."""
+    """Say that it is ready, then answer until the input ends."""
     if hasattr(os, "nice"):
-        os.nice(10)
+        os.nice(5)
     answers = sys.stdout.buffer
+    answers.write(b"ready\n")
+    answers.flush()
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(read(msgspec.json.decode(line, type=ReadAsk))) + b"\n")
         answers.flush()

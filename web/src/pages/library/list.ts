@@ -28,7 +28,7 @@ export function listedColumns(sort: string): readonly string[] {
 
 export class ButtonList {
   readonly element: HTMLElement;
-  private readonly inner = h("div", { class: "lib-inner" });
+  private readonly inner = h("div", { class: "lib-inner", role: "rowgroup" });
   private readonly views: RowView[] = [];
   private frame = 0;
 
@@ -40,7 +40,7 @@ export class ButtonList {
       "div",
       {
         class: "lib-list",
-        role: "listbox",
+        role: "grid",
         tabindex: 0,
         "aria-label": "Buttons",
         "aria-multiselectable": "true",
@@ -57,6 +57,7 @@ export class ButtonList {
     effect(() => {
       const [found] = [store.found(), store.grown(), store.shown(), palette(), store.active()];
       this.inner.style.height = `${found.positions.length * ROW_px}px`;
+      this.element.ariaRowCount = String(found.positions.length);
       this.request();
     });
     effect(() => {
@@ -127,13 +128,13 @@ export class ButtonList {
     canvas.style.height = `${SIZE_px.height}px`;
     const pin = h("span", { class: "lib-check", "aria-hidden": "true" });
     const [name, about] = [h("span", { class: "lib-name" }), h("span", { class: "lib-about" })];
-    const figures = LISTED.map(() => h("span", { class: "lib-figure" }));
+    const figures = LISTED.map(() => h("span", { class: "lib-figure", role: "gridcell" }));
     const element = h(
       "div",
-      { class: "lib-row", role: "option", id: `lib-row-${this.views.length}` },
-      h("span", { class: "lib-pin", title: "Compare (Space)" }, pin),
+      { class: "lib-row", role: "row", id: `lib-row-${this.views.length}` },
+      h("span", { class: "lib-pin", role: "gridcell", title: "Compare (Space)" }, pin),
       canvas,
-      h("span", { class: "lib-words" }, name, about),
+      h("span", { class: "lib-words", role: "gridcell" }, name, about),
       figures,
     );
     const view: RowView = { element, canvas, pin, name, about, figures, drawn: "", place: -1 };
@@ -162,9 +163,8 @@ export class ButtonList {
     if (view.place !== place) {
       view.place = place;
       view.element.style.transform = `translateY(${place * ROW_px}px)`;
-      view.element.ariaPosInSet = String(place + 1);
+      view.element.ariaRowIndex = String(place + 1);
     }
-    view.element.ariaSetSize = String(found.peek().positions.length);
     const pinned = shown.peek().overlay.includes(id);
     view.element.ariaSelected = String(pinned);
     view.element.classList.toggle("pinned", pinned);
@@ -191,6 +191,7 @@ export class ButtonList {
       const value = column ? rows.number(column.name, at) : null;
       element.textContent = figure(value, column?.digits ?? 1);
       element.title = column ? `${column.label}${value === null ? ": not detected or not known" : `, ${column.unit}`}` : "";
+      element.ariaLabel = column ? `${column.short} ${value === null ? "not known" : `${element.textContent} ${column.unit}`}` : "";
     });
   }
 }
