@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
@@ -14,6 +15,7 @@ from tests.workflow.shelves import bumped, button, dome, row, spring
 
 from fdvv.errors import InputError
 from fdvv.model import builtin_names, load_builtin
+from fdvv.units import FloatArray
 from fdvv.workflow import SHELF_NUMBERS, ButtonType, Origin, ShelfQuery, ShelfRow, ShelfSearch
 from fdvv.workflow._shelf_files import source_files
 from fdvv.workflow._shelf_like import LikeTable
@@ -23,9 +25,14 @@ NAMES = ("Cherry MX Clear", "Cherry MX Blue", "Gateron Yellow Pro", "Kailh Box N
 FORCES = (bumped(15), bumped(20, 0.03), spring, bumped(30, 0.03), dome, bumped(9))
 
 
+def below(force: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
+    """Give a release 3 cN below a press."""
+    return lambda x: force(x) - 3
+
+
 def rows() -> list[ShelfRow]:
     return [
-        row(button(force, lambda x, f=force: f(x) - 3, name), f"measured:{i:016x}", f"bench {i % 2}")
+        row(button(force, below(force), name), f"measured:{i:016x}", f"bench {i % 2}")
         for i, (name, force) in enumerate(zip(NAMES, FORCES, strict=True))
     ]
 
@@ -59,6 +66,10 @@ def test_one_letter_added_left_out_changed_or_swapped_is_forgiven(typed: str) ->
     found = SEARCH.find(ShelfQuery(typed))
     assert [ROWS[at].name for at in found.positions] == ["Gateron Yellow Pro"]
     assert found.mended == (() if typed == "gatero" else (typed,))
+
+
+def test_another_first_letter_is_another_word() -> None:
+    assert names(ShelfQuery("later")) == []
 
 
 def test_short_words_and_words_that_match_are_taken_as_they_stand() -> None:

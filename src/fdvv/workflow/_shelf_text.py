@@ -67,6 +67,8 @@ class TextTable:
 def _nearly(typed: str, word: str) -> bool:
     """Tell whether the beginning of a word is one letter off: added, left out, another, or two swapped."""
     n = len(typed)
+    if typed[0] not in word[:2]:
+        return False  # hardly anyone mistakes the first letter, and other words would often be near
     return any(_one_off(typed, word[:size]) for size in (n - 1, n, n + 1) if len(word) >= size)
 
 

@@ -1,6 +1,6 @@
 /** The right half: plot, legend, and what belongs to the chosen tab. */
 
-import { button, choice, h, tabs, toggle, toolbar } from "../../ui";
+import { button, choice, computed, h, tabs, toggle, toolbar } from "../../ui";
 import { about } from "./about";
 import { alikeList } from "./alike";
 import { speedText } from "./columns";
@@ -58,7 +58,7 @@ function controls(store: LibraryStore, overlay: Overlay): HTMLElement {
       toggle({ label: "─ Release", hint: "Thinner and paler", value: () => shown().release, set: (release) => store.show({ release }) }),
       toggle({ label: "Landmarks", hint: MARKS, value: () => shown().marks, set: (marks) => store.show({ marks }) }),
       toggle({ label: "Loss", value: () => shown().loss, set: (loss) => store.show({ loss }), hint: "Fill the work that is not given back" }),
-      () => speedChoice(store),
+      speedChoice(store),
     ),
     h("p", { class: "lib-underline muted", hidden: () => !shown().marks || shown().view !== "force" }, MARKS),
   );
@@ -76,13 +76,18 @@ function takeAlong(store: LibraryStore, overlay: Overlay): HTMLElement {
 }
 
 /** Shown where some button was measured at several speeds. */
-function speedChoice(store: LibraryStore): HTMLElement | null {
-  const buttons = store.shown().overlay.flatMap((id) => store.buttons().get(id) ?? []);
-  const all = speeds(buttons);
-  if (all.length < 2) return null;
-  const options = [["", "slowest speeds"] as const, ...all.map((v) => [String(v), `nearest to ${speedText(v)}`] as const)];
+function speedChoice(store: LibraryStore): () => HTMLElement | null {
+  const known = computed(() => {
+    const { overlay } = store.shown();
+    return speeds(overlay.flatMap((id) => store.buttons().get(id) ?? [])).join();
+  });
   const value = () => String(store.shown().velocity_mm_s ?? "");
-  return choice({ label: "Speed", bare: true, options, value, set: (text) => store.show({ velocity_mm_s: text ? Number(text) : null }) });
+  return () => {
+    const all = known().split(",").filter(Boolean);
+    if (all.length < 2) return null;
+    const options = [["", "slowest speeds"] as const, ...all.map((v) => [v, `nearest to ${speedText(Number(v))}`] as const)];
+    return choice({ label: "Speed", bare: true, options, value, set: (text) => store.show({ velocity_mm_s: text ? Number(text) : null }) });
+  };
 }
 
 /** Says which curve is dotted: the one that the keys of the list are at. */

@@ -1,6 +1,6 @@
 /** The left half: search line, how many were found, sorting, the list, and what to say where it is empty. */
 
-import { button, choice, effect, empty, h, progress, type Child } from "../../ui";
+import { button, choice, computed, effect, empty, h, progress, type Child } from "../../ui";
 import { COLUMNS, columnOf } from "./columns";
 import { ButtonList, listedColumns } from "./list";
 import type { LibraryStore } from "./store";
@@ -94,7 +94,8 @@ function heads(store: LibraryStore): HTMLElement {
     const label = () => h("span", {}, column?.short ?? name, arrow(), h("span", { class: "unit" }, column?.unit ?? ""));
     return h("button", { type: "button", class: "lib-headed", title: `Sort by: ${column?.label}`, on: { click: act } }, label);
   };
-  return h("div", { class: "lib-heads", role: "group", "aria-label": "Sort by a figure" }, () => listedColumns(store.query().sort).map(head));
+  const names = computed(() => listedColumns(store.query().sort).join());
+  return h("div", { class: "lib-heads", role: "group", "aria-label": "Sort by a figure" }, () => names().split(",").map(head));
 }
 
 function indexing(store: LibraryStore): Child {

@@ -1,7 +1,7 @@
 /** Who is in the overlay: name, speed, what the curves say under the pointer; choose the reference, take out. */
 
 import type { LibraryButton } from "../../net/messages";
-import { button, h } from "../../ui";
+import { button, computed, h } from "../../ui";
 import { AXES, type Drawn, type Overlay } from "./overlay";
 import { figure, speedText } from "./columns";
 import { valueAt } from "./curves";
@@ -9,8 +9,12 @@ import { DISTINCT, swatch } from "./marks";
 import type { LibraryStore } from "./store";
 
 export function legend(store: LibraryStore, overlay: Overlay): HTMLElement {
-  const list = () => store.shown().overlay;
-  return h("ul", { class: "lib-legend", "aria-label": "Compared buttons" }, () => list().map((id, n) => entry(store, overlay, id, n)));
+  // made anew only when other buttons are compared, so that the focus stays where it is
+  const ids = computed(() => JSON.stringify(store.shown().overlay));
+  return h("div", { class: "lib-legend-place" }, () => {
+    const all = JSON.parse(ids()) as string[];
+    return h("ul", { class: "lib-legend", "aria-label": "Compared buttons", hidden: !all.length }, all.map((id, n) => entry(store, overlay, id, n)));
+  });
 }
 
 function entry(store: LibraryStore, overlay: Overlay, id: string, n: number): HTMLElement {
