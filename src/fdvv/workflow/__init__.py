@@ -38,6 +38,7 @@ from fdvv.workflow._draft_patch import (
     model_of,
     record_of,
 )
+from fdvv.workflow._draft_template import Template, new_model
 from fdvv.workflow._drafts import DraftFile, Drafts
 from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
@@ -124,6 +125,7 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "Template",
     "TuneResult",
     "TuneSetup",
     "TunedVibration",
@@ -162,6 +164,7 @@ __all__ = [
     "merge_parts",
     "model_of",
     "model_of_recording",
+    "new_model",
     "one_curve",
     "open_device",
     "open_files",
