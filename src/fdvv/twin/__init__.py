@@ -15,6 +15,7 @@ from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, plan, vary
 from fdvv.twin._image import TableImage, image_of
+from fdvv.twin._led import LIFTED_m, LedRig, LedTicks
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
 from fdvv.twin._pace_button import solve_button_pace
@@ -59,7 +60,10 @@ __all__ = [
     "Intent",
     "KeycapSensor",
     "LEAD_s",
+    "LIFTED_m",
     "Leaf",
+    "LedRig",
+    "LedTicks",
     "Mover",
     "Noise",
     "Participant",
