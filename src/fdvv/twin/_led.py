@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 
 import numpy as np
@@ -87,7 +88,7 @@ class LedTicks:
         x, v, force, finger = (rows.physics[:, i].copy() for i in (1, 2, 4, 7))
         out = rows.outputs
         return cls(
-            t_s=tick_s * (first_tick + np.arange(len(out))),
+            t_s=tick_s * np.arange(first_tick, first_tick + len(out), dtype=np.float64),
             displacement_mm=mm_from_m(x),
             velocity_mm_s=mm_from_m(v),
             force_cN=cN_from_N(force),
@@ -102,6 +103,13 @@ class LedTicks:
             finger_mm=mm_from_m(finger),
             warm_K=rows.sensed[:, 1].copy(),
         )
+
+    @classmethod
+    def joined(cls, parts: Sequence[LedTicks]) -> LedTicks:
+        """Join stretches that followed each other."""
+        if len(parts) == 1:
+            return parts[0]
+        return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
 
     @property
     def release(self) -> npt.NDArray[np.bool_]:
@@ -174,15 +182,14 @@ class LedRig:
 
     def advance(self, ticks: int) -> LedTicks:
         """Let so many ticks pass and tell what happened at each. ModelError if the motion diverged."""
-        rows = Rows(
-            np.empty((ticks, COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS)
-        )
+        rows = Rows(np.empty((ticks, COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS))
         done = 0
         while done < ticks:
             if self._used == BLOCK_TICKS:
                 self._noise, self._used = self._draw(), 0
             count = min(ticks - done, BLOCK_TICKS - self._used)
-            self._run(count, Rows(*(part[done : done + count] for part in rows)))
+            here = slice(done, done + count)
+            self._run(count, Rows(rows.physics[here], rows.sensed[here], rows.outputs[here]))
             done += count
         if not np.isfinite(rows.physics).all():
             raise ModelError(f"the motion diverged: rig or finger are too stiff for steps of {STEP_s:g} s")

@@ -12,9 +12,8 @@ from fdvv.compensate import RigAware, RigMemory, Tuning, tuning_of
 from fdvv.device import TwinDevice
 from fdvv.errors import InputError, ModelError
 from fdvv.model import FDVVModel, Stroke, load_builtin
-from fdvv.program import Limits, Program, Signal, button_program, compile_program, require_accepted
+from fdvv.program import Limits, Program, Signal, When, button_program, compile_program, require_accepted
 from fdvv.program import Surface as ProgramSurface
-from fdvv.program import When
 from fdvv.protocol import Settings
 from fdvv.twin import Finger, Rig, load_finger, load_rig, settings_of
 from fdvv.units import FloatArray, cN_from_N
@@ -91,19 +90,19 @@ class PressSubject:
 def model_subject(
     model: FDVVModel, mode: PressMode = PressMode.INTENDED, rig_name: str = PRESS_RIGS[0]
 ) -> PressSubject:
-    """Make a model ready to be pressed. Raises InputError on an unknown rig or a model that cannot be rendered.
+    """Make a model ready to be pressed. Raises InputError on an unknown rig or a model without a press.
 
     rig_name : one of PRESS_RIGS; what is intended is felt on the ideal rig whatever is named.
     """
     name, rig = _rig(mode, rig_name)
     if not model.of(Stroke.PRESS):
-        raise InputError(model.name, "curves", "it has no press, there is nothing to feel", "merge one into it")
+        raise InputError(model.name, "curves", "it has no press to feel", "merge one into it")
     learned = known_rendering(model, name) if mode is PressMode.COMPENSATED else None
     program = button_program(model, learned.surface if learned else None)
     limits = _limits(rig, learned is not None)
     tuning = learned.outcome.tuning if learned else Tuning()
     meant = button_program(model)
-    down, up = (state.transitions[0].condition.value for state in meant.states)
+    down, up = (state.transitions[0].when.value for state in meant.states)
     subject = _subject(program, mode, name, rig, limits, tuning, _told(mode, name))
     marks = (PressMark("actuation", down), PressMark("reset", up))
     places, press, release = _forces(meant)
@@ -208,10 +207,10 @@ def _forces(program: Program) -> tuple[FloatArray, FloatArray, FloatArray]:
 def _marks(program: Program) -> tuple[PressMark, ...]:
     """Give the places at which states change."""
     return tuple(
-        PressMark(f"{state.name} → {way.to}", way.condition.value)
+        PressMark(f"{state.name} → {way.to}", way.when.value)
         for state in program.states
         for way in state.transitions
-        if way.condition.when in (When.DEEPER_THAN, When.SHALLOWER_THAN)
+        if way.when.when in (When.DEEPER_THAN, When.SHALLOWER_THAN)
     )
 
 
@@ -225,7 +224,4 @@ def _told(mode: PressMode, rig_name: str, program: bool = False) -> str:
         return f"on the simulated rig {rig_name!r}, not compensated: its own forces come on top"
     if program:
         return f"on the simulated rig {rig_name!r}, which looks ahead and pushes against its own forces"
-    return (
-        f"on the simulated rig {rig_name!r}, compensated without a press from what 16 presses on {TEACHER} taught"
-    )
-
+    return f"on the simulated rig {rig_name!r}, compensated from what 16 presses on {TEACHER} taught of it"
