@@ -15,7 +15,7 @@ from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, depth_m, plan, vary
 from fdvv.twin._image import TableImage, image_of
-from fdvv.twin._led import LedRig, LedTicks, LIFTED_m
+from fdvv.twin._led import LedRig, LedTicks, LIFTED_m, NEAR_1_s
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
 from fdvv.twin._pace_button import solve_button_pace
@@ -65,6 +65,7 @@ __all__ = [
     "LedRig",
     "LedTicks",
     "Mover",
+    "NEAR_1_s",
     "Noise",
     "Participant",
     "PositionSensor",

@@ -33,6 +33,13 @@ from fdvv.workflow._open import FolderButton, button_files, open_files, open_mod
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
+from fdvv.workflow._press_choice import (
+    PressChoice,
+    button_choices,
+    drawn_trace,
+    program_choices,
+    program_of,
+)
 from fdvv.workflow._press_subject import (
     PRESS_RIGS,
     PressMark,
@@ -92,6 +99,7 @@ __all__ = [
     "LiveRun",
     "ModelFit",
     "PaceStanding",
+    "PressChoice",
     "PressDone",
     "PressMark",
     "PressMode",
@@ -118,6 +126,7 @@ __all__ = [
     "Verdict",
     "Way",
     "acceleration_per_volt",
+    "button_choices",
     "button_files",
     "candidates_for",
     "capture_html",
@@ -129,6 +138,7 @@ __all__ = [
     "converter",
     "demo",
     "demo_report",
+    "drawn_trace",
     "drawn_traces",
     "fd_only",
     "feasibility",
@@ -157,7 +167,9 @@ __all__ = [
     "press_button",
     "probe",
     "process_recording",
+    "program_choices",
     "program_image",
+    "program_of",
     "program_subject",
     "quick_look",
     "read_press_trace",

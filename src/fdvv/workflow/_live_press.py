@@ -10,7 +10,7 @@ from fdvv.core import Ask
 from fdvv.device import FaultReport
 from fdvv.errors import DeviceError
 from fdvv.protocol import NONE, CN64_PER_cN, Fault, Mode, Refusal, UM16_PER_mm
-from fdvv.twin import LedRig, LedTicks
+from fdvv.twin import LedRig, LedTicks, NEAR_1_s
 from fdvv.units import mm_from_m
 from fdvv.workflow._live_event import Descent, LiveEvent, LiveEventKind, stretches
 from fdvv.workflow._press_replay import LeadPath, path_of
@@ -52,10 +52,10 @@ class LivePress:
         """Whether a trace leads the finger."""
         return self._path is not None
 
-    def lead(self, referent_mm: float, velocity_mm_s: float = 0.0) -> None:
+    def lead(self, referent_mm: float, velocity_mm_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
         """Lead the finger's referent to a place (0: the cap at rest, positive into the button)."""
         self._path = None
-        self.rig.lead(referent_mm, velocity_mm_s)
+        self.rig.lead(referent_mm, velocity_mm_s, near_1_s)
 
     def push(self, force_cN: float) -> None:
         """Lead the force that the finger's muscle pushes with."""

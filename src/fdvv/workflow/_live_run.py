@@ -46,6 +46,7 @@ class LiveRun:
     ----------
     press : to be used through this run only, from now on.
     show : called with every frame, in the run's thread.
+    refused : called with one line when something asked for cannot be done; the rest goes on.
     failed : called once with one line if the press cannot go on.
     clock : monotonic, s.
 
@@ -57,10 +58,12 @@ class LiveRun:
         self,
         press: LivePress,
         show: Callable[[LiveFrame], None],
+        refused: Callable[[str], None],
         failed: Callable[[str], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._press, self._show, self._failed, self._clock = press, show, failed, clock
+        self._press, self._show, self._clock = press, show, clock
+        self._refused, self._failed = refused, failed
         self._changed = Condition()
         self._asked: list[Callable[[LivePress], None]] = []
         self._sequence, self._over, self._looking, self._dropped_s = 0, False, True, 0.0
@@ -137,7 +140,10 @@ class LiveRun:
         with self._changed:
             asked, self._asked, sequence = self._asked, [], self._sequence
         for work in asked:
-            work(self._press)
+            try:
+                work(self._press)
+            except FdvvError as error:
+                self._refused(str(error))
         return sequence
 
 
