@@ -158,11 +158,17 @@ class PressPlace(Struct, frozen=True, forbid_unknown_fields=True):
     place_mm: float
 
 
-class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
-    """Something is under the finger.
+class PressMeant(Struct, frozen=True, forbid_unknown_fields=True, tag="meant"):
+    """The force that is meant to be felt in a press at a speed."""
 
-    told : what is between it and the finger. displacement_mm, press_cN, release_cN : its slow force as meant.
-    """
+    velocity_mm_s: float
+    displacement_mm: list[float]
+    press_cN: list[float]
+    release_cN: list[float]
+
+
+class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
+    """Something is under the finger. told : what is between the two."""
 
     name: str
     told: str
@@ -174,9 +180,7 @@ class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
     places: list[PressPlace]
     states: list[str]
     signals: list[ShakeSignal]
-    displacement_mm: list[float]
-    press_cN: list[float]
-    release_cN: list[float]
+    meant: PressMeant
 
 
 class PressHappened(Struct, frozen=True, forbid_unknown_fields=True):

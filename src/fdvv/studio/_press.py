@@ -14,9 +14,11 @@ from fdvv.program import program_from_json
 from fdvv.protocol import Fault
 from fdvv.studio import _messages_press as m
 from fdvv.studio._contract import Call, ChannelKind, Tell
-from fdvv.studio._press_tell import choices, frame, ready
+from fdvv.studio._press_tell import choices, frame, meant, ready
 from fdvv.studio._studio import Studio
 from fdvv.workflow import (
+    LiveEventKind,
+    LiveFrame,
     LivePress,
     LiveRun,
     PressSubject,
@@ -83,10 +85,17 @@ class PressChannel:
         self._tell(ready(subject))
         self._run = LiveRun(
             press,
-            lambda seen: self._tell(frame(seen, press.replaying)),
+            lambda seen: self._show(press, seen),
             lambda line: self._tell(m.PressRefused(line)),
             lambda line: self._tell(m.PressOver(line)),
         )
+
+    def _show(self, press: LivePress, seen: LiveFrame) -> None:
+        """Tell a frame, and after a press what one at its speed is meant to feel like."""
+        self._tell(frame(seen, press.replaying))
+        for event in seen.events:
+            if event.kind is LiveEventKind.PRESSED:
+                self._tell(meant(press.subject, round(event.velocity_mm_s, 1)))
 
     @_do.register
     def _(self, ask: m.PressLead) -> None:
@@ -159,7 +168,7 @@ ASKS = (
     m.PressFail,
     m.PressClear,
 )
-TELLS = (m.PressReady, m.PressFrame, m.PressRefused, m.PressOver)
+TELLS = (m.PressReady, m.PressMeant, m.PressFrame, m.PressRefused, m.PressOver)
 CALLS = (
     Call("press.list", m.PressListAsk, m.PressList, list_choices),
     Call("press.trace", m.TraceReadAsk, m.TraceRead, read_trace),

@@ -49,9 +49,15 @@ def ready(subject: PressSubject) -> m.PressReady:
         [m.PressPlace(mark.label, mark.place_mm) for mark in subject.marks],
         list(subject.states),
         [_signal(signal) for signal in subject.signals],
-        _column(subject.displacement_mm),
-        _column(subject.press_cN),
-        _column(subject.release_cN),
+        meant(subject, 0.0),
+    )
+
+
+def meant(subject: PressSubject, velocity_mm_s: float) -> m.PressMeant:
+    """Tell what is meant to be felt in a press at a speed."""
+    press, release = subject.meant_cN(velocity_mm_s)
+    return m.PressMeant(
+        velocity_mm_s, _column(subject.displacement_mm), _column(press, 2), _column(release, 2)
     )
 
 

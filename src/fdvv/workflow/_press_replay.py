@@ -56,8 +56,8 @@ def path_of(trace: PressTrace, subject: PressSubject, start_s: float) -> LeadPat
     t = np.arange(int(trace.duration_s / STEP_s) + 1) * STEP_s
     x = _smooth(np.interp(t, trace.t_s, trace.displacement_mm))
     down = np.gradient(x, STEP_s) >= 0
-    places = subject.displacement_mm
-    force = np.where(down, np.interp(x, places, subject.press_cN), np.interp(x, places, subject.release_cN))
+    slow = [np.interp(x, subject.displacement_mm, row) for row in subject.meant_cN(0.0)]
+    force = np.where(down, *slow)
     held = np.clip(x / TOUCH_mm, 0.0, 1.0) * np.maximum(force, 0.0)
     stiffness = subject.finger.impedance.stiffness_N_m
     yielding = [mm_from_m(depth_m(subject.finger, float(N_from_cN(f)), stiffness)) for f in held]

@@ -64,8 +64,7 @@ class PressSubject:
     marks : places of the stroke, those two or the places of a program's transitions.
     states : names by the number that the firmware tells.
     signals : what the vibration board plays, by slot.
-    displacement_mm, press_cN, release_cN : (n,) the force as it is meant when pressed slowly, in the start
-        state.
+    press, release : the force as it is meant in the start state.
     """
 
     name: str
@@ -82,9 +81,22 @@ class PressSubject:
     marks: tuple[PressMark, ...]
     states: tuple[str, ...]
     signals: tuple[Signal, ...]
-    displacement_mm: FloatArray
-    press_cN: FloatArray
-    release_cN: FloatArray
+    press: ProgramSurface
+    release: ProgramSurface
+
+    @property
+    def displacement_mm(self) -> FloatArray:
+        """Give places from the top to the stop, (n,)."""
+        return np.linspace(0.0, self.travel_mm, 1 + max(2, round(self.travel_mm / STEP_mm)))
+
+    def meant_cN(self, velocity_mm_s: float) -> tuple[FloatArray, FloatArray]:
+        """Give press and release as they are meant in a press at a speed, (n,) each."""
+        places = self.displacement_mm.tolist()
+        press, release = (
+            np.array([surface.force_at_cN(place, velocity_mm_s) for place in places])
+            for surface in (self.press, self.release)
+        )
+        return press, release
 
 
 def model_subject(
@@ -105,16 +117,8 @@ def model_subject(
     down, up = (state.transitions[0].when.value for state in meant.states)
     subject = _subject(program, mode, name, rig, limits, tuning, _told(mode, name))
     marks = (PressMark("actuation", down), PressMark("reset", up))
-    places, press, release = _forces(meant)
-    return replace(
-        subject,
-        actuation_mm=down,
-        reset_mm=up,
-        marks=marks,
-        displacement_mm=places,
-        press_cN=press,
-        release_cN=release,
-    )
+    press, release = _surfaces(meant)
+    return replace(subject, actuation_mm=down, reset_mm=up, marks=marks, press=press, release=release)
 
 
 def program_subject(
@@ -172,7 +176,6 @@ def _subject(
         settings = settings_with(settings_of(rig), tuning)
     except ModelError as error:
         raise InputError(program.name, "rig", str(error), "choose another rig") from error
-    places, press, release = _forces(program)
     return PressSubject(
         program.name,
         mode,
@@ -188,20 +191,14 @@ def _subject(
         _marks(program),
         tuple(state.name for state in program.states),
         program.signals,
-        places,
-        press,
-        release,
+        *_surfaces(program),
     )
 
 
-def _forces(program: Program) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Give the start state's places and forces, of its slowest rows."""
-    surfaces = {surface.name: surface for surface in program.surfaces}
-    start = next(state for state in program.states if state.name == program.start)
-    places = np.linspace(0.0, program.travel_mm, 1 + max(2, round(program.travel_mm / STEP_mm)))
-    found: list[ProgramSurface] = [surfaces[start.press], surfaces[start.release]]
-    press, release = (surface.row_cN(0, places) for surface in found)
-    return places, press, release
+def _surfaces(program: Program) -> tuple[ProgramSurface, ProgramSurface]:
+    """Give press and release of the start state."""
+    start = program.state(program.start)
+    return program.surface(start.press), program.surface(start.release)
 
 
 def _marks(program: Program) -> tuple[PressMark, ...]:

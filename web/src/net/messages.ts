@@ -7,7 +7,7 @@ export interface Calls {
 }
 
 export interface Channels {
-  readonly "press": { readonly asks: PressStart | PressLead | PressPush | PressLift | PressReplay | PressHostEvent | PressHere | PressPause | PressStop | PressFail | PressClear; readonly tells: PressReady | PressFrame | PressRefused | PressOver };
+  readonly "press": { readonly asks: PressStart | PressLead | PressPush | PressLift | PressReplay | PressHostEvent | PressHere | PressPause | PressStop | PressFail | PressClear; readonly tells: PressReady | PressMeant | PressFrame | PressRefused | PressOver };
 }
 
 export interface PressListAsk {
@@ -131,9 +131,7 @@ export interface PressReady {
   readonly places: readonly PressPlace[];
   readonly states: readonly string[];
   readonly signals: readonly ShakeSignal[];
-  readonly displacement_mm: readonly number[];
-  readonly press_cN: readonly number[];
-  readonly release_cN: readonly number[];
+  readonly meant: PressMeant;
 }
 
 export interface PressPlace {
@@ -152,6 +150,14 @@ export interface ShakeMode {
   readonly amplitude_m_s2: number;
   readonly decay_1_s: number;
   readonly phase_rad: number;
+}
+
+export interface PressMeant {
+  readonly type: "meant";
+  readonly velocity_mm_s: number;
+  readonly displacement_mm: readonly number[];
+  readonly press_cN: readonly number[];
+  readonly release_cN: readonly number[];
 }
 
 export interface PressFrame {
