@@ -23,14 +23,14 @@ export function readout(session: PressSession): HTMLElement {
       pair("presses", () => String(session.presses()), "presses"),
       pair("last press", () => lastPress(session), "last-press"),
       // a plain button's states are up and down, as the lamp says
-      () => (session.ready()?.actuation_mm === null ? pair("state", () => stateName(session), "state") : null),
+      pair("state", () => stateName(session), "state", () => session.ready()?.actuation_mm !== null),
     ),
     h("p", { class: "press-limit" }, () => limits(session)),
   );
 }
 
-function pair(label: string, value: () => string, name: string): HTMLElement {
-  return h("div", {}, h("dt", {}, label), h("dd", { "data-value": name }, value));
+function pair(label: string, value: () => string, name: string, hidden: () => boolean = () => false): HTMLElement {
+  return h("div", { hidden }, h("dt", {}, label), h("dd", { "data-value": name }, value));
 }
 
 function lastPress(session: PressSession): string {
