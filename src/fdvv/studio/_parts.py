@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_documents")
+PARTS = ("_about", "_documents", "_press")
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
-from fdvv.workflow._draft import DraftState, Kept, Stale
+from fdvv.workflow._draft import DraftKept, DraftStale, DraftState
 from fdvv.workflow._draft_history import (
-    Change,
+    DraftChange,
     DraftHistory,
     DraftPin,
     DraftStep,
@@ -33,12 +33,12 @@ from fdvv.workflow._draft_patch import (
     Patch,
     VibrationChange,
     apply_patch,
-    diff,
-    invert,
+    inverse_patch,
     model_of,
+    patch_between,
     record_of,
 )
-from fdvv.workflow._draft_template import Template, new_model
+from fdvv.workflow._draft_template import ModelTemplate, new_model
 from fdvv.workflow._drafts import DraftFile, Drafts
 from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
@@ -50,12 +50,33 @@ from fdvv.workflow._feasibility import (
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
+from fdvv.workflow._live_event import LiveEvent, LiveEventKind
+from fdvv.workflow._live_press import LivePress
+from fdvv.workflow._live_run import LiveFrame, LiveRun
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
+from fdvv.workflow._press_choice import (
+    PressChoice,
+    button_choices,
+    drawn_trace,
+    program_choices,
+    program_of,
+)
+from fdvv.workflow._press_subject import (
+    PRESS_RIGS,
+    PressMark,
+    PressMode,
+    PressSubject,
+    model_subject,
+    program_subject,
+    rig_memory,
+)
+from fdvv.workflow._press_trace import PressTrace, drawn_traces, read_press_trace
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
+from fdvv.workflow._real_pace import RealPace
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
@@ -75,22 +96,25 @@ from fdvv.workflow._vibration_slots import (
 )
 
 __all__ = [
+    "PRESS_RIGS",
     "Ask",
     "ButtonPress",
     "Candidates",
     "CaptureGuide",
     "CapturePlan",
     "CaptureResult",
-    "Change",
     "Comparison",
     "CompensationResult",
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
     "Difference",
+    "DraftChange",
     "DraftFile",
     "DraftHistory",
+    "DraftKept",
     "DraftPin",
+    "DraftStale",
     "DraftState",
     "DraftStep",
     "Drafts",
@@ -103,14 +127,25 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "HeardStroke",
-    "Kept",
+    "LiveEvent",
+    "LiveEventKind",
+    "LiveFrame",
+    "LivePress",
+    "LiveRun",
     "ModelFit",
+    "ModelTemplate",
     "PaceStanding",
     "Patch",
     "PinMade",
+    "PressChoice",
     "PressDone",
+    "PressMark",
+    "PressMode",
+    "PressSubject",
+    "PressTrace",
     "Presses",
     "ProbeResult",
+    "RealPace",
     "Receipt",
     "RecordedModel",
     "RecordedVibrations",
@@ -119,13 +154,11 @@ __all__ = [
     "Rendering",
     "Session",
     "Shelf",
-    "Stale",
     "Standing",
     "Step",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
-    "Template",
     "TuneResult",
     "TuneSetup",
     "TunedVibration",
@@ -136,6 +169,7 @@ __all__ = [
     "Way",
     "acceleration_per_volt",
     "apply_patch",
+    "button_choices",
     "button_files",
     "candidates_for",
     "capture_html",
@@ -147,7 +181,8 @@ __all__ = [
     "converter",
     "demo",
     "demo_report",
-    "diff",
+    "drawn_trace",
+    "drawn_traces",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -156,7 +191,7 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
-    "invert",
+    "inverse_patch",
     "join_logs",
     "load_actuation",
     "make_program",
@@ -164,6 +199,7 @@ __all__ = [
     "merge_parts",
     "model_of",
     "model_of_recording",
+    "model_subject",
     "new_model",
     "one_curve",
     "open_device",
@@ -173,15 +209,21 @@ __all__ = [
     "open_part",
     "open_program",
     "open_receipt",
+    "patch_between",
     "prepare_exciter",
     "press_button",
     "probe",
     "process_recording",
+    "program_choices",
     "program_image",
+    "program_of",
+    "program_subject",
     "quick_look",
+    "read_press_trace",
     "record_of",
     "recorded_vibrations",
     "render_vibration",
+    "rig_memory",
     "save_actuation",
     "settings_with",
     "simulated_observer",
