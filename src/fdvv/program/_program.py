@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -221,21 +222,24 @@ class Program:
         return next(surface for surface in self.surfaces if surface.name == name)
 
 
-def _names(things: Iterable[Named], what: str) -> list[str]:
-    found = [thing.name for thing in things]
-    twice = {name for name in found if found.count(name) > 1}
+def _names(things: Iterable[Named], what: str) -> dict[str, int]:
+    """Count names that must be each there once, in their order."""
+    found = Counter(thing.name for thing in things)
+    twice = [name for name, count in found.items() if count > 1]
     if twice:
-        raise ModelError(f"two {what}s are called {sorted(twice)[0]!r}")
+        raise ModelError(f"two {what}s are called {min(twice)!r}")
     return found
 
 
-def _check_known(name: str, known: list[str], what: str, place: str) -> None:
+def _check_known(name: str, known: Collection[str], what: str, place: str) -> None:
     if name not in known:
         listed = ", ".join(repr(k) for k in known) or "none"
         raise ModelError(f"{place}: no {what} is called {name!r}; there is {listed}")
 
 
-def _check_state(state: State, states: list[str], surfaces: list[str], signals: list[str]) -> None:
+def _check_state(
+    state: State, states: Collection[str], surfaces: Collection[str], signals: Collection[str]
+) -> None:
     place = f"state {state.name!r}"
     for name in (state.press, state.release):
         _check_known(name, surfaces, "surface", place)

@@ -31,6 +31,14 @@ from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
+from fdvv.workflow._program_shelf import KeptProgram, ProgramEntry, ProgramShelf, read_program
+from fdvv.workflow._program_standing import (
+    PlacedFinding,
+    ProgramStanding,
+    Size,
+    SurfaceSize,
+    program_standing,
+)
 from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
@@ -69,19 +77,26 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "HeardStroke",
+    "KeptProgram",
     "ModelFit",
     "PaceStanding",
+    "PlacedFinding",
     "PressDone",
     "Presses",
     "ProbeResult",
+    "ProgramEntry",
+    "ProgramShelf",
+    "ProgramStanding",
     "Receipt",
     "RecordedModel",
     "RecordedVibrations",
     "RenderedVibration",
     "Rendering",
     "Session",
+    "Size",
     "Standing",
     "Step",
+    "SurfaceSize",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
@@ -129,7 +144,9 @@ __all__ = [
     "probe",
     "process_recording",
     "program_image",
+    "program_standing",
     "quick_look",
+    "read_program",
     "recorded_vibrations",
     "render_vibration",
     "save_actuation",
