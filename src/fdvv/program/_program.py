@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import islice
 from typing import Protocol
 
 import numpy as np
@@ -20,6 +21,8 @@ from fdvv.protocol import VelocitySource
 TRAVEL_mm = (0.2, 6.4)
 LONGEST_fade_ms = 2000
 LONGEST_ms = 65_535
+LISTED = 16
+"""How many known names an error tells; a device holds no more states or surfaces."""
 
 
 class Velocity(StrEnum):
@@ -233,7 +236,8 @@ def _names(things: Iterable[Named], what: str) -> dict[str, int]:
 
 def _check_known(name: str, known: Collection[str], what: str, place: str) -> None:
     if name not in known:
-        listed = ", ".join(repr(k) for k in known) or "none"
+        listed = ", ".join(repr(k) for k in islice(known, LISTED)) or "none"
+        listed += f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
         raise ModelError(f"{place}: no {what} is called {name!r}; there is {listed}")
 
 
