@@ -149,9 +149,10 @@ def test_a_hostile_text_is_refused_in_a_line_and_nothing_is_kept(
     assert not (own_studio.project / "programs").exists()
 
 
+NO_TEXT: tuple[object, ...] = (None, 3, [], {}, "x" * 81)
 NONSENSE: tuple[tuple[str, int, dict[str, Any]], ...] = (
     *(("open", 422, {"program": name}) for name in ("", "own:", "own:../../x", "shipped:", "x:y", "own:\0")),
-    *(("open", 400, {"program": value}) for value in (None, 3, [], {}, "x" * 81)),
+    *(("open", 400, {"program": kind}) for kind in NO_TEXT),
     *(("save", 422, {"program": f"own:{name}", "text": BUTTON}) for name in ("..", "a/b", "", "a\0", ".x")),
     ("save", 422, {"program": "shipped:button", "text": BUTTON}),
     ("save", 422, {"program": "own:x", "text": BUTTON, "revision": "0" * 16}),

@@ -122,8 +122,9 @@ class ProgramShelf:
         """Move a program of the person's to the trash; give the name under which it lies there."""
         with self._lock:
             held = self._own().get(_own_name(program_id))
+            if held is None:
+                raise InputError("studio", program_id, "no such program", "look in the list again")
             self._check_revision(program_id, held, revision)
-            assert held is not None
             trash = self.folder / TRASH
             trash.mkdir(parents=True, exist_ok=True)
             stem = held.name.removesuffix(SUFFIX)
