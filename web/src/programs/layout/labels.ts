@@ -4,7 +4,7 @@ import { boxAround, onCubic, overlap } from "./geometry";
 import type { Box, Cubic, Point } from "./geometry";
 
 /** Width of a character and height of a line, in the font of the graph, on the safe side. */
-export const TEXT = { character: 7.1, line: 17, padding: 12 } as const;
+export const TEXT = { character: 7.3, line: 17, padding: 12 } as const;
 export const GAP = 4;
 const ALONG = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74] as const;
 const RING = 22;

@@ -5,24 +5,55 @@ import type { ProgramDocument } from "../document";
 import type { Point } from "./geometry";
 
 /** Size of a state's node, and how far apart columns and rows are. */
-export const NODE = { width: 136, height: 56 } as const;
-export const PITCH = { x: NODE.width + 150, y: NODE.height + 84 } as const;
+export const NODE = { width: 124, height: 54 } as const;
+export const PITCH = { x: NODE.width + 140, y: NODE.height + 80 } as const;
+/** The shape of the place that a graph usually has, width over height. */
+const ASPECT = 1.6;
 const MOST_IN_COLUMN = 6;
 const SWEEPS = 4;
 
 /** Give the centre of every state by its name; deterministic, the start on the left. */
 export function placesOf(document: ProgramDocument): ReadonlyMap<string, Point> {
   const columns = columnsOf(document);
+  const bands = folded(columns, bestFold(columns));
   const found = new Map<string, Point>();
-  columns.forEach((names, column) =>
-    names.forEach((name, row) =>
-      found.set(name, { x: column * PITCH.x, y: (row - (names.length - 1) / 2) * PITCH.y }),
-    ),
-  );
+  let top = 0;
+  bands.forEach((band, turn) => {
+    const rows = tallest(band);
+    band.forEach((names, i) => {
+      // every other band goes back, so that what follows each other stays beside each other
+      const column = turn % 2 === 0 ? i : bands[0]!.length - 1 - i;
+      const first = top + ((rows - names.length) / 2) * PITCH.y;
+      names.forEach((name, row) => found.set(name, { x: column * PITCH.x, y: first + row * PITCH.y }));
+    });
+    top += rows * PITCH.y;
+  });
   return found;
 }
 
-function columnsOf(document: ProgramDocument): readonly (readonly string[])[] {
+type Columns = readonly (readonly string[])[];
+
+function tallest(columns: Columns): number {
+  return Math.max(1, ...columns.map((names) => names.length));
+}
+
+function folded(columns: Columns, size: number): readonly Columns[] {
+  const count = Math.max(1, Math.ceil(columns.length / size));
+  return Array.from({ length: count }, (_, i) => columns.slice(i * size, (i + 1) * size));
+}
+
+/** Find how many columns stand beside each other so that the whole is seen largest, at least three. */
+function bestFold(columns: Columns): number {
+  const extent = (size: number): number => {
+    const height = folded(columns, size).reduce((sum, band) => sum + tallest(band) * PITCH.y, 0);
+    return Math.max(size * PITCH.x, height * ASPECT);
+  };
+  let best = Math.max(1, columns.length);
+  for (let size = best - 1; size >= 3; size -= 1) if (extent(size) < extent(best)) best = size;
+  return best;
+}
+
+function columnsOf(document: ProgramDocument): Columns {
   const ways = new Map(document.states.map((state) => [state.name, transitionsOf(state).map((way) => way.to)]));
   const layers = sorted(layersOf(document, ways), ways);
   return layers.flatMap((names) => split(names));
