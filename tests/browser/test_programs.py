@@ -5,17 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
-from tests.browser.conftest import RunningStudio
+from tests.browser.test_accessibility import audit
+from tests.studio.running import RunningStudio
 
 from fdvv.program import load_program, load_shipped
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
 
-AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 KEPT = "programs/mx-red.fdvv-program.json"
 
 
@@ -230,25 +230,12 @@ def test_a_deleted_program_is_taken_back(own: Page, studio: RunningStudio) -> No
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_nobody_is_kept_out(page: Page, studio: RunningStudio, theme: str) -> None:
     """Nothing that axe-core calls serious, in the gallery and in the builder, whatever is chosen."""
-    if not AXE.is_file():
-        pytest.skip("axe-core is not installed: run make web-tools")
     page.emulate_media(color_scheme=theme)  # type: ignore[arg-type]
     page.goto(f"{studio.base}/#/programs")
     page.wait_for_selector("article[aria-label='Recipe rapid-trigger']")
-    assert serious(page) == []
+    assert audit(page) == []
     page.goto(f"{studio.base}/#/programs/shipped:dwell-ticks")
     page.wait_for_selector(".verdict.accepted")
     for choose in (".node.start", ".words", ".toolbar :text('Program')", ".way:text('tick')"):
         page.locator(choose).first.click()
-        assert serious(page) == []
-
-
-def serious(page: Page) -> list[Any]:
-    """Give what axe-core finds of the page as it is."""
-    page.evaluate(AXE.read_text())
-    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-    return [
-        (v["id"], [node["html"][:200] for node in v["nodes"]])
-        for v in found["violations"]
-        if v["impact"] in ("serious", "critical")
-    ]
+        assert audit(page) == []

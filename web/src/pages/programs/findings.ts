@@ -16,7 +16,7 @@ export function findingsPanel(book: ProgramBook, lead: (choice: Choice, finding:
   const found = panel(
     "Check",
     h("p", { class: () => `verdict ${verdictKind(book)}`, role: "status" }, () => verdict(book)),
-    h("ul", { class: "findings" }, () => book.findings().map((finding) => row(book, finding, lead))),
+    h("div", { class: "findings", role: "list", hidden: () => book.findings().length === 0 }, () => book.findings().map((finding) => row(book, finding, lead))),
     h("div", { class: "sizes", role: "group", "aria-label": "How much of a device it takes" }, () => sizes(book.check())),
   );
   found.classList.add("check");
@@ -41,8 +41,8 @@ function row(book: ProgramBook, finding: ProgramFinding, lead: (choice: Choice, 
   const where = finding.state ? `${finding.state}, ${finding.place}` : finding.place;
   const follow = (): void => lead(choiceOf(book, finding), finding);
   return h(
-    "li",
-    { class: finding.severity },
+    "div",
+    { class: finding.severity, role: "listitem" },
     h(
       "button",
       { type: "button", class: "button quiet finding", on: { click: follow } },

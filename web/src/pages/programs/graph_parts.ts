@@ -67,23 +67,28 @@ function nodeButton(drawn: Drawn, node: GraphNode): SVGElement {
     svg("rect", { ...place(box), rx: 9 }),
     ...(start ? [startMark(box)] : []),
     text(box.x + box.width / 2, box.y + 23, "name", short(state.name)),
+    " ",
     text(box.x + box.width / 2, box.y + 42, "note", notes(state)),
+    " ",
     svg("circle", { class: "handle", cx: box.x + box.width, cy: box.y + box.height / 2, r: 7 }),
-    text(box.x + 12, box.y + 14, "flaw", () => ({ refused: "✕", warning: "!", "": "" })[flaw(drawn, path, state.name)]),
+    text(box.x + 12, box.y + 14, "flaw", () => MARKS[flaw(drawn, path, state.name)]),
   );
 }
+
+const MARKS = { refused: "✕", warning: "!", "": "" } as const;
 
 function startMark(box: Box): SVGElement {
   const y = box.y + box.height / 2;
   return svg("path", { class: "start-mark", d: `M${box.x - 22} ${y}h14m-5 -5l6 5l-6 5` });
 }
 
-function nodeWords(drawn: Drawn, state: State, start: boolean, found: string): string {
+function nodeWords(drawn: Drawn, state: State, start: boolean, found: keyof typeof MARKS): string {
   const ways = transitionsOf(state).length;
   return [
-    `State ${state.name}`,
+    // what is seen comes first, so that speech input finds it
+    `${short(state.name)} ${notes(state)} ${MARKS[found]}`.trim(),
+    `state ${state.name}`,
     start ? "the start" : "",
-    `key ${state.key ?? 0}`,
     ways === 1 ? "one way out" : `${ways || "no"} ways out`,
     found,
     drawn.live() === state.name ? "the press is here" : "",
@@ -147,13 +152,19 @@ function edgeButton(drawn: Drawn, edge: GraphEdge): SVGElement {
       tabindex: 0,
       "aria-pressed": () => String(chosen(drawn, key)),
       "aria-label": () =>
-        `From ${edge.state} to ${edge.to} ${transitionInWords(way.when, way.only_if, state.velocity)} ${flaw(drawn, path, null)}`.trim(),
+        [
+          edge.lines.join(" "),
+          `from ${edge.state} to ${edge.to} ${transitionInWords(way.when, way.only_if, state.velocity)}`,
+          flaw(drawn, path, null),
+        ]
+          .filter(Boolean)
+          .join(", "),
       "data-key": key,
       "data-state": edge.state,
       "data-way": edge.index,
     },
     svg("rect", { ...place(label), rx: 6 }),
-    ...edge.lines.map((line, i) => text(label.x + label.width / 2, first + i * 17, "line", line)),
+    ...edge.lines.flatMap((line, i) => [text(label.x + label.width / 2, first + i * 17, "line", line), " "]),
   );
 }
 

@@ -43,9 +43,9 @@ function fieldsOf(book: ProgramBook, choice: Choice, edges: { readonly remove: (
     case "program":
       return programFields(book);
     case "state":
-      return stateFields(book, choice.state, edges.remove);
+      return stateFields(book, choice.state, () => edges.remove());
     case "transition":
-      return transitionFields(book, choice.state, choice.index, edges.remove);
+      return transitionFields(book, choice.state, choice.index, () => edges.remove());
     case "surface":
       return surfaceFields(book, choice.surface);
     case "signal":

@@ -3,7 +3,7 @@
 import { go } from "../../app/route";
 import { call } from "../../net";
 import type { ProgramParameter, ProgramRecipe } from "../../net/messages";
-import { button, choice, effect, h, numberField, signal, tell } from "../../ui";
+import { button, choice, computed, effect, h, numberField, signal, tell, type Signal } from "../../ui";
 import { bases } from "./server";
 
 const UNITS: readonly (readonly [string, string])[] = [
@@ -13,6 +13,9 @@ const UNITS: readonly (readonly [string, string])[] = [
   ["_cN", "cN"],
   ["_ms", "ms"],
 ];
+
+/** How many levels multi-level has unless a person says otherwise. */
+const LEVELS = 3;
 
 /** Give the words and the unit of a parameter's name, whose last part is the unit. */
 export function wordsOf(name: string): { readonly label: string; readonly unit: string } {
@@ -32,8 +35,9 @@ export function recipeForm(recipe: ProgramRecipe): HTMLElement {
   const base = signal("builtin:mx-red");
   const parameters = signal(recipe.parameters);
   const values = signal<Readonly<Record<string, number>>>({});
+  const levels = computed(() => values()["levels"] ?? LEVELS);
   effect(() => {
-    const asked = { recipe: recipe.name, base: base(), levels: values()["levels"] ?? 3 };
+    const asked = { recipe: recipe.name, base: base(), levels: levels() };
     if (recipe.parameters.length > 0) call("program.ranges", asked).then((found) => parameters.set(found.parameters), tell);
   });
   const make = async (): Promise<void> => {
@@ -48,18 +52,16 @@ export function recipeForm(recipe: ProgramRecipe): HTMLElement {
     h("p", {}, recipe.summary),
     h("details", {}, h("summary", {}, "What its numbers mean"), h("p", { class: "muted" }, recipe.details)),
     h("span", {}, () => choice({ label: "Over the button", options: bases(), value: base, set: base.set })),
-    h("div", { class: "grid" }, recipe.parameters.map((_, i) => parameterField(i, parameters, values))),
+    h("div", { class: "grid" }, recipe.parameters.map((first, i) => parameterField(first, () => parameters()[i] ?? first, values))),
     button({ label: "Make it", kind: "main", hint: `Make ${recipe.name}`, act: () => void make().catch(tell) }),
   );
 }
 
 function parameterField(
-  index: number,
-  parameters: () => readonly ProgramParameter[],
-  values: { (): Readonly<Record<string, number>>; update(change: (held: Readonly<Record<string, number>>) => Readonly<Record<string, number>>): void },
+  first: ProgramParameter,
+  now: () => ProgramParameter,
+  values: Signal<Readonly<Record<string, number>>>,
 ): HTMLElement {
-  const first = parameters()[index]!;
-  const now = (): ProgramParameter => parameters()[index] ?? first;
   const { label, unit } = wordsOf(first.name);
   // bounds follow the button, so they are looked up when a number is set
   const field = numberField({
