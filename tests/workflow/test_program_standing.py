@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -126,10 +125,9 @@ def test_a_text_that_is_no_program_is_one_finding(text: str) -> None:
     assert standing.sizes == ()
 
 
-def test_a_program_beyond_every_device_is_refused_without_a_long_proof() -> None:
+def test_a_program_beyond_every_device_is_refused_without_the_proof() -> None:
     states = tuple(State(f"s{i}", "push", "push") for i in range(5000))
-    begun = time.perf_counter()
     standing = program_standing(program_to_json(plain(states=states, start="s0")))
-    assert time.perf_counter() - begun < 3.0
+    assert (standing.return_s, standing.stiffness_cN_mm) == (None, None)
     assert [f.place for f in standing.findings] == ["states"]
     assert {s.what: s.taken for s in standing.sizes}["states"] == 5000
