@@ -16,6 +16,30 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
+from fdvv.workflow._draft import DraftKept, DraftStale, DraftState
+from fdvv.workflow._draft_history import (
+    DraftChange,
+    DraftHistory,
+    DraftPin,
+    DraftStep,
+    EditMade,
+    PinMade,
+    RedoMade,
+    UndoMade,
+    UnpinMade,
+)
+from fdvv.workflow._draft_patch import (
+    CurveChange,
+    Patch,
+    VibrationChange,
+    apply_patch,
+    inverse_patch,
+    model_of,
+    patch_between,
+    record_of,
+)
+from fdvv.workflow._draft_template import ModelTemplate, new_model
+from fdvv.workflow._drafts import DraftFile, Drafts
 from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
     CurveFeasibility,
@@ -26,12 +50,41 @@ from fdvv.workflow._feasibility import (
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
+from fdvv.workflow._live_event import LiveEvent, LiveEventKind
+from fdvv.workflow._live_press import LivePress
+from fdvv.workflow._live_run import LiveFrame, LiveRun
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
+from fdvv.workflow._press_choice import (
+    PressChoice,
+    button_choices,
+    drawn_trace,
+    program_choices,
+    program_of,
+)
+from fdvv.workflow._press_subject import (
+    PRESS_RIGS,
+    PressMark,
+    PressMode,
+    PressSubject,
+    model_subject,
+    program_subject,
+    rig_memory,
+)
+from fdvv.workflow._press_trace import PressTrace, drawn_traces, read_press_trace
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
+from fdvv.workflow._program_shelf import KeptProgram, ProgramEntry, ProgramShelf, read_program
+from fdvv.workflow._program_standing import (
+    PlacedFinding,
+    ProgramStanding,
+    Size,
+    SurfaceSize,
+    program_standing,
+)
 from fdvv.workflow._programs import program_image
+from fdvv.workflow._real_pace import RealPace
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
@@ -57,6 +110,7 @@ from fdvv.workflow._vibration_slots import (
 )
 
 __all__ = [
+    "PRESS_RIGS",
     "SHELF_NUMBERS",
     "Ask",
     "ButtonPress",
@@ -67,9 +121,20 @@ __all__ = [
     "CaptureResult",
     "Comparison",
     "CompensationResult",
+    "CurveChange",
     "CurveFeasibility",
     "DemoResult",
     "Difference",
+    "DraftChange",
+    "DraftFile",
+    "DraftHistory",
+    "DraftKept",
+    "DraftPin",
+    "DraftStale",
+    "DraftState",
+    "DraftStep",
+    "Drafts",
+    "EditMade",
     "FeasibilityReport",
     "FindVibrations",
     "FitSettings",
@@ -78,15 +143,35 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "HeardStroke",
+    "KeptProgram",
+    "LiveEvent",
+    "LiveEventKind",
+    "LiveFrame",
+    "LivePress",
+    "LiveRun",
     "ModelFit",
+    "ModelTemplate",
     "Origin",
     "PaceStanding",
+    "Patch",
+    "PinMade",
+    "PlacedFinding",
+    "PressChoice",
     "PressDone",
+    "PressMark",
+    "PressMode",
+    "PressSubject",
+    "PressTrace",
     "Presses",
     "ProbeResult",
+    "ProgramEntry",
+    "ProgramShelf",
+    "ProgramStanding",
+    "RealPace",
     "Receipt",
     "RecordedModel",
     "RecordedVibrations",
+    "RedoMade",
     "RenderedVibration",
     "Rendering",
     "Session",
@@ -97,17 +182,24 @@ __all__ = [
     "ShelfRow",
     "ShelfSearch",
     "ShelfStand",
+    "Size",
     "Standing",
     "Step",
+    "SurfaceSize",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
     "TuneResult",
     "TuneSetup",
     "TunedVibration",
+    "UndoMade",
+    "UnpinMade",
     "Verdict",
+    "VibrationChange",
     "Way",
     "acceleration_per_volt",
+    "apply_patch",
+    "button_choices",
     "button_files",
     "candidates_for",
     "capture_html",
@@ -119,6 +211,8 @@ __all__ = [
     "converter",
     "demo",
     "demo_report",
+    "drawn_trace",
+    "drawn_traces",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -127,12 +221,16 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
+    "inverse_patch",
     "join_logs",
     "load_actuation",
     "make_program",
     "measured_files",
     "merge_parts",
+    "model_of",
     "model_of_recording",
+    "model_subject",
+    "new_model",
     "one_curve",
     "open_device",
     "open_files",
@@ -141,14 +239,23 @@ __all__ = [
     "open_part",
     "open_program",
     "open_receipt",
+    "patch_between",
     "prepare_exciter",
     "press_button",
     "probe",
     "process_recording",
+    "program_choices",
     "program_image",
+    "program_of",
+    "program_standing",
+    "program_subject",
     "quick_look",
+    "read_press_trace",
+    "read_program",
+    "record_of",
     "recorded_vibrations",
     "render_vibration",
+    "rig_memory",
     "row_of_model",
     "sample_strokes",
     "save_actuation",
