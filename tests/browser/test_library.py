@@ -79,7 +79,7 @@ def test_a_range_leaves_what_lies_in_it_and_says_what_to_loosen(library: Page) -
     expect(library.locator(".lib-nothing")).to_be_visible()
     library.get_by_role("button", name="Without travel: 1").click()
     found(library, "mx-clear")
-    assert "mm=" not in library.url
+    expect(library).not_to_have_url(re.compile("travel_mm"))
 
 
 def test_the_list_is_worked_by_keys_alone(library: Page) -> None:
@@ -106,6 +106,7 @@ def test_a_link_shows_the_same_view(library: Page, context: BrowserContext) -> N
     library.get_by_label("Search buttons").fill("mx")
     expect(library.locator(".lib-status")).to_contain_text("5 of 9 buttons")
     texts = table.inner_text()
+    expect(library).to_have_url(re.compile("q=mx&over=.*view=slope"))
     other = context.new_page()
     other.goto(library.url)
     expect(other.locator(".lib-landmarks thead th")).to_have_count(3)

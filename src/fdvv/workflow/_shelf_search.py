@@ -91,6 +91,7 @@ class ShelfSearch:
         self._text, self._like = TextTable(), LikeTable()
         self._numbers: FloatArray = np.empty((0, len(NUMBERS)))
         self._ends: FloatArray = np.empty((2, 0))
+        self._kinds = self._origins = np.empty(0, dtype=np.str_)
 
     def extend(self, rows: Sequence[ShelfRow]) -> None:
         """Add rows at the end."""
@@ -103,6 +104,8 @@ class ShelfSearch:
         table = [[getattr(row, name) for name in NUMBERS] for row in rows]
         self._numbers = np.vstack([self._numbers, np.array(table, dtype=np.float64)])
         self._ends = _ends(self._numbers)
+        self._kinds = np.append(self._kinds, [str(row.kind) for row in rows])
+        self._origins = np.append(self._origins, [str(row.origin) for row in rows])
 
     def row(self, button_id: str) -> ShelfRow | None:
         """Give the row of a button; None if it is not among them."""
@@ -132,16 +135,14 @@ class ShelfSearch:
             distances=distance[positions] if query.like else np.empty(0),
             parts=parts[positions] if query.like else np.empty((0, 3)),
             histograms=self._histograms({name: others.get(name, every) for name in NUMBERS}),
-            kinds=_counts([row.kind for row in self.rows], others["kinds"]),
-            origins=_counts([row.origin for row in self.rows], others["origins"]),
+            kinds=_counts(self._kinds, others["kinds"]),
+            origins=_counts(self._origins, others["origins"]),
             without={name: int(others[name].sum()) for name in _active(query)},
             mended=mended,
         )
 
     def _choices(self, query: ShelfQuery) -> dict[str, Mask]:
-        kinds = [not query.kinds or row.kind in query.kinds for row in self.rows]
-        origins = [not query.origins or row.origin in query.origins for row in self.rows]
-        return {"kinds": np.array(kinds, bool), "origins": np.array(origins, bool)}
+        return {"kinds": _among(self._kinds, query.kinds), "origins": _among(self._origins, query.origins)}
 
     def _ranges(self, query: ShelfQuery) -> dict[str, Mask]:
         masks = {}
@@ -199,11 +200,14 @@ def _all_but(masks: dict[str, Mask], name: str) -> Mask:
     )
 
 
-def _counts(labels: Sequence[str], mask: Mask) -> dict[str, int]:
-    found: dict[str, int] = {}
-    for label, there in zip(labels, mask, strict=True):
-        found[str(label)] = found.get(str(label), 0) + int(there)
-    return found
+def _among(labels: npt.NDArray[np.str_], wanted: Sequence[str]) -> Mask:
+    """Tell which labels are wanted; all, where nothing is asked."""
+    return np.isin(labels, [str(one) for one in wanted]) if wanted else np.ones(labels.size, bool)
+
+
+def _counts(labels: npt.NDArray[np.str_], mask: Mask) -> dict[str, int]:
+    """Count every label there is among those that the mask leaves."""
+    return {str(label): int(np.count_nonzero(mask & (labels == label))) for label in np.unique(labels)}
 
 
 def _active(query: ShelfQuery) -> list[str]:

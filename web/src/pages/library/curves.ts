@@ -64,13 +64,13 @@ export function valueAt(line: Line, x_mm: number): number {
   return low + (place - before) * (high - low);
 }
 
-/** Give the range that shows lines well: slopes by all but their steepest 2 %, the rest whole with zero. */
+/** Give the range that shows lines well, with zero: of slopes all but the steepest 2 % up and 0.5 % down. */
 export function seen(lines: readonly Line[], view: ViewName): { low: number; high: number } {
   const all = lines.flatMap((line) => [...line.y]).filter(Number.isFinite).sort((a, b) => a - b);
   if (!all.length) return { low: 0, high: view === "work" ? 2 : 100 };
-  const part = view === "slope" ? 0.02 : 0;
-  const low = Math.min(0, all[Math.floor(part * (all.length - 1))] as number);
-  const high = Math.max(0, all[Math.ceil((1 - part) * (all.length - 1))] as number);
+  const [below, above] = view === "slope" ? [0.005, 0.02] : [0, 0];
+  const low = Math.min(0, all[Math.floor(below * (all.length - 1))] as number);
+  const high = Math.max(0, all[Math.ceil((1 - above) * (all.length - 1))] as number);
   const air = 0.06 * (high - low || 1);
   return { low: low < 0 ? low - air : 0, high: high + air };
 }

@@ -55,13 +55,14 @@ export class ButtonList {
       cancelAnimationFrame(this.frame);
     });
     effect(() => {
-      const [found] = [store.found(), store.grown(), store.shown(), palette(), store.active()];
+      const [found] = [store.found(), store.answered(), store.grown(), store.shown(), palette(), store.active()];
       this.inner.style.height = `${found.positions.length * ROW_px}px`;
       this.element.ariaRowCount = String(found.positions.length);
       this.request();
     });
     effect(() => {
       store.query();
+      this.element.ariaBusy = "true";
       this.element.scrollTop = 0;
     });
   }
@@ -117,6 +118,7 @@ export class ButtonList {
       view.element.hidden = place >= last;
       if (place < last) this.fill(view, place);
     }
+    if (this.store.answered.peek() === this.store.query.peek()) this.element.ariaBusy = "false";
     const active = this.views.find((view) => !view.element.hidden && view.place === this.store.active.peek());
     if (active) this.element.setAttribute("aria-activedescendant", active.element.id);
     else this.element.removeAttribute("aria-activedescendant");

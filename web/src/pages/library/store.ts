@@ -7,6 +7,8 @@ import { batch, effect, onCleanup, signal, tell, untracked, type Signal } from "
 import { Rows } from "./rows";
 import { asked, AT_FIRST, EVERYTHING, MOST, readState, writeState, type Query, type Shown } from "./state";
 
+const KEEP_ms = 150;
+
 const NOTHING: LibraryFound = {
   epoch: 0,
   positions: [],
@@ -26,6 +28,8 @@ export class LibraryStore {
   readonly query: Signal<Query> = signal(EVERYTHING);
   readonly shown: Signal<Shown> = signal(AT_FIRST);
   readonly found: Signal<LibraryFound> = signal(NOTHING);
+  /** The question that found answers; another than query while the answer is on its way. */
+  readonly answered: Signal<Query | null> = signal<Query | null>(null);
   /** Place in the list of found rows that the keys are at. */
   readonly active = signal(0);
   /** Buttons of the overlay whose curves are here, and the reasons of those that cannot be had. */
@@ -38,7 +42,7 @@ export class LibraryStore {
 
   constructor() {
     this.followAddress();
-    effect(() => keepQuery(writeState(this.query(), this.shown())));
+    this.keepAddress();
     effect(() => {
       this.query();
       this.grown();
@@ -90,6 +94,22 @@ export class LibraryStore {
     });
   }
 
+  /** The address follows when hands rest: browsers refuse to change it with every letter. */
+  private keepAddress(): void {
+    let due: ReturnType<typeof setTimeout> | undefined;
+    const keep = () => {
+      clearTimeout(due);
+      if (route.peek().page === "library") keepQuery(writeState(this.query.peek(), this.shown.peek()));
+    };
+    effect(() => {
+      this.query();
+      this.shown();
+      clearTimeout(due);
+      due = setTimeout(keep, KEEP_ms);
+    });
+    onCleanup(keep);
+  }
+
   private watch(): void {
     let channel: LiveChannel<"library"> | null = null;
     const watch = () => channel?.send({ type: "watch" });
@@ -131,9 +151,14 @@ export class LibraryStore {
     this.searching?.abort();
     const mine = new AbortController();
     this.searching = mine;
-    call("library.find", asked(this.query.peek()), mine.signal).then(
+    const query = this.query.peek();
+    call("library.find", asked(query), mine.signal).then(
       (found) => {
-        if (mine === this.searching && found.epoch === this.rows.epoch) this.found.set(found);
+        if (mine !== this.searching || found.epoch !== this.rows.epoch) return;
+        batch(() => {
+          this.found.set(found);
+          this.answered.set(query);
+        });
       },
       (error: unknown) => {
         if (!(error instanceof DOMException)) tell(error);
