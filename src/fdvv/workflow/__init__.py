@@ -2,6 +2,7 @@
 
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._capture import CaptureResult, capture_session
+from fdvv.workflow._capture_cue import cue_events, cue_length_s
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_heard import HeardStroke
 from fdvv.workflow._capture_html import capture_html
@@ -23,6 +24,13 @@ from fdvv.workflow._feasibility import (
     feasibility,
     feasible_curves,
 )
+from fdvv.workflow._felt import (
+    FeltPress,
+    FORCE_JND_ratio,
+    felt_press,
+    intended_press,
+    noticeable_cN,
+)
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
@@ -38,7 +46,8 @@ from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
-from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
+from fdvv.workflow._tune_result import TunedVibration, TuneResult, TuneSetup, TuneTold
+from fdvv.workflow._tune_vibration import tune_vibration
 from fdvv.workflow._tuning import settings_with
 from fdvv.workflow._vibration_slots import (
     RenderedVibration,
@@ -61,7 +70,9 @@ __all__ = [
     "CurveFeasibility",
     "DemoResult",
     "Difference",
+    "FORCE_JND_ratio",
     "FeasibilityReport",
+    "FeltPress",
     "FindVibrations",
     "FitSettings",
     "FolderButton",
@@ -87,6 +98,7 @@ __all__ = [
     "TakeDone",
     "TuneResult",
     "TuneSetup",
+    "TuneTold",
     "TunedVibration",
     "Verdict",
     "Way",
@@ -100,22 +112,27 @@ __all__ = [
     "compare",
     "compensate",
     "converter",
+    "cue_events",
+    "cue_length_s",
     "demo",
     "demo_report",
     "fd_only",
     "feasibility",
     "feasible_curves",
+    "felt_press",
     "fit_file",
     "fit_files",
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
+    "intended_press",
     "join_logs",
     "load_actuation",
     "make_program",
     "measured_files",
     "merge_parts",
     "model_of_recording",
+    "noticeable_cN",
     "one_curve",
     "open_device",
     "open_files",
