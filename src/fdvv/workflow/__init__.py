@@ -43,6 +43,7 @@ from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._shelf import Shelf
 from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
@@ -91,6 +92,7 @@ __all__ = [
     "RenderedVibration",
     "Rendering",
     "Session",
+    "Shelf",
     "Standing",
     "Step",
     "SwitchFit",
