@@ -7,6 +7,7 @@ inputs are copies, so that an edit of a button does not change a job that goes o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Literal
 
@@ -122,6 +123,11 @@ class JobFolder:
         if not path.is_file():
             return []
         return [_event(path, record) for record, _ in read_records(path, JOURNAL)]
+
+
+def utc_now() -> str:
+    """Give the time, UTC."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 def whole_bytes(path: Path) -> int:

@@ -21,8 +21,9 @@ import msgspec
 
 from fdvv.errors import DeviceError, FdvvError
 from fdvv.studio._job_file import JobFolder
-from fdvv.studio._messages_events import Ended, JobEvent
+from fdvv.studio._messages_events import JobEnded, JobEvent
 from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, ProbeOrder
+from fdvv.studio._told import told as line_of
 from fdvv.studio._work import Work
 
 STOPPED = "stopped; what was made is kept"
@@ -31,7 +32,10 @@ PATIENCE_s = 5.0
 
 
 class Answers:
-    """Answers as they come, and the end of the studio."""
+    """Answers as they come, and the end of the studio.
+
+    source : unbuffered, for a buffer's lock that is held while the process ends would break it off.
+    """
 
     def __init__(self, source: IO[bytes]) -> None:
         self._source = source
@@ -72,22 +76,22 @@ def work_on(work: Work) -> None:
         tune(work, order)
 
 
-def ended(work: Work) -> Ended:
+def ended(work: Work) -> JobEnded:
     """Do the work; tell how it ended."""
     try:
         work_on(work)
     except KeyboardInterrupt:
-        return Ended("cancelled", STOPPED)
+        return JobEnded("cancelled", STOPPED)
     except DeviceError as error:
         # the workflow adds how to go on at the command line; here the job itself goes on
         told = error.__cause__ if isinstance(error.__cause__, DeviceError) else error
-        return Ended("failed", f"{told}; what was made is kept, go on once that is mended")
+        return JobEnded("failed", f"{told}; what was made is kept, go on once that is mended")
     except FdvvError as error:
-        return Ended("failed", str(error))
+        return JobEnded("failed", line_of(error))
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        return Ended("failed", f"{where}{error.strerror or error}")
-    return Ended("done", "")
+        return JobEnded("failed", f"{where}{error.strerror or error}")
+    return JobEnded("done", "")
 
 
 @contextlib.contextmanager
@@ -105,7 +109,7 @@ def main() -> None:
         def tell(event: JobEvent) -> None:
             out.write(msgspec.json.encode(event) + b"\n")
 
-        answers = Answers(sys.stdin.buffer)
+        answers = Answers(os.fdopen(os.dup(0), "rb", buffering=0))
         work = Work(JobFolder(Path(sys.argv[1])), int(sys.argv[2]), tell, answers.wait)
         last = ended(work)
         signal.signal(signal.SIGINT, signal.SIG_IGN)

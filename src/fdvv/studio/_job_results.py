@@ -61,7 +61,11 @@ def kept_file(project: Path, kind: str, name: str) -> Path:
 
 
 def publish(project: Path, folder: JobFolder, order: Order) -> tuple[JobResult, ...]:
-    """Copy what a job made into its places in the project; what is there already of it is replaced. OSError."""
+    """Copy what a job made into its places in the project. OSError.
+
+    A table, what was measured of it and what a rig has taught replace those of the same name; buttons and
+    recordings never do.
+    """
     files = {kind: folder.result(kind) for kind in PLACES} | {"recording": folder.recording}
     names = dict.fromkeys(PLACES, order.name) | {"rig": rig_name(order)}
     return tuple(

@@ -12,7 +12,7 @@ from pathlib import Path
 import msgspec
 
 from fdvv.studio._job_process import STOPPED, PATIENCE_s
-from fdvv.studio._messages_events import Ended, JobEvent
+from fdvv.studio._messages_events import JobEnded, JobEvent
 
 ERRORS = "errors.txt"
 LARGEST_chars = 300
@@ -24,11 +24,11 @@ class JobStart:
     Parameters
     ----------
     folder : of the job. run : counts the starts.
-    heard : called with every event, the end not among them; over : with the end. Both in one thread of its own.
+    heard : called with every event, the end not among them; over : with the end; both in one thread.
     """
 
     def __init__(
-        self, folder: Path, run: int, heard: Callable[[JobEvent], None], over: Callable[[Ended], None]
+        self, folder: Path, run: int, heard: Callable[[JobEvent], None], over: Callable[[JobEnded], None]
     ) -> None:
         self._heard, self._over, self._stopped = heard, over, False
         self._errors = folder / ERRORS
@@ -59,7 +59,7 @@ class JobStart:
             pass
 
     def stop(self) -> None:
-        """Have the work stopped: the device lets go, what was made is kept. By force if that takes too long."""
+        """Have the work stopped: what was made is kept, the device lets go. By force if that takes long."""
         self._stopped = True
         self._process.send_signal(signal.SIGINT)
         force = threading.Timer(PATIENCE_s, self._process.kill)
@@ -72,10 +72,11 @@ class JobStart:
 
     def _listen(self) -> None:
         last = None
-        assert self._process.stdin and self._process.stdout
+        assert self._process.stdin
+        assert self._process.stdout
         for line in self._process.stdout:
             event: JobEvent = msgspec.json.decode(line, type=JobEvent)
-            if isinstance(event, Ended):
+            if isinstance(event, JobEnded):
                 last = event
             else:
                 self._heard(event)
@@ -84,10 +85,10 @@ class JobStart:
         self._process.stdout.close()
         self._over(last or self._without_word(status))
 
-    def _without_word(self, status: int) -> Ended:
+    def _without_word(self, status: int) -> JobEnded:
         """Tell of a process that ended without telling why."""
         if self._stopped:
-            return Ended("cancelled", STOPPED)
+            return JobEnded("cancelled", STOPPED)
         said = self._errors.read_text(errors="replace").strip().splitlines()
         why = f": {said[-1][:LARGEST_chars]}" if said else ""
-        return Ended("failed", f"the work broke off with status {status}{why}; what was made is kept")
+        return JobEnded("failed", f"the work broke off with status {status}{why}; what was made is kept")

@@ -18,7 +18,7 @@ class Leases:
         """Note who uses a device; InputError that names who does so already."""
         with self._lock:
             if device in self._holders:
-                reason = f"is used by {self._holders[device]}"
+                reason = f"{device} is used by {self._holders[device]}"
                 raise InputError(device, "device", reason, "wait until that is over, or end it")
             self._holders[device] = holder
 

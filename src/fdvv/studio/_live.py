@@ -13,9 +13,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from fdvv.errors import FdvvError
-from fdvv.studio._ask import told
 from fdvv.studio._contract import Channel, ChannelKind
 from fdvv.studio._studio import Studio
+from fdvv.studio._told import told
 
 WAITING = 4000
 """So many messages may wait for a page; one that does not read is cut off and may come again."""

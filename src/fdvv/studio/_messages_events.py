@@ -13,7 +13,7 @@ class Event(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What every event is."""
 
 
-class Begun(Event, frozen=True, tag="begun"):
+class JobBegun(Event, frozen=True, tag="begun"):
     """The work begins, or goes on.
 
     Attributes
@@ -33,13 +33,13 @@ class StageTold(Event, frozen=True, tag="stage"):
     text: str
 
 
-class Noticed(Event, frozen=True, tag="notice"):
+class JobNoticed(Event, frozen=True, tag="notice"):
     """What a person should know."""
 
     text: str
 
 
-class Intended(Event, frozen=True, tag="intended"):
+class CurveIntended(Event, frozen=True, tag="intended"):
     """What a button asks for at one speed, and how much of a difference is just noticeable.
 
     Attributes
@@ -73,7 +73,7 @@ class CurveStanding(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FeltCurve(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Force on the finger over true displacement, on the grid of Intended; None in bins without any."""
+    """Force on the finger over true displacement, on the grid of CurveIntended; None in bins without any."""
 
     press_cN: tuple[float | None, ...]
     release_cN: tuple[float | None, ...]
@@ -173,14 +173,14 @@ class TakeTold(Event, frozen=True, tag="take"):
     paces: tuple[PaceTold, ...]
 
 
-class Wave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class PlayedWave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Acceleration of the cap, to be played."""
 
     rate_Hz: float
     acceleration_m_s2: tuple[float, ...]
 
 
-class Asked(Event, frozen=True, tag="asked"):
+class QuestionAsked(Event, frozen=True, tag="asked"):
     """A question to whoever tunes; what is asked about bears no name.
 
     Attributes
@@ -191,11 +191,11 @@ class Asked(Event, frozen=True, tag="asked"):
     number: int
     total: int
     velocity_mm_s: float
-    waves: tuple[Wave, ...]
-    measured: Wave
+    waves: tuple[PlayedWave, ...]
+    measured: PlayedWave
 
 
-class CandidateTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TuneCandidate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one vibration stands: its strongest mode, score with standard error, and whether it may be best."""
 
     name: str
@@ -207,26 +207,26 @@ class CandidateTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     best: bool
 
 
-class Ranking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TuneRanking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the answers at one velocity say."""
 
     velocity_mm_s: float
     answers: int
     sentence: str
-    candidates: tuple[CandidateTold, ...]
+    candidates: tuple[TuneCandidate, ...]
 
 
-class Answered(Event, frozen=True, tag="answered"):
+class QuestionAnswered(Event, frozen=True, tag="answered"):
     """An answer that is on file: who was preferred, or a rating; and what all so far say."""
 
     number: int
     total: int
     velocity_mm_s: float
     answer: str
-    rankings: tuple[Ranking, ...]
+    rankings: tuple[TuneRanking, ...]
 
 
-class Outcome(Event, frozen=True, tag="outcome"):
+class JobOutcome(Event, frozen=True, tag="outcome"):
     """What came out of a part of the work.
 
     Attributes
@@ -241,11 +241,11 @@ class Outcome(Event, frozen=True, tag="outcome"):
     skipped: int
     simulated: bool
     curves: tuple[CurveStanding, ...] = ()
-    rankings: tuple[Ranking, ...] = ()
+    rankings: tuple[TuneRanking, ...] = ()
     warnings: tuple[str, ...] = ()
 
 
-class Ended(Event, frozen=True, tag="ended"):
+class JobEnded(Event, frozen=True, tag="ended"):
     """The work is over for now; line says why where it was not finished."""
 
     state: Literal["done", "cancelled", "failed"]
@@ -253,17 +253,17 @@ class Ended(Event, frozen=True, tag="ended"):
 
 
 JobEvent = (
-    Begun
+    JobBegun
     | StageTold
-    | Noticed
-    | Intended
+    | JobNoticed
+    | CurveIntended
     | PressAsked
     | PressTold
     | TakeAsked
     | CueBegun
     | TakeTold
-    | Asked
-    | Answered
-    | Outcome
-    | Ended
+    | QuestionAsked
+    | QuestionAnswered
+    | JobOutcome
+    | JobEnded
 )

@@ -7,7 +7,7 @@ from typing import Literal
 import msgspec
 
 from fdvv.studio._messages_events import JobEvent
-from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
+from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, KindName, ProbeOrder, TuneOrder
 
 JobState = Literal["waiting", "running", "needs you", "done", "cancelled", "failed"]
 
@@ -31,7 +31,7 @@ class JobRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     job: str
-    kind: Literal["compensate", "probe", "capture", "tune"]
+    kind: KindName
     title: str
     device: str
     simulated: bool
@@ -77,7 +77,46 @@ class JobDetail(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
 
 
-class NoAsk(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ButtonChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A button that work can be done on. vibrates : it has a vibration of the press."""
+
+    button: str
+    name: str
+    vibrates: bool
+
+
+class DeviceChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A device that there is. bench : a capture bench may be there; rig : a rig may be."""
+
+    device: str
+    about: str
+    simulated: bool
+    rig: bool
+    bench: bool
+    used_by: str
+
+
+class WorkChoices(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What forms offer.
+
+    Attributes
+    ----------
+    rigs : simulated. known_rigs, actuations : kept in the project, by name.
+    switches, participants : of the simulated bench.
+    note : why serial ports cannot be listed; empty if they can.
+    """
+
+    buttons: tuple[ButtonChoice, ...]
+    devices: tuple[DeviceChoice, ...]
+    rigs: tuple[str, ...]
+    known_rigs: tuple[str, ...]
+    actuations: tuple[str, ...]
+    switches: tuple[str, ...]
+    participants: tuple[str, ...]
+    note: str
+
+
+class JobsAsk(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Ask for all there is."""
 
 
@@ -85,6 +124,10 @@ class JobRows(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """All jobs, newest first."""
 
     jobs: tuple[JobRow, ...]
+
+
+class WatchJobs(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_jobs"):
+    """Be told all jobs, and then each that changes."""
 
 
 class WatchJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_job"):
@@ -95,9 +138,15 @@ class WatchJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="wat
 
 
 class JobsTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="jobs"):
-    """All jobs, newest first; told once and whenever one changes."""
+    """All jobs, newest first; told when the page begins to listen."""
 
     jobs: tuple[JobRow, ...]
+
+
+class JobChanged(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="job"):
+    """A job that is new or has changed."""
+
+    row: JobRow
 
 
 class EventsTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="events"):
@@ -106,20 +155,3 @@ class EventsTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="e
     job: str
     from_event: int
     events: tuple[JobEvent, ...]
-
-
-__all__ = [
-    "EventsTold",
-    "JobAnswer",
-    "JobAsk",
-    "JobDetail",
-    "JobResult",
-    "JobRow",
-    "JobRows",
-    "JobState",
-    "JobsTold",
-    "NoAsk",
-    "Order",
-    "StartJob",
-    "WatchJob",
-]

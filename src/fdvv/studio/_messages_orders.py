@@ -109,4 +109,14 @@ class TuneOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="tu
     pace_ratio: float = 0.35
 
 
+KindName = Literal["compensate", "probe", "capture", "tune"]
 Order = CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+
+
+def kind_of(order: Order) -> KindName:
+    """Name the kind of an order."""
+    if isinstance(order, CompensateOrder):
+        return "compensate"
+    if isinstance(order, ProbeOrder):
+        return "probe"
+    return "capture" if isinstance(order, CaptureOrder) else "tune"

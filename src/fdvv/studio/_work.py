@@ -12,11 +12,11 @@ from fdvv.device import Device
 from fdvv.model import FDVVModel
 from fdvv.studio._job_file import JobFolder
 from fdvv.studio._messages_events import (
+    CurveIntended,
     CurveStanding,
     FeltCurve,
-    Intended,
     JobEvent,
-    Noticed,
+    JobNoticed,
     PressAsked,
     PressTold,
 )
@@ -46,7 +46,7 @@ class Work:
 
     def notice(self, text: str) -> None:
         """Tell what a person should know."""
-        self.tell(Noticed(text))
+        self.tell(JobNoticed(text))
 
     def guide(self, device: str) -> Guide:
         """Give what leads a session; only a person is asked for every press."""
@@ -57,7 +57,7 @@ class Work:
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
             x_mm, down_cN, up_cN = map(_rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
-            self.tell(Intended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
+            self.tell(CurveIntended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
 
     def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
         """Give what tells of presses."""

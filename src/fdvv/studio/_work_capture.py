@@ -10,7 +10,15 @@ from typing import Literal
 from fdvv.device import open_bench
 from fdvv.model import save_model
 from fdvv.recording import Stage
-from fdvv.studio._messages_events import Begun, CueBegun, Outcome, PaceTold, StageTold, TakeAsked, TakeTold
+from fdvv.studio._messages_events import (
+    CueBegun,
+    JobBegun,
+    JobOutcome,
+    PaceTold,
+    StageTold,
+    TakeAsked,
+    TakeTold,
+)
 from fdvv.studio._messages_orders import CaptureOrder
 from fdvv.studio._work import DIGITS, Work
 from fdvv.workflow import (
@@ -43,7 +51,7 @@ def capture(work: Work, order: CaptureOrder) -> None:
     bench = open_bench(order.device, order.switch, order.participant, order.seed, order.watch)
     try:
         info = bench.facts()
-        work.tell(Begun(work.run, info.name, info.simulated))
+        work.tell(JobBegun(work.run, info.name, info.simulated))
         work.tell(StageTold("capture", "recording the button"))
         paced = order.watch or not info.simulated
         guide = CaptureGuide(_cue(work, paced), lambda done: work.tell(_take(done)), work.notice)
@@ -64,7 +72,7 @@ def _process(work: Work, order: CaptureOrder) -> None:
         f"travel {model.travel_mm:.2f} mm, from {used} presses"
     )
     presses, simulated = len(found.processed.judged), model.provenance.simulated
-    work.tell(Outcome("capture", sentence, presses, presses - used, simulated, warnings=found.warnings))
+    work.tell(JobOutcome("capture", sentence, presses, presses - used, simulated, warnings=found.warnings))
 
 
 def _cue(work: Work, paced: bool) -> Callable[[TakeAsk], Callable[[float], None]]:

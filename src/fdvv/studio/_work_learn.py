@@ -9,7 +9,7 @@ from fdvv.compensate import Acceptance, PaperLaw, RigAware, Tuning, load_memory,
 from fdvv.device import Device
 from fdvv.files import write_atomic
 from fdvv.model import FDVVModel, load_model
-from fdvv.studio._messages_events import Begun, Outcome, StageTold
+from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
 from fdvv.studio._messages_orders import CompensateOrder, ProbeOrder
 from fdvv.studio._work import Work, curve_standing, let_close
 from fdvv.workflow import (
@@ -100,7 +100,7 @@ def _probe(
     )
     curves = tuple(curve_standing(curve.outcome) for curve in result.curves)
     counts = result.presses, len(result.skipped)
-    work.tell(Outcome("probe", sentence, *counts, result.simulated, curves))
+    work.tell(JobOutcome("probe", sentence, *counts, result.simulated, curves))
 
 
 def measured(result: ProbeResult, button: str) -> dict[str, Any]:
@@ -129,7 +129,7 @@ def _keep(work: Work, result: CompensationResult) -> None:
         save_rig(result.memory, work.folder.result("rig"))
     curves = tuple(curve_standing(curve) for curve in result.outcome.curves)
     counts = result.presses, len(result.skipped)
-    work.tell(Outcome("compensate", result.outcome.sentence, *counts, result.simulated, curves))
+    work.tell(JobOutcome("compensate", result.outcome.sentence, *counts, result.simulated, curves))
 
 
 def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
@@ -147,5 +147,5 @@ def _session(work: Work, order: CompensateOrder | ProbeOrder, seed: int, probing
 
 def _begin(work: Work, device: Device, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
     info = device.info()
-    work.tell(Begun(work.run, info.name, info.simulated))
+    work.tell(JobBegun(work.run, info.name, info.simulated))
     work.intended(model, velocities_mm_s)

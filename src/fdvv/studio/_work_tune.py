@@ -8,14 +8,14 @@ from typing import Any
 from fdvv.compensate import Acceptance
 from fdvv.model import FDVVModel, Vibration, load_model, save_model
 from fdvv.studio._messages_events import (
-    Answered,
-    Asked,
-    Begun,
-    CandidateTold,
-    Outcome,
-    Ranking,
+    JobBegun,
+    JobOutcome,
+    PlayedWave,
+    QuestionAnswered,
+    QuestionAsked,
     StageTold,
-    Wave,
+    TuneCandidate,
+    TuneRanking,
 )
 from fdvv.studio._messages_orders import TuneOrder
 from fdvv.studio._work import DIGITS, Work, let_close
@@ -48,7 +48,7 @@ def tune(work: Work, order: TuneOrder) -> None:
     device = session.open_device(order.device)
     try:
         info = device.info()
-        work.tell(Begun(work.run, info.name, info.simulated))
+        work.tell(JobBegun(work.run, info.name, info.simulated))
         work.tell(StageTold("tune", f"answers of a {order.observer}"))
         result = tune_vibration(
             device,
@@ -66,7 +66,7 @@ def tune(work: Work, order: TuneOrder) -> None:
     save_model(_named(result.model, order.name), work.folder.result("button"))
     rankings = tuple(_ranking(tuned) for tuned in result.tuned)
     sentence = "; ".join(f"{r.velocity_mm_s:g} mm/s: {r.sentence}" for r in rankings)
-    work.tell(Outcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
+    work.tell(JobOutcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
 
 
 def _named(model: FDVVModel, name: str) -> FDVVModel:
@@ -90,27 +90,27 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
         found = candidates[question.place]
         waves = tuple(_wave(found.vibrations[template]) for template in question.templates)
         about = question.number, question.total, found.velocity_mm_s
-        work.tell(Asked(*about, waves, _wave(found.vibrations[0])))
+        work.tell(QuestionAsked(*about, waves, _wave(found.vibrations[0])))
         told = work.ask(question.number)
         return None if told == "again" else int(told) if told.isdigit() else Preferred(told)
 
     return answer
 
 
-def _wave(vibration: Vibration) -> Wave:
+def _wave(vibration: Vibration) -> PlayedWave:
     samples = vibration_samples(vibration, WAVE_Hz, QUIET_s)
-    return Wave(WAVE_Hz, tuple(samples.round(DIGITS).tolist()))
+    return PlayedWave(WAVE_Hz, tuple(samples.round(DIGITS).tolist()))
 
 
-def _answered(told: TuneTold) -> Answered:
+def _answered(told: TuneTold) -> QuestionAnswered:
     given = told.given
     rankings = tuple(_ranking(tuned) for tuned in told.tuned if tuned.standing.answers)
-    return Answered(given.number, told.total, given.velocity_mm_s, str(given.answer), rankings)
+    return QuestionAnswered(given.number, told.total, given.velocity_mm_s, str(given.answer), rankings)
 
 
-def _ranking(tuned: TunedVibration) -> Ranking:
+def _ranking(tuned: TunedVibration) -> TuneRanking:
     standing = tuned.standing
-    return Ranking(
+    return TuneRanking(
         tuned.candidates.velocity_mm_s,
         standing.answers,
         tuned.sentence,
@@ -118,11 +118,11 @@ def _ranking(tuned: TunedVibration) -> Ranking:
     )
 
 
-def _candidate(tuned: TunedVibration, i: int) -> CandidateTold:
+def _candidate(tuned: TunedVibration, i: int) -> TuneCandidate:
     standing, vibration = tuned.standing, tuned.candidates.vibrations[i]
     strongest = max(vibration.modes, key=lambda mode: abs(mode.amplitude_m_s2))
     error = standing.errors[i]
-    return CandidateTold(
+    return TuneCandidate(
         f"template {i}" if i else "measured",
         round(strongest.frequency_Hz, 1),
         round(strongest.amplitude_m_s2, DIGITS),
