@@ -45,6 +45,7 @@ from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._shelf import Shelf
 from fdvv.workflow._spread_report import spread_reports
+from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
 from fdvv.workflow._tune_result import TunedVibration, TuneResult, TuneSetup, TuneTold
@@ -98,6 +99,9 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "TickBinner",
+    "TickBins",
+    "TickPiece",
     "TuneResult",
     "TuneSetup",
     "TuneTold",

@@ -1,11 +1,21 @@
 // The studio's messages, made by tools/make_studio_types.py from src/fdvv/studio/_messages_*.py.
 
 export interface Calls {
+  readonly "device.arm": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.clear_fault": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.connect": { readonly ask: DeviceConnect; readonly answer: DeviceStanding };
+  readonly "device.disconnect": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.facts": { readonly ask: DeviceAsk; readonly answer: DeviceFacts };
+  readonly "device.press": { readonly ask: DevicePress; readonly answer: DeviceStanding };
+  readonly "device.selftest": { readonly ask: DeviceAsk; readonly answer: SelfTest };
+  readonly "device.standing": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.stop": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.upload": { readonly ask: DeviceUpload; readonly answer: DeviceStanding };
   readonly "jobs.answer": { readonly ask: JobAnswer; readonly answer: JobRow };
   readonly "jobs.cancel": { readonly ask: JobAsk; readonly answer: JobRow };
-  readonly "jobs.choices": { readonly ask: NoAsk; readonly answer: WorkChoices };
+  readonly "jobs.choices": { readonly ask: JobsAsk; readonly answer: WorkChoices };
   readonly "jobs.detail": { readonly ask: JobAsk; readonly answer: JobDetail };
-  readonly "jobs.list": { readonly ask: NoAsk; readonly answer: JobRows };
+  readonly "jobs.list": { readonly ask: JobsAsk; readonly answer: JobRows };
   readonly "jobs.resume": { readonly ask: JobAsk; readonly answer: JobRow };
   readonly "jobs.start": { readonly ask: StartJob; readonly answer: JobRow };
   readonly "studio.about": { readonly ask: AboutAsk; readonly answer: About };
@@ -13,6 +23,65 @@ export interface Calls {
 
 export interface Channels {
   readonly "jobs": { readonly asks: WatchJobs | WatchJob; readonly tells: JobsTold | JobChanged | EventsTold };
+  readonly "scope": { readonly asks: WatchScope; readonly tells: DeviceStanding | ScopeTold | PressSeen };
+}
+
+export interface DeviceAsk {
+}
+
+export interface DeviceStanding {
+  readonly type: "standing";
+  readonly device?: string;
+  readonly name?: string;
+  readonly simulated?: boolean;
+  readonly streams?: boolean;
+  readonly person?: boolean;
+  readonly force_sensor?: boolean;
+  readonly tick_s?: number;
+  readonly mode?: string;
+  readonly programmed?: string;
+  readonly travel_mm?: number | null;
+  readonly fault?: string;
+  readonly missing_ticks?: number;
+  readonly late_ticks?: number;
+  readonly missing_frames?: number;
+  readonly lost_records?: number;
+}
+
+export interface DeviceConnect {
+  readonly device: string;
+  readonly rig?: string;
+  readonly seed?: number;
+}
+
+export interface DeviceFacts {
+  readonly facts: readonly DeviceFact[];
+}
+
+export interface DeviceFact {
+  readonly name: string;
+  readonly value: string;
+}
+
+export interface DevicePress {
+  readonly velocity_mm_s: number;
+}
+
+export interface SelfTest {
+  readonly parts: readonly PartVerdict[];
+  readonly note: string;
+}
+
+export interface PartVerdict {
+  readonly part: string;
+  readonly verdict: string;
+  readonly value: number;
+}
+
+export interface DeviceUpload {
+  readonly button: string;
+  readonly actuation?: string;
+  readonly velocities_mm_s?: readonly number[];
 }
 
 export interface JobAnswer {
@@ -48,7 +117,7 @@ export interface JobAsk {
   readonly job: string;
 }
 
-export interface NoAsk {
+export interface JobsAsk {
 }
 
 export interface WorkChoices {
@@ -186,10 +255,10 @@ export interface EventsTold {
   readonly type: "events";
   readonly job: string;
   readonly from_event: number;
-  readonly events: readonly (Begun | StageTold | Noticed | Intended | PressAsked | PressTold | TakeAsked | CueBegun | TakeTold | Asked | Answered | Outcome | Ended)[];
+  readonly events: readonly (JobBegun | StageTold | JobNoticed | CurveIntended | PressAsked | PressTold | TakeAsked | CueBegun | TakeTold | QuestionAsked | QuestionAnswered | JobOutcome | JobEnded)[];
 }
 
-export interface Begun {
+export interface JobBegun {
   readonly type: "begun";
   readonly run: number;
   readonly device: string;
@@ -202,12 +271,12 @@ export interface StageTold {
   readonly text: string;
 }
 
-export interface Noticed {
+export interface JobNoticed {
   readonly type: "notice";
   readonly text: string;
 }
 
-export interface Intended {
+export interface CurveIntended {
   readonly type: "intended";
   readonly velocity_mm_s: number;
   readonly displacement_mm: readonly number[];
@@ -294,37 +363,37 @@ export interface PaceTold {
   readonly achieved_mm_s: readonly number[];
 }
 
-export interface Asked {
+export interface QuestionAsked {
   readonly type: "asked";
   readonly number: number;
   readonly total: number;
   readonly velocity_mm_s: number;
-  readonly waves: readonly Wave[];
-  readonly measured: Wave;
+  readonly waves: readonly PlayedWave[];
+  readonly measured: PlayedWave;
 }
 
-export interface Wave {
+export interface PlayedWave {
   readonly rate_Hz: number;
   readonly acceleration_m_s2: readonly number[];
 }
 
-export interface Answered {
+export interface QuestionAnswered {
   readonly type: "answered";
   readonly number: number;
   readonly total: number;
   readonly velocity_mm_s: number;
   readonly answer: string;
-  readonly rankings: readonly Ranking[];
+  readonly rankings: readonly TuneRanking[];
 }
 
-export interface Ranking {
+export interface TuneRanking {
   readonly velocity_mm_s: number;
   readonly answers: number;
   readonly sentence: string;
-  readonly candidates: readonly CandidateTold[];
+  readonly candidates: readonly TuneCandidate[];
 }
 
-export interface CandidateTold {
+export interface TuneCandidate {
   readonly name: string;
   readonly frequency_Hz: number;
   readonly amplitude_m_s2: number;
@@ -334,7 +403,7 @@ export interface CandidateTold {
   readonly best: boolean;
 }
 
-export interface Outcome {
+export interface JobOutcome {
   readonly type: "outcome";
   readonly stage: "capture" | "compensate" | "probe" | "tune";
   readonly sentence: string;
@@ -342,12 +411,43 @@ export interface Outcome {
   readonly skipped: number;
   readonly simulated: boolean;
   readonly curves?: readonly CurveStanding[];
-  readonly rankings?: readonly Ranking[];
+  readonly rankings?: readonly TuneRanking[];
   readonly warnings?: readonly string[];
 }
 
-export interface Ended {
+export interface JobEnded {
   readonly type: "ended";
   readonly state: "cancelled" | "done" | "failed";
   readonly line: string;
+}
+
+export interface WatchScope {
+  readonly type: "watch_scope";
+  readonly bin_s: number;
+}
+
+export interface ScopeTold {
+  readonly type: "scope";
+  readonly bin_s: number;
+  readonly bin: readonly number[];
+  readonly displacement_low_mm: readonly number[];
+  readonly displacement_high_mm: readonly number[];
+  readonly force_low_cN: readonly (number | null)[];
+  readonly force_high_cN: readonly (number | null)[];
+  readonly commanded_low_cN: readonly number[];
+  readonly commanded_high_cN: readonly number[];
+  readonly state: readonly number[];
+  readonly cut: readonly boolean[];
+  readonly ticks: readonly number[];
+}
+
+export interface PressSeen {
+  readonly type: "press_seen";
+  readonly velocity_mm_s: number;
+  readonly simulated: boolean;
+  readonly displacement_mm: readonly number[];
+  readonly felt_press_cN: readonly (number | null)[];
+  readonly felt_release_cN: readonly (number | null)[];
+  readonly intended_press_cN: readonly number[];
+  readonly intended_release_cN: readonly number[];
 }
