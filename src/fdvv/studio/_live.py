@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from contextlib import suppress
 from functools import reduce
 from operator import or_
+from threading import Lock
 from typing import Any
 
 import msgspec
@@ -13,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from fdvv.errors import FdvvError
-from fdvv.studio._contract import Channel, ChannelKind
+from fdvv.studio._contract import Channel, ChannelKind, Tell
 from fdvv.studio._studio import Studio
 from fdvv.studio._told import told
 
@@ -42,6 +44,7 @@ class LiveConnection:
         self._workers: list[asyncio.Task[None]] = []
         self._open: list[Channel] = []
         self._over = False
+        self._lock = Lock()
 
     async def serve(self) -> None:
         """Pass messages until the page goes or does what it may not."""
@@ -52,12 +55,10 @@ class LiveConnection:
         except WebSocketDisconnect:
             pass
         finally:
-            self._over = True
+            # without waiting: whoever cancels this connection cancels every wait in it too
             for task in (writer, *self._workers):
                 task.cancel()
-            await asyncio.gather(writer, *self._workers, return_exceptions=True)
-            for channel in self._open:
-                await run_in_threadpool(channel.close)
+            self._loop.run_in_executor(None, self._close)
 
     async def _read(self) -> None:
         while True:
@@ -93,11 +94,11 @@ class LiveConnection:
 
         def tell(message: msgspec.Struct) -> None:
             body = msgspec.json.encode(message)
-            if not self._over:
+            # the page, and the whole server, may go while a part still tells
+            with suppress(RuntimeError):
                 self._loop.call_soon_threadsafe(self._say, body, kind.name)
 
-        channel = await run_in_threadpool(kind.open, self._studio, tell)
-        self._open.append(channel)
+        channel = await run_in_threadpool(self._opened, kind, tell)
         while True:
             ask = await asks.get()
             try:
@@ -108,8 +109,28 @@ class LiveConnection:
                 log.exception("channel %s failed", kind.name)
                 self._say(b"", kind.name, f"{kind.name} failed; the studio's terminal tells why")
 
+    def _opened(self, kind: ChannelKind, tell: Tell) -> Channel:
+        """Open a channel; if the page has gone meanwhile it is closed again."""
+        channel = kind.open(self._studio, tell)
+        with self._lock:
+            gone = self._over
+            if not gone:
+                self._open.append(channel)
+        if gone:
+            channel.close()
+        return channel
+
+    def _close(self) -> None:
+        with self._lock:
+            self._over = True
+            channels, self._open = self._open, []
+        for channel in channels:
+            channel.close()
+
     def _say(self, body: bytes, channel: str = "studio", error: str = "") -> None:
         """Queue a message, or an error, for the page."""
+        if self._over:
+            return
         told = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
         whole = told if error else told[:-1] + b',"body":' + body + b"}"
         try:
