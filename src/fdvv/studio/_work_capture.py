@@ -68,7 +68,7 @@ def _process(work: Work, order: CaptureOrder) -> None:
     save_model(model, work.folder.result("button"))
     used = sum(not judged.reason for judged in found.processed.judged)
     sentence = (
-        f"a model of {len(model.curves)} curves and {len(model.vibrations)} vibrations, "
+        f"a model of {len(model.curves)} curves and {_counted(len(model.vibrations), 'vibration')}, "
         f"travel {model.travel_mm:.2f} mm, from {used} presses"
     )
     presses, simulated = len(found.processed.judged), model.provenance.simulated
@@ -130,6 +130,10 @@ def _take(done: TakeDone) -> TakeTold:
 def _pace(pace: PaceStanding) -> PaceTold:
     speeds = tuple(round(v, DIGITS) for v in pace.achieved_mm_s)
     return PaceTold(pace.velocity_mm_s, pace.good, pace.wanted, pace.made, pace.missed, speeds)
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def _known(value: float) -> float | None:

@@ -2,38 +2,44 @@
 
 import { go } from "../../app/route";
 import type { JobResult, JobRow } from "../../net";
-import { button, h, progress, type Child } from "../../ui";
+import { button, computed, h, progress, untracked, type Child } from "../../ui";
 import { cancelJob, isUnderWay, resumeJob, rowOf, watched } from "./jobs";
 import { stateTag } from "./list";
 import { goToSection, sectionOf } from "./where";
 
 export function jobHead(job: string): HTMLElement {
-  return h("section", { class: "panel job-head", "aria-label": "Job" }, () => {
-    const row = rowOf(job);
-    return row ? content(row) : h("p", { class: "muted" }, "There is no such job in this project.");
-  });
+  const there = computed(() => rowOf(job) !== null);
+  return h("section", { class: "panel job-head", "aria-label": "Job" }, () =>
+    there() ? content(job) : h("p", { class: "muted" }, "There is no such job in this project."),
+  );
 }
 
-function content(row: JobRow): HTMLElement {
-  const simulated = row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null;
-  const counted = row.total ? `${row.done} of ${row.total}` : "";
+function content(job: string): HTMLElement {
+  const first = untracked(() => rowOf(job)) as JobRow;
+  const row = () => rowOf(job) ?? first;
+  const state = computed(() => row().state);
+  const made = computed(() => row().results.length);
+  const simulated = first.simulated ? h("span", { class: "tag simulated" }, "simulated") : null;
+  const bar = progress("Progress", () => row().done, () => row().total || null);
+  const failed = () => (state() === "failed" ? "job-line wrong" : "job-line");
   return h(
     "div",
     { class: "stack" },
     h(
       "div",
       { class: "row spread" },
-      h("div", { class: "row" }, h("h2", { class: "job-name" }, row.title), simulated, stateTag(row)),
-      h("div", { class: "row" }, actions(row)),
+      h("div", { class: "row" }, h("h2", { class: "job-name" }, first.title), simulated, stateTag(state)),
+      h("div", { class: "row" }, () => (state(), untracked(() => actions(row())))),
     ),
-    isUnderWay(row) ? progress("Progress", () => row.done, () => row.total || null) : null,
-    h("p", { class: row.state === "failed" ? "job-line wrong" : "job-line", role: "status" }, lineOf(row, counted)),
+    h("div", { hidden: () => !isUnderWay(row()) }, bar),
+    h("p", { class: failed, role: "status" }, () => lineOf(row())),
     notices(),
-    results(row),
+    () => (made(), untracked(() => results(row()))),
   );
 }
 
-function lineOf(row: JobRow, counted: string): string {
+function lineOf(row: JobRow): string {
+  const counted = row.total ? `${row.done} of ${row.total}` : "";
   if (row.line) return [counted, row.line].filter(Boolean).join(": ");
   return [isUnderWay(row) ? counted : "", row.now].filter(Boolean).join(": ");
 }

@@ -1,6 +1,6 @@
 /** The jobs as the server tells them: all rows, and the events of the one that is looked at. */
 
-import { call, live, type JobRow, type StartJob } from "../../net";
+import { call, live, type JobRow, type LiveChannel, type StartJob } from "../../net";
 import { signal, tell, toast, untracked, type Signal } from "../../ui";
 import { emptyPicture, fold, type JobEvent, type JobPicture } from "./picture";
 
@@ -19,11 +19,10 @@ export interface Watched {
   readonly picture: JobPicture;
 }
 
-const channel = live().channel("jobs", {
-  opened: () => {
-    channel?.send({ type: "watch_jobs" });
-    askEvents();
-  },
+// it may be open already, and then `opened` is called before there is a channel to send on
+let channel: LiveChannel<"jobs"> | null = null;
+channel = live().channel("jobs", {
+  opened: begin,
   told: (message) => {
     if (message.type === "jobs") rows.set(message.jobs);
     else if (message.type === "job") changed(message.row);
@@ -31,8 +30,11 @@ const channel = live().channel("jobs", {
   },
   wrong: (line) => toast(line, "wrong"),
 });
-if (live().state.peek() === "open") {
-  channel.send({ type: "watch_jobs" });
+begin();
+
+function begin(): void {
+  channel?.send({ type: "watch_jobs" });
+  askEvents();
 }
 
 function changed(row: JobRow): void {

@@ -1,10 +1,11 @@
 /** All jobs with their state, always in view; and a sign in the header of those that run. */
 
+import "./live.css";
 import { address } from "../../app/route";
 import { headerExtras } from "../../app/shell";
 import type { JobRow } from "../../net";
-import { empty, h, progress } from "../../ui";
-import { isUnderWay, rows } from "./jobs";
+import { computed, empty, h, progress, untracked } from "../../ui";
+import { isUnderWay, rowOf, rows } from "./jobs";
 import { jobAddress, shownJob } from "./where";
 
 const SHOWN = 30;
@@ -18,34 +19,38 @@ const GLYPHS: Readonly<Record<JobRow["state"], string>> = {
 };
 
 /** A state as a word with a glyph: colour is never the only difference. */
-export function stateTag(row: JobRow): HTMLElement {
-  const glyph = h("span", { "aria-hidden": "true" }, GLYPHS[row.state]);
-  return h("span", { class: `job-state ${row.state.replace(" ", "-")}` }, glyph, ` ${row.state}`);
+export function stateTag(state: () => JobRow["state"]): HTMLElement {
+  const glyph = h("span", { "aria-hidden": "true" }, () => GLYPHS[state()]);
+  return h("span", { class: () => `job-state ${state().replace(" ", "-")}` }, glyph, " ", () => state());
 }
 
 export function jobList(): HTMLElement {
-  return h("section", { class: "panel job-list", "aria-label": "Jobs" }, h("h2", {}, "Jobs"), () => listed(rows()));
+  // elements are made anew only when a job is: one that changes under the hand could not be pressed
+  const jobs = computed(() => rows()?.slice(0, SHOWN).map((row) => row.job).join(" ") ?? "…");
+  return h("section", { class: "panel job-list", "aria-label": "Jobs" }, h("h2", {}, "Jobs"), () => listed(jobs()));
 }
 
-function listed(found: readonly JobRow[] | null): HTMLElement {
-  if (!found) return h("p", { class: "muted" }, "…");
-  if (!found.length) return empty("No jobs yet", "Choose what to do, and start: it shows up here and goes on by itself.");
-  return h("ul", {}, found.slice(0, SHOWN).map(item));
+function listed(jobs: string): HTMLElement {
+  if (jobs === "…") return h("p", { class: "muted" }, "…");
+  if (!jobs) return empty("No jobs yet", "Choose what to do, and start: it shows up here and goes on by itself.");
+  return h("ul", {}, jobs.split(" ").map(item));
 }
 
-function item(row: JobRow): HTMLElement {
-  const current = () => (shownJob() === row.job ? "true" : null);
-  const bar = isUnderWay(row) ? progress(`Progress of job ${Number(row.job)}`, () => row.done, () => row.total || null) : null;
+function item(job: string): HTMLElement {
+  const known = untracked(() => rowOf(job)) as JobRow;
+  const row = () => rowOf(job) ?? known;
+  const bar = progress(`Progress of job ${Number(job)}`, () => row().done, () => row().total || null);
+  const current = () => (shownJob() === job ? "true" : null);
   return h(
     "li",
     {},
     h(
       "a",
-      { href: jobAddress(row), "aria-current": current },
-      h("span", { class: "row spread" }, h("span", { class: "muted" }, `${Number(row.job)}`), stateTag(row)),
-      h("span", { class: "job-title" }, row.title),
-      row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null,
-      bar,
+      { href: jobAddress(known), "aria-current": current },
+      h("span", { class: "row spread" }, h("span", { class: "muted" }, `${Number(job)}`), stateTag(() => row().state)),
+      h("span", { class: "job-title" }, known.title),
+      known.simulated ? h("span", { class: "tag simulated" }, "simulated") : null,
+      h("span", { hidden: () => !isUnderWay(row()) }, bar),
     ),
   );
 }
