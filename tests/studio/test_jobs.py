@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.studio.jobs import DEVICES, Follower, PATIENCE_s, learning, long_learning, tuning
+from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
 
 from fdvv.errors import InputError
 from fdvv.model import load_model
@@ -148,7 +148,7 @@ import sys, time
 from pathlib import Path
 from fdvv.studio import Studio
 from fdvv.studio._jobs import Jobs
-from tests.studio.jobs import DEVICES, Follower, long_learning
+from tests.studio.jobs import DEVICES, PATIENCE_s, PRESSES, Follower, learning, long_learning, tuning
 jobs = Studio(Path(sys.argv[1])).part(Jobs)
 told = Follower(jobs, jobs.start(long_learning(), DEVICES).job)
 told.wait(lambda event: type(event).__name__ == "PressTold")

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 from starlette.concurrency import run_in_threadpool
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
 from fdvv.studio._contract import Channel, ChannelKind, Tell
@@ -52,8 +52,6 @@ class LiveConnection:
         writer = asyncio.create_task(self._write())
         try:
             await self._read()
-        except WebSocketDisconnect:
-            pass
         finally:
             # without waiting: whoever cancels this connection cancels every wait in it too
             for task in (writer, *self._workers):
@@ -62,8 +60,11 @@ class LiveConnection:
 
     async def _read(self) -> None:
         while True:
-            text = await self._socket.receive_text()
+            message = await self._socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
             try:
+                text = message.get("text") or message.get("bytes") or b""
                 envelope = msgspec.json.decode(text, type=Envelope)
                 kind = self._kinds.get(envelope.channel)
                 if kind is None:
