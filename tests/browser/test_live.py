@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 import pytest
-from tests.studios import RunningStudio
+from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
