@@ -1,5 +1,6 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
+from fdvv.workflow._achievable import AchievableCurve, LimitedRange, achievable
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._capture import CaptureResult, capture_session
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
@@ -26,6 +27,7 @@ from fdvv.workflow._feasibility import (
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
+from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
@@ -33,6 +35,7 @@ from fdvv.workflow._press import ButtonPress, Presses, press_button
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
 from fdvv.workflow._receipt import Receipt
+from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._spread_report import spread_reports
@@ -50,6 +53,7 @@ from fdvv.workflow._vibration_slots import (
 )
 
 __all__ = [
+    "AchievableCurve",
     "Ask",
     "ButtonPress",
     "Candidates",
@@ -69,6 +73,9 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "HeardStroke",
+    "LimitedRange",
+    "MeasuredBand",
+    "MeasuredButton",
     "ModelFit",
     "PaceStanding",
     "PressDone",
@@ -79,6 +86,9 @@ __all__ = [
     "RecordedVibrations",
     "RenderedVibration",
     "Rendering",
+    "RigEntry",
+    "RigOnShelf",
+    "RigShelf",
     "Session",
     "Standing",
     "Step",
@@ -91,6 +101,7 @@ __all__ = [
     "Verdict",
     "Way",
     "acceleration_per_volt",
+    "achievable",
     "button_files",
     "candidates_for",
     "capture_html",
@@ -113,6 +124,7 @@ __all__ = [
     "join_logs",
     "load_actuation",
     "make_program",
+    "measured_button",
     "measured_files",
     "merge_parts",
     "model_of_recording",
