@@ -10,7 +10,7 @@ NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/board
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test check format bench setup firmware firmware-tools clean
+.PHONY: help demo test check format bench setup firmware firmware-tools web web-check web-tools test-browser clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -33,10 +33,13 @@ check: setup ## Format, lint and type checks
 	$(BIN)/mypy
 
 test: check ## Every check and every test of the default run
-	$(BIN)/pytest -n 2 -m "not slow"
+	$(BIN)/pytest -n 2 -m "not slow and not browser"
 
 test-slow: setup ## The long tests
-	$(BIN)/pytest -n 2 -m slow
+	$(BIN)/pytest -n 2 -m "slow and not browser"
+
+test-browser: setup web-tools ## Drive the studio in a real browser
+	$(BIN)/pytest -n 2 -m browser
 
 format: setup ## Format the code in place
 	$(BIN)/ruff format .
@@ -50,6 +53,16 @@ firmware-tools: ## Install the cross compilers and the emulator of the boards
 
 firmware: firmware-tools ## Build the boards' programs into build/firmware
 	$(MAKE) --no-print-directory -C firmware BUILD="$(CURDIR)/build/firmware"
+
+web-tools: ## Install the browser and the tools that build and test the studio's page
+	bash tools/web_tools.sh
+
+web: web-tools ## Check, test and build the studio's page into src/fdvv/studio/static
+	cd web && npm run --silent check && npm test --silent && npm run --silent build
+
+web-check: web ## The same, and the committed page must be that of the sources
+	git diff --exit-code --stat -- src/fdvv/studio/static
+	test -z "$$(git status --porcelain -- src/fdvv/studio/static)"
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/*.so

@@ -21,6 +21,7 @@ LEVELS = [
     {"capture", "compensate", "preprocess", "program", "twin", "vibration"},
     {"device", "plot"},
     {"workflow"},
+    {"studio"},
     {"cli"},
 ]
 # inside the ground and between rooms of one level, only these arrows

@@ -37,6 +37,7 @@ COMMANDS = {
     "process": ("fdvv.cli._process", "Turn recorded presses into a model, with its spread over presses."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
+    "studio": ("fdvv.cli._studio", "See, edit, press and tune buttons in the browser."),
     "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
     "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }

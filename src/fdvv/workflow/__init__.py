@@ -38,6 +38,7 @@ from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
+from fdvv.workflow._shelf import Shelf
 from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
@@ -90,6 +91,7 @@ __all__ = [
     "RigOnShelf",
     "RigShelf",
     "Session",
+    "Shelf",
     "Standing",
     "Step",
     "SwitchFit",

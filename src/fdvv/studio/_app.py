@@ -1,0 +1,62 @@
+"""The server: the page's files, calls and the live connection, behind one guard."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket
+
+from fdvv.studio import _page
+from fdvv.studio._ask import answer, line
+from fdvv.studio._guard import Door, Guard
+from fdvv.studio._live import LiveConnection
+from fdvv.studio._parts import Parts, load_parts
+from fdvv.studio._studio import Studio
+
+
+def create_app(studio: Studio, door: Door) -> Starlette:
+    """Make the server's application. BuildError if the page is not built.
+
+    Parts are imported while the first page is on its way; a call waits for them.
+    """
+    files = _page.page_files()
+    parts: asyncio.Future[Parts] | None = None
+
+    async def loaded() -> Parts:
+        nonlocal parts
+        if parts is None:
+            parts = asyncio.get_running_loop().run_in_executor(None, load_parts)
+        return await asyncio.shield(parts)
+
+    async def page(request: Request) -> Response:
+        return _page.answer(files, request)
+
+    async def api(request: Request) -> Response:
+        name = request.path_params["name"]
+        call = (await loaded()).calls.get(name)
+        return await answer(studio, call, request) if call else line("there is no such call", 404)
+
+    async def live(socket: WebSocket) -> None:
+        await LiveConnection(studio, (await loaded()).channels, socket).serve()
+
+    @asynccontextmanager
+    async def lifespan(_app: Starlette) -> AsyncIterator[None]:
+        waiting = asyncio.create_task(loaded())
+        yield
+        await asyncio.gather(waiting, return_exceptions=True)
+        studio.close()
+
+    routes = [
+        Route("/", page, methods=["GET"]),
+        Route("/{name}", page, methods=["GET"]),
+        Route("/api/{name}", api, methods=["POST"]),
+        WebSocketRoute("/live", live),
+    ]
+    return Starlette(routes=routes, middleware=[Middleware(Guard, door=door)], lifespan=lifespan)

@@ -1,0 +1,124 @@
+"""The one live connection of a page: envelopes ``{"channel": …, "body": …}`` in both directions."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from functools import reduce
+from operator import or_
+from typing import Any
+
+import msgspec
+from starlette.concurrency import run_in_threadpool
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from fdvv.errors import FdvvError
+from fdvv.studio._ask import told
+from fdvv.studio._contract import Channel, ChannelKind
+from fdvv.studio._studio import Studio
+
+WAITING = 4000
+"""So many messages may wait for a page; one that does not read is cut off and may come again."""
+SLOW, MALFORMED = 4408, 4400
+
+log = logging.getLogger("fdvv.studio")
+
+
+class Envelope(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A message of the page, its body still unread."""
+
+    channel: str
+    body: msgspec.Raw
+
+
+class LiveConnection:
+    """What serves one page."""
+
+    def __init__(self, studio: Studio, kinds: dict[str, ChannelKind], socket: WebSocket) -> None:
+        self._studio, self._kinds, self._socket = studio, kinds, socket
+        self._loop = asyncio.get_running_loop()
+        self._outgoing: asyncio.Queue[bytes] = asyncio.Queue(WAITING)
+        self._incoming: dict[str, asyncio.Queue[Any]] = {}
+        self._workers: list[asyncio.Task[None]] = []
+        self._open: list[Channel] = []
+        self._over = False
+
+    async def serve(self) -> None:
+        """Pass messages until the page goes or does what it may not."""
+        await self._socket.accept()
+        writer = asyncio.create_task(self._write())
+        try:
+            await self._read()
+        except WebSocketDisconnect:
+            pass
+        finally:
+            self._over = True
+            for task in (writer, *self._workers):
+                task.cancel()
+            await asyncio.gather(writer, *self._workers, return_exceptions=True)
+            for channel in self._open:
+                await run_in_threadpool(channel.close)
+
+    async def _read(self) -> None:
+        while True:
+            text = await self._socket.receive_text()
+            try:
+                envelope = msgspec.json.decode(text, type=Envelope)
+                kind = self._kinds.get(envelope.channel)
+                if kind is None:
+                    raise msgspec.ValidationError(f"there is no channel {envelope.channel!r}")
+                ask = msgspec.json.decode(envelope.body, type=reduce(or_, kind.asks))
+            except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+                self._say(b"", error=str(error))
+                await self._outgoing_done()
+                await self._socket.close(MALFORMED, "a message that is none")
+                return
+            await self._queue_of(kind).put(ask)
+
+    async def _outgoing_done(self) -> None:
+        """Give the writer a moment to send what is wrong before the line is cut."""
+        for _ in range(50):
+            if self._outgoing.empty():
+                return
+            await asyncio.sleep(0.01)
+
+    def _queue_of(self, kind: ChannelKind) -> asyncio.Queue[Any]:
+        if kind.name not in self._incoming:
+            self._incoming[kind.name] = asyncio.Queue(WAITING)
+            self._workers.append(asyncio.create_task(self._work(kind, self._incoming[kind.name])))
+        return self._incoming[kind.name]
+
+    async def _work(self, kind: ChannelKind, asks: asyncio.Queue[Any]) -> None:
+        """Open a channel and hand it its messages one after the other."""
+
+        def tell(message: msgspec.Struct) -> None:
+            body = msgspec.json.encode(message)
+            if not self._over:
+                self._loop.call_soon_threadsafe(self._say, body, kind.name)
+
+        channel = await run_in_threadpool(kind.open, self._studio, tell)
+        self._open.append(channel)
+        while True:
+            ask = await asks.get()
+            try:
+                await run_in_threadpool(channel.receive, ask)
+            except FdvvError as error:
+                self._say(b"", kind.name, told(error))
+            except Exception:
+                log.exception("channel %s failed", kind.name)
+                self._say(b"", kind.name, f"{kind.name} failed; the studio's terminal tells why")
+
+    def _say(self, body: bytes, channel: str = "studio", error: str = "") -> None:
+        """Queue a message, or an error, for the page."""
+        told = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
+        whole = told if error else told[:-1] + b',"body":' + body + b"}"
+        try:
+            self._outgoing.put_nowait(whole)
+        except asyncio.QueueFull:
+            # it will connect again and ask for what it missed
+            self._workers.append(asyncio.create_task(self._socket.close(SLOW, "the page does not read")))
+            self._over = True
+
+    async def _write(self) -> None:
+        while True:
+            await self._socket.send_text((await self._outgoing.get()).decode())

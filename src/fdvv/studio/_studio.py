@@ -1,0 +1,53 @@
+"""What the parts of a running studio share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import RLock
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+if TYPE_CHECKING:
+    from fdvv.workflow import Shelf
+
+P = TypeVar("P")
+
+
+class Studio:
+    """One studio: a person's project, the folders beside it, and the service of every part.
+
+    Parameters
+    ----------
+    project : folder of the person's work; made when something is first kept in it.
+    sources : folders of measured switches.
+    """
+
+    def __init__(self, project: Path, sources: tuple[Path, ...] = ()) -> None:
+        self.project, self.sources = project, sources
+        self._parts: dict[type[Any], Any] = {}
+        self._lock = RLock()
+
+    @property
+    def shelf(self) -> Shelf:
+        """Get the buttons there are to choose from."""
+        from fdvv.workflow import Shelf  # here, for the page need not wait for it
+
+        with self._lock:
+            if Shelf not in self._parts:
+                self._parts[Shelf] = Shelf(self.project, self.sources)
+            return cast(Shelf, self._parts[Shelf])
+
+    def part(self, service: type[P]) -> P:
+        """Give the one instance of a part's service, made with this studio when it is first asked for."""
+        with self._lock:
+            if service not in self._parts:
+                self._parts[service] = service(self)  # type: ignore[call-arg]
+            return cast(P, self._parts[service])
+
+    def close(self) -> None:
+        """End every part that has something to end, the youngest first."""
+        with self._lock:
+            parts = list(self._parts.values())[::-1]
+            self._parts.clear()
+        for part in parts:
+            if hasattr(part, "close"):
+                part.close()

@@ -1,0 +1,113 @@
+"""A real studio in a process of its own, and a real Chromium that opens it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if "browser" in item.path.parts:
+            item.add_marker(pytest.mark.browser)
+
+
+class RunningStudio:
+    """``fdvv studio`` as a person starts it."""
+
+    def __init__(self, project: Path, sources: tuple[Path, ...] = ()) -> None:
+        command = [sys.executable, "-m", "fdvv", "studio", *map(str, sources)]
+        self.process = subprocess.Popen(
+            [*command, "--project", str(project), "--port", "0", "--no-browser"],
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().split()[-1]
+        self.base = self.address.partition("/?")[0]
+        self.token = self.address.partition("token=")[2]
+
+    def stop(self) -> None:
+        """End it as Ctrl-C does."""
+        self.process.terminate()
+        self.process.wait(10)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One Chromium for all tests."""
+    if CHROMIUM is None:
+        if os.environ.get("CI"):
+            pytest.fail("CI needs Chromium: run make web-tools")
+        pytest.skip("Chromium is not installed: run make web-tools")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--autoplay-policy=no-user-gesture-required"]
+        )
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def start_studio(tmp_path: Path) -> Iterator[Callable[..., RunningStudio]]:
+    """Give what starts a studio: sources as arguments, project by name, below a fresh folder."""
+    running: list[RunningStudio] = []
+
+    def start(*sources: Path, project: Path | None = None) -> RunningStudio:
+        running.append(RunningStudio(project or tmp_path / "project", sources))
+        return running[-1]
+
+    yield start
+    for studio in running:
+        studio.stop()
+
+
+@pytest.fixture
+def studio(start_studio: Callable[..., RunningStudio]) -> RunningStudio:
+    """A studio with an empty project."""
+    return start_studio()
+
+
+@pytest.fixture
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    """A browser profile of its own; any request that would leave the machine fails the test."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    context.set_default_timeout(15_000)
+    left: list[str] = []
+    context.on("request", lambda request: left.append(request.url) if not _local(request.url) else None)
+    yield context
+    context.close()
+    assert left == []
+
+
+def _local(url: str) -> bool:
+    return url.startswith(("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:http://127.0.0.1:"))
+
+
+@pytest.fixture
+def page(context: BrowserContext, studio: RunningStudio) -> Iterator[Page]:
+    """The studio's first page, ready; what the page throws or complains of fails the test."""
+    page = context.new_page()
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+    page.goto(studio.address)
+    page.wait_for_selector("html[data-ready]")
+    yield page
+    assert wrong == []

@@ -1,0 +1,52 @@
+/** Where the page is, kept in the address: `#/edit/own:my-button?overlay=a,b`. */
+
+import { signal, type Signal } from "../ui/signal";
+
+export interface Route {
+  readonly page: string;
+  /** Of a button, program or job; empty where the page stands for itself. */
+  readonly id: string;
+  readonly query: URLSearchParams;
+}
+
+export function parseRoute(hash: string): Route {
+  const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?", 2);
+  const slash = path.indexOf("/");
+  const page = slash < 0 ? path : path.slice(0, slash);
+  const id = slash < 0 ? "" : decode(path.slice(slash + 1));
+  return { page, id, query: new URLSearchParams(query) };
+}
+
+function decode(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
+/** Write an address as parseRoute reads it. */
+export function address(page: string, id = "", query?: URLSearchParams | Record<string, string>): string {
+  const asked = new URLSearchParams(query).toString();
+  return `#/${page}${id ? `/${encodeURIComponent(id)}` : ""}${asked ? `?${asked}` : ""}`;
+}
+
+/** The route of now. */
+export const route: Signal<Route> = signal<Route>({ page: "", id: "", query: new URLSearchParams() });
+
+export function go(page: string, id = "", query?: URLSearchParams | Record<string, string>): void {
+  location.hash = address(page, id, query);
+}
+
+/** Keep the state of a page's view in the address, without a step in the browser's history. */
+export function keepQuery(query: URLSearchParams | Record<string, string>): void {
+  const { page, id } = route.peek();
+  const next = address(page, id, query);
+  if (next !== location.hash) history.replaceState(null, "", next);
+}
+
+export function followAddress(): void {
+  const read = () => route.set(parseRoute(location.hash));
+  addEventListener("hashchange", read);
+  read();
+}

@@ -1,0 +1,7 @@
+/** Drawing: axes, curves, export. */
+
+export * from "./brush";
+export * from "./file";
+export * from "./palette";
+export * from "./plot";
+export * from "./scale";

@@ -1,0 +1,262 @@
+/** A plot: two axes with units, a still layer and one that moves, zoom, pan and pointers in the plot's units. */
+
+import { effect, onCleanup, signal, type Signal } from "../ui/signal";
+import { h } from "../ui/element";
+import { CanvasBrush, SvgBrush, type Box, type Brush } from "./brush";
+import { drawFrame } from "./frame";
+import { palette } from "./palette";
+import { linear, type DataPoint, type Range, type Scale, type ScreenPoint } from "./scale";
+
+export interface Axis {
+  readonly label: string;
+  readonly unit: string;
+}
+
+/** What a layer needs to know to draw. */
+export interface View {
+  readonly x: Scale;
+  readonly y: Scale;
+  /** The inside of the axes, px. */
+  readonly box: Box;
+  readonly width_px: number;
+  readonly height_px: number;
+}
+
+export type Layer = (brush: Brush, view: View) => void;
+
+export interface PlotOptions {
+  /** Says what the plot shows to those who do not see it. */
+  readonly label: string;
+  readonly x: Axis;
+  readonly y: Axis;
+  /** Everything there is to see; what Fit goes back to. */
+  readonly whole: () => { readonly x: Range; readonly y: Range };
+  /** Drawn when what it reads changes, or the view does. */
+  readonly still?: Layer;
+  /** Drawn above it, on its own: what follows the hand. */
+  readonly moving?: Layer;
+  /** The wheel and two fingers zoom, a drag with the middle button or with Space held pans. */
+  readonly zoom?: boolean;
+  readonly height_px?: number;
+  /** Leave the axes' labels out, for small plots whose neighbours carry them. */
+  readonly small?: boolean;
+}
+
+const MARGIN = { left: 58, right: 14, top: 12, bottom: 44 };
+const SMALL = { left: 38, right: 8, top: 8, bottom: 24 };
+
+export class Plot {
+  readonly element: HTMLElement;
+  /** What is seen; null sees the whole. */
+  readonly window: Signal<{ readonly x: Range; readonly y: Range } | null> = signal(null);
+  private readonly size = signal({ width_px: 0, height_px: 0 });
+  private readonly canvases: readonly [HTMLCanvasElement, HTMLCanvasElement];
+  private readonly asked = [signal(0), signal(0)] as const;
+  private readonly due: [(() => void) | null, (() => void) | null] = [null, null];
+  private frame = 0;
+
+  constructor(readonly options: PlotOptions) {
+    const made = () => h("canvas", { "aria-hidden": "true" });
+    this.canvases = [made(), made()];
+    this.element = h(
+      "div",
+      { class: "plot", role: "img", "aria-label": options.label, tabindex: options.zoom ? 0 : null },
+      this.canvases[0],
+      this.canvases[1],
+    );
+    if (options.height_px) this.element.style.height = `${options.height_px}px`;
+    const observer = new ResizeObserver(() => this.measure());
+    observer.observe(this.element);
+    onCleanup(() => {
+      observer.disconnect();
+      cancelAnimationFrame(this.frame);
+    });
+    this.follow();
+    if (options.zoom) this.listenForZoom();
+  }
+
+  /** Give the view of now. */
+  view(): View {
+    const { width_px, height_px } = this.size();
+    const m = this.options.small ? SMALL : MARGIN;
+    const seen = this.window() ?? this.options.whole();
+    const box = {
+      left: m.left,
+      top: m.top,
+      width: Math.max(1, width_px - m.left - m.right),
+      height: Math.max(1, height_px - m.top - m.bottom),
+    };
+    return {
+      x: linear(seen.x, box.left, box.left + box.width),
+      y: linear(seen.y, box.top + box.height, box.top),
+      box,
+      width_px,
+      height_px,
+    };
+  }
+
+  /** Draw the moving layer with the next frame, although no signal changed. */
+  move(): void {
+    this.asked[1].update((n) => n + 1);
+  }
+
+  /** Where an event is, in the plot's units and on the screen. */
+  at(event: PointerEvent | WheelEvent | MouseEvent): DataPoint & ScreenPoint {
+    const frame = this.element.getBoundingClientRect();
+    const [x_px, y_px] = [event.clientX - frame.left, event.clientY - frame.top];
+    const view = this.view();
+    return { x_px, y_px, x: view.x.value(x_px), y: view.y.value(y_px) };
+  }
+
+  /** See everything. */
+  fit(): void {
+    this.window.set(null);
+  }
+
+  /** Zoom by a factor (below 1: closer) around a place. */
+  zoomBy(factor: number, around?: DataPoint): void {
+    const { x, y } = this.view();
+    const at = around ?? { x: middle(x.range), y: middle(y.range) };
+    this.window.set({ x: scaled(x.range, factor, at.x), y: scaled(y.range, factor, at.y) });
+  }
+
+  /** Move what is seen by parts of its size. */
+  panBy(x_ratio: number, y_ratio: number): void {
+    const { x, y } = this.view();
+    this.window.set({ x: shifted(x.range, x_ratio), y: shifted(y.range, y_ratio) });
+  }
+
+  /** Give the plot as an SVG file. */
+  toSvg(): string {
+    const brush = new SvgBrush();
+    const view = this.view();
+    this.paint(brush, view, 0);
+    this.paint(brush, view, 1);
+    return brush.file(view.width_px, view.height_px, palette().surface);
+  }
+
+  /** Give the plot as a PNG file, at twice the size of the screen. */
+  async toPng(): Promise<Blob> {
+    const view = this.view();
+    const canvas = h("canvas", { width: view.width_px * 2, height: view.height_px * 2 });
+    const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+    context.scale(2, 2);
+    context.fillStyle = palette().surface;
+    context.fillRect(0, 0, view.width_px, view.height_px);
+    const brush = new CanvasBrush(context);
+    this.paint(brush, view, 0);
+    this.paint(brush, view, 1);
+    return new Promise((resolve, reject) =>
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be made"))), "image/png"),
+    );
+  }
+
+  private paint(brush: Brush, view: View, layer: 0 | 1): void {
+    if (layer === 0) drawFrame(brush, view, this.options);
+    const work = layer === 0 ? this.options.still : this.options.moving;
+    if (work) brush.clipped(view.box, () => work(brush, view));
+  }
+
+  /** Each layer is painted in an effect of its own, at most once a frame. */
+  private follow(): void {
+    for (const layer of [0, 1] as const) {
+      effect(
+        () => {
+          this.asked[layer]();
+          this.draw(layer);
+        },
+        (run) => this.request(layer, run),
+      );
+    }
+  }
+
+  private request(layer: 0 | 1, run: () => void): void {
+    this.due[layer] = run;
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      for (const one of [0, 1] as const) {
+        const now = this.due[one];
+        this.due[one] = null;
+        now?.();
+      }
+    });
+  }
+
+  private draw(layer: 0 | 1): void {
+    const view = this.view();
+    if (view.width_px < 2 || view.height_px < 2) return;
+    const canvas = this.canvases[layer];
+    const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+    const ratio = window.devicePixelRatio || 1;
+    const [width, height] = [Math.round(view.width_px * ratio), Math.round(view.height_px * ratio)];
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+    }
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, view.width_px, view.height_px);
+    this.paint(new CanvasBrush(context), view, layer);
+  }
+
+  private measure(): void {
+    const { clientWidth: width_px, clientHeight: height_px } = this.element;
+    const now = this.size.peek();
+    if (now.width_px !== width_px || now.height_px !== height_px) this.size.set({ width_px, height_px });
+  }
+
+  private listenForZoom(): void {
+    this.element.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoomBy(Math.exp(event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), this.at(event));
+      },
+      { passive: false },
+    );
+    this.element.addEventListener("pointerdown", (event) => {
+      if (event.button === 1) this.startPan(event);
+    });
+    this.element.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  private startPan(event: PointerEvent): void {
+    event.preventDefault();
+    const [start, view] = [this.at(event), this.view()];
+    this.element.setPointerCapture(event.pointerId);
+    const move = (now: PointerEvent) => {
+      const to = this.at(now);
+      const x_ratio = (start.x_px - to.x_px) / view.box.width;
+      const y_ratio = (to.y_px - start.y_px) / view.box.height;
+      this.window.set({ x: shifted(view.x.range, x_ratio), y: shifted(view.y.range, y_ratio) });
+    };
+    const end = () => {
+      this.element.removeEventListener("pointermove", move);
+      this.element.removeEventListener("pointerup", end);
+    };
+    this.element.addEventListener("pointermove", move);
+    this.element.addEventListener("pointerup", end);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    if (event.target !== this.element || event.defaultPrevented) return;
+    if (event.key === "+" || event.key === "=") this.zoomBy(0.8);
+    else if (event.key === "-") this.zoomBy(1.25);
+    else if (event.key === "0") this.fit();
+    else return;
+    event.preventDefault();
+  }
+}
+
+function middle(range: Range): number {
+  return (range.low + range.high) / 2;
+}
+
+function scaled(range: Range, factor: number, at: number): Range {
+  return { low: at + (range.low - at) * factor, high: at + (range.high - at) * factor };
+}
+
+function shifted(range: Range, ratio: number): Range {
+  const by = (range.high - range.low) * ratio;
+  return { low: range.low + by, high: range.high + by };
+}

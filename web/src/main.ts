@@ -1,0 +1,14 @@
+/** The studio's page. */
+
+import { mountShell } from "./app/shell";
+import { followAddress } from "./app/route";
+import { followTheme } from "./app/theme";
+import { live } from "./net/live";
+import { listenForShortcuts } from "./ui/keys";
+import "./style.css";
+
+followTheme();
+followAddress();
+listenForShortcuts();
+live().open();
+mountShell(document.body);

@@ -1,0 +1,5 @@
+/** The studio's server. */
+
+export * from "./call";
+export * from "./live";
+export type * from "./messages";

@@ -1,0 +1,95 @@
+/** The one live connection: channels over it, opened again when it is lost. */
+
+import { signal, type Signal } from "../ui/signal";
+import type { Channels } from "./messages";
+
+export type LiveState = "opening" | "open" | "lost";
+
+export interface Listener<K extends keyof Channels> {
+  readonly told: (message: Channels[K]["tells"]) => void;
+  /** One line that the server says of this channel. */
+  readonly wrong?: (line: string) => void;
+  /** The connection is there, for the first time or again: ask for what is wanted now. */
+  readonly opened?: () => void;
+  readonly lost?: () => void;
+}
+
+export interface LiveChannel<K extends keyof Channels> {
+  /** Send; false if there is no connection, and then nothing was sent. */
+  send(ask: Channels[K]["asks"]): boolean;
+  close(): void;
+}
+
+interface Envelope {
+  readonly channel: string;
+  readonly body?: unknown;
+  readonly error?: string;
+}
+
+const AGAIN_ms = [200, 500, 1000, 2000, 5000] as const;
+
+export class Live {
+  readonly state: Signal<LiveState> = signal<LiveState>("opening");
+  private socket: WebSocket | null = null;
+  private tries = 0;
+  private readonly listeners = new Map<string, Set<Listener<never>>>();
+
+  constructor(private readonly address: string) {}
+
+  /** Begin; called once by the shell. */
+  open(): void {
+    const socket = new WebSocket(this.address);
+    this.socket = socket;
+    socket.onopen = () => {
+      this.tries = 0;
+      this.state.set("open");
+      this.each((listener) => listener.opened?.());
+    };
+    socket.onmessage = (event) => this.take(JSON.parse(event.data as string) as Envelope);
+    socket.onclose = () => this.again();
+  }
+
+  /** Listen to a channel until it is closed. */
+  channel<K extends keyof Channels>(name: K, listener: Listener<K>): LiveChannel<K> {
+    const set = this.listeners.get(name) ?? new Set();
+    this.listeners.set(name, set);
+    set.add(listener as Listener<never>);
+    if (this.state.peek() === "open") listener.opened?.();
+    return {
+      send: (ask) => this.send(name, ask),
+      close: () => set.delete(listener as Listener<never>),
+    };
+  }
+
+  private send(channel: string, body: unknown): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify({ channel, body }));
+    return true;
+  }
+
+  private take(envelope: Envelope): void {
+    for (const listener of [...(this.listeners.get(envelope.channel) ?? [])]) {
+      if (envelope.error !== undefined) listener.wrong?.(envelope.error);
+      else (listener.told as (message: unknown) => void)(envelope.body);
+    }
+  }
+
+  private again(): void {
+    const wait = AGAIN_ms[Math.min(this.tries++, AGAIN_ms.length - 1)] as number;
+    if (this.state.peek() !== "lost") this.each((listener) => listener.lost?.());
+    this.state.set("lost");
+    setTimeout(() => this.open(), wait);
+  }
+
+  private each(work: (listener: Listener<never>) => void): void {
+    for (const set of this.listeners.values()) for (const listener of [...set]) work(listener);
+  }
+}
+
+let page: Live | null = null;
+
+/** Give the page's one connection. */
+export function live(): Live {
+  page ??= new Live(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+  return page;
+}

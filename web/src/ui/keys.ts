@@ -1,0 +1,53 @@
+/** Shortcuts of a page, all in one list so that a help sheet can show them. */
+
+import { signal, onCleanup } from "./signal";
+
+export interface Shortcut {
+  /** As it is written for people: "Ctrl+Z", "Shift+ArrowUp", "/", "Space". Ctrl means Cmd on a Mac. */
+  readonly keys: string;
+  readonly does: string;
+  readonly act: (event: KeyboardEvent) => void;
+  /** Works while text is being typed too. */
+  readonly always?: boolean;
+}
+
+/** All shortcuts that work now. */
+export const shortcuts = signal<readonly Shortcut[]>([]);
+
+/** Add shortcuts for as long as the scope in which this is called lasts. */
+export function addShortcuts(...added: Shortcut[]): void {
+  shortcuts.update((list) => [...list, ...added]);
+  onCleanup(() => shortcuts.update((list) => list.filter((one) => !added.includes(one))));
+}
+
+/** Write what was pressed as shortcuts are written. */
+export function pressedKeys(event: KeyboardEvent): string {
+  const key = event.key === " " ? "Space" : event.key.length === 1 ? event.key.toUpperCase() : event.key;
+  const letter = /^[A-Z0-9]$/.test(key) || key.length > 1;
+  return [
+    event.ctrlKey || event.metaKey ? "Ctrl" : "",
+    event.altKey ? "Alt" : "",
+    event.shiftKey && letter ? "Shift" : "",
+    key,
+  ]
+    .filter(Boolean)
+    .join("+");
+}
+
+function typing(target: EventTarget | null): boolean {
+  return target instanceof HTMLElement && target.matches("input:not([type=checkbox]):not([type=range]), select, textarea, [contenteditable]");
+}
+
+/** Listen for shortcuts; called once by the shell. The last one added wins. */
+export function listenForShortcuts(): void {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented) return;
+    const pressed = pressedKeys(event);
+    const found = shortcuts.peek().findLast((one) => one.keys === pressed && (one.always || !typing(event.target)));
+    // a focused control keeps the keys that work it
+    const own = event.target instanceof HTMLElement && event.target.matches("button, a, [role=tab], summary") && (pressed === "Space" || pressed === "Enter");
+    if (!found || own) return;
+    event.preventDefault();
+    found.act(event);
+  });
+}

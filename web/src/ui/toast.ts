@@ -1,0 +1,29 @@
+/** Short notices at the edge of the page, read out by screen readers; errors stay until they are closed. */
+
+import { h } from "./element";
+
+export type ToastKind = "told" | "done" | "wrong";
+
+const SHOWN_ms = 5000;
+
+function place(): HTMLElement {
+  return (
+    document.getElementById("toasts") ??
+    document.body.appendChild(h("div", { id: "toasts", role: "status", "aria-live": "polite" }))
+  );
+}
+
+/** Tell something; the function given back takes it away. */
+export function toast(text: string, kind: ToastKind = "told"): () => void {
+  const remove = () => note.remove();
+  const close = h("button", { type: "button", class: "button quiet glyph", "aria-label": "Close notice", on: { click: remove } }, "×");
+  const note = h("div", { class: `toast ${kind}`, role: kind === "wrong" ? "alert" : null }, h("span", {}, text), close);
+  place().append(note);
+  if (kind !== "wrong") setTimeout(remove, SHOWN_ms);
+  return remove;
+}
+
+/** Tell what went wrong, whatever was thrown. */
+export function tell(error: unknown): void {
+  toast(error instanceof Error ? error.message : String(error), "wrong");
+}
