@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from fdvv.units import FloatArray
 from fdvv.workflow._feasibility import CurveFeasibility, feasibility
 from fdvv.workflow._rig_shelf import RigOnShelf
 
+Limit = Literal["force", "slew"]
 UNTOLD_mm_s = 50.0
 """The speed that a curve of unknown velocity is judged at."""
 POINTS = 201
@@ -25,7 +27,7 @@ class LimitedRange:
 
     start_mm: float
     end_mm: float
-    limit: str
+    limit: Limit
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ def _told(curve: CurveFeasibility) -> AchievableCurve:
     )
 
 
-def _ranges(x: FloatArray, rows: npt.NDArray[np.bool_], limit: str) -> list[LimitedRange]:
+def _ranges(x: FloatArray, rows: npt.NDArray[np.bool_], limit: Limit) -> list[LimitedRange]:
     """Give the ranges of x, (n,), over which rows, (n,), hold."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(np.int8)))
     return [LimitedRange(float(x[a]), float(x[b - 1]), limit) for a, b in edges.reshape(-1, 2)]
