@@ -73,7 +73,7 @@ function tapped(state: Extract<CurveToolState, { mode: "pointing" }>, event: Poi
   const { tap, start, grip } = state;
   const doubled =
     tap !== null && start.time_ms - tap.time_ms <= DOUBLE.time_ms && distance_px(tap, start) <= DOUBLE.way_px;
-  if (doubled && (grip.kind === "empty" || grip.kind === "curve"))
+  if (doubled && grip.kind !== "point" && grip.kind !== "handle")
     return { state: IDLE, acts: [{ kind: "add", at: start }] };
   const acts = actsOfTap(grip, start.shift, scene);
   return { state: { mode: "idle", tap: { x_px: event.x_px, y_px: event.y_px, time_ms: event.time_ms } }, acts };
@@ -86,6 +86,7 @@ function actsOfTap(grip: Grip, shift: boolean, scene: Scene): Act[] {
     case "curve":
       return [{ kind: "activate", curve: grip.index }];
     case "empty":
+    case "line":
       return shift ? [] : [{ kind: "select", points: [] }];
     case "handle":
       return [];

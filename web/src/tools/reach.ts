@@ -16,6 +16,8 @@ export interface HandlePlace extends Place {
 export interface Scene {
   readonly points: readonly PointPlace[];
   readonly handles: readonly HandlePlace[];
+  /** How far the active curve is from a place. */
+  readonly away_px: (at: Place) => number;
   /** The curve nearest to a place other than the active one, and how far it is; null if there is none. */
   readonly nearestCurve: (at: Place) => { readonly index: number; readonly away_px: number } | null;
   /** The control points that are selected. */
@@ -38,13 +40,14 @@ function nearest<T extends Place>(things: readonly T[], at: Place, reach_px: num
   return found;
 }
 
-/** What lies under a pointer: a point before a handle before a curve. */
+/** What lies under a pointer: a point before a handle, the active curve before another one. */
 export function gripAt(scene: Scene, at: Place, device: PointerRecord["device"]): Grip {
   const reach_px = REACH_px[device];
   const point = nearest(scene.points, at, reach_px);
   if (point) return { kind: "point", index: point.index };
   const handle = nearest(scene.handles, at, reach_px);
   if (handle) return { kind: "handle", name: handle.name };
+  if (scene.away_px(at) <= 0.7 * reach_px) return { kind: "line" };
   const curve = scene.nearestCurve(at);
   if (curve && curve.away_px <= reach_px) return { kind: "curve", index: curve.index };
   return { kind: "empty" };

@@ -30,10 +30,11 @@ export interface KeyRecord {
   readonly ctrl: boolean;
 }
 
-/** What lies under a pointer. */
+/** What lies under a pointer; `line` is the active curve between its points. */
 export type Grip =
   | { readonly kind: "point"; readonly index: number }
   | { readonly kind: "handle"; readonly name: string }
+  | { readonly kind: "line" }
   | { readonly kind: "curve"; readonly index: number }
   | { readonly kind: "empty" };
 

@@ -61,6 +61,12 @@ describe("a drag", () => {
     expect(kinds).toEqual(["select", "begin", "shift", "shift", "commit"]);
   });
 
+  it("of the active curve between its points pulls there", () => {
+    const { acts } = run([pointer("down", 75, 243), pointer("move", 75, 260), pointer("up", 75, 260)], [1]);
+    expect(acts[0]).toEqual({ kind: "begin", grip: { kind: "line" } });
+    expect(acts.map((a) => a.kind)).toEqual(["begin", "shift", "shift", "commit"]);
+  });
+
   it("of a handle works like one of a point", () => {
     const { acts } = run([pointer("down", 121, 3), pointer("move", 140, 3), pointer("up", 140, 3)]);
     const grip = { kind: "handle", name: "actuation" };
@@ -95,6 +101,7 @@ describe("a click", () => {
       pointer("up", x_px, y_px, { time_ms: time_ms + 50 }),
     ];
     expect(run([...click(75, 0), ...click(77, 200)]).acts.at(-1)).toMatchObject({ kind: "add", at: { x_px: 77 } });
+    expect(run([...click(75, 0, 240), ...click(77, 200, 240)]).kinds.at(-1)).toBe("add");
     expect(run([...click(75, 0), ...click(77, 600)]).kinds).not.toContain("add");
     expect(run([...click(75, 0), ...click(95, 200)]).kinds).not.toContain("add");
     expect(run([...click(50, 0, 60), ...click(50, 200, 60)]).kinds).not.toContain("add");

@@ -13,7 +13,8 @@ export const POINTS = [
 
 export function scene(selection: readonly number[] = []): Scene {
   const nearestCurve = (at: Place) => ({ index: 7, away_px: Math.abs(at.y_px - 200) });
-  return { points: POINTS, handles: [{ name: "actuation", x_px: 120, y_px: 0 }], nearestCurve, selection };
+  const away_px = (at: Place) => Math.abs(at.y_px - 240);
+  return { away_px, points: POINTS, handles: [{ name: "actuation", x_px: 120, y_px: 0 }], nearestCurve, selection };
 }
 
 export function pointer(kind: PointerRecord["kind"], x_px: number, y_px: number, more: Partial<PointerRecord> = {}) {
