@@ -18,6 +18,8 @@ interface Tap extends Place {
 
 interface Hold {
   readonly start: PointerRecord;
+  /** Where the pointer was last. */
+  readonly last: PointerRecord;
   readonly grip: Grip;
   /** The selection when the pointer went down. */
   readonly before: readonly number[];
@@ -62,7 +64,7 @@ function pointed(tap: Tap | null, event: PointerRecord, scene: Scene): Told {
   if (event.button === 2) return still({ mode: "idle", tap: null });
   const pans = event.button === 1 || event.held;
   const grip: Grip = pans ? { kind: "empty" } : gripAt(scene, event, event.device);
-  const hold = { start: event, grip, before: scene.selection };
+  const hold = { start: event, last: event, grip, before: scene.selection };
   if (pans) return still({ mode: "panning", ...hold });
   const state: CurveToolState = { mode: "pointing", tap, ...hold };
   if (grip.kind !== "point" || event.shift || scene.selection.includes(grip.index)) return still(state);
@@ -96,7 +98,7 @@ function actsOfTap(grip: Grip, shift: boolean, scene: Scene): Act[] {
 function begun(state: Extract<CurveToolState, { mode: "pointing" }>, event: PointerRecord, scene: Scene): Told {
   const { start, grip, before } = state;
   if (distance_px(start, event) <= TREMBLE_px[start.device]) return still(state);
-  const hold: Hold = { start, grip, before };
+  const hold: Hold = { start, last: event, grip, before };
   if (grip.kind === "empty" || grip.kind === "curve") {
     const mode = start.device === "touch" ? "panning" : "boxing";
     return moved({ mode, ...hold }, event, scene);
@@ -111,7 +113,8 @@ function begun(state: Extract<CurveToolState, { mode: "pointing" }>, event: Poin
 
 type Moving = Extract<CurveToolState, { mode: "dragging" | "boxing" | "panning" }>;
 
-function moved(state: Moving, event: PointerRecord, scene: Scene): Told {
+function moved(was: Moving, event: PointerRecord, scene: Scene): Told {
+  const state = { ...was, last: event };
   const way = wayBetween(state.start, event);
   if (state.mode === "dragging") return { state, acts: [{ kind: "shift", grip: state.grip, way }] };
   if (state.mode === "panning") return { state, acts: [{ kind: "pan", way }] };
@@ -130,7 +133,7 @@ function letGo(state: Moving, event: PointerRecord, scene: Scene): Told {
 /** A second finger makes a pinch of whatever the first one does; a second mouse button changes nothing. */
 function second(state: Extract<CurveToolState, Hold>, event: PointerRecord): Told {
   if (event.device !== "touch" || event.pointerId === state.start.pointerId) return still(state);
-  const from = [state.start, event] as const;
+  const from = [state.last, event] as const;
   return { state: { mode: "pinching", from, now: from }, acts: cancelled(state).acts };
 }
 

@@ -160,6 +160,16 @@ describe("two fingers", () => {
     });
   });
 
+  it("pinch from where the first one is, however far it has come", () => {
+    const { acts } = run([
+      pointer("down", 40, 140, first),
+      pointer("move", 60, 140, first),
+      pointer("down", 80, 140, second),
+      pointer("move", 100, 140, second),
+    ]);
+    expect(acts.at(-1)).toMatchObject({ kind: "pinch", ratio: 2, around: { x_px: 70 } });
+  });
+
   it("take a drag back that the first one had begun", () => {
     const { kinds } = run([
       pointer("down", 50, 60, first),

@@ -1,20 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { walked } from "../../src/tools/grid";
-import { held, snapped, typed } from "../../src/tools/snap";
-
-describe("snapping", () => {
-  it("gives the nearest multiple, with the digits of the step", () => {
-    expect(snapped(0.34, 0.1)).toBe(0.3);
-    expect(snapped(-0.36, 0.05)).toBe(-0.35);
-    expect(snapped(62.6, 5)).toBe(65);
-    for (let i = -50; i <= 50; i++) expect(snapped(snapped(i * 0.137, 0.1), 0.1)).toBe(snapped(i * 0.137, 0.1));
-  });
-
-  it("leaves a value alone where there is no step, and holds one within bounds", () => {
-    expect(snapped(0.123, 0)).toBe(0.123);
-    expect([held(-1, 0, 4), held(2, 0, 4), held(9, 0, 4)]).toEqual([0, 2, 4]);
-  });
-});
+import { typed } from "../../src/tools/typed";
 
 describe("a typed number", () => {
   it("may have a comma, a sign and an exponent", () => {

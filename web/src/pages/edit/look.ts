@@ -1,6 +1,6 @@
 /** How curves look: a colour for each velocity, dashes for the release, and a short name beside the line. */
 
-import { palette, type Stroke as Line, series } from "../../draw";
+import { type Stroke as Line, series } from "../../draw";
 import type { CurveRef, FDVVModel } from "../../model";
 
 const RELEASE_DASH = [6, 4] as const;
@@ -12,8 +12,8 @@ export function velocitiesOf(model: FDVVModel): (number | null)[] {
 }
 
 /** The line of a curve: its velocity's colour, dashed for a release. */
-export function lineOf(model: FDVVModel, at: CurveRef): Line & { readonly dash: readonly number[] } {
-  const { colour } = series(Math.max(0, velocitiesOf(model).indexOf(at.velocity_mm_s)));
+export function lineOf(velocities: readonly (number | null)[], at: CurveRef): Line {
+  const { colour } = series(Math.max(0, velocities.indexOf(at.velocity_mm_s)));
   return { colour, dash: at.stroke === "release" ? RELEASE_DASH : [] };
 }
 
@@ -40,8 +40,3 @@ export function keyOf(at: CurveRef): string {
 
 /** The opacity of what is not being edited. */
 export const DIMMED = 0.5;
-
-/** The halo that keeps text readable on curves. */
-export function halo(): string {
-  return palette().surface;
-}

@@ -1,29 +1,13 @@
-/** A vibration as numbers over time: wave, envelope, sound. */
+/** A vibration as numbers over time: envelope and sound. */
 
-import type { ModeLike } from "../../math/types";
+import { acceleration_m_s2, type ModeLike, type VibrationLike } from "../../math";
 
-const TURN = 2 * Math.PI;
 /** Amplitude of the loudest sample of a sound, below clipping. */
 const LOUD = 0.8;
 /** The last part of a sound fades, so that it ends without a click. */
 const FADE_s = 0.002;
 
 type Modes = readonly ModeLike[];
-
-/** Acceleration of the cap, m/s², at times after the onset; zero before it and after the duration. */
-export function wave_m_s2(modes: Modes, duration_s: number, t_s: ArrayLike<number>): Float64Array {
-  const out = new Float64Array(t_s.length);
-  for (let i = 0; i < out.length; i++) {
-    const t = t_s[i] as number;
-    if (t < 0 || t > duration_s) continue;
-    let sum = 0;
-    for (const mode of modes)
-      sum +=
-        mode.amplitude_m_s2 * Math.exp(-mode.decay_1_s * t) * Math.sin(TURN * mode.frequency_Hz * t + mode.phase_rad);
-    out[i] = sum;
-  }
-  return out;
-}
 
 /** Envelope of one mode, m/s²: never negative. */
 export function envelope_m_s2(mode: ModeLike, t_s: ArrayLike<number>): Float64Array {
@@ -52,9 +36,10 @@ export function timeAt_s(mode: ModeLike, level: number, duration_s: number): num
 }
 
 /** Samples of the vibration as sound, the loudest at 0.8, the end faded; empty if it is silent. */
-export function sound(modes: Modes, duration_s: number, rate_Hz: number): Float32Array<ArrayBuffer> {
+export function sound(vibration: VibrationLike, rate_Hz: number): Float32Array<ArrayBuffer> {
+  const { duration_s } = vibration;
   const count = Math.ceil(duration_s * rate_Hz) + 1;
-  const wave = wave_m_s2(modes, duration_s, Float64Array.from({ length: count }, (_, i) => i / rate_Hz));
+  const wave = acceleration_m_s2(vibration, Float64Array.from({ length: count }, (_, i) => i / rate_Hz));
   const loudest = wave.reduce((most, a) => Math.max(most, Math.abs(a)), 0);
   if (loudest === 0) return new Float32Array(0);
   const fade = Math.min(FADE_s, 0.5 * duration_s) * rate_Hz;
