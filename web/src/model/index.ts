@@ -54,3 +54,12 @@ export {
   setModes,
   setOnset,
 } from "./vibrations";
+export {
+  type Answer,
+  type Change,
+  type DocumentServer,
+  DocumentStore,
+  type OpenedDocument,
+  type SaveState,
+  type Surroundings,
+} from "./store";
