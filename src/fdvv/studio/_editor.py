@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import cast
 
-from fdvv.model import model_from_json
+import msgspec
+
+from fdvv.model import model_from_json, model_to_json
 from fdvv.studio._contract import Call, ChannelKind
 from fdvv.studio._messages_editor import (
     Achievable,
     AchievableAsk,
     AchievableForce,
+    ButtonAsk,
+    ButtonTold,
     LimitedPart,
     Measured,
     MeasuredAsk,
@@ -47,6 +51,11 @@ def achievable(studio: Studio, ask: AchievableAsk) -> Achievable:
     rig = studio.part(RigService).shelf.rig(ask.rig_id)
     model = model_from_json(bytes(ask.model), "the button")
     return Achievable([_curve(c) for c in make_achievable(model, rig, ask.velocities_mm_s)])
+
+
+def button(studio: Studio, ask: ButtonAsk) -> ButtonTold:
+    """Give the model of any button that the shelf knows."""
+    return ButtonTold(msgspec.Raw(model_to_json(studio.shelf.model(ask.button_id)).encode()))
 
 
 def measured(studio: Studio, ask: MeasuredAsk) -> Measured:
@@ -90,6 +99,7 @@ def _rounded(column: FloatArray) -> list[float]:
 CALLS = (
     Call("editor.rigs", RigsAsk, Rigs, rigs),
     Call("editor.achievable", AchievableAsk, Achievable, achievable),
+    Call("editor.button", ButtonAsk, ButtonTold, button),
     Call("editor.measured", MeasuredAsk, Measured, measured),
 )
 CHANNELS: tuple[ChannelKind, ...] = ()

@@ -68,6 +68,18 @@ class Achievable(Struct, frozen=True, forbid_unknown_fields=True):
     curves: list[AchievableForce]
 
 
+class ButtonAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for the model of any button, to take curves from."""
+
+    button_id: str
+
+
+class ButtonTold(Struct, frozen=True, forbid_unknown_fields=True):
+    """A model as in a ``*.fdvv.json`` file; a measured button is fitted for it."""
+
+    model: msgspec.Raw
+
+
 class MeasuredAsk(Struct, frozen=True, forbid_unknown_fields=True):
     """Ask for what presses of a button gave; name as in its id."""
 

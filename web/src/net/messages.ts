@@ -2,6 +2,7 @@
 
 export interface Calls {
   readonly "editor.achievable": { readonly ask: AchievableAsk; readonly answer: Achievable };
+  readonly "editor.button": { readonly ask: ButtonAsk; readonly answer: ButtonTold };
   readonly "editor.measured": { readonly ask: MeasuredAsk; readonly answer: Measured };
   readonly "editor.rigs": { readonly ask: RigsAsk; readonly answer: Rigs };
   readonly "studio.about": { readonly ask: AboutAsk; readonly answer: About };
@@ -36,6 +37,14 @@ export interface LimitedPart {
   readonly start_mm: number;
   readonly end_mm: number;
   readonly limit: "force" | "slew";
+}
+
+export interface ButtonAsk {
+  readonly button_id: string;
+}
+
+export interface ButtonTold {
+  readonly model: unknown;
 }
 
 export interface MeasuredAsk {

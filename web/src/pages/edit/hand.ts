@@ -2,14 +2,16 @@
 
 import type { DataPoint, View } from "../../draw";
 import { controlPoints_mm, snap } from "../../math";
-import { addPoint, movePoints } from "../../model";
+import { movePoints } from "../../model";
 import { cancelled, type CurveToolState, IDLE, pointerStep } from "../../tools/curve_tool";
 import type { Scene } from "../../tools/reach";
 import type { Act, Grip, Place, PointerRecord, Way } from "../../tools/records";
 import { batch, onCleanup } from "../../ui";
 import type { EditorCanvas } from "./canvas";
 import { type Desk, refOf } from "./desk";
+import { pointerRecord } from "./events";
 import { handlesOnCanvas, heldPlace, placeHandles, pullEdit } from "./handles";
+import { addAt } from "./point_edits";
 import { away_px, inPixels, sampled } from "./samples";
 import { timed } from "./timing";
 
@@ -87,11 +89,9 @@ export class Hand {
   }
 
   private record(event: PointerEvent, at: Place): PointerRecord {
-    const kind = ({ pointerdown: "down", pointermove: "move", pointerup: "up" } as const)[event.type as "pointerup"] ?? "cancel";
-    const device = event.pointerType === "touch" || event.pointerType === "pen" ? event.pointerType : "mouse";
-    const { pointerId, button, shiftKey: shift, timeStamp: time_ms } = event;
+    const record = pointerRecord(event, at, this.space);
     // the plot pans with the middle button: to the tool it is one that does nothing
-    return { kind, pointerId, device, button: button === 1 ? 2 : button, shift, held: this.space, time_ms, x_px: at.x_px, y_px: at.y_px };
+    return record.button === 1 ? { ...record, button: 2 } : record;
   }
 
   private scene(): Scene {
@@ -202,15 +202,4 @@ export class Hand {
     };
     plot.window.set({ x: moved(x, act.way.dx_px, around.x), y: moved(y, act.way.dy_px, around.y) });
   }
-}
-
-/** Add a control point to the active curve and select it; the shape stays. */
-export function addAt(desk: Desk, x_mm: number): void {
-  if (!desk.apply(addPoint(refOf(desk.curve()), x_mm))) return;
-  const places = controlPoints_mm(desk.curve());
-  let nearest = 0;
-  places.forEach((at, i) => {
-    if (Math.abs(at - x_mm) < Math.abs(places[nearest]! - x_mm)) nearest = i;
-  });
-  desk.selection.set([nearest]);
 }

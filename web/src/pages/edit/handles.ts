@@ -36,10 +36,10 @@ export function placeHandles(model: FDVVModel, active: CurveRef): PlaceHandle[] 
 }
 
 /** Where a dragged handle may stand. */
-export function heldPlace(model: FDVVModel, name: PlaceHandle["name"], at_mm: number): number {
+export function heldPlace(model: FDVVModel, name: PlaceHandle["name"], at_mm: number, raster_mm = RASTER_mm): number {
   const most = name === "travel" ? 20 : model.travel_mm;
   const least = name === "travel" ? Math.max(0.1, model.actuation_mm ?? 0, model.reset_mm ?? 0) : 0;
-  return snap(Math.min(most, Math.max(least, at_mm)), RASTER_mm);
+  return snap(Math.min(most, Math.max(least, at_mm)), raster_mm);
 }
 
 /** Peak and valley of a curve, as handles that are dragged up and down. */
@@ -96,7 +96,7 @@ export function paintPlaces(brush: Brush, view: View, model: FDVVModel, active: 
   });
 }
 
-/** Peak and valley with their numbers. */
+/** Peak, valley and the force at the end of the travel, with their numbers. */
 export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_mm: number): void {
   const { text, surface, accent } = palette();
   for (const { name, x_mm, force_cN } of bumpHandles(curve, travel_mm)) {
@@ -108,4 +108,7 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     const at = { x_px: x, y_px: y + up * 30 };
     brush.text(`${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`, at, { colour: text, size_px: 11, align: "center", halo: surface });
   }
+  const end = forceNear_cN(sampled(curve), travel_mm);
+  const at = { x_px: view.x.px(travel_mm) - 12, y_px: view.y.px(end) + 24 };
+  brush.text(`bottom-out ${end.toFixed(1)} cN`, at, { colour: text, size_px: 11, align: "right", halo: surface });
 }
