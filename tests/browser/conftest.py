@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -22,29 +21,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in item.path.parts:
             item.add_marker(pytest.mark.browser)
-
-
-class RunningStudio:
-    """``fdvv studio`` as a person starts it."""
-
-    def __init__(self, project: Path, sources: tuple[Path, ...] = ()) -> None:
-        command = [sys.executable, "-m", "fdvv", "studio", *map(str, sources)]
-        self.process = subprocess.Popen(
-            [*command, "--project", str(project), "--port", "0", "--no-browser"],
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        assert self.process.stdout is not None
-        self.address = self.process.stdout.readline().split()[-1]
-        self.base = self.address.partition("/?")[0]
-        self.token = self.address.partition("token=")[2]
-
-    def stop(self) -> None:
-        """End it as Ctrl-C does."""
-        self.process.terminate()
-        self.process.wait(10)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
 
 
 @pytest.fixture(scope="session")

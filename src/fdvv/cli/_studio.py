@@ -49,6 +49,7 @@ def studio(
             _show(address)
 
     serve(Studio(project, folders), host, port, ready)
+    click.echo("the studio is closed; everything is kept", err=True)
 
 
 def _check_host(host: str, share: bool) -> None:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from contextlib import suppress
 from functools import reduce
 from operator import or_
+from threading import Lock
 from typing import Any
 
 import msgspec
 from starlette.concurrency import run_in_threadpool
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
 from fdvv.studio._ask import told
-from fdvv.studio._contract import Channel, ChannelKind
+from fdvv.studio._contract import Channel, ChannelKind, Tell
 from fdvv.studio._studio import Studio
 
 WAITING = 4000
@@ -42,6 +44,7 @@ class LiveConnection:
         self._workers: list[asyncio.Task[None]] = []
         self._open: list[Channel] = []
         self._over = False
+        self._lock = Lock()
 
     async def serve(self) -> None:
         """Pass messages until the page goes or does what it may not."""
@@ -49,20 +52,19 @@ class LiveConnection:
         writer = asyncio.create_task(self._write())
         try:
             await self._read()
-        except WebSocketDisconnect:
-            pass
         finally:
-            self._over = True
+            # without waiting: whoever cancels this connection cancels every wait in it too
             for task in (writer, *self._workers):
                 task.cancel()
-            await asyncio.gather(writer, *self._workers, return_exceptions=True)
-            for channel in self._open:
-                await run_in_threadpool(channel.close)
+            self._loop.run_in_executor(None, self._close)
 
     async def _read(self) -> None:
         while True:
-            text = await self._socket.receive_text()
+            message = await self._socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
             try:
+                text = message.get("text") or message.get("bytes") or b""
                 envelope = msgspec.json.decode(text, type=Envelope)
                 kind = self._kinds.get(envelope.channel)
                 if kind is None:
@@ -93,11 +95,11 @@ class LiveConnection:
 
         def tell(message: msgspec.Struct) -> None:
             body = msgspec.json.encode(message)
-            if not self._over:
+            # the page, and the whole server, may go while a part still tells
+            with suppress(RuntimeError):
                 self._loop.call_soon_threadsafe(self._say, body, kind.name)
 
-        channel = await run_in_threadpool(kind.open, self._studio, tell)
-        self._open.append(channel)
+        channel = await run_in_threadpool(self._opened, kind, tell)
         while True:
             ask = await asks.get()
             try:
@@ -108,8 +110,28 @@ class LiveConnection:
                 log.exception("channel %s failed", kind.name)
                 self._say(b"", kind.name, f"{kind.name} failed; the studio's terminal tells why")
 
+    def _opened(self, kind: ChannelKind, tell: Tell) -> Channel:
+        """Open a channel; if the page has gone meanwhile it is closed again."""
+        channel = kind.open(self._studio, tell)
+        with self._lock:
+            gone = self._over
+            if not gone:
+                self._open.append(channel)
+        if gone:
+            channel.close()
+        return channel
+
+    def _close(self) -> None:
+        with self._lock:
+            self._over = True
+            channels, self._open = self._open, []
+        for channel in channels:
+            channel.close()
+
     def _say(self, body: bytes, channel: str = "studio", error: str = "") -> None:
         """Queue a message, or an error, for the page."""
+        if self._over:
+            return
         told = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
         whole = told if error else told[:-1] + b',"body":' + body + b"}"
         try:

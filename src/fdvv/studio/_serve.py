@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 
 from fdvv.errors import InputError
 from fdvv.studio._app import create_app
@@ -61,4 +62,6 @@ def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None]) ->
             await super().startup(sockets)
             ready(f"http://{shown}:{port}/?token={door.token}")
 
-    Server(config).run(sockets=[taken])
+    # uvicorn ends in order and then raises Ctrl-C once more; here that is how a studio ends
+    with suppress(KeyboardInterrupt):
+        Server(config).run(sockets=[taken])

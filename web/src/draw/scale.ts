@@ -71,6 +71,6 @@ export function rangeOf(columns: Iterable<ArrayLike<number>>, air_ratio = 0.05):
     }
   }
   if (!(low <= high)) return null;
-  const air = (high - low) * air_ratio || Math.abs(high) * air_ratio || 1;
+  const air = (high - low || Math.abs(high) || 1) * air_ratio;
   return { low: low - air, high: high + air };
 }

@@ -20,6 +20,7 @@ export interface Signal<T> {
 let watching: Watcher | null = null;
 let cleanups: Cleanup[] | null = null;
 let depth = 0;
+let flushing = false;
 const waiting = new Set<Watcher>();
 
 function follow(watchers: Set<Watcher>): void {
@@ -28,12 +29,27 @@ function follow(watchers: Set<Watcher>): void {
   watching.sources.add(watchers);
 }
 
+/** Run who waits; what they change waits for the next round, so that nothing runs inside itself. */
 function flush(): void {
-  for (let rounds = 0; waiting.size && depth === 0; rounds++) {
-    if (rounds > 100) throw new Error("signals change each other without end");
+  if (flushing || depth > 0) return;
+  flushing = true;
+  const thrown: unknown[] = [];
+  for (let rounds = 0; waiting.size; rounds++) {
     const now = [...waiting];
     waiting.clear();
-    for (const watcher of now) watcher.run();
+    if (rounds > 100) thrown.push(new Error("signals change each other without end"));
+    else for (const watcher of now) attempt(watcher, thrown);
+  }
+  flushing = false;
+  if (thrown.length) throw thrown[0];
+}
+
+/** One that fails must not keep the others from what changed. */
+function attempt(watcher: Watcher, thrown: unknown[]): void {
+  try {
+    watcher.run();
+  } catch (error) {
+    thrown.push(error);
   }
 }
 

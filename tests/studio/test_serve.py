@@ -1,0 +1,69 @@
+"""The studio as a process: it opens, ends, and says in one line why it cannot."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx2
+import pytest
+from tests.studio.running import RunningStudio
+
+
+@pytest.mark.parametrize(
+    ("how", "status", "words"),
+    [
+        (signal.SIGINT, 0, ["Ctrl-C ends it", "the studio is closed; everything is kept"]),
+        (signal.SIGTERM, -signal.SIGTERM, ["Ctrl-C ends it"]),
+    ],
+)
+def test_it_opens_and_ends_quietly(tmp_path: Path, how: int, status: int, words: list[str]) -> None:
+    studio = RunningStudio(tmp_path / "project")
+    with httpx2.Client(base_url=studio.base, follow_redirects=True) as person:
+        answer = person.get("/", params={"token": studio.token})
+        assert answer.status_code == 200
+        assert "fdvv studio" in answer.text
+    said = studio.stop(how)
+    assert studio.process.returncode == status
+    assert said.splitlines() == words
+
+
+def test_it_makes_no_project_before_something_is_kept(tmp_path: Path) -> None:
+    RunningStudio(tmp_path / "project").stop()
+    assert not (tmp_path / "project").exists()
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "fdvv", "studio", "--no-browser", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=30)
+
+
+def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        ended = run("--port", port, "--project", str(tmp_path / "p"))
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+    assert port in ended.stderr
+    assert "another --port" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--host", "0.0.0.0"], "--share"),
+        (["--host", "example"], "is no address"),
+        (["nowhere"], "nowhere"),
+        (["--port", "70000"], "65535"),
+    ],
+)
+def test_what_it_cannot_do_is_told_in_one_line(arguments: list[str], word: str) -> None:
+    ended = run(*arguments)
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+    assert word in ended.stderr

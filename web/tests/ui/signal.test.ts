@@ -1,0 +1,124 @@
+import { describe, expect, it } from "vitest";
+import { batch, computed, effect, onCleanup, scope, signal, untracked } from "../../src/ui/signal";
+
+describe("signals", () => {
+  it("run an effect again when what it read changes, and only then", () => {
+    const [a, b] = [signal(1), signal(10)];
+    const seen: number[] = [];
+    effect(() => {
+      seen.push(a());
+    });
+    b.set(11);
+    a.set(2);
+    a.set(2);
+    expect(seen).toEqual([1, 2]);
+  });
+
+  it("forget what an effect no longer reads", () => {
+    const [which, a, b] = [signal(true), signal(1), signal(2)];
+    let runs = 0;
+    effect(() => {
+      runs++;
+      which() ? a() : b();
+    });
+    which.set(false);
+    a.set(5);
+    expect(runs).toBe(2);
+    b.set(6);
+    expect(runs).toBe(3);
+  });
+
+  it("run once for changes that are made together", () => {
+    const [a, b] = [signal(1), signal(2)];
+    const seen: number[] = [];
+    effect(() => {
+      seen.push(a() + b());
+    });
+    batch(() => {
+      a.set(10);
+      b.set(20);
+    });
+    expect(seen).toEqual([3, 30]);
+  });
+
+  it("follow computed values", () => {
+    const a = signal(2);
+    const square = computed(() => a() ** 2);
+    const seen: number[] = [];
+    effect(() => {
+      seen.push(square());
+    });
+    a.set(-2);
+    a.set(3);
+    expect(seen).toEqual([4, 9]);
+  });
+
+  it("end with their scope, the last cleanup first", () => {
+    const a = signal(1);
+    const said: string[] = [];
+    const end = scope(() => {
+      onCleanup(() => said.push("first"));
+      effect(() => {
+        said.push(`run ${a()}`);
+        onCleanup(() => said.push("undone"));
+      });
+    });
+    a.set(2);
+    end();
+    a.set(3);
+    expect(said).toEqual(["run 1", "undone", "run 2", "undone", "first"]);
+  });
+
+  it("do not follow what is read untracked or peeked at", () => {
+    const a = signal(1);
+    let runs = 0;
+    effect(() => {
+      runs++;
+      untracked(() => a());
+      a.peek();
+    });
+    a.set(2);
+    expect(runs).toBe(1);
+  });
+
+  it("let a run wait, and drop it when the effect has ended", () => {
+    const a = signal(1);
+    const due: (() => void)[] = [];
+    const seen: number[] = [];
+    const stop = effect(
+      () => {
+        seen.push(a());
+      },
+      (run) => due.push(run),
+    );
+    a.set(2);
+    expect(seen).toEqual([1]);
+    due.shift()?.();
+    expect(seen).toEqual([1, 2]);
+    a.set(3);
+    stop();
+    due.shift()?.();
+    expect(seen).toEqual([1, 2]);
+  });
+
+  it("reach everyone who follows, although one of them fails", () => {
+    const a = signal(0);
+    let seen = 0;
+    effect(() => {
+      if (a() === 1) throw new Error("one fails");
+    });
+    effect(() => {
+      seen = a();
+    });
+    expect(() => a.set(1)).toThrow("one fails");
+    expect(seen).toBe(1);
+    a.set(2);
+    expect(seen).toBe(2);
+  });
+
+  it("refuse to change each other without end", () => {
+    const [a, b] = [signal(0), signal(0)];
+    effect(() => b.set(a() + 1));
+    expect(() => effect(() => a.set(b() + 1))).toThrow("without end");
+  });
+});
