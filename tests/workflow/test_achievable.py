@@ -63,19 +63,21 @@ def test_an_unknown_rig_is_refused_with_those_there_are(project: Path, rig_id: s
         RigShelf(project).rig(rig_id)
 
 
-def test_the_curves_told_are_those_of_the_feasibility_report(light: RigOnShelf) -> None:
+@pytest.mark.parametrize("speed_mm_s", [0.5, 50.0, 200.0])
+def test_the_curves_told_are_those_of_the_feasibility_report(light: RigOnShelf, speed_mm_s: float) -> None:
     model = load_builtin("mx-clear")
-    told = achievable(model, light, [100.0])
-    full = feasibility(model, light.known, light.settings, [100.0], info=light.info).curves
+    told = achievable(model, light, [speed_mm_s])
+    full = feasibility(model, light.known, light.settings, [speed_mm_s], info=light.info).curves
     assert [c.stroke for c in told] == list(Stroke)
     for curve, of in zip(told, full, strict=True):
         reached = of.reached
-        np.testing.assert_allclose(curve.achievable_cN[::5], reached.achievable_cN[::10], atol=1e-9)
+        # in fewer steps of time, a tenth of a centinewton is nothing on a screen
+        np.testing.assert_allclose(curve.achievable_cN[::5], reached.achievable_cN[::10], atol=0.1)
         np.testing.assert_allclose(
-            curve.intended_cN, model.force_cN(curve.displacement_mm, 100.0, curve.stroke), atol=0.05
+            curve.intended_cN, model.force_cN(curve.displacement_mm, speed_mm_s, curve.stroke), atol=0.05
         )
         assert (curve.verdict, curve.reasons) == (str(of.verdict.following), of.verdict.reasons)
-        assert curve.expected_mean_cN == of.expected.mean_cN
+        assert curve.expected_mean_cN == pytest.approx(of.expected.mean_cN, abs=0.05)
 
 
 def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: RigOnShelf) -> None:

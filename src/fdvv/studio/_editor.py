@@ -48,8 +48,8 @@ def rigs(studio: Studio, _ask: RigsAsk) -> Rigs:
 
 def achievable(studio: Studio, ask: AchievableAsk) -> Achievable:
     """Tell what a rig makes of both strokes of a model at the speeds asked for."""
-    rig = studio.part(RigService).shelf.rig(ask.rig_id)
     model = model_from_json(bytes(ask.model), "the button")
+    rig = studio.part(RigService).shelf.rig(ask.rig_id)
     return Achievable([_curve(c) for c in make_achievable(model, rig, ask.velocities_mm_s)])
 
 

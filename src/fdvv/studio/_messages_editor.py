@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
 StrokeName = Literal["press", "release"]
 
 
@@ -36,7 +37,7 @@ class AchievableAsk(Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     model: msgspec.Raw
-    velocities_mm_s: Annotated[list[Annotated[float, Meta(gt=0)] | None], Meta(min_length=1, max_length=24)]
+    velocities_mm_s: Annotated[list[Velocity | None], Meta(min_length=1, max_length=24)]
     rig_id: str
 
 

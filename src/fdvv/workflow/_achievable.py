@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.compensate import Motion, minimum_jerk
 from fdvv.model import FDVVModel, Stroke
 from fdvv.units import FloatArray
 from fdvv.workflow._feasibility import CurveFeasibility, feasibility
@@ -19,6 +20,8 @@ UNTOLD_mm_s = 50.0
 """The speed that a curve of unknown velocity is judged at."""
 POINTS = 201
 """Places that are told of a curve: 0.02 mm on a button of 4 mm."""
+STEPS, STEPS_A_TICK = 2500, 8
+"""Most steps of time of a stroke; a report takes eight a tick, which at a bench's pace follows no hand."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +65,15 @@ def achievable(
     Raises InputError on speeds that cannot be, ModelError on a model without a press curve.
     """
     speeds = list(dict.fromkeys(UNTOLD_mm_s if v is None else float(v) for v in velocities_mm_s))
-    report = feasibility(model, rig.known, rig.settings, speeds, info=rig.info)
+    motions = {(stroke, v): _motion(stroke, model, rig, v) for stroke in Stroke for v in speeds}
+    report = feasibility(model, rig.known, rig.settings, speeds, info=rig.info, motions=motions)
     return tuple(_told(curve) for curve in report.curves)
+
+
+def _motion(stroke: Stroke, model: FDVVModel, rig: RigOnShelf, velocity_mm_s: float) -> Motion:
+    """Plan a stroke as a report does, in fewer steps where it is slow."""
+    coarse_s = STEPS_A_TICK * model.travel_mm / velocity_mm_s / STEPS
+    return minimum_jerk(stroke, model.travel_mm, velocity_mm_s, max(1e-6 * rig.settings.tick_us, coarse_s))
 
 
 def _told(curve: CurveFeasibility) -> AchievableCurve:

@@ -4,7 +4,7 @@ import type { Page } from "../app/page";
 import { h, onCleanup, scope, tell } from "../ui";
 import { chooseButton } from "./edit/choose";
 import { Desk } from "./edit/desk";
-import { openButton } from "./edit/opening";
+import { followButton, openButton } from "./edit/opening";
 import { workbench } from "./edit/workbench";
 import "./edit/edit.css";
 
@@ -22,9 +22,12 @@ export const page: Page = {
       leave();
     });
     openButton(id).then(
-      (store) => {
-        if (left) return store.close();
-        leave = scope(() => host.replaceChildren(workbench(new Desk(store), id)));
+      (opened) => {
+        if (left) return opened.store.close();
+        leave = scope(() => {
+          followButton(opened);
+          host.replaceChildren(workbench(new Desk(opened.store), opened.button));
+        });
       },
       (error) => {
         if (!left) host.replaceChildren(chooseButton());

@@ -1,1 +1,1 @@
-import{a as e,c as t}from"./ui.js";var n={title:`Press`,mount(n){n.append(t(`h1`,{},`Press`),e(`Not there yet`,`This page is being built.`))}};export{n as page};
+import{m as e,o as t}from"./ui.js";var n={title:`Press`,mount(n){n.append(e(`h1`,{},`Press`),t(`Not there yet`,`This page is being built.`))}};export{n as page};

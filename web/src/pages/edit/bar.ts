@@ -5,27 +5,21 @@ import { button, h, toggle, toolbar } from "../../ui";
 import type { Desk } from "./desk";
 import { exportMenu } from "./exports";
 import { pin } from "./history_panel";
-
-const SAID = {
-  saved: "saved",
-  saving: "saving…",
-  lost: "not saved yet: no connection",
-  conflict: "another tab edited it too",
-  refused: "not saved",
-  gone: "no longer there",
-} as const;
+import { buttonMenu } from "./menu";
+import { savedWord, savingStrip } from "./saving";
 
 /** The bar. */
-export function bar(desk: Desk, plot: Plot, id: string): HTMLElement {
+export function bar(desk: Desk, plot: Plot, id: () => string): HTMLElement {
   const { store } = desk;
   const told = (what: string, label: string | null) => (label === null ? what : `${what}: ${label}`);
   return h(
     "div",
     { class: "edit-bar" },
     h("h1", {}, () => desk.settled().name),
-    h("span", { class: "tag" }, id.slice(0, id.indexOf(":"))),
+    h("span", { class: "tag" }, () => kindOf(id())),
     () => (desk.settled().provenance.simulated ? h("span", { class: "tag simulated" }, "simulated") : null),
-    h("span", { class: "edit-saved", role: "status" }, () => SAID[desk.saved()]),
+    savedWord(desk),
+    savingStrip(desk),
     h("span", { class: "grow" }),
     toolbar(
       "Edit",
@@ -44,7 +38,14 @@ export function bar(desk: Desk, plot: Plot, id: string): HTMLElement {
       button({ label: "Zoom in", glyph: "+", act: () => plot.zoomBy(0.8) }),
       button({ label: "Zoom out", glyph: "−", act: () => plot.zoomBy(1.25) }),
       button({ label: "Fit", act: () => plot.fit(), hint: "See everything (F)" }),
+      buttonMenu(desk, id),
       exportMenu(desk, plot),
     ),
   );
+}
+
+/** Where a button comes from, in words. */
+function kindOf(id: string): string {
+  const kind = id.slice(0, id.indexOf(":"));
+  return kind === "own" ? "own" : `${kind}; a change makes a copy of your own`;
 }

@@ -45,7 +45,7 @@ export function editorCanvas(desk: Desk, rig: RigView): EditorCanvas {
   });
   plot.element.classList.add("edit-plot");
   plot.element.setAttribute("role", "application");
-  const element = h("div", { class: "edit-canvas" }, plot.element, readout(desk, rig, hand));
+  const element = h("div", { class: "edit-canvas" }, readout(desk, rig, hand), h("div", { class: "edit-stage" }, plot.element));
   return { ...hand, plot, element };
 }
 

@@ -1,8 +1,7 @@
 /** What lies on the editor's desk: the button that is edited, and what of it is looked at. */
 
 import { type Constraints, type Landmarks, landmarks, ModelError } from "../../math";
-import { type CurveRef, curveAt, type Edit, type FDVVModel, type ForceCurve, isAt } from "../../model";
-import type { DocumentStore, SaveState } from "../../model/store";
+import { type CurveRef, curveAt, type DocumentStore, type Edit, type FDVVModel, type ForceCurve, isAt, type SaveState } from "../../model";
 import { batch, computed, onCleanup, type Signal, signal, tell } from "../../ui";
 import { within } from "../../tools/selection";
 import { velocitiesOf } from "./look";
@@ -93,6 +92,12 @@ export class Desk {
   step(by: number): void {
     if (by < 0) this.store.undo(-by);
     else this.store.redo(by);
+    this.follow();
+  }
+
+  /** In a conflict: go on with what the other tab made. */
+  takeTheirs(): void {
+    this.store.takeTheirs();
     this.follow();
   }
 

@@ -3,8 +3,9 @@
 import { csv, download, type Plot } from "../../draw";
 import { force_cN, places_mm } from "../../math";
 import type { FDVVModel } from "../../model";
-import { button, h, tell } from "../../ui";
+import { button, tell } from "../../ui";
 import type { Desk } from "./desk";
+import { dropDown } from "./menu";
 
 /** A menu that opens under its name. */
 export function exportMenu(desk: Desk, plot: Plot): HTMLElement {
@@ -16,16 +17,7 @@ export function exportMenu(desk: Desk, plot: Plot): HTMLElement {
     button({ label: "View, PNG", kind: "quiet", act: () => void picture() }),
     button({ label: "View, SVG", kind: "quiet", act: () => download(`${name()}.svg`, plot.toSvg(), "image/svg+xml") }),
   ];
-  const menu = h("details", { class: "edit-menu" }, h("summary", { class: "button" }, "Export"), h("div", { class: "edit-menu-items" }, items));
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    menu.open = false;
-    menu.querySelector("summary")!.focus();
-  });
-  menu.addEventListener("focusout", (event) => {
-    if (!menu.contains(event.relatedTarget as Node | null)) menu.open = false;
-  });
-  return menu;
+  return dropDown("Export", items);
 }
 
 /** A model as the text of its file. */

@@ -26,8 +26,8 @@ export function paintName(brush: Brush, view: View, curve: ForceCurve, velocitie
   const { colour } = lineOf(velocities, curve);
   const { low, high } = view.x.range;
   const rank = velocities.indexOf(curve.velocity_mm_s) + (curve.stroke === "press" ? 0 : 0.5);
-  const x_mm = low + (high - low) * (0.34 + (0.5 * (rank + 0.5)) / Math.max(2, velocities.length));
-  const at = { x_px: view.x.px(x_mm), y_px: view.y.px(forceNear_cN(sampled(curve), x_mm)) - (active ? 14 : 8) };
+  const x_mm = low + (high - low) * (active ? 0.72 : 0.34 + (0.5 * (rank + 0.5)) / Math.max(2, velocities.length));
+  const at = { x_px: view.x.px(x_mm), y_px: view.y.px(forceNear_cN(sampled(curve), x_mm)) + (active ? 16 : -8) };
   const style = { colour, size_px: active ? 12 : 11, weight: active ? 700 : 400, align: "center", halo: palette().surface } as const;
   brush.text(shortName(curve), at, style);
 }

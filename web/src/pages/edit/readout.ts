@@ -4,22 +4,21 @@ import { h } from "../../ui";
 import type { HandShown } from "./canvas";
 import type { Desk } from "./desk";
 import type { RigView } from "./rigs";
+import { wordsOf } from "./look";
 import { forceNear_cN, sampled } from "./samples";
-
-const blank = " ";
 
 /** Numbers under the pointer; why a move goes no further, where it does not. */
 export function readout(desk: Desk, rig: RigView, hand: HandShown): HTMLElement {
   const pointer = () => {
     const at = hand.hover();
-    if (!at) return blank;
+    if (!at) return wordsOf(desk.active());
     const force = forceNear_cN(sampled(desk.curve()), at.x);
     return `${at.x.toFixed(3)} mm · ${at.y.toFixed(1)} cN · curve ${force.toFixed(2)} cN`;
   };
   return h(
     "div",
     { class: "edit-readout" },
-    h("span", { "aria-hidden": "true" }, pointer),
+    h("span", { class: "edit-pointer", "aria-hidden": "true" }, pointer),
     h("span", { class: "wrong", role: "status" }, () => desk.refusal()),
     legend(desk, rig),
   );

@@ -30,7 +30,7 @@ export interface RigView {
 const CHOSEN = "fdvv-edit-rig";
 
 /** Ask for the rigs, and for what the chosen one makes of every change of the active curve. */
-export function lookAtRigs(desk: Desk, name: string): RigView {
+export function lookAtRigs(desk: Desk, id: () => string): RigView {
   const view: RigView = {
     rigs: signal<readonly RigChoice[]>([]),
     rig_id: signal(localStorage.getItem(CHOSEN) ?? "shipped:default"),
@@ -40,7 +40,10 @@ export function lookAtRigs(desk: Desk, name: string): RigView {
     waiting: signal(false),
   };
   call("editor.rigs", {}).then(({ rigs }) => view.rigs.set(rigs), tell);
-  call("editor.measured", { name }).then(({ found }) => view.measured.set(found), tell);
+  effect(() => {
+    const name = id().slice(id().indexOf(":") + 1);
+    call("editor.measured", { name }).then(({ found }) => view.measured.set(found), tell);
+  });
   const latest = new Latest(asked, ({ curves }) => answered(view, curves, ""), (error) => answered(view, [], lineOf(error)));
   onCleanup(() => latest.close());
   effect(() => {

@@ -1,6 +1,6 @@
 /** The parts of the editor, side by side: curves, canvas, numbers. */
 
-import { type Cleanup, effect, h, onCleanup, scope, signal, tabs, tell, untracked } from "../../ui";
+import { type Cleanup, effect, h, scope, signal, tabs, tell, untracked } from "../../ui";
 import { assignPanels } from "./assign_panel";
 import { bar } from "./bar";
 import { editorCanvas } from "./canvas";
@@ -35,13 +35,12 @@ const PARTS: Readonly<Record<Tab, Part>> = {
 };
 
 /** The whole editor for one button. */
-export function workbench(desk: Desk, id: string): HTMLElement {
-  onCleanup(() => desk.store.close());
-  const rig = lookAtRigs(desk, id.slice(id.indexOf(":") + 1));
+export function workbench(desk: Desk, id: () => string): HTMLElement {
+  const rig = lookAtRigs(desk, id);
   const canvas = editorCanvas(desk, rig);
   const hand = new Hand(desk, canvas);
   listenForKeys(desk, canvas, hand);
-  canvas.element.append(...placeSliders(desk, canvas));
+  canvas.plot.element.after(...placeSliders(desk, canvas));
   return h(
     "div",
     { class: "edit" },
