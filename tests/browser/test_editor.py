@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from fdvv.model import FDVVModel, ForceCurve, load_builtin, load_model
-from tests.browser.conftest import RunningStudio
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
@@ -73,7 +73,7 @@ def drag(page: Page, start: tuple[float, float], by: tuple[float, float]) -> Non
 
 
 def saved(page: Page) -> None:
-    page.wait_for_function("document.querySelector('.edit-saved').textContent === 'saved'")
+    expect(page.locator(".edit-saved")).to_have_text("saved")
 
 
 def own_model(project: Path) -> FDVVModel:
@@ -202,38 +202,59 @@ def test_what_the_rig_makes_of_it_follows_the_hand_and_says_where_it_cannot(edit
     editor.keyboard.press("Control+a")
     for _ in range(45):
         editor.keyboard.press("Shift+ArrowUp")
-    editor.wait_for_function("document.querySelector('.edit-follows').textContent === 'cannot'")
-    assert "mm" in editor.locator(".edit-reason").first.inner_text()
+    expect(editor.locator(".edit-follows")).to_have_text("cannot")
+    expect(editor.locator(".edit-verdict")).to_contain_text("the limit is 440")
     for _ in range(45):
         editor.keyboard.press("Control+z")
-    editor.wait_for_function("document.querySelector('.edit-follows').textContent === 'can follow'")
+    expect(editor.locator(".edit-follows")).to_have_text("can follow")
 
 
-def test_two_tabs_see_each_other_and_a_conflict_is_put_to_the_person(
-    editor: Page, context: BrowserContext, studio: RunningStudio
-) -> None:
-    def nudge(page: Page) -> None:
-        page.keyboard.press("c")
-        page.keyboard.press("Home")
-        page.keyboard.press("ArrowUp")
+def nudge(page: Page) -> None:
+    page.keyboard.press("c")
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowUp")
 
+
+def cut(page: Page) -> None:
+    """Let no change reach the studio."""
+    page.route("**/api/document.change", lambda route: route.abort())
+
+
+def test_two_tabs_follow_each_other(editor: Page, context: BrowserContext) -> None:
     nudge(editor)
     saved(editor)
     other = context.new_page()
-    other.goto(studio.base + "/" + editor.url.partition("/")[2].partition("/")[2].partition("/")[2])
+    other.goto(editor.url)
     other.wait_for_selector(".edit-points")
-    first = force_cN(editor, 0)
-    assert force_cN(other, 0) == first
+    at = force_cN(editor, 0)
+    assert force_cN(other, 0) == at
     nudge(other)
-    saved(other)
-    editor.wait_for_function(
-        f"document.querySelector('.edit-points tbody td:nth-child(3)').textContent !== '{cell(editor, 0)}'"
+    expect(editor.locator(".edit-points tbody tr").first.locator("td").nth(FORCE)).to_have_text(
+        cell(other, 0)
     )
-    context.set_offline(True)
+    assert force_cN(editor, 0) == at + 1
+
+
+def test_a_conflict_of_two_tabs_is_put_to_the_person(editor: Page, context: BrowserContext) -> None:
     nudge(editor)
-    editor.wait_for_selector(".edit-saved.lost")
-    context.set_offline(False)
     saved(editor)
+    other = context.new_page()
+    other.goto(editor.url)
+    other.wait_for_selector(".edit-points")
+    cut(other)
+    nudge(other)
+    expect(other.locator(".edit-saved")).to_have_text("not saved yet, trying again")
+    mine = force_cN(other, 0)
+    nudge(editor)
+    nudge(editor)
+    saved(editor)
+    other.unroute("**/api/document.change")
+    expect(other.locator(".edit-conflict")).to_contain_text("another tab edited this button")
+    assert force_cN(other, 0) == mine
+    other.click("text=Keep mine as a copy")
+    expect(other.locator("h1")).to_contain_text("mine")
+    assert force_cN(other, 0) == mine
+    assert force_cN(editor, 0) == mine + 1
 
 
 def test_a_curve_is_copied_to_another_speed_and_assigned_by_parts(editor: Page, tmp_path: Path) -> None:
@@ -242,7 +263,7 @@ def test_a_curve_is_copied_to_another_speed_and_assigned_by_parts(editor: Page, 
     assert editor.locator(".edit-curves tbody tr").count() == 6
     editor.click("role=tab[name=Assign]")
     editor.get_by_label("Curve", exact=True).select_option("press@200")
-    editor.get_by_label("Stroke").select_option("press")
+    editor.get_by_label("Stroke", exact=True).select_option("press")
     editor.get_by_label("Only a part of the travel").check()
     editor.click("text=Assign the part")
     saved(editor)
@@ -261,12 +282,14 @@ def test_a_vibration_is_shaped_by_number_and_the_surface_is_drawn(editor: Page, 
     editor.click("role=tab[name=Surface]")
     canvas = editor.locator(".edit-surface")
     canvas.wait_for()
-    picture = "c => { const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0; for (const v of d) n = (n * 31 + v) % 1e9; return n; }"
-    editor.wait_for_function("document.querySelector('.edit-surface').width > 300")
-    before = canvas.evaluate(picture)
+    before = canvas.screenshot()
     canvas.focus()
     editor.keyboard.press("ArrowRight")
-    editor.wait_for_function(f"({picture})(document.querySelector('.edit-surface')) !== {before}")
+    editor.keyboard.press("ArrowUp")
+    for _ in range(50):
+        if canvas.screenshot() != before:
+            break
+    assert canvas.screenshot() != before
 
 
 def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path: Path) -> None:

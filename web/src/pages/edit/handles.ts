@@ -109,6 +109,6 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     brush.text(`${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`, at, { colour: text, size_px: 11, align: "center", halo: surface });
   }
   const end = forceNear_cN(sampled(curve), travel_mm);
-  const at = { x_px: view.x.px(travel_mm) - 12, y_px: view.y.px(end) + 44 };
+  const at = { x_px: view.x.px(travel_mm) - 12, y_px: view.y.px(end) - 14 };
   brush.text(`bottom-out ${end.toFixed(1)} cN`, at, { colour: text, size_px: 11, align: "right", halo: surface });
 }

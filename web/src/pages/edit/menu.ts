@@ -14,6 +14,10 @@ export function dropDown(label: string, items: readonly Child[]): HTMLElement {
     menu.open = false;
     name.focus();
   });
+  // what was chosen is done: the menu need not stay in the way
+  menu.addEventListener("click", (event) => {
+    if (event.target instanceof HTMLButtonElement) menu.open = false;
+  });
   menu.addEventListener("focusout", (event) => {
     if (!menu.contains(event.relatedTarget as Node | null)) menu.open = false;
   });

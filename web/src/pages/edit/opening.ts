@@ -4,7 +4,7 @@ import { documents, follow } from "../../app/documents";
 import { address } from "../../app/route";
 import { type DocumentServer, DocumentStore } from "../../model";
 import { call } from "../../net";
-import { computed, type Signal, signal } from "../../ui";
+import { onCleanup, type Signal, signal } from "../../ui";
 
 const OWN = "own:";
 
@@ -23,7 +23,7 @@ export async function openButton(id: string): Promise<Opened> {
 
 /** Keep an open button up to date for as long as the scope lasts. */
 export function followButton({ store, button }: Opened): void {
-  follow(store, computed(() => button()));
+  onCleanup(follow(store, () => button.peek()));
 }
 
 /** A server that copies the button before its first change, and from then on means the copy. */
