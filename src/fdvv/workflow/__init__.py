@@ -39,6 +39,7 @@ from fdvv.workflow._draft_patch import (
     model_of,
     record_of,
 )
+from fdvv.workflow._draft_template import Template, new_model
 from fdvv.workflow._drafts import DraftFile, Drafts
 from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
@@ -134,6 +135,7 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "Template",
     "TuneResult",
     "TuneSetup",
     "TunedVibration",
@@ -174,6 +176,7 @@ __all__ = [
     "merge_parts",
     "model_of",
     "model_of_recording",
+    "new_model",
     "one_curve",
     "open_device",
     "open_files",

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 import msgspec
 from msgspec import Meta
 
-from fdvv.errors import ModelError
+from fdvv.errors import InputError, ModelError
 from fdvv.model import FDVVModel, Stroke, model_from_json, model_to_json
 
 Record: TypeAlias = dict[str, Any]
@@ -76,7 +76,11 @@ def record_of(model: FDVVModel) -> Record:
 
 def model_of(record: Record, source: object) -> FDVVModel:
     """Give a record's model. Raises InputError that names source and the place."""
-    return model_from_json(json.dumps(record), source)
+    try:
+        text = json.dumps(record, allow_nan=False)
+    except (RecursionError, ValueError) as error:
+        raise InputError(source, "$", f"not JSON ({error})", "send a model") from error
+    return model_from_json(text, source)
 
 
 def canonical(record: Record) -> Record:
@@ -187,7 +191,7 @@ def _changed(parts: Sequence[Record], change: CurveChange | VibrationChange) -> 
     if isinstance(change, CurveChange) and change.points is not None:
         return [*rest, {**(there or place), "control_points_cN": _moved(there, change)}]
     _expect(_shape(there), change.before, _label(change))
-    return [*rest, {**place, **change.after}] if change.after is not None else rest
+    return [*rest, {**change.after, **place}] if change.after is not None else rest
 
 
 def _moved(curve: Record | None, change: CurveChange) -> list[float]:
