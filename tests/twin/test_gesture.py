@@ -21,7 +21,7 @@ from fdvv.twin import (
     solve_pace,
     vary,
 )
-from fdvv.twin._noise import _effort
+from fdvv.twin._noise import Effort
 
 
 def test_a_person_without_variation_presses_as_planned() -> None:
@@ -80,7 +80,7 @@ def test_the_mean_speed_runs_from_a_tenth_of_a_millimetre_to_the_stop() -> None:
 
 def test_muscle_noise_has_its_spread_and_its_bandwidth() -> None:
     habit = replace(Finger().habit, tremor_ratio=0.0, effort_noise_ratio=0.04)
-    noise = _effort(habit, 200_000, 1e-3, np.random.default_rng(0))
+    noise = Effort(habit, 1e-3).draw(200_000, np.random.default_rng(0))
     assert noise.std() == pytest.approx(0.04, rel=0.05)
     lag = float(np.corrcoef(noise[:-1], noise[1:])[0, 1])
     assert lag == pytest.approx(np.exp(-2 * np.pi * 12 * 1e-3), abs=0.01)

@@ -18,8 +18,8 @@ from fdvv.twin._kernel import (
     Grid,
     GridCounts,
     Model,
+    NoiseArrays,
     Plant,
-    _Noise,
     _Plan,
     doors,
 )
@@ -43,14 +43,14 @@ def test_every_structure_has_the_fields_of_the_header_in_order() -> None:
     assert fields_in_header("fdvv_gesture") == list(GestureTimes.NAMES)
     plan = [field[0] for field in _Plan._fields_][1:]
     assert fields_in_header("fdvv_twin_press_plan") == [*GestureTimes.NAMES, *plan]
-    assert fields_in_header("fdvv_twin_noise") == [field[0] for field in _Noise._fields_]
+    assert fields_in_header("fdvv_twin_noise") == [field[0] for field in NoiseArrays._fields_]
 
 
 def test_every_structure_has_the_size_the_compiler_gave_it() -> None:
     sizes = [ctypes.c_int64() for _ in range(6)]
     doors().fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes[:3]))
     doors().fdvv_twin_sizes(*(ctypes.byref(size) for size in sizes[3:]))
-    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, _Noise)] + [OUTPUTS.itemsize]
+    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, NoiseArrays)] + [OUTPUTS.itemsize]
     assert [size.value for size in sizes[:2] + sizes[3:]] == ours
 
 

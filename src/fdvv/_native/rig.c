@@ -245,10 +245,25 @@ void fdvv_rig_press(fdvv_rig *r, const fdvv_gesture *gesture, double stiffness_N
     r->finger.finger_stiffness_N_m = stiffness_N_m, r->finger.finger_damping_N_s_m = damping_N_s_m;
     r->servo_next_s += ago_s - r->time_s, r->vibration_s += ago_s - r->time_s, r->sample_s += ago_s - r->time_s;
     r->time_s = ago_s;
+    r->led = FDVV_RIG_LED_NOT;
     r->fresh = 0;
     if (!first) return;
     r->y[XF] = r->y[XT] = gesture->start_m < 0.0 ? gesture->start_m : 0.0;
     r->energy_J = stored(r, r->y);
+}
+
+/* A place and a push change into each other by the force they make at the finger's place. */
+void fdvv_rig_lead(fdvv_rig *r, int how, double goal, double goal_1_s, double near_1_s) {
+    double x = r->y[XF], v = r->y[VF], k = r->finger.finger_stiffness_N_m, b = r->finger.finger_damping_N_s_m;
+    double q, q_1_s;
+    if (r->led == FDVV_RIG_LED_NOT) referent(&r->gesture, r->time_s, &q, &q_1_s);
+    else led(r, r->time_s, &q, &q_1_s);
+    if (how == FDVV_RIG_LED_PUSH && r->led != FDVV_RIG_LED_PUSH)
+        q = k * (q - x) + b * q_1_s, q_1_s = k * (q_1_s - v);
+    if (how == FDVV_RIG_LED_PLACE && r->led == FDVV_RIG_LED_PUSH) q = x + q / k, q_1_s = 0.0;
+    r->led = (uint8_t)how, r->led_s = r->time_s;
+    r->goal = goal, r->goal_1_s = goal_1_s, r->near_1_s = near_1_s;
+    r->gap = q - goal, r->gap_1_s = q_1_s - goal_1_s;
 }
 
 void fdvv_rig_look(fdvv_rig *r, fdvv_inputs *inputs) {

@@ -100,6 +100,9 @@ enum {
 /* states of the equations; the exciter's last but the audit's */
 enum { XF, VF, H1, H2, XT, VT, XC, VC, AMPS, LVDT, SENSED, XM, VM, WORK, LOSS, FDVV_RIG_STATES };
 
+/* what draws the finger */
+enum { FDVV_RIG_LED_NOT, FDVV_RIG_LED_PLACE, FDVV_RIG_LED_PUSH };
+
 typedef struct {
     fdvv_rig_model model;
     fdvv_rig_grid grid;
@@ -111,6 +114,8 @@ typedef struct {
     double slip_m, slip_at_m;      /* stretch of the friction's bristle, and the cap's place at that moment */
     double effort, effort_per_s, tick_s;
     double time_s;                 /* of the gesture's clock */
+    double goal, goal_1_s;         /* a finger that is led: the line it nears, m or N, from led_s on */
+    double gap, gap_1_s, near_1_s, led_s; /* how far from it the finger is drawn then, and how fast it nears */
     double stop_m, servo_m, servo_heard_m, servo_next_s;
     double warm_K;
     double magnet_1_ohm, magnet_A, magnet_goal_A, magnet_keep, magnet_mean, magnet_slope, amplifier_V, amplifier_keep;
@@ -119,7 +124,7 @@ typedef struct {
     fdvv_synth_bank bank;
     fdvv_synth_voice voice;
     uint16_t count;                /* of the vibration's converter */
-    uint8_t waiting, slot, enable;
+    uint8_t waiting, slot, enable, led; /* led: FDVV_RIG_LED_… */
     int fresh;
 } fdvv_rig;
 
@@ -129,6 +134,11 @@ int fdvv_rig_start(fdvv_rig *rig, const fdvv_rig_model *model, const fdvv_rig_gr
 /* Let the finger follow this gesture, whose time begins `ago` seconds before now. */
 void fdvv_rig_press(fdvv_rig *rig, const fdvv_gesture *gesture, double stiffness_N_m, double damping_N_s_m,
                     double ago_s);
+
+/* Lead the finger live: from now on its referent (LED_PLACE, m), or the force that its muscle pushes with in place of
+ * a referent (LED_PUSH, N), nears the line goal + goal_1_s * (time - now), critically damped at the rate near_1_s.
+ * Whatever led it before, a gesture included, the force of the muscle does not jump. */
+void fdvv_rig_lead(fdvv_rig *rig, int led, double goal, double goal_1_s, double near_1_s);
 
 /* Give the readings of a cap that rests, without noise: those of the first tick. */
 void fdvv_rig_look(fdvv_rig *rig, fdvv_inputs *inputs);

@@ -25,6 +25,22 @@ static inline double touching(const fdvv_rig *r, const double *y) {
     return contact(m->contact_stiffness_N_m, m->contact_loss_s_m, y[XT] - y[XC], y[VT] - y[VC]);
 }
 
+/* Where a finger that is led is drawn to at t, and how fast that changes: a line and what is left of the way to it. */
+static inline void led(const fdvv_rig *r, double t, double *q, double *q_1_s) {
+    double since = t - r->led_s, left = exp(-r->near_1_s * since), rush = r->gap_1_s + r->near_1_s * r->gap;
+    *q = r->goal + r->goal_1_s * since + (r->gap + rush * since) * left;
+    *q_1_s = r->goal_1_s + (r->gap_1_s - r->near_1_s * rush * since) * left;
+}
+
+/* What the muscle pulls a finger at x, v with. */
+static inline double pulling(const fdvv_rig *r, double t, double x, double v) {
+    double q, q_1_s;
+    if (r->led == FDVV_RIG_LED_NOT) return muscle(&r->finger, &r->gesture, t, x, v);
+    led(r, t, &q, &q_1_s);
+    if (r->led == FDVV_RIG_LED_PUSH) return q - r->finger.finger_damping_N_s_m * v;
+    return r->finger.finger_stiffness_N_m * (q - x) + r->finger.finger_damping_N_s_m * (q_1_s - v);
+}
+
 /* Stretch of the bristle once the cap has gone on to x: it follows until it slips. */
 static inline double stretched(const fdvv_rig *r, double x) {
     return clamp(r->slip_m + (x - r->slip_at_m), -r->model.presliding_m, r->model.presliding_m);
@@ -40,7 +56,7 @@ static inline double volts_of(const fdvv_rig *r, double henry, double kt, double
 static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, double *dy, int magnet, int audit) {
     const fdvv_rig_model *m = &r->model;
     double effort = 1.0 + r->effort + r->effort_per_s * (t - r->tick_s);
-    double pull = effort * muscle(&r->finger, &r->gesture, t, y[XF], y[VF]);
+    double pull = effort * pulling(r, t, y[XF], y[VF]);
     double squeeze_rate = y[VF] - y[VT], arms = y[H1] + y[H2], growth;
     double pulp = squeeze(&r->finger, y[XF] - y[XT], squeeze_rate, arms, &growth);
     double v = y[VC], amps = y[AMPS];

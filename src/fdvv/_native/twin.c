@@ -6,10 +6,39 @@ static int armed(fdvv_core *core) {
            fdvv_supervisor_ask(&core->supervisor, &core->settings, FDVV_ASK_ARM, 0) == FDVV_REFUSAL_NONE;
 }
 
+int fdvv_twin_begin(const fdvv_core *core, fdvv_rig *rig, const fdvv_rig_model *model, const fdvv_rig_grid *grid,
+                    const uint8_t *image, fdvv_inputs *inputs) {
+    if (fdvv_rig_start(rig, model, grid, core->stop_us) || !fdvv_rig_load(rig, image)) return 1;
+    fdvv_rig_look(rig, inputs);
+    return 0;
+}
+
+void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twin_noise *noise, double *rows,
+                   double *told, fdvv_outputs *outputs, fdvv_inputs *inputs) {
+    int64_t row_doubles = FDVV_RIG_COLUMNS * rig->grid.steps_per_tick / rig->grid.steps_per_row;
+    for (int64_t k = 0; k < ticks; k++) {
+        fdvv_rig_noise here = {noise->position_m + k * rig->grid.reads, noise->force_N[k], noise->keycap[k],
+                               noise->effort_ratio[k], noise->latency[k]};
+        fdvv_outputs out;
+        fdvv_supervisor_host_seen(&core->supervisor, inputs->time_us);
+        fdvv_core_tick(core, inputs, &out);
+        if (rows) {
+            fdvv_rig_tell(rig, told + k * FDVV_RIG_TOLD);
+            outputs[k] = out;
+        }
+        fdvv_rig_tick(rig, &out, &here, rows ? rows + k * row_doubles : 0, inputs);
+    }
+}
+
+static fdvv_twin_noise from_tick(const fdvv_twin_noise *n, int64_t k, int64_t reads) {
+    fdvv_twin_noise rest = {n->position_m + k * reads, n->force_N + k, n->keycap + k, n->effort_ratio + k,
+                            n->latency + k};
+    return rest;
+}
+
 int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, const fdvv_twin_press_plan *plan,
                     const fdvv_settings *settings, const uint8_t *image, const fdvv_twin_noise *noise, double *rows,
                     double *told, fdvv_outputs *outputs) {
-    int64_t rows_per_tick = grid->steps_per_row > 0 ? grid->steps_per_tick / grid->steps_per_row : 0;
     fdvv_rig rig;
     fdvv_core core;
     fdvv_inputs inputs;
@@ -17,26 +46,12 @@ int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, cons
     fdvv_core_activate(&core, image);
     fdvv_core_announce(&core, (uint16_t)plan->announced_mm_s16);
     if (plan->settle_ticks < 0 || plan->ticks < 1 || !armed(&core)) return 2;
-    if (fdvv_rig_start(&rig, model, grid, core.stop_us) || !fdvv_rig_load(&rig, image)) return 1;
+    if (fdvv_twin_begin(&core, &rig, model, grid, image, &inputs)) return 1;
     fdvv_rig_press(&rig, &plan->gesture, plan->stiffness_N_m, plan->damping_N_s_m,
                    -(double)plan->settle_ticks * (double)grid->steps_per_tick * model->step_s);
-    fdvv_rig_look(&rig, &inputs);
-
-    for (int64_t k = 0; k < plan->settle_ticks + plan->ticks; k++) {
-        fdvv_rig_noise here = {noise->position_m + k * grid->reads, noise->force_N[k], noise->keycap[k],
-                               noise->effort_ratio[k], noise->latency[k]};
-        fdvv_outputs out;
-        fdvv_supervisor_host_seen(&core.supervisor, inputs.time_us);
-        fdvv_core_tick(&core, &inputs, &out);
-        int recorded = k >= plan->settle_ticks;
-        if (recorded) {
-            fdvv_rig_tell(&rig, told);
-            told += FDVV_RIG_TOLD;
-            *outputs++ = out;
-        }
-        fdvv_rig_tick(&rig, &out, &here, recorded ? rows : 0, &inputs);
-        if (recorded) rows += rows_per_tick * FDVV_RIG_COLUMNS;
-    }
+    fdvv_twin_noise recorded = from_tick(noise, plan->settle_ticks, grid->reads);
+    fdvv_twin_run(&core, &rig, plan->settle_ticks, noise, 0, 0, 0, &inputs);
+    fdvv_twin_run(&core, &rig, plan->ticks, &recorded, rows, told, outputs, &inputs);
     return 0;
 }
 

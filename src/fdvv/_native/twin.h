@@ -24,6 +24,16 @@ typedef struct {
     const double *latency;      /* (n,) */
 } fdvv_twin_noise;
 
+/* Start a rig at rest under an armed core, its stop where the core has it, its exciter's board with the waveforms of
+ * image, which the core renders; gives the readings of the first tick. 0, or 1 as fdvv_rig_start and fdvv_rig_load. */
+int fdvv_twin_begin(const fdvv_core *core, fdvv_rig *rig, const fdvv_rig_model *model, const fdvv_rig_grid *grid,
+                    const uint8_t *image, fdvv_inputs *inputs);
+
+/* Go on for so many ticks, the host heard before each: the core on the readings, the rig on the core's outputs.
+ * Unless rows is 0, writes rows, told and outputs as fdvv_twin_press does; noise begins with the first tick's. */
+void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twin_noise *noise, double *rows,
+                   double *told, fdvv_outputs *outputs, fdvv_inputs *inputs);
+
 /* Simulate one press from a cold, calibrated, armed rig at rest.
  *
  * settings and image are those of the firmware, both checked by the caller; image is four-byte aligned.

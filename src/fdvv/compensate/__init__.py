@@ -11,6 +11,7 @@ from fdvv.compensate._feasible_force import Reach, needed_cN, reach, rendered_cN
 from fdvv.compensate._feasible_limits import RigLimits
 from fdvv.compensate._feasible_motion import Motion, minimum_jerk
 from fdvv.compensate._feasible_verdict import Following, FollowVerdict, follow_verdict
+from fdvv.compensate._feed_forward import tuning_of
 from fdvv.compensate._foresee import FingerJoint
 from fdvv.compensate._gain import GainSchedule
 from fdvv.compensate._identification_surface import identification_surface
@@ -145,5 +146,6 @@ __all__ = [
     "thermal_dose",
     "tick_matrix",
     "tuned_paper_law",
+    "tuning_of",
     "why_incomplete",
 ]

@@ -114,6 +114,18 @@ class Core:
         )
 
     @property
+    def address(self) -> ctypes.c_void_p:
+        """Where the core lies in memory (fdvv_core), for compiled loops; valid as long as this object."""
+        return self._core
+
+    @property
+    def image_address(self) -> ctypes.c_void_p:
+        """Where the active image lies, valid until another is activated; ModelError if there is none."""
+        if self._image is None:
+            raise ModelError("the core has no program; activate one")
+        return address(self._image)
+
+    @property
     def mode(self) -> Mode:
         """What the supervisor lets the device do."""
         return Mode(self._lib.fdvv_bridge_mode(self._core))

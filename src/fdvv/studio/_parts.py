@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_documents", "_editor")
+PARTS = ("_about", "_documents", "_editor", "_press")
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,9 @@ from fdvv.twin._capture_streams import BOARD, Setup
 from fdvv.twin._draw import draw_finger, draw_rig
 from fdvv.twin._draw_button import draw_button
 from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
-from fdvv.twin._gesture import Gesture, plan, vary
+from fdvv.twin._gesture import Gesture, depth_m, plan, vary
 from fdvv.twin._image import TableImage, image_of
+from fdvv.twin._led import LedRig, LedTicks, LIFTED_m, NEAR_1_s
 from fdvv.twin._noise import Noise, draw_noise, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
 from fdvv.twin._pace_button import solve_button_pace
@@ -59,8 +60,12 @@ __all__ = [
     "Intent",
     "KeycapSensor",
     "LEAD_s",
+    "LIFTED_m",
     "Leaf",
+    "LedRig",
+    "LedTicks",
     "Mover",
+    "NEAR_1_s",
     "Noise",
     "Participant",
     "PositionSensor",
@@ -83,6 +88,7 @@ __all__ = [
     "button_names",
     "button_of_model",
     "button_to_toml",
+    "depth_m",
     "draw_button",
     "draw_button_noise",
     "draw_finger",

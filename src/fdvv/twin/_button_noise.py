@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.twin._finger import Finger
 from fdvv.twin._flatten_button import TICK_s
 from fdvv.twin._gesture import Gesture
-from fdvv.twin._noise import _effort, lsb_of
+from fdvv.twin._noise import Effort, lsb_of
 from fdvv.twin._rig_senses import ForceSensor
 from fdvv.units import FloatArray
 
@@ -53,7 +53,7 @@ def draw_button_noise(
 ) -> ButtonNoise:
     """Draw the noise of muscle and force sensor for one press."""
     n = button_ticks(gesture)
-    effort = _effort(finger.habit, settle_button_ticks() + n + 1, TICK_s, random)
+    effort = Effort(finger.habit, TICK_s).draw(settle_button_ticks() + n + 1, random)
     return ButtonNoise(effort, (sensor.noise_N if sensor else 0.0) * random.standard_normal(n))
 
 

@@ -162,7 +162,9 @@ class _Plan(ctypes.Structure):
     ]
 
 
-class _Noise(ctypes.Structure):
+class NoiseArrays(ctypes.Structure):
+    """fdvv_twin_noise."""
+
     _fields_ = [
         (name, ctypes.c_void_p) for name in ("position_m", "force_N", "keycap", "effort_ratio", "latency")
     ]
@@ -176,7 +178,7 @@ def doors() -> ctypes.CDLL:
     lib.fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes[:3]))
     lib.fdvv_twin_sizes(*(ctypes.byref(size) for size in sizes[3:]))
     found = [size.value for size in sizes]
-    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, _Noise)] + [OUTPUTS.itemsize]
+    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, NoiseArrays)] + [OUTPUTS.itemsize]
     if found[:2] + found[3:] != ours:
         raise ModelError(
             f"compiled twin has structures of {found} bytes, Python of {ours}; rebuild the library"
@@ -227,7 +229,7 @@ def run(
         ctypes.byref(plan),
         address(told),
         address(held),
-        ctypes.byref(_Noise(*(address(array) for array in arrays))),
+        ctypes.byref(NoiseArrays(*(address(array) for array in arrays))),
         *(address(array) for array in rows),
     )
     if failed:

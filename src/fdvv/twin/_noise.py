@@ -72,8 +72,12 @@ def draw_noise(rig: Rig, finger: Finger, gesture: Gesture, random: np.random.Gen
     return draw_ticks(rig, finger, settle_ticks(rig) + count_ticks(rig, gesture), random)
 
 
-def draw_ticks(rig: Rig, finger: Finger, n: int, random: np.random.Generator) -> Noise:
+def draw_ticks(
+    rig: Rig, finger: Finger, n: int, random: np.random.Generator, effort: Effort | None = None
+) -> Noise:
     """Draw the noise of n ticks.
+
+    effort : goes on with this muscle; a new one begins if None.
 
     Noise of the demodulator is common to the reads of a burst (its band is far below their rate), noise
     of the converter is not.
@@ -83,9 +87,9 @@ def draw_ticks(rig: Rig, finger: Finger, n: int, random: np.random.Generator) ->
     lsb = lsb_of(position.range_m, position.converter_bits)
     single = position.converter_noise_ratio * lsb * random.standard_normal((n, position.reads))
     samples = rig.force_sensor.noise_N * random.standard_normal(n)
-    effort = _effort(finger.habit, n, rig.controller.tick_s, random)
+    muscle = (effort or Effort(finger.habit, rig.controller.tick_s)).draw(n, random)
     keycap = rig.keycap_sensor.noise_ratio * random.standard_normal(n)
-    return Noise(common + single, samples, effort, keycap, random.standard_normal(n))
+    return Noise(common + single, samples, muscle, keycap, random.standard_normal(n))
 
 
 def lsb_of(span: float, bits: int) -> float:
@@ -93,11 +97,24 @@ def lsb_of(span: float, bits: int) -> float:
     return span / 2**bits if bits else 0.0
 
 
-def _effort(habit: Habit, n: int, tick_s: float, random: np.random.Generator) -> FloatArray:
-    """Make muscle noise of one pole plus a tremor of random phase, (n,)."""
-    keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * tick_s))
-    white = random.standard_normal(n)
-    white[1:] *= np.sqrt(1 - keep**2)
-    slow = np.array(list(accumulate(white.tolist(), lambda past, fresh: keep * past + fresh)))
-    phase = 2 * np.pi * (habit.tremor_Hz * tick_s * np.arange(n) + random.random())
-    return np.asarray(habit.effort_noise_ratio * slow + habit.tremor_ratio * np.sin(phase))
+class Effort:
+    """Muscle noise of one pole plus a tremor of random phase, which goes on from one draw to the next."""
+
+    def __init__(self, habit: Habit, tick_s: float) -> None:
+        self._habit, self._tick_s = habit, tick_s
+        self._last: float | None = None
+        self._turns = 0.0
+
+    def draw(self, n: int, random: np.random.Generator) -> FloatArray:
+        """Give the modulation of the next n ticks, (n,)."""
+        habit, first = self._habit, self._last is None
+        keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * self._tick_s))
+        white = random.standard_normal(n)
+        white[int(first) :] *= np.sqrt(1 - keep**2)
+        slow = list(accumulate(white.tolist(), lambda past, fresh: keep * past + fresh, initial=self._last))
+        if first:
+            self._turns = random.random()
+        turns = habit.tremor_Hz * self._tick_s * np.arange(n) + self._turns
+        self._last, self._turns = slow[-1], self._turns + habit.tremor_Hz * self._tick_s * n
+        told = np.array(slow[-n:])
+        return np.asarray(habit.effort_noise_ratio * told + habit.tremor_ratio * np.sin(2 * np.pi * turns))

@@ -51,13 +51,34 @@ from fdvv.workflow._feasibility import (
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
+from fdvv.workflow._live_event import LiveEvent, LiveEventKind
+from fdvv.workflow._live_press import LivePress
+from fdvv.workflow._live_run import LiveFrame, LiveRun
 from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
 from fdvv.workflow._press import ButtonPress, Presses, press_button
+from fdvv.workflow._press_choice import (
+    PressChoice,
+    button_choices,
+    drawn_trace,
+    program_choices,
+    program_of,
+)
+from fdvv.workflow._press_subject import (
+    PRESS_RIGS,
+    PressMark,
+    PressMode,
+    PressSubject,
+    model_subject,
+    program_subject,
+    rig_memory,
+)
+from fdvv.workflow._press_trace import PressTrace, drawn_traces, read_press_trace
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
 from fdvv.workflow._programs import program_image
+from fdvv.workflow._real_pace import RealPace
 from fdvv.workflow._receipt import Receipt
 from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
 from fdvv.workflow._session import Session
@@ -78,6 +99,7 @@ from fdvv.workflow._vibration_slots import (
 )
 
 __all__ = [
+    "PRESS_RIGS",
     "AchievableCurve",
     "Ask",
     "ButtonPress",
@@ -109,15 +131,26 @@ __all__ = [
     "HeardStroke",
     "Kept",
     "LimitedRange",
+    "LiveEvent",
+    "LiveEventKind",
+    "LiveFrame",
+    "LivePress",
+    "LiveRun",
     "MeasuredBand",
     "MeasuredButton",
     "ModelFit",
     "PaceStanding",
     "Patch",
     "PinMade",
+    "PressChoice",
     "PressDone",
+    "PressMark",
+    "PressMode",
+    "PressSubject",
+    "PressTrace",
     "Presses",
     "ProbeResult",
+    "RealPace",
     "Receipt",
     "RecordedModel",
     "RecordedVibrations",
@@ -147,6 +180,7 @@ __all__ = [
     "acceleration_per_volt",
     "achievable",
     "apply_patch",
+    "button_choices",
     "button_files",
     "candidates_for",
     "capture_html",
@@ -159,6 +193,8 @@ __all__ = [
     "demo",
     "demo_report",
     "diff",
+    "drawn_trace",
+    "drawn_traces",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -176,6 +212,7 @@ __all__ = [
     "merge_parts",
     "model_of",
     "model_of_recording",
+    "model_subject",
     "new_model",
     "one_curve",
     "open_device",
@@ -189,11 +226,16 @@ __all__ = [
     "press_button",
     "probe",
     "process_recording",
+    "program_choices",
     "program_image",
+    "program_of",
+    "program_subject",
     "quick_look",
+    "read_press_trace",
     "record_of",
     "recorded_vibrations",
     "render_vibration",
+    "rig_memory",
     "save_actuation",
     "settings_with",
     "simulated_observer",

@@ -1,0 +1,237 @@
+"""A rig and its firmware's core under a finger that is led from outside while they run."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from enum import IntEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv._native import address
+from fdvv.core import INPUTS, OUTPUTS, Core
+from fdvv.errors import ModelError
+from fdvv.protocol import CN64_PER_cN, Fault, MM_S16_PER_mm_s, Settings, TickFlag, UM16_PER_mm
+from fdvv.twin._finger import Finger
+from fdvv.twin._flatten import STEP_s, grid_of, plant_of
+from fdvv.twin._gesture import plan
+from fdvv.twin._kernel import (
+    COLUMNS,
+    TICK_COLUMNS,
+    GestureTimes,
+    GridCounts,
+    Model,
+    NoiseArrays,
+    Rows,
+    doors,
+    rig_bytes,
+)
+from fdvv.twin._noise import Effort, Noise, draw_ticks
+from fdvv.twin._rig import Rig
+from fdvv.twin._settings import settings_of
+from fdvv.twin._trace import CUT
+from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm, mm_from_m
+
+NEAR_1_s = 125.0
+"""How fast a led finger nears what it is led to: 2 / NEAR_1_s = 16 ms behind a hand that moves evenly."""
+LIFTED_m = 2e-3
+"""A finger that presses nothing waits so high above the cap."""
+SETTLE_s = 0.15
+"""Passes before a led rig is handed out, so that filters and the cap have come to rest."""
+BLOCK_TICKS = 512
+"""Noise is drawn for so many ticks at once, whatever is asked for."""
+
+
+class Led(IntEnum):
+    """What a finger may be led by (rig.h)."""
+
+    PLACE = 1
+    PUSH = 2
+
+
+@dataclass(frozen=True, eq=False)
+class LedTicks:
+    """What happened at every tick of a stretch, simulated; every column (n,).
+
+    Attributes
+    ----------
+    t_s : since the rig was handed out.
+    displacement_mm, velocity_mm_s : of the cap, true.
+    force_cN : between cap and finger, true.
+    commanded_cN, sensed_mm, state, key, slot, mode, flags : the controller's; slot is the waveform started in
+        that tick or NONE, flags are bits of fdvv.protocol.TickFlag.
+    saturated : the command was cut by limit, slew or heat.
+    finger_mm : where the finger is; below 0 it is above the cap at rest.
+    warm_K : of the coil.
+    """
+
+    t_s: FloatArray
+    displacement_mm: FloatArray
+    velocity_mm_s: FloatArray
+    force_cN: FloatArray
+    commanded_cN: FloatArray
+    sensed_mm: FloatArray
+    state: npt.NDArray[np.uint8]
+    key: npt.NDArray[np.uint8]
+    slot: npt.NDArray[np.uint8]
+    mode: npt.NDArray[np.uint8]
+    flags: npt.NDArray[np.uint8]
+    saturated: npt.NDArray[np.bool_]
+    finger_mm: FloatArray
+    warm_K: FloatArray
+
+    @classmethod
+    def of_rows(cls, rows: Rows, first_tick: int, tick_s: float) -> LedTicks:
+        """Convert the kernel's rows, one a tick, to record units."""
+        x, v, force, finger = (rows.physics[:, i].copy() for i in (1, 2, 4, 7))
+        out = rows.outputs
+        return cls(
+            t_s=tick_s * np.arange(first_tick, first_tick + len(out), dtype=np.float64),
+            displacement_mm=mm_from_m(x),
+            velocity_mm_s=mm_from_m(v),
+            force_cN=cN_from_N(force),
+            commanded_cN=out["commanded_cN64"] / CN64_PER_cN,
+            sensed_mm=out["displacement_um16"] / UM16_PER_mm,
+            state=out["state"],
+            key=out["key"],
+            slot=out["slot"],
+            mode=out["mode"],
+            flags=out["flags"],
+            saturated=(out["flags"] & CUT) > 0,
+            finger_mm=mm_from_m(finger),
+            warm_K=rows.sensed[:, 1].copy(),
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[LedTicks]) -> LedTicks:
+        """Join stretches that followed each other."""
+        if len(parts) == 1:
+            return parts[0]
+        return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
+
+    @property
+    def release(self) -> npt.NDArray[np.bool_]:
+        """Tell where the controller took the stroke for a release."""
+        return (self.flags & TickFlag.RELEASE) > 0
+
+
+class LedRig:
+    """A rig, the firmware's own core and a finger that is led live, moved on together. Simulated.
+
+    Parameters
+    ----------
+    image : checked program that the core renders.
+    rig, finger : the default ones if None.
+    settings : what the firmware was told of the rig; settings_of(rig) if None.
+    seed : of all noise; None: no noise at all.
+
+    It begins armed and at rest, the finger LIFTED_m above the cap. Time passes only in advance(); the host is
+    heard in every tick. The same calls at the same times give the same columns, however time is cut.
+    ModelError if rig, settings and image do not go together.
+    """
+
+    def __init__(
+        self,
+        image: bytes,
+        rig: Rig | None = None,
+        finger: Finger | None = None,
+        settings: Settings | None = None,
+        seed: int | None = 0,
+    ) -> None:
+        self.rig, self.finger = rig or Rig(), finger or Finger()
+        self.core = Core(settings or settings_of(self.rig), image)
+        self._grid = replace(grid_of(self.rig), audit=0)
+        self._grid = replace(self._grid, steps_per_row=self._grid.steps_per_tick)
+        self._random = None if seed is None else np.random.default_rng(seed)
+        self._effort = Effort(self.finger.habit, self.rig.controller.tick_s)
+        self._memory = np.zeros(rig_bytes() // 8 + 1, np.uint64)
+        self._inputs = np.zeros(1, INPUTS)
+        self._noise, self._used, self._ticks = self._draw(), 0, 0
+        self._begin()
+
+    @property
+    def time_s(self) -> float:
+        """Time since the rig was handed out."""
+        return self._ticks * self.rig.controller.tick_s
+
+    def lead(self, referent_mm: float, velocity_mm_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
+        """Lead the finger's referent from now on to a place that moves at a speed: 0 is the cap at rest.
+
+        The referent nears it critically damped and never jumps; the finger gives way under the button's
+        force, as fingers do. ModelError on a number that is not finite or a rate not above 0.
+        """
+        self._lead(Led.PLACE, m_from_mm(referent_mm), m_from_mm(velocity_mm_s), near_1_s)
+
+    def push(self, force_cN: float, rise_cN_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
+        """Lead the force that the muscle pushes with, as lead() does with a place."""
+        self._lead(Led.PUSH, N_from_cN(force_cN), N_from_cN(rise_cN_s), near_1_s)
+
+    def lift(self) -> None:
+        """Take the finger off the cap."""
+        self.lead(-float(mm_from_m(LIFTED_m)))
+
+    def announce(self, velocity_mm_s: float) -> None:
+        """Say how fast the next press is meant to be, until its own speed is known."""
+        self.core.announce(min(65535, max(0, round(MM_S16_PER_mm_s * velocity_mm_s))))
+
+    def fail(self, fault: Fault) -> None:
+        """Latch a fault, as one that a board finds outside its tick."""
+        self.core.fail(fault)
+
+    def advance(self, ticks: int) -> LedTicks:
+        """Let so many ticks pass and tell what happened at each. ModelError if the motion diverged."""
+        rows = Rows(np.empty((ticks, COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS))
+        done = 0
+        while done < ticks:
+            if self._used == BLOCK_TICKS:
+                self._noise, self._used = self._draw(), 0
+            count = min(ticks - done, BLOCK_TICKS - self._used)
+            here = slice(done, done + count)
+            self._run(count, Rows(rows.physics[here], rows.sensed[here], rows.outputs[here]))
+            done += count
+        if not np.isfinite(rows.physics).all():
+            raise ModelError(f"the motion diverged: rig or finger are too stiff for steps of {STEP_s:g} s")
+        self._ticks += ticks
+        return LedTicks.of_rows(rows, self._ticks - ticks, self.rig.controller.tick_s)
+
+    def _run(self, ticks: int, rows: Rows) -> None:
+        end = self._used + ticks
+        noise = NoiseArrays(*(address(array[self._used : end]) for array in self._noise.arrays()))
+        doors().fdvv_twin_run(
+            self.core.address,
+            address(self._memory),
+            ctypes.c_int64(ticks),
+            ctypes.byref(noise),
+            *(address(part) for part in rows),
+            address(self._inputs),
+        )
+        self._used = end
+
+    def _begin(self) -> None:
+        """Arm the core and let everything come to rest under a lifted finger."""
+        self.core.arm()
+        model = Model(*vars(plant_of(self.rig, self.finger)).values())
+        counts, held = GridCounts(*vars(self._grid).values()), address(self._memory)
+        parts = (ctypes.byref(model), ctypes.byref(counts), self.core.image_address, address(self._inputs))
+        if doors().fdvv_twin_begin(self.core.address, held, *parts):
+            raise ModelError("the vibration board has no room for the waveforms of this program")
+        habit = replace(self.finger.habit, lift_m=LIFTED_m)
+        rest = plan(replace(self.finger, habit=habit), self.rig.stops.travel_limit_m, 1.0)
+        still = GestureTimes.of(replace(rest, end_m=rest.start_m))
+        numbers = (rest.stiffness_N_m, rest.damping_N_s_m, 0.0)
+        doors().fdvv_rig_press(held, ctypes.byref(still), *(ctypes.c_double(n) for n in numbers))
+        self.advance(round(SETTLE_s / self.rig.controller.tick_s))
+        self._ticks = 0
+
+    def _lead(self, led: Led, goal: float, goal_1_s: float, near_1_s: float) -> None:
+        if not (np.isfinite([goal, goal_1_s, near_1_s]).all() and near_1_s > 0):
+            raise ModelError(f"a finger is led by finite numbers, got {goal}, {goal_1_s}, rate {near_1_s}")
+        numbers = (ctypes.c_double(n) for n in (goal, goal_1_s, near_1_s))
+        doors().fdvv_rig_lead(address(self._memory), ctypes.c_int(led), *numbers)
+
+    def _draw(self) -> Noise:
+        if self._random is not None:
+            return draw_ticks(self.rig, self.finger, BLOCK_TICKS, self._random, self._effort)
+        return Noise(np.zeros((BLOCK_TICKS, self._grid.reads)), *(np.zeros(BLOCK_TICKS) for _ in range(4)))

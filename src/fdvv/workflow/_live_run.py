@@ -1,0 +1,166 @@
+"""A live press at real pace in a thread of its own, shown as frames."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Condition, Thread
+
+from fdvv.errors import FdvvError
+from fdvv.twin import LedTicks
+from fdvv.workflow._live_event import LiveEvent
+from fdvv.workflow._live_press import LivePress
+from fdvv.workflow._real_pace import RealPace
+
+STEP_s = 0.004
+"""The rig goes on so often; what the hand does takes effect with the next one."""
+FRAME_s = 1 / 60
+SILENT_s = 3.0
+"""A page that says nothing for so long looks no more."""
+
+
+@dataclass(frozen=True, eq=False)
+class LiveFrame:
+    """What happened since the last frame, simulated.
+
+    Attributes
+    ----------
+    columns, events : of that time.
+    sequence : number of the last lead that had taken effect before its last tick.
+    dropped_s : real time that was not simulated since the run began, for this machine was too slow.
+    busy_ratio : part of real time that simulating took, lately.
+    """
+
+    columns: LedTicks
+    events: tuple[LiveEvent, ...]
+    sequence: int
+    dropped_s: float
+    busy_ratio: float
+
+
+class LiveRun:
+    """Runs a live press while somebody looks.
+
+    Parameters
+    ----------
+    press : to be used through this run only, from now on.
+    show : called with every frame, in the run's thread.
+    refused : called with one line when something asked for cannot be done; the rest goes on.
+    failed : called once with one line if the press cannot go on.
+    clock : monotonic, s.
+
+    It runs until close(), pauses with the finger lifted when nothing was heard for SILENT_s, and goes on
+    with the next thing that is heard. All methods may be called from any thread.
+    """
+
+    def __init__(
+        self,
+        press: LivePress,
+        show: Callable[[LiveFrame], None],
+        refused: Callable[[str], None],
+        failed: Callable[[str], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._press, self._show, self._clock = press, show, clock
+        self._refused, self._failed = refused, failed
+        self._changed = Condition()
+        self._asked: list[Callable[[LivePress], None]] = []
+        self._sequence, self._over, self._looking, self._dropped_s = 0, False, True, 0.0
+        self._heard_s = clock()
+        self._thread = Thread(target=self._run, name="live press", daemon=True)
+        self._thread.start()
+
+    def ask(self, work: Callable[[LivePress], None], sequence: int | None = None) -> None:
+        """Have something done to the press before its next tick. sequence : number that frames tell back."""
+        with self._changed:
+            self._asked.append(work)
+            if sequence is not None:
+                self._sequence = sequence
+            self._hear()
+
+    def here(self) -> None:
+        """Somebody looks."""
+        with self._changed:
+            self._hear()
+
+    def pause(self) -> None:
+        """Nobody looks: lift the finger and let no time pass until something is heard."""
+        with self._changed:
+            self._looking = False
+            self._changed.notify()
+
+    def close(self) -> None:
+        """End; waits until the thread has."""
+        with self._changed:
+            self._over = True
+            self._changed.notify()
+        self._thread.join()
+
+    def _hear(self) -> None:
+        self._heard_s, self._looking = self._clock(), True
+        self._changed.notify()
+
+    def _run(self) -> None:
+        try:
+            while not self._over:
+                self._look()
+                self._wait_for_someone()
+        except FdvvError as error:
+            self._failed(str(error))
+
+    def _wait_for_someone(self) -> None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._over or self._looking)
+
+    def _look(self) -> None:
+        """Simulate at real pace while somebody looks; then lift the finger."""
+        pace = RealPace(self._clock)
+        gathered = _Gathered(self._clock())
+        while self._goes_on():
+            due_s, lost_s = pace.due()
+            self._dropped_s += lost_s
+            sequence = self._do_asked()
+            began_s = self._clock()
+            gathered.take(*self._press.advance(due_s), self._clock() - began_s)
+            if (now_s := self._clock()) - gathered.since_s >= FRAME_s:
+                self._show(gathered.frame(sequence, self._dropped_s, now_s))
+                gathered = _Gathered(now_s)
+        self._press.lift()
+
+    def _goes_on(self) -> bool:
+        """Wait for the next step; False once nobody looks."""
+        with self._changed:
+            self._changed.wait(STEP_s)
+            if self._clock() - self._heard_s > SILENT_s:
+                self._looking = False
+            return self._looking and not self._over
+
+    def _do_asked(self) -> int:
+        with self._changed:
+            asked, self._asked, sequence = self._asked, [], self._sequence
+        for work in asked:
+            try:
+                work(self._press)
+            except FdvvError as error:
+                self._refused(str(error))
+        return sequence
+
+
+class _Gathered:
+    """What is gathered for the next frame."""
+
+    def __init__(self, now_s: float) -> None:
+        self.since_s = now_s
+        self._columns: list[LedTicks] = []
+        self._events: list[LiveEvent] = []
+        self._busy_s = 0.0
+
+    def take(self, columns: LedTicks, events: tuple[LiveEvent, ...], busy_s: float) -> None:
+        self._columns.append(columns)
+        self._events += events
+        self._busy_s += busy_s
+
+    def frame(self, sequence: int, dropped_s: float, now_s: float) -> LiveFrame:
+        ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
+        return LiveFrame(LedTicks.joined(self._columns), tuple(self._events), sequence, dropped_s, ratio)

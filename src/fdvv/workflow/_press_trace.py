@@ -1,0 +1,163 @@
+"""Traces of how deep a key was over time: drawn here, made by a simulated person, or read from a file."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+
+from fdvv.errors import InputError, ModelError
+from fdvv.units import FloatArray
+
+LARGEST_bytes = 4_000_000
+LONGEST_s, DEEPEST_mm = 120.0, 10.0
+FEWEST = 4
+TIMES = {"t_s": 1.0, "time_s": 1.0, "t_ms": 1e-3, "time_ms": 1e-3, "unixtime": 1e-3}
+"""Columns that hold time, and what turns them into seconds."""
+PLACES = ("displacement_mm", "travel_mm", "x_mm")
+RATIO, KEY = "keyValue", "keyCode"
+"""Of keyboards that tell how far a key is down: part of its travel, and which key."""
+FULL_mm = 4.0
+"""Travel that a part of it is taken of."""
+STEP_s = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class PressTrace:
+    """How deep the cap of a key was.
+
+    Attributes
+    ----------
+    name : for people. told : where it comes from.
+    t_s : (n,) rising from 0.
+    displacement_mm : (n,) of the cap; 0 and above is up.
+    """
+
+    name: str
+    told: str
+    t_s: FloatArray
+    displacement_mm: FloatArray
+
+    def __post_init__(self) -> None:
+        t, x = (np.ascontiguousarray(c, dtype=np.float64) for c in (self.t_s, self.displacement_mm))
+        object.__setattr__(self, "t_s", t)
+        object.__setattr__(self, "displacement_mm", x)
+        if t.ndim != 1 or t.shape != x.shape or t.size < FEWEST:
+            raise ModelError(
+                f"a trace needs {FEWEST} or more pairs of time and place, got {t.size}, {x.size}"
+            )
+        if not (np.isfinite(t).all() and np.isfinite(x).all() and (np.diff(t) > 0).all() and t[0] == 0.0):
+            raise ModelError("a trace needs finite numbers, and times that rise from 0")
+        if t[-1] > LONGEST_s or np.abs(x).max() > DEEPEST_mm:
+            raise ModelError(f"a trace lasts {LONGEST_s:g} s and is {DEEPEST_mm:g} mm deep at most")
+
+    @property
+    def duration_s(self) -> float:
+        """Length."""
+        return float(self.t_s[-1])
+
+
+def read_press_trace(data: bytes, source: str) -> PressTrace:
+    """Read a trace from CSV or from JSON, an object of columns.
+
+    A column of time (t_s, time_s, t_ms, time_ms) and one of place (displacement_mm, travel_mm, x_mm), or an
+    analogue keyboard's log (unixtime, keyCode, keyValue as part of 4 mm; the key that moved most is taken).
+    Raises InputError with place and remedy.
+    """
+    if len(data) > LARGEST_bytes:
+        raise InputError(source, "whole file", f"is larger than {LARGEST_bytes // 1_000_000} MB", "cut it")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(source, "whole file", "is no text", "pass a CSV or JSON file") from None
+    columns = _json_columns(text, source) if text.lstrip().startswith("{") else _csv_columns(text, source)
+    t, x = _time_and_place(columns, source)
+    order = np.argsort(t, kind="stable")
+    t, first = np.unique(t[order], return_index=True)  # two rows of one time: the first counts
+    try:
+        return PressTrace(source, f"read from {source}", t - t[:1], x[order][first])
+    except ModelError as error:
+        raise InputError(source, "columns", str(error), "pass one press or a few of them") from error
+
+
+def _json_columns(text: str, source: str) -> dict[str, FloatArray]:
+    try:
+        found = msgspec.json.decode(text, type=dict[str, list[float]])
+    except msgspec.MsgspecError as error:
+        reason = f"is no object of columns: {error}"
+        raise InputError(source, "$", reason, 'write {"t_s": […], "displacement_mm": […]}') from error
+    return {name: np.array(column) for name, column in found.items()}
+
+
+def _csv_columns(text: str, source: str) -> dict[str, FloatArray]:
+    rows = csv.reader(io.StringIO(text))
+    names = [name.strip() for name in next(rows, [])]
+    numbers: list[list[float]] = []
+    for row in rows:
+        if not row:
+            continue
+        try:
+            numbers.append([float(cell) for cell in row[: len(names)]])
+        except ValueError:
+            reason = f"{','.join(row)[:60]!r} is no row of numbers"
+            raise InputError(source, f"line {rows.line_num}", reason, "leave it out") from None
+        if len(numbers[-1]) < len(names):
+            raise InputError(source, f"line {rows.line_num}", "has too few columns", "leave it out")
+    table = np.array(numbers).reshape(-1, max(1, len(names)))
+    return {name: table[:, i] for i, name in enumerate(names)}
+
+
+def _time_and_place(columns: dict[str, FloatArray], source: str) -> tuple[FloatArray, FloatArray]:
+    time = next((name for name in columns if name in TIMES), None)
+    place = next((name for name in columns if name in (*PLACES, RATIO)), None)
+    if time is None or place is None:
+        reason = f"has the columns {', '.join(columns) or 'none'}"
+        raise InputError(source, "header", reason, "name one t_s or time_ms, and one displacement_mm")
+    t, x = columns[time] * TIMES[time], columns[place] * (FULL_mm if place == RATIO else 1.0)
+    if t.size != x.size:
+        raise InputError(source, "columns", f"{t.size} times, {x.size} places", "make them equally long")
+    if KEY in columns and t.size:
+        keys, own = columns[KEY], np.unique(columns[KEY])
+        most = max(own, key=lambda key: float(np.abs(np.diff(x[keys == key])).sum()))
+        t, x = t[keys == most], x[keys == most]
+    return t, x
+
+
+def drawn_traces() -> tuple[PressTrace, ...]:
+    """Give traces that were drawn for this: minimum-jerk moves from place to place, made up, of nobody."""
+    return (
+        _drawn("slow press", (0.2, 0.0), (2.2, 4.0), (2.7, 4.0), (4.7, 0.0), (5.0, 0.0)),
+        _drawn("firm press", (0.2, 0.0), (0.28, 4.0), (0.4, 4.0), (0.48, 0.0), (0.8, 0.0)),
+        _drawn("fast double tap", *_taps(2, 0.16)),
+        _drawn("drumming", *_taps(8, 0.14)),
+        _drawn(
+            "hesitant press",
+            (0.2, 0.0), (0.5, 1.2), (0.9, 1.0), (1.2, 1.9), (1.6, 1.5), (1.9, 4.0), (2.2, 4.0), (2.4, 0.0),
+            (2.7, 0.0),
+        ),
+        _drawn("half way and back", (0.2, 0.0), (0.35, 2.0), (0.5, 0.4), (0.65, 2.2), (0.9, 0.0), (1.2, 0.0)),
+        _drawn("long hold", (0.2, 0.0), (0.3, 4.0), (3.3, 4.0), (3.42, 0.0), (3.8, 0.0)),
+    )  # fmt: skip
+
+
+def _taps(count: int, period_s: float) -> list[tuple[float, float]]:
+    points = [(0.2, 0.0)]
+    for i in range(count):
+        start = 0.2 + i * period_s
+        points += [(start + 0.4 * period_s, 4.0), (start + 0.55 * period_s, 4.0), (start + period_s, 0.0)]
+    return [*points, (0.5 + count * period_s, 0.0)]
+
+
+def _drawn(name: str, *points: tuple[float, float]) -> PressTrace:
+    """Move from point to point (s, mm) on minimum jerk."""
+    times, places = (np.array(column) for column in zip((0.0, points[0][1]), *points, strict=True))
+    t = np.arange(round(times[-1] / STEP_s) + 1) * STEP_s
+    leg = np.clip(np.searchsorted(times, t, side="right") - 1, 0, times.size - 2)
+    s = np.clip((t - times[leg]) / (times[leg + 1] - times[leg]), 0.0, 1.0)
+    part = s**3 * (10.0 + s * (6.0 * s - 15.0))
+    return PressTrace(
+        name, "drawn for this, of nobody", t, places[leg] + (places[leg + 1] - places[leg]) * part
+    )

@@ -1,0 +1,119 @@
+/** What the finger feels: force over displacement beside what is meant, and over time. */
+
+import { palette, Plot, series, type Brush, type View } from "../../draw";
+import { effect, h } from "../../ui";
+import type { PressSession } from "./session";
+
+/** How much of the past is drawn over displacement, and over time. */
+const TRAIL_s = 2.5;
+const SHOWN_s = 4;
+/** Slower for people who want less motion. */
+const CALM_s = 0.25;
+
+function calm(): boolean {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+/** Force over displacement: the slow curves as meant, and the trail of what was felt. */
+export function feltPlot(session: PressSession, height_px: number | null): Plot {
+  const plot = new Plot({
+    label: "Force that the simulated finger feels over displacement, beside the force as meant",
+    x: { label: "displacement", unit: "mm" },
+    y: { label: "force, simulated", unit: "cN" },
+    whole: () => {
+      const { least_cN, most_cN } = extent(session);
+      return { x: { low: -0.3, high: (session.ready()?.travel_mm ?? 4) + 0.4 }, y: { low: least_cN - 5, high: most_cN } };
+    },
+    still: (brush, view) => drawMeant(brush, view, session),
+    moving: (brush, view) => drawTrail(brush, view, session),
+    ...(height_px === null ? {} : { height_px }),
+  });
+  effect(() => {
+    session.frame();
+    plot.move();
+  });
+  return plot;
+}
+
+/** The forces that axes are made for: those of a slow press, with room for what a finger adds at the stop. */
+function extent(session: PressSession): { readonly least_cN: number; readonly most_cN: number } {
+  const meant = session.ready()?.meant;
+  const all = [...(meant?.press_cN ?? []), ...(meant?.release_cN ?? [])];
+  return { least_cN: Math.min(0, ...all), most_cN: 1.5 * Math.max(60, ...all) };
+}
+
+function drawMeant(brush: Brush, view: View, session: PressSession): void {
+  const [ready, meant] = [session.ready(), session.meant()];
+  if (!ready || !meant) return;
+  const x = meant.displacement_mm.map(view.x.px);
+  const { colour } = series(0);
+  brush.line(x, meant.press_cN.map(view.y.px), { colour, width_px: 2 });
+  brush.line(x, meant.release_cN.map(view.y.px), { colour, width_px: 2, dash: [7, 3] });
+  const stop = view.x.px(ready.travel_mm);
+  const { top, height } = view.box;
+  brush.line([stop, stop], [top, top + height], { colour: palette().danger, dash: [2, 3] });
+  for (const place of ready.places) {
+    const at = view.x.px(place.place_mm);
+    brush.line([at, at], [top + height - 10, top + height], { colour: palette().accent, width_px: 2 });
+  }
+}
+
+function drawTrail(brush: Brush, view: View, session: PressSession): void {
+  const { colour } = series(1);
+  const now_s = session.rows.now_s();
+  const old = session.rows.since(now_s - TRAIL_s);
+  const line = (rows: typeof old, opacity: number, width_px: number) =>
+    brush.line(rows.displacement_mm.map(view.x.px), rows.force_cN.map(view.y.px), { colour, width_px, opacity });
+  line(old, 0.4, 1.25);
+  line(session.rows.since(now_s - 0.25), 1, 2.25);
+  const here = session.rows.since(now_s);
+  const [x, y] = [here.displacement_mm.at(-1), here.force_cN.at(-1)];
+  if (x === undefined || y === undefined) return;
+  brush.circle({ x_px: view.x.px(x), y_px: view.y.px(y) }, 5, { colour }, { colour: palette().surface, width_px: 1.5 });
+}
+
+/** Force and displacement over the last seconds. */
+export function timePlots(session: PressSession): HTMLElement {
+  let drawn_s = 0;
+  const make = (label: string, axis: { label: string; unit: string }, range: () => [number, number], which: "force_cN" | "displacement_mm", n: number, height_px: number) =>
+    new Plot({
+      label,
+      x: { label: "time before now", unit: "s" },
+      y: axis,
+      whole: () => {
+        const [low, high] = range();
+        return { x: { low: -SHOWN_s, high: 0 }, y: { low, high } };
+      },
+      still: (brush, view) => {
+        const at = { x_px: view.box.left + 6, y_px: view.box.top + 7 };
+        brush.text(`${axis.label}, ${axis.unit}`, at, { colour: palette().muted, size_px: 11, halo: palette().surface });
+      },
+      moving: (brush, view) => {
+        const rows = session.rows.since(session.rows.now_s() - SHOWN_s, 4);
+        const now_s = session.rows.now_s();
+        const { colour, dash } = series(n);
+        brush.line(rows.t_s.map((t) => view.x.px(t - now_s)), rows[which].map(view.y.px), { colour, dash, width_px: 1.5 });
+      },
+      height_px,
+      small: true,
+    });
+  const travel = () => session.ready()?.travel_mm ?? 4;
+  const most = () => extent(session).most_cN;
+  const force = make("Force over the last seconds, simulated", { label: "force", unit: "cN" }, () => [-5, most()], "force_cN", 1, 92);
+  const place = make("Displacement over the last seconds, simulated", { label: "displacement", unit: "mm" }, () => [-0.3, travel() + 0.6], "displacement_mm", 2, 84);
+  effect(() => {
+    session.frame();
+    const now_s = session.rows.now_s();
+    if (calm() && now_s - drawn_s < CALM_s && now_s > drawn_s) return;
+    drawn_s = now_s;
+    force.move();
+    place.move();
+  });
+  return h(
+    "div",
+    { class: "press-time" },
+    force.element,
+    place.element,
+    h("div", { class: "press-axis" }, "time before now, s"),
+  );
+}

@@ -1,0 +1,35 @@
+/** How long it takes from what the hand does to the frame that shows it. */
+
+const KEPT = 500;
+
+export class Latency {
+  private readonly asked = new Map<number, number>();
+  private readonly found_ms: number[] = [];
+  private shown = 0;
+
+  /** The hand did something at a time of `performance.now()`, sent with a number. */
+  sent(sequence: number, at_ms: number): void {
+    this.asked.set(sequence, at_ms);
+  }
+
+  /** A frame that had taken a number into account was drawn. Gives the delay, or null if it showed nothing new. */
+  drawn(sequence: number, now_ms: number): number | null {
+    if (sequence <= this.shown) return null;
+    const first = [...this.asked.keys()].find((number) => number > this.shown && number <= sequence);
+    const at_ms = first === undefined ? undefined : this.asked.get(first);
+    for (const number of this.asked.keys()) if (number <= sequence) this.asked.delete(number);
+    this.shown = sequence;
+    if (at_ms === undefined) return null;
+    this.found_ms.push(now_ms - at_ms);
+    if (this.found_ms.length > KEPT) this.found_ms.shift();
+    return now_ms - at_ms;
+  }
+
+  /** Give how many delays were found, their middle and the one that 99 of 100 stay below; null before the first. */
+  told(): { readonly count: number; readonly median_ms: number; readonly p99_ms: number } | null {
+    if (!this.found_ms.length) return null;
+    const sorted = [...this.found_ms].sort((a, b) => a - b);
+    const at = (part: number) => sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] as number;
+    return { count: sorted.length, median_ms: at(0.5), p99_ms: at(0.99) };
+  }
+}
