@@ -95,10 +95,9 @@ export class Desk {
     this.follow();
   }
 
-  /** In a conflict: go on with what the other tab made. */
+  /** After a conflict or a refusal: go on with what the server has. */
   takeTheirs(): void {
-    this.store.takeTheirs();
-    this.follow();
+    this.store.takeTheirs().then(() => this.follow(), tell);
   }
 
   /** Make a curve the active one. */

@@ -29,7 +29,7 @@ export function savingStrip(desk: Desk): HTMLElement {
       "div",
       { class: "edit-conflict", role: "alert" },
       h("span", {}, desk.store.line ?? ""),
-      state === "conflict" ? button({ label: "Take theirs", act: () => desk.takeTheirs() }) : null,
+      state !== "gone" ? button({ label: state === "conflict" ? "Take theirs" : "Take what is saved", act: () => desk.takeTheirs() }) : null,
       button({ label: "Keep mine as a copy", kind: "main", act: () => keepMine(desk) }),
     );
   };
