@@ -34,7 +34,7 @@ from fdvv.model import (
     remove_curve,
 )
 from fdvv.vibration import vibration_samples
-from fdvv.workflow import apply_patch, compare, diff, invert, record_of
+from fdvv.workflow import apply_patch, compare, inverse_patch, patch_between, record_of
 
 TARGET = Path(__file__).resolve().parents[1] / "web" / "tests" / "golden"
 SEED = 20201
@@ -252,9 +252,9 @@ def patches() -> list[dict[str, Any]]:
 
 
 def _patched(a: dict[str, Any], b: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
-    patch = diff(a, b)
+    patch = patch_between(a, b)
     assert apply_patch(a, patch) == b
-    assert apply_patch(b, invert(patch)) == a
+    assert apply_patch(b, inverse_patch(patch)) == a
     try:
         fits = apply_patch(other, patch) is not None
     except ModelError:

@@ -14,7 +14,7 @@ from fdvv.errors import InputError
 from fdvv.model import load_builtin, load_model
 from fdvv.studio import Studio
 from fdvv.studio._documents import Documents
-from fdvv.workflow import diff, record_of
+from fdvv.workflow import patch_between, record_of
 
 CLEAR = load_builtin("mx-clear")
 
@@ -41,7 +41,7 @@ def copied(client: TestClient, name: str | None = "mine") -> str:
 def travel(client: TestClient, button: str, travel_mm: float, change_id: str) -> dict[str, Any]:
     """Make the edit that a page would send for another travel."""
     record = record_of(CLEAR.renamed(button.removeprefix("own:")))
-    patch = msgspec.to_builtins(diff(record, {**record, "travel_mm": travel_mm}))
+    patch = msgspec.to_builtins(patch_between(record, {**record, "travel_mm": travel_mm}))
     words = {"type": "edit", "change_id": change_id, "label": f"set travel to {travel_mm:g} mm"}
     return {**words, "patch": patch, "joins": False, "time_s": 12.0}
 

@@ -11,7 +11,7 @@ import pytest
 
 from fdvv.errors import ModelError
 from fdvv.model import builtin_names, load_builtin
-from fdvv.workflow import Patch, apply_patch, diff, invert, model_of, record_of
+from fdvv.workflow import Patch, apply_patch, inverse_patch, model_of, patch_between, record_of
 
 GOLDEN = Path(__file__).resolve().parents[2] / "web" / "tests" / "golden"
 
@@ -27,10 +27,10 @@ UNKNOWN = next(model for model in cases("models") if model["name"] == "unknown")
 @pytest.mark.parametrize("case", cases("patches"))
 def test_a_patch_leads_there_and_back_and_refuses_another_model(case: dict[str, Any]) -> None:
     patch = msgspec.convert(case["patch"], Patch)
-    assert diff(case["before"], case["after"]) == patch
+    assert patch_between(case["before"], case["after"]) == patch
     assert apply_patch(case["before"], patch) == case["after"]
-    assert apply_patch(case["after"], invert(patch)) == case["before"]
-    assert invert(invert(patch)) == patch
+    assert apply_patch(case["after"], inverse_patch(patch)) == case["before"]
+    assert inverse_patch(inverse_patch(patch)) == patch
     if case["fits_unknown"]:
         apply_patch(UNKNOWN, patch)
     else:
@@ -41,9 +41,9 @@ def test_a_patch_leads_there_and_back_and_refuses_another_model(case: dict[str, 
 @pytest.mark.parametrize("name", builtin_names())
 def test_between_any_two_models_a_patch_leads_exactly(name: str) -> None:
     a, b = record_of(load_builtin("mx-clear")), record_of(load_builtin(name))
-    patch = msgspec.json.decode(msgspec.json.encode(diff(a, b)), type=Patch)
+    patch = msgspec.json.decode(msgspec.json.encode(patch_between(a, b)), type=Patch)
     assert model_of(apply_patch(a, patch), "b") == load_builtin(name)
-    assert model_of(apply_patch(b, invert(patch)), "a") == load_builtin("mx-clear")
+    assert model_of(apply_patch(b, inverse_patch(patch)), "a") == load_builtin("mx-clear")
 
 
 @pytest.mark.parametrize("record", cases("edited"))
@@ -53,7 +53,7 @@ def test_a_model_that_the_page_makes_is_a_model_here(record: dict[str, Any]) -> 
 
 def test_an_empty_patch_is_nothing() -> None:
     record = record_of(load_builtin("mx-red"))
-    assert diff(record, record) == Patch()
+    assert patch_between(record, record) == Patch()
     assert msgspec.json.encode(Patch()) == b"{}"
 
 

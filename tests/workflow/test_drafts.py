@@ -13,15 +13,15 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.model import FDVVModel, load_builtin, load_model, save_model
 from fdvv.workflow import (
+    DraftKept,
     Drafts,
+    DraftStale,
     EditMade,
-    Kept,
     PinMade,
     RedoMade,
-    Stale,
     UndoMade,
     UnpinMade,
-    diff,
+    patch_between,
     record_of,
 )
 
@@ -37,7 +37,7 @@ def drafts(tmp_path: Path) -> Iterator[Drafts]:
 
 def edit(
     drafts: Drafts, name: str, change: dict[str, object], change_id: str = "", joins: bool = False
-) -> Kept | Stale:
+) -> DraftKept | DraftStale:
     """Edit the newest revision of a button."""
     state = drafts.open(name)
     return drafts.change(name, state.revision, made(drafts, name, change, change_id, joins))
@@ -47,7 +47,7 @@ def made(
     drafts: Drafts, name: str, change: dict[str, object], change_id: str = "", joins: bool = False
 ) -> EditMade:
     record = drafts.open(name).history.record
-    patch = diff(record, {**record, **change})
+    patch = patch_between(record, {**record, **change})
     return EditMade(change_id or f"edit-{os.urandom(4).hex()}", "set something", patch, joins, 1.5)
 
 
@@ -78,8 +78,8 @@ def test_a_created_button_is_a_model_file_under_its_name(drafts: Drafts) -> None
 
 def test_an_edit_is_on_file_and_in_the_history_after_a_restart(drafts: Drafts) -> None:
     drafts.create("a", CLEAR)
-    assert edit(drafts, "a", {"travel_mm": 3.5}) == Kept(1)
-    assert edit(drafts, "a", {"reset_mm": None}) == Kept(2)
+    assert edit(drafts, "a", {"travel_mm": 3.5}) == DraftKept(1)
+    assert edit(drafts, "a", {"reset_mm": None}) == DraftKept(2)
     before = drafts.open("a")
     drafts = reopened(drafts)
     assert drafts.open("a") == before
@@ -92,10 +92,10 @@ def test_undo_and_redo_survive_a_restart(drafts: Drafts) -> None:
     drafts.create("a", CLEAR)
     for travel_mm in (3.9, 3.8, 3.7):
         edit(drafts, "a", {"travel_mm": travel_mm})
-    assert drafts.change("a", 3, UndoMade("u", 2)) == Kept(4)
+    assert drafts.change("a", 3, UndoMade("u", 2)) == DraftKept(4)
     drafts = reopened(drafts)
     assert on_file(drafts, "a").travel_mm == 3.9
-    assert drafts.change("a", 4, RedoMade("r", 1)) == Kept(5)
+    assert drafts.change("a", 4, RedoMade("r", 1)) == DraftKept(5)
     assert on_file(drafts, "a").travel_mm == 3.8
     state = drafts.open("a")
     assert (state.history.done, len(state.history.steps)) == (2, 3)
@@ -120,20 +120,20 @@ def test_edits_that_join_are_one_step(drafts: Drafts) -> None:
 def test_a_change_on_another_revision_is_refused_with_the_newest_state(drafts: Drafts) -> None:
     drafts.create("a", CLEAR)
     mine, theirs = (made(drafts, "a", {"travel_mm": mm}) for mm in (3.5, 3.6))
-    assert drafts.change("a", 0, mine) == Kept(1)
+    assert drafts.change("a", 0, mine) == DraftKept(1)
     answer = drafts.change("a", 0, theirs)
-    assert answer == Stale(drafts.open("a"))
+    assert answer == DraftStale(drafts.open("a"))
     assert on_file(drafts, "a").travel_mm == 3.5
 
 
 def test_a_change_that_is_sent_again_is_not_made_twice(drafts: Drafts) -> None:
     drafts.create("a", CLEAR)
     change = made(drafts, "a", {"travel_mm": 3.5}, "once")
-    assert drafts.change("a", 0, change) == Kept(1)
+    assert drafts.change("a", 0, change) == DraftKept(1)
     edit(drafts, "a", {"reset_mm": 1.0})
-    assert drafts.change("a", 0, change) == Kept(1)
+    assert drafts.change("a", 0, change) == DraftKept(1)
     drafts = reopened(drafts)
-    assert drafts.change("a", 0, change) == Kept(1)
+    assert drafts.change("a", 0, change) == DraftKept(1)
     assert drafts.open("a").revision == 2
     drafts.close()
 
@@ -157,13 +157,13 @@ def test_an_edit_that_would_break_the_model_is_refused_in_one_line(
     assert "\n" not in str(error.value)
     assert drafts.open("a") == before
     assert on_file(drafts, "a") == CLEAR.renamed("a")
-    assert edit(drafts, "a", {"travel_mm": 3.5}) == Kept(1)
+    assert edit(drafts, "a", {"travel_mm": 3.5}) == DraftKept(1)
 
 
 def test_a_patch_of_another_model_is_refused(drafts: Drafts) -> None:
     drafts.create("a", CLEAR)
     red = record_of(load_builtin("mx-red"))
-    patch = diff(red, {**red, "travel_mm": 3.5, "name": "b"})
+    patch = patch_between(red, {**red, "travel_mm": 3.5, "name": "b"})
     with pytest.raises(ModelError, match="the edit does not fit the model: its name is another"):
         drafts.change("a", 0, EditMade("x", "wrong", patch, False, 0.0))
 
@@ -190,7 +190,7 @@ def test_a_model_file_put_there_by_hand_is_a_button(drafts: Drafts) -> None:
     assert [file.name for file in drafts.list()] == ["found"]
     assert drafts.open("found").history.record == record_of(CLEAR)
     assert path.read_text() == text
-    assert edit(drafts, "found", {"travel_mm": 3.5}) == Kept(1)
+    assert edit(drafts, "found", {"travel_mm": 3.5}) == DraftKept(1)
 
 
 @pytest.mark.parametrize("at_work", [True, False], ids=["while it is open", "while it is closed"])
@@ -201,7 +201,7 @@ def test_a_model_file_changed_by_hand_becomes_an_edit(drafts: Drafts, at_work: b
     if not at_work:
         drafts.close()
     save_model(replace(on_file(drafts, "a"), actuation_mm=1.0), model_path(drafts, "a"))
-    assert isinstance(drafts.change("a", 1, stale), Stale)
+    assert isinstance(drafts.change("a", 1, stale), DraftStale)
     state = drafts.open("a")
     assert (state.revision, state.history.steps[-1].label) == (2, "changed outside")
     assert (state.history.record["actuation_mm"], state.history.record["travel_mm"]) == (1.0, 3.5)
@@ -360,7 +360,7 @@ def test_threads_that_edit_at_once_lose_nothing(drafts: Drafts) -> None:
         for i in range(5):
             while True:
                 answer = edit(drafts, "a", {"reset_mm": 0.1 * which + 0.01 * i})
-                if isinstance(answer, Kept):
+                if isinstance(answer, DraftKept):
                     kept.append(answer.revision)
                     break
 

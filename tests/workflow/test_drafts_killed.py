@@ -17,7 +17,7 @@ from fdvv.workflow import Drafts, model_of
 EDITOR = """
 import itertools, sys
 from pathlib import Path
-from fdvv.workflow import Drafts, EditMade, RedoMade, UndoMade, diff
+from fdvv.workflow import Drafts, EditMade, RedoMade, UndoMade, patch_between
 drafts = Drafts(Path(sys.argv[1]))
 start = drafts.open("a").revision
 print("ready", start, flush=True)
@@ -29,7 +29,7 @@ for i in itertools.count(start):
         change = RedoMade(f"c{i}", 1)
     else:
         record = {**state.history.record, "travel_mm": 3.0 + (i % 90) / 100}
-        change = EditMade(f"c{i}", str(i), diff(state.history.record, record), i % 5 == 4, float(i))
+        change = EditMade(f"c{i}", str(i), patch_between(state.history.record, record), i % 5 == 4, float(i))
     kept = drafts.change("a", state.revision, change)
     print(kept.revision, drafts.open("a").history.record["travel_mm"], flush=True)
 """

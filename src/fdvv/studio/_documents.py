@@ -27,7 +27,7 @@ from fdvv.studio._messages_documents import (
     DocumentsWatching,
 )
 from fdvv.studio._studio import Studio
-from fdvv.workflow import Drafts, DraftState, Kept, Template, model_of, new_model, record_of
+from fdvv.workflow import DraftKept, Drafts, DraftState, ModelTemplate, model_of, new_model, record_of
 
 OWN = "own:"
 
@@ -102,7 +102,7 @@ def change_document(studio: Studio, ask: DocumentChange) -> DocumentAnswer:
     """Make a change, or answer with the button as others left it."""
     documents = studio.part(Documents)
     found = documents.drafts.change(_own_name(ask.button), ask.revision, ask.change)
-    if isinstance(found, Kept):
+    if isinstance(found, DraftKept):
         documents.announce(DocumentChanged(ask.button, found.revision))
         return DocumentAnswer(found.revision, None)
     return DocumentAnswer(found.head.revision, _document(found.head))
@@ -125,7 +125,7 @@ def create_document(studio: Studio, ask: DocumentCreate) -> DocumentNamed:
     if ask.model is not None:
         model = model_of(ask.model, "model")
     else:
-        model = new_model("my button", ask.template or Template.TACTILE)
+        model = new_model("my button", ask.template or ModelTemplate.TACTILE)
     name = ask.name if ask.name is not None else drafts.free_name(model.name)
     return _new(studio, drafts.create(name, model))
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
-from fdvv.workflow import Change, DraftPin, DraftStep, Template
+from fdvv.workflow import DraftChange, DraftPin, DraftStep, ModelTemplate
 
 ButtonId = Annotated[str, Meta(min_length=1, max_length=300)]
 ButtonName = Annotated[str, Meta(max_length=300)]
@@ -39,7 +39,7 @@ class DocumentChange(Struct, frozen=True, forbid_unknown_fields=True):
 
     button: ButtonId
     revision: Annotated[int, Meta(ge=0)]
-    change: Change
+    change: DraftChange
 
 
 class DocumentAnswer(Struct, frozen=True):
@@ -60,7 +60,7 @@ class DocumentCreate(Struct, frozen=True, forbid_unknown_fields=True):
     """Make a button of one's own from a template, or from a model; without a name one is found."""
 
     name: ButtonName | None
-    template: Template | None
+    template: ModelTemplate | None
     model: dict[str, Any] | None
 
 

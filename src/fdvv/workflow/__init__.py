@@ -17,9 +17,9 @@ from fdvv.workflow._compensate import CompensationResult, compensate, uncompensa
 from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
 from fdvv.workflow._demo_report import demo_report
 from fdvv.workflow._devices import open_device
-from fdvv.workflow._draft import DraftState, Kept, Stale
+from fdvv.workflow._draft import DraftKept, DraftStale, DraftState
 from fdvv.workflow._draft_history import (
-    Change,
+    DraftChange,
     DraftHistory,
     DraftPin,
     DraftStep,
@@ -34,12 +34,12 @@ from fdvv.workflow._draft_patch import (
     Patch,
     VibrationChange,
     apply_patch,
-    diff,
-    invert,
+    inverse_patch,
     model_of,
+    patch_between,
     record_of,
 )
-from fdvv.workflow._draft_template import Template, new_model
+from fdvv.workflow._draft_template import ModelTemplate, new_model
 from fdvv.workflow._drafts import DraftFile, Drafts
 from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
 from fdvv.workflow._feasibility import (
@@ -107,16 +107,18 @@ __all__ = [
     "CaptureGuide",
     "CapturePlan",
     "CaptureResult",
-    "Change",
     "Comparison",
     "CompensationResult",
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
     "Difference",
+    "DraftChange",
     "DraftFile",
     "DraftHistory",
+    "DraftKept",
     "DraftPin",
+    "DraftStale",
     "DraftState",
     "DraftStep",
     "Drafts",
@@ -139,6 +141,7 @@ __all__ = [
     "MeasuredBand",
     "MeasuredButton",
     "ModelFit",
+    "ModelTemplate",
     "PaceStanding",
     "Patch",
     "PinMade",
@@ -162,13 +165,11 @@ __all__ = [
     "RigShelf",
     "Session",
     "Shelf",
-    "Stale",
     "Standing",
     "Step",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
-    "Template",
     "TuneResult",
     "TuneSetup",
     "TunedVibration",
@@ -203,7 +204,7 @@ __all__ = [
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
-    "invert",
+    "inverse_patch",
     "join_logs",
     "load_actuation",
     "make_program",
@@ -222,6 +223,7 @@ __all__ = [
     "open_part",
     "open_program",
     "open_receipt",
+    "patch_between",
     "prepare_exciter",
     "press_button",
     "probe",

@@ -9,9 +9,9 @@ from uuid import uuid4
 from fdvv.errors import InputError
 from fdvv.files import write_atomic
 from fdvv.model import load_model, model_to_json
-from fdvv.workflow._draft_history import Change, DraftHistory, EditMade
+from fdvv.workflow._draft_history import DraftChange, DraftHistory, EditMade
 from fdvv.workflow._draft_log import DraftLog
-from fdvv.workflow._draft_patch import Record, canonical, diff, model_of, record_of
+from fdvv.workflow._draft_patch import Record, canonical, model_of, patch_between, record_of
 
 
 @dataclass(frozen=True)
@@ -31,14 +31,14 @@ class DraftState:
 
 
 @dataclass(frozen=True)
-class Kept:
+class DraftKept:
     """A change was made, and is on the disk; revision is the one it made."""
 
     revision: int
 
 
 @dataclass(frozen=True)
-class Stale:
+class DraftStale:
     """A change was refused: it was made on another state than the newest one, the head."""
 
     head: DraftState
@@ -81,7 +81,7 @@ class Draft:
         """Get the button as it is kept."""
         return DraftState(self.name, self._log.revision, self.history)
 
-    def change(self, revision: int, change: Change, now_s: float) -> Kept | Stale:
+    def change(self, revision: int, change: DraftChange, now_s: float) -> DraftKept | DraftStale:
         """Make a change on a revision; it is on the disk when this returns.
 
         One that was made before, by its id, is not made twice. Raises ModelError or InputError if it breaks
@@ -90,14 +90,14 @@ class Draft:
         self.look(now_s)
         made = self._log.revision_of(change.change_id)
         if made is not None:
-            return Kept(made)
+            return DraftKept(made)
         if revision != self._log.revision:
-            return Stale(self.state)
+            return DraftStale(self.state)
         history = self.history.after(change)
         model = model_of(history.record, self.name)
         self._log.write(change, history)
         self._follow(model_to_json(model))
-        return Kept(self._log.revision)
+        return DraftKept(self._log.revision)
 
     def look(self, now_s: float) -> None:
         """Take notice of a model file that somebody else changed, or mend one that is behind."""
@@ -108,7 +108,7 @@ class Draft:
             self._follow(model_to_json(model_of(self.history.record, self.name)))
             return
         self._seen = self._stamp()
-        patch = diff(self.history.record, found)
+        patch = patch_between(self.history.record, found)
         if patch.fields or patch.curves or patch.vibrations:
             edit = EditMade(uuid4().hex, "changed outside", patch, False, now_s)
             self._log.write(edit, self.history.after(edit))

@@ -9,7 +9,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from fdvv.errors import InputError
-from fdvv.workflow._draft_patch import Patch, Record, apply_patch, invert
+from fdvv.workflow._draft_patch import Patch, Record, apply_patch, inverse_patch
 
 Label = Annotated[str, Meta(max_length=400)]
 ChangeId = Annotated[str, Meta(min_length=1, max_length=64)]
@@ -54,7 +54,7 @@ class UnpinMade(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type
     index: Annotated[int, Meta(ge=0)]
 
 
-Change = EditMade | UndoMade | RedoMade | PinMade | UnpinMade
+DraftChange = EditMade | UndoMade | RedoMade | PinMade | UnpinMade
 
 
 class DraftStep(Struct, frozen=True):
@@ -88,7 +88,7 @@ class DraftHistory(Struct, frozen=True):
     done: int = 0
     pins: tuple[DraftPin, ...] = ()
 
-    def after(self, change: Change) -> DraftHistory:
+    def after(self, change: DraftChange) -> DraftHistory:
         """Make a change. ModelError if a patch does not fit, InputError if there is no such step or pin."""
         replace = msgspec.structs.replace
         match change:
@@ -121,7 +121,7 @@ class DraftHistory(Struct, frozen=True):
     def _back(self, count: int) -> Iterator[Patch]:
         _check(count <= self.done, f"there are {self.done} steps to undo, not {count}")
         for step in self.steps[self.done - count : self.done][::-1]:
-            yield from map(invert, step.patches[::-1])
+            yield from map(inverse_patch, step.patches[::-1])
 
     def _forth(self, count: int) -> Iterator[Patch]:
         rest = len(self.steps) - self.done

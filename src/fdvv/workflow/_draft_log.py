@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from fdvv.errors import InputError, ModelError
 from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.workflow._draft_history import Change, DraftHistory
+from fdvv.workflow._draft_history import DraftChange, DraftHistory
 from fdvv.workflow._draft_patch import Record, canonical
 
 DRAFT_SUFFIX = ".draft.jsonl"
@@ -76,12 +76,12 @@ class DraftLog:
             model = canonical(base.model)
             self.history = DraftHistory(model, model)
             return
-        change = msgspec.convert(record["change"], Change)
+        change = msgspec.convert(record["change"], DraftChange)
         if self.history is None:
             raise ModelError("a change without a model before it")
         self._count(change, self.history.after(change))
 
-    def _count(self, change: Change, history: DraftHistory) -> None:
+    def _count(self, change: DraftChange, history: DraftHistory) -> None:
         self.history = history
         self.revision += 1
         self._known[change.change_id] = self.revision
@@ -95,7 +95,7 @@ class DraftLog:
         """Tell the revision that a change made; None if it is not known."""
         return self._known.get(change_id)
 
-    def write(self, change: Change, history: DraftHistory) -> None:
+    def write(self, change: DraftChange, history: DraftHistory) -> None:
         """Keep a change that leads to a history; it is on the disk when this returns."""
         self._journal.write({"change": msgspec.to_builtins(change)})
         self._count(change, history)
@@ -107,7 +107,7 @@ class DraftLog:
         fresh = DraftHistory(self.history.opening, self.history.opening)
         for found, _ in read_records(self.path, KIND):
             if "change" in found:
-                fresh = fresh.after(msgspec.convert(found["change"], Change))
+                fresh = fresh.after(msgspec.convert(found["change"], DraftChange))
             if fresh.record == record:
                 return True
         return False

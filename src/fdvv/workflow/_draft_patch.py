@@ -111,7 +111,7 @@ def same(a: Any, b: Any) -> bool:
     return isinstance(a, bool) == isinstance(b, bool) and bool(a == b)
 
 
-def diff(a: Record, b: Record) -> Patch:
+def patch_between(a: Record, b: Record) -> Patch:
     """Find the patch that leads from one model to another."""
     fields = {**_fields(a, b, _OF_MODEL), **_fields(a["provenance"], b["provenance"], _OF_PROVENANCE)}
     curves = [CurveChange(**change) for change in _changes(a["curves"], b["curves"], _points)]
@@ -151,7 +151,7 @@ def _points(before: Record, after: Record) -> Record | None:
     return {"points": [(i, one, other) for i, (one, other) in pairs if one != other]}
 
 
-def invert(patch: Patch) -> Patch:
+def inverse_patch(patch: Patch) -> Patch:
     """Give the patch that takes another one back."""
     fields = {name: (b, a) for name, (a, b) in patch.fields.items()}
     return Patch(fields, [_turned(c) for c in patch.curves], [_turned(v) for v in patch.vibrations])

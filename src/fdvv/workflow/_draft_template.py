@@ -15,7 +15,7 @@ FRICTION_cN = 8.0
 """A release gives back so much less than the press took."""
 
 
-class Template(StrEnum):
+class ModelTemplate(StrEnum):
     """A plain spring, or one with a bump half-way."""
 
     LINEAR = "linear"
@@ -23,14 +23,14 @@ class Template(StrEnum):
 
 
 _PRESS_cN = {
-    Template.LINEAR: [40, 42, 44, 46, 48, 50, 52, 54, 56, 58, 60, 62],
-    Template.TACTILE: [25, 34, 44, 54, 60, 52, 40, 42, 48, 54, 60, 66],
+    ModelTemplate.LINEAR: [40, 42, 44, 46, 48, 50, 52, 54, 56, 58, 60, 62],
+    ModelTemplate.TACTILE: [25, 34, 44, 54, 60, 52, 40, 42, 48, 54, 60, 66],
 }
 
 
-def new_model(name: str, template: Template | str) -> FDVVModel:
+def new_model(name: str, template: ModelTemplate | str) -> FDVVModel:
     """Make a button of 4 mm travel, drawn, to be edited. Raises ModelError on a name that is none."""
-    template = Template(template)
+    template = ModelTemplate(template)
     points = np.array(_PRESS_cN[template], dtype=np.float64)
     degree = 3
     inner = np.linspace(0.0, TRAVEL_mm, points.size - degree + 1)

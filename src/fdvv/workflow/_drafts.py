@@ -18,11 +18,11 @@ from fdvv.errors import InputError
 from fdvv.files import sync_folder
 from fdvv.journal import Journal
 from fdvv.model import SUFFIX, FDVVModel, save_model
-from fdvv.workflow._draft import Draft, DraftState, Kept, Stale
-from fdvv.workflow._draft_history import Change, EditMade
+from fdvv.workflow._draft import Draft, DraftKept, DraftStale, DraftState
+from fdvv.workflow._draft_history import DraftChange, EditMade
 from fdvv.workflow._draft_log import DRAFT_SUFFIX
 from fdvv.workflow._draft_name import check_name, free_name
-from fdvv.workflow._draft_patch import diff
+from fdvv.workflow._draft_patch import patch_between
 from fdvv.workflow._shelf import BUTTONS
 
 DRAFTS, TRASH, LOCK = "drafts", "trash", ".lock"
@@ -72,8 +72,8 @@ class Drafts:
             draft.look(self._now_s())
             return draft.state
 
-    def change(self, name: str, revision: int, change: Change) -> Kept | Stale:
-        """Make a change on a revision of a button; refused as Stale if that is not its newest.
+    def change(self, name: str, revision: int, change: DraftChange) -> DraftKept | DraftStale:
+        """Make a change on a revision of a button; refused as DraftStale if that is not its newest.
 
         Raises ModelError, InputError if the change breaks the model: then nothing has changed.
         """
@@ -161,7 +161,7 @@ class Drafts:
         """Let the model bear the name of its file, as an edit."""
         draft = self._draft(name)
         named = {**draft.history.record, "name": name}
-        patch = diff(draft.history.record, named)
+        patch = patch_between(draft.history.record, named)
         if patch.fields:
             edit = EditMade(uuid4().hex, f"rename to {name}", patch, False, self._now_s())
             draft.change(draft.state.revision, edit, self._now_s())

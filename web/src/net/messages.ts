@@ -121,11 +121,11 @@ export interface DocumentNamed {
 
 export interface DocumentCreate {
   readonly name: string | null;
-  readonly template: Template | null;
+  readonly template: ModelTemplate | null;
   readonly model: Readonly<Record<string, unknown>> | null;
 }
 
-export type Template = "linear" | "tactile";
+export type ModelTemplate = "linear" | "tactile";
 
 export interface DocumentDelete {
   readonly button: string;
