@@ -77,6 +77,14 @@ from fdvv.workflow._press_subject import (
 )
 from fdvv.workflow._press_trace import PressTrace, drawn_traces, read_press_trace
 from fdvv.workflow._probe import ProbeResult, fd_only, probe
+from fdvv.workflow._program_shelf import KeptProgram, ProgramEntry, ProgramShelf, read_program
+from fdvv.workflow._program_standing import (
+    PlacedFinding,
+    ProgramStanding,
+    Size,
+    SurfaceSize,
+    program_standing,
+)
 from fdvv.workflow._programs import program_image
 from fdvv.workflow._real_pace import RealPace
 from fdvv.workflow._receipt import Receipt
@@ -132,6 +140,7 @@ __all__ = [
     "Guide",
     "HeardStroke",
     "Kept",
+    "KeptProgram",
     "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
@@ -145,6 +154,7 @@ __all__ = [
     "PaceStanding",
     "Patch",
     "PinMade",
+    "PlacedFinding",
     "PressChoice",
     "PressDone",
     "PressMark",
@@ -153,6 +163,9 @@ __all__ = [
     "PressTrace",
     "Presses",
     "ProbeResult",
+    "ProgramEntry",
+    "ProgramShelf",
+    "ProgramStanding",
     "RealPace",
     "Receipt",
     "RecordedModel",
@@ -165,8 +178,10 @@ __all__ = [
     "RigShelf",
     "Session",
     "Shelf",
+    "Size",
     "Standing",
     "Step",
+    "SurfaceSize",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
@@ -231,9 +246,11 @@ __all__ = [
     "program_choices",
     "program_image",
     "program_of",
+    "program_standing",
     "program_subject",
     "quick_look",
     "read_press_trace",
+    "read_program",
     "record_of",
     "recorded_vibrations",
     "render_vibration",
