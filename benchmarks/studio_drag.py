@@ -1,7 +1,7 @@
 """How long does the editor work for one move of the hand, and how soon does the rig answer?
 
 Run as ``python -m benchmarks.studio_drag [MOVES]`` with Chromium installed. Opens the built-in MX Clear, ten
-curves, in a studio of its own, drags a control point with the mouse, and reads the browser's own measures: the
+curves, in a studio of its own, drags a control point, and reads the browser's own measures: the
 work of every move (edit, constraints, panels) and of every picture (the layer that follows the hand), and how
 long ``editor.achievable`` takes from question to answer while the drag goes on. The rig is simulated.
 """
