@@ -49,7 +49,7 @@ export function editorCanvas(desk: Desk, rig: RigView): EditorCanvas {
   return { ...hand, plot, element };
 }
 
-/** Everything there is to see; it stays while a drag goes on, so that the axes do not run from the hand. */
+/** Everything there is to see, with room above for the handles of places; it stays while a drag goes on, so that the axes do not run from the hand. */
 function wholeOf(desk: Desk): () => { readonly x: Range; readonly y: Range } {
   const ranges = signal(rangesOf(desk));
   effect(() => ranges.set(rangesOf(desk)));
@@ -66,7 +66,7 @@ function rangesOf(desk: Desk): { readonly x: Range; readonly y: Range } {
     for (const force of curve.control_points_cN) [low, high] = [Math.min(low, force), Math.max(high, force)];
   }
   const air = 0.08 * (high - low);
-  return { x: { low: -0.03 * far, high: far * 1.06 }, y: { low: low < 0 ? low - air : -0.6 * air, high: high + 2 * air } };
+  return { x: { low: -0.03 * far, high: far * 1.06 }, y: { low: low < 0 ? low - air : -0.6 * air, high: high + 3.4 * air } };
 }
 
 type Brush = Parameters<typeof paint.paintBefore>[0];

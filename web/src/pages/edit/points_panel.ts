@@ -13,7 +13,6 @@ export function pointsPanels(desk: Desk): HTMLElement[] {
   return [
     panel("Places", h("div", { class: "edit-pairs" }, placeField(desk, "travel_mm", "Travel"), placeField(desk, "actuation_mm", "Actuation"), placeField(desk, "reset_mm", "Reset"), onsetField(desk))),
     panel("Control points", h("p", { class: "muted" }, () => wordsOf(desk.active())), pointsTable(desk)),
-    panel("Edits respect", limits(desk)),
   ];
 }
 
@@ -44,6 +43,11 @@ function onsetField(desk: Desk): HTMLElement {
     digits: 4,
     disabled: () => !onset(),
   });
+}
+
+/** What every drag and number respects. */
+export function limitsPanel(desk: Desk): HTMLElement {
+  return panel("Edits respect", limits(desk));
 }
 
 function limits(desk: Desk): HTMLElement {

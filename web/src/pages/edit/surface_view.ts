@@ -1,9 +1,9 @@
 /** The whole button as a surface: force over displacement and velocity, press and release, turned by hand. */
 
 import { type Brush, CanvasBrush, palette, series } from "../../draw";
-import { type Stroke, STROKES, surface, surfaceGrid } from "../../math";
-import { type FDVVModel, velocities_mm_s } from "../../model";
-import { button, effect, empty, h, onCleanup, panel, signal, toggle } from "../../ui";
+import { INTERPOLATIONS, type Stroke, STROKES, surface, surfaceGrid } from "../../math";
+import { type FDVVModel, setInterpolation, velocities_mm_s } from "../../model";
+import { button, choice, effect, empty, h, onCleanup, panel, signal, toggle } from "../../ui";
 import type { Desk } from "./desk";
 import { paintAxes } from "./surface_axes";
 import { type Corner, facesFromBehind, FIRST_TURN, type Seen, seen, turned } from "./surface_scene";
@@ -55,7 +55,13 @@ export function surfacePanels(desk: Desk): HTMLElement[] {
         STROKES.map((stroke) => toggle({ label: stroke, value: () => shown[stroke](), set: (on) => shown[stroke].set(on) })),
         button({ label: "Turn back", act: () => turn.set(FIRST_TURN) }),
       ),
-      h("p", { class: "muted" }, () => `Force between the speeds: ${desk.settled().interpolation}. Drag or use the arrow keys to turn.`),
+      choice({
+        label: "Force between the speeds",
+        options: INTERPOLATIONS.map((one) => [one, one] as const),
+        value: () => desk.settled().interpolation,
+        set: (to) => void desk.apply(setInterpolation(to)),
+      }),
+      h("p", { class: "muted" }, "Drag or use the arrow keys to turn."),
     ),
   ];
 }
@@ -124,8 +130,8 @@ function draw(canvas: HTMLCanvasElement, work: (brush: Brush, size: Size) => voi
 }
 
 function paint(brush: Brush, { width_px, height_px }: Size, scene: Scene, turn: typeof FIRST_TURN): void {
-  const scale = Math.min(width_px / 3.7, height_px / 3.1);
-  const [x0, y0] = [0.5 * width_px, 0.5 * height_px];
+  const scale = Math.min(width_px / 3.7, height_px / 3.6);
+  const [x0, y0] = [0.5 * width_px, 0.46 * height_px];
   const at = (corner: Corner): Seen => {
     const { x, y, behind } = seen(corner, turn);
     return { x: x0 + scale * x, y: y0 + scale * y, behind };

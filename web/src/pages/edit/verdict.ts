@@ -34,7 +34,7 @@ function words(desk: Desk, rig: RigView): HTMLElement[] {
   const at = desk.active().velocity_mm_s === null ? ` at ${made.velocity_mm_s} mm/s` : "";
   return [
     h("strong", { class: `edit-follows ${kind}` }, `${made.verdict}${at}`),
-    h("span", {}, `error to expect ${made.expected_mean_cN.toFixed(1)} cN on average, computed`),
+    h("span", {}, `error to expect ${made.expected_mean_cN.toFixed(1)} cN, computed`),
     ...made.reasons.map((reason) => h("span", { class: "edit-reason" }, reason)),
   ];
 }

@@ -10,7 +10,8 @@ import { figuresPanel } from "./figures_panel";
 import { Hand } from "./hand";
 import { historyPanels } from "./history_panel";
 import { listenForKeys } from "./keys";
-import { pointsPanels } from "./points_panel";
+import { limitsPanel, pointsPanels } from "./points_panel";
+import { selectionSaid } from "./selection_said";
 import { lookAtRigs } from "./rigs";
 import { placeSliders } from "./sliders";
 import { verdictStrip } from "./verdict";
@@ -45,8 +46,8 @@ export function workbench(desk: Desk, id: () => string): HTMLElement {
     "div",
     { class: "edit" },
     bar(desk, canvas.plot, id),
-    h("div", { class: "edit-left" }, curvesPanel(desk)),
-    h("div", { class: "edit-middle panel" }, canvas.element, verdictStrip(desk, rig)),
+    h("div", { class: "edit-left" }, curvesPanel(desk), limitsPanel(desk)),
+    h("div", { class: "edit-middle panel" }, canvas.element, verdictStrip(desk, rig), selectionSaid(desk)),
     side(desk),
   );
 }
