@@ -92,6 +92,12 @@ from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._shelf import Shelf
+from fdvv.workflow._shelf_curves import sample_strokes
+from fdvv.workflow._shelf_index import ShelfIndex, ShelfStand
+from fdvv.workflow._shelf_read import row_of_model
+from fdvv.workflow._shelf_row import NUMBERS as SHELF_NUMBERS
+from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow
+from fdvv.workflow._shelf_search import ShelfFound, ShelfQuery, ShelfSearch
 from fdvv.workflow._spread_report import spread_reports
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
@@ -108,9 +114,11 @@ from fdvv.workflow._vibration_slots import (
 
 __all__ = [
     "PRESS_RIGS",
+    "SHELF_NUMBERS",
     "AchievableCurve",
     "Ask",
     "ButtonPress",
+    "ButtonType",
     "Candidates",
     "CaptureGuide",
     "CapturePlan",
@@ -151,6 +159,7 @@ __all__ = [
     "MeasuredButton",
     "ModelFit",
     "ModelTemplate",
+    "Origin",
     "PaceStanding",
     "Patch",
     "PinMade",
@@ -178,6 +187,12 @@ __all__ = [
     "RigShelf",
     "Session",
     "Shelf",
+    "ShelfFound",
+    "ShelfIndex",
+    "ShelfQuery",
+    "ShelfRow",
+    "ShelfSearch",
+    "ShelfStand",
     "Size",
     "Standing",
     "Step",
@@ -255,6 +270,8 @@ __all__ = [
     "recorded_vibrations",
     "render_vibration",
     "rig_memory",
+    "row_of_model",
+    "sample_strokes",
     "save_actuation",
     "settings_with",
     "simulated_observer",

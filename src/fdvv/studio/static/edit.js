@@ -1,1 +1,1 @@
-import{o as e,p as t}from"./ui.js";var n={title:`Edit`,mount(n){n.append(t(`h1`,{},`Edit`),e(`Not there yet`,`This page is being built.`))}};export{n as page};
+import{a as e,c as t}from"./ui.js";var n={title:`Edit`,mount(n){n.append(t(`h1`,{},`Edit`),e(`Not there yet`,`This page is being built.`))}};export{n as page};
