@@ -18,6 +18,10 @@ export interface Calls {
   readonly "document.list": { readonly ask: DocumentListAsk; readonly answer: DocumentRows };
   readonly "document.open": { readonly ask: DocumentAsk; readonly answer: Document };
   readonly "document.rename": { readonly ask: DocumentRename; readonly answer: DocumentNamed };
+  readonly "editor.achievable": { readonly ask: AchievableAsk; readonly answer: Achievable };
+  readonly "editor.button": { readonly ask: ButtonAsk; readonly answer: ButtonTold };
+  readonly "editor.measured": { readonly ask: MeasuredAsk; readonly answer: Measured };
+  readonly "editor.rigs": { readonly ask: RigsAsk; readonly answer: Rigs };
   readonly "jobs.answer": { readonly ask: JobAnswer; readonly answer: JobRow };
   readonly "jobs.cancel": { readonly ask: JobAsk; readonly answer: JobRow };
   readonly "jobs.choices": { readonly ask: JobsAsk; readonly answer: WorkChoices };
@@ -25,6 +29,13 @@ export interface Calls {
   readonly "jobs.list": { readonly ask: JobsAsk; readonly answer: JobRows };
   readonly "jobs.resume": { readonly ask: JobAsk; readonly answer: JobRow };
   readonly "jobs.start": { readonly ask: StartJob; readonly answer: JobRow };
+  readonly "library.curves": { readonly ask: LibraryCurvesAsk; readonly answer: LibraryCurves };
+  readonly "library.find": { readonly ask: LibraryFind; readonly answer: LibraryFound };
+  readonly "library.index": { readonly ask: LibraryIndexAsk; readonly answer: LibraryIndex };
+  readonly "library.like": { readonly ask: LibraryLikeAsk; readonly answer: LibraryAlikes };
+  readonly "library.refused": { readonly ask: LibraryRefusedAsk; readonly answer: LibraryRefused };
+  readonly "library.rescan": { readonly ask: LibraryRescanAsk; readonly answer: LibraryStanding };
+  readonly "library.search": { readonly ask: LibraryQuery; readonly answer: LibraryRows };
   readonly "press.list": { readonly ask: PressListAsk; readonly answer: PressList };
   readonly "press.trace": { readonly ask: TraceReadAsk; readonly answer: TraceRead };
   readonly "program.check": { readonly ask: CheckProgram; readonly answer: ProgramCheck };
@@ -44,6 +55,7 @@ export interface Calls {
 export interface Channels {
   readonly "documents": { readonly asks: DocumentsWatch; readonly tells: DocumentsWatching | DocumentChanged | DocumentGone };
   readonly "jobs": { readonly asks: WatchJobs | WatchJob; readonly tells: JobsTold | JobChanged | EventsTold };
+  readonly "library": { readonly asks: LibraryWatch; readonly tells: LibraryStanding };
   readonly "press": { readonly asks: PressStart | PressLead | PressPush | PressLift | PressReplay | PressHostEvent | PressHere | PressPause | PressStop | PressFail | PressClear; readonly tells: PressReady | PressMeant | PressFrame | PressRefused | PressOver };
   readonly "scope": { readonly asks: WatchScope; readonly tells: DeviceStanding | ScopeTold | PressSeen };
 }
@@ -238,6 +250,81 @@ export interface DocumentRename {
   readonly name: string;
 }
 
+export interface AchievableAsk {
+  readonly model: unknown;
+  readonly velocities_mm_s: readonly (number | null)[];
+  readonly rig_id: string;
+}
+
+export interface Achievable {
+  readonly curves: readonly AchievableForce[];
+}
+
+export interface AchievableForce {
+  readonly stroke: "press" | "release";
+  readonly velocity_mm_s: number;
+  readonly displacement_mm: readonly number[];
+  readonly intended_cN: readonly number[];
+  readonly achievable_cN: readonly number[];
+  readonly limited: readonly LimitedPart[];
+  readonly verdict: string;
+  readonly reasons: readonly string[];
+  readonly expected_mean_cN: number;
+}
+
+export interface LimitedPart {
+  readonly start_mm: number;
+  readonly end_mm: number;
+  readonly limit: "force" | "slew";
+}
+
+export interface ButtonAsk {
+  readonly button_id: string;
+}
+
+export interface ButtonTold {
+  readonly model: unknown;
+}
+
+export interface MeasuredAsk {
+  readonly name: string;
+}
+
+export interface Measured {
+  readonly found: MeasuredPresses | null;
+}
+
+export interface MeasuredPresses {
+  readonly device_name: string;
+  readonly presses: number;
+  readonly simulated: boolean;
+  readonly curves: readonly MeasuredForce[];
+}
+
+export interface MeasuredForce {
+  readonly stroke: "press" | "release";
+  readonly velocity_mm_s: number;
+  readonly displacement_mm: readonly number[];
+  readonly low_cN: readonly number[];
+  readonly median_cN: readonly number[];
+  readonly high_cN: readonly number[];
+  readonly mean_error_cN: number;
+}
+
+export interface RigsAsk {
+}
+
+export interface Rigs {
+  readonly rigs: readonly RigChoice[];
+}
+
+export interface RigChoice {
+  readonly rig_id: string;
+  readonly about: string;
+  readonly simulated: boolean;
+  readonly known: boolean;
+}
+
 export interface JobAnswer {
   readonly job: string;
   readonly number: number;
@@ -374,6 +461,176 @@ export interface JobRows {
 
 export interface StartJob {
   readonly order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder;
+}
+
+export interface LibraryCurvesAsk {
+  readonly ids: readonly string[];
+}
+
+export interface LibraryCurves {
+  readonly buttons: readonly LibraryButton[];
+  readonly missing: readonly LibraryMissing[];
+}
+
+export interface LibraryButton {
+  readonly id: string;
+  readonly name: string;
+  readonly origin: Origin;
+  readonly kind: ButtonType;
+  readonly kind_reason: string;
+  readonly collection: string;
+  readonly stated: readonly string[];
+  readonly numbers: Readonly<Record<string, number | null>>;
+  readonly why: readonly string[];
+  readonly cycles: number | null;
+  readonly used: number | null;
+  readonly date: string | null;
+  readonly source: string;
+  readonly licence: string;
+  readonly simulated: boolean;
+  readonly strokes: readonly LibraryStroke[];
+}
+
+export type Origin = "builtin" | "own" | "measured";
+
+export type ButtonType = "linear" | "tactile" | "clicky?" | "dome?" | "unclear";
+
+export interface LibraryStroke {
+  readonly stroke: string;
+  readonly velocity_mm_s: number | null;
+  readonly start_mm: number;
+  readonly step_mm: number;
+  readonly force_cN: readonly number[];
+}
+
+export interface LibraryMissing {
+  readonly id: string;
+  readonly reason: string;
+}
+
+export interface LibraryFind {
+  readonly text?: string;
+  readonly kinds?: readonly ButtonType[];
+  readonly origins?: readonly Origin[];
+  readonly ranges?: Readonly<Record<string, LibraryRange>>;
+  readonly like?: string | null;
+  readonly sort?: string;
+  readonly descending?: boolean;
+}
+
+export interface LibraryRange {
+  readonly low?: number | null;
+  readonly high?: number | null;
+}
+
+export interface LibraryFound {
+  readonly epoch: number;
+  readonly positions: readonly number[];
+  readonly distances_jnd: readonly number[];
+  readonly histograms: Readonly<Record<string, LibraryHistogram>>;
+  readonly kinds: Readonly<Record<string, number>>;
+  readonly origins: Readonly<Record<string, number>>;
+  readonly without: Readonly<Record<string, number>>;
+  readonly mended: readonly string[];
+}
+
+export interface LibraryHistogram {
+  readonly lowest: number;
+  readonly highest: number;
+  readonly counts: readonly number[];
+}
+
+export interface LibraryIndexAsk {
+  readonly epoch?: number;
+  readonly first?: number;
+}
+
+export interface LibraryIndex {
+  readonly standing: LibraryStanding;
+  readonly first: number;
+  readonly ids: readonly string[];
+  readonly names: readonly string[];
+  readonly collections: readonly string[];
+  readonly origins: readonly Origin[];
+  readonly kinds: readonly ButtonType[];
+  readonly stated: readonly (readonly string[])[];
+  readonly speeds_mm_s: readonly (readonly number[])[];
+  readonly dates: readonly (string | null)[];
+  readonly simulated: readonly boolean[];
+  readonly numbers: Readonly<Record<string, readonly (number | null)[]>>;
+  readonly sketches: string;
+}
+
+export interface LibraryStanding {
+  readonly type: "standing";
+  readonly epoch: number;
+  readonly rows: number;
+  readonly refused: number;
+  readonly done: number;
+  readonly total: number;
+  readonly ended: boolean;
+  readonly sources: number;
+  readonly trouble: string;
+}
+
+export interface LibraryLikeAsk {
+  readonly id: string;
+  readonly limit?: number;
+}
+
+export interface LibraryAlikes {
+  readonly alike: readonly LibraryAlike[];
+}
+
+export interface LibraryAlike {
+  readonly row: LibraryRow;
+  readonly distance_jnd: number;
+  readonly force_jnd: number;
+  readonly shape_jnd: number;
+  readonly landmarks_jnd: number;
+}
+
+export interface LibraryRow {
+  readonly id: string;
+  readonly name: string;
+  readonly origin: Origin;
+  readonly kind: ButtonType;
+  readonly collection: string;
+  readonly stated: readonly string[];
+  readonly peak_cN: number | null;
+  readonly drop_cN: number | null;
+  readonly actuation_mm: number | null;
+  readonly bottom_out_cN: number | null;
+  readonly travel_mm: number;
+  readonly simulated: boolean;
+}
+
+export interface LibraryRefusedAsk {
+}
+
+export interface LibraryRefused {
+  readonly files: readonly LibraryRefusal[];
+}
+
+export interface LibraryRefusal {
+  readonly place: string;
+  readonly reason: string;
+}
+
+export interface LibraryRescanAsk {
+}
+
+export interface LibraryQuery {
+  readonly text?: string;
+  readonly kinds?: readonly ButtonType[];
+  readonly origins?: readonly Origin[];
+  readonly limit?: number;
+}
+
+export interface LibraryRows {
+  readonly rows: readonly LibraryRow[];
+  readonly total: number;
+  readonly ended: boolean;
 }
 
 export interface PressListAsk {
@@ -764,6 +1021,10 @@ export interface JobEnded {
   readonly type: "ended";
   readonly state: "cancelled" | "done" | "failed";
   readonly line: string;
+}
+
+export interface LibraryWatch {
+  readonly type: "watch";
 }
 
 export interface PressStart {
