@@ -1,1 +1,1 @@
-import{a as e,c as t}from"./ui.js";var n={title:`Programs`,mount(n){n.append(t(`h1`,{},`Programs`),e(`Not there yet`,`This page is being built.`))}};export{n as page};
+import{f as e,o as t}from"./ui.js";var n={title:`Programs`,mount(n){n.append(e(`h1`,{},`Programs`),t(`Not there yet`,`This page is being built.`))}};export{n as page};
