@@ -122,10 +122,10 @@ class LiveRun:
         while self._goes_on():
             due_s, lost_s = pace.due()
             self._dropped_s += lost_s
-            self._shown_sequence = self._do_asked()
+            gathered.led |= self._do_asked()
             began_s = self._clock()
             gathered.take(*self._press.advance(due_s), self._clock() - began_s)
-            if gathered.eventful or self._clock() - gathered.since_s >= FRAME_s:
+            if gathered.due(self._clock()):
                 gathered = self._frame(gathered)
         if not gathered.empty:
             self._frame(gathered)
@@ -145,30 +145,31 @@ class LiveRun:
                 self._looking = False
             return self._looking and not self._over
 
-    def _do_asked(self) -> int:
+    def _do_asked(self) -> bool:
+        """Do what was asked for; tell whether anything was."""
         with self._changed:
-            asked, self._asked, sequence = self._asked, [], self._sequence
+            asked, self._asked, self._shown_sequence = self._asked, [], self._sequence
         for work in asked:
             try:
                 work(self._press)
             except FdvvError as error:
                 self._refused(str(error))
-        return sequence
+        return bool(asked)
 
 
 class _Gathered:
     """What is gathered for the next frame."""
 
     def __init__(self, now_s: float) -> None:
-        self.since_s = now_s
+        self.since_s, self.led = now_s, False
         self._columns: list[LedTicks] = []
         self._events: list[LiveEvent] = []
         self._busy_s = 0.0
 
-    @property
-    def eventful(self) -> bool:
-        """Whether something happened that the page should know at once."""
-        return bool(self._events)
+    def due(self, now_s: float) -> bool:
+        """Whether to show it: at once what happened, sooner what the hand did than what goes on by itself."""
+        waited_s = now_s - self.since_s
+        return bool(self._events) or waited_s >= (FRAME_s / 2 if self.led else FRAME_s)
 
     @property
     def empty(self) -> bool:
