@@ -2,8 +2,8 @@
 
     python -m benchmarks.library_likeness SHARED_DATA
 
-SHARED_DATA holds a folder for every bench. A make is told by the file's name. By chance: as if the others stood
-in any order.
+SHARED_DATA holds a folder for every bench. A make is told by the file's name. By chance: as if the
+others stood in any order.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,6 +95,22 @@ def test_the_list_is_worked_by_keys_alone(library: Page) -> None:
     library.get_by_role("button", name="Press it").press("Enter")
     library.wait_for_selector("main[data-page=press]")
     assert library.url.endswith("#/press/builtin%3Amx-clear")
+
+
+def test_a_copy_of_a_measured_switch_is_one_click_from_the_editor(
+    context: BrowserContext, start_studio: Callable[..., RunningStudio], bench: Path
+) -> None:
+    page = context.new_page()
+    page.goto(start_studio(bench).address)
+    page.get_by_label("Search buttons").fill("purple")
+    expect(page.locator(f"{ROWS} .lib-name")).to_have_text(["Kailh Pro Purple"], timeout=40_000)
+    page.get_by_role("tab", name="About").click()
+    page.get_by_role("button", name="Edit a copy").click()
+    page.wait_for_selector("main[data-page=edit]")
+    expect(page).to_have_url(re.compile("#/edit/own%3AKailh"))
+    page.get_by_role("link", name="Library").click()
+    page.get_by_text("Mine", exact=True).click()
+    expect(page.locator(f"{ROWS} .lib-name")).to_have_count(1)
 
 
 def test_a_link_shows_the_same_view(library: Page, context: BrowserContext) -> None:
