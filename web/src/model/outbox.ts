@@ -12,6 +12,8 @@ export type Sent = "kept" | "lost" | "stopped";
 export class Outbox {
   #queue: Change[] = [];
   #sending: Promise<void> | null = null;
+  #hurried = false;
+  #wake: () => void = () => undefined;
 
   /**
    * post : sends one change, and takes it out if it is kept. stopped : whether nothing may be sent now.
@@ -45,6 +47,12 @@ export class Outbox {
     this.#sending ??= this.#drain();
   }
 
+  /** Try at once what waits for its next try: the server is said to be there again. */
+  hurry(): void {
+    this.#hurried = true;
+    this.#wake();
+  }
+
   /** Drop what is not kept yet. */
   clear(): void {
     this.#queue = [];
@@ -58,13 +66,22 @@ export class Outbox {
   async #drain(): Promise<void> {
     do {
       for (let tries = 0; this.#queue.length && !this.stopped(); ) {
+        this.#hurried = false;
         const sent = await this.post(this.#queue[0]!);
         tries = sent === "lost" ? tries + 1 : 0;
-        if (tries) await this.around.wait(AGAIN_ms[Math.min(tries, AGAIN_ms.length) - 1]!);
+        if (tries) await this.#pause(AGAIN_ms[Math.min(tries, AGAIN_ms.length) - 1]!);
       }
       await this.emptied();
       // a change that was made meanwhile has to be sent as well
     } while (this.#queue.length && !this.stopped());
     this.#sending = null;
+  }
+
+  async #pause(ms: number): Promise<void> {
+    if (this.#hurried) return;
+    const woken = new Promise<void>((resolve) => {
+      this.#wake = resolve;
+    });
+    await Promise.race([this.around.wait(ms), woken]);
   }
 }

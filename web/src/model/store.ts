@@ -166,8 +166,9 @@ export class DocumentStore {
     await this.#follow();
   }
 
-  /** Look whether others changed the document while nobody told of it. */
+  /** The server is there again: send what waits, and look whether others changed the document meanwhile. */
   async refresh(): Promise<void> {
+    this.#outbox.hurry();
     await this.#follow(true);
   }
 
@@ -203,6 +204,7 @@ export class DocumentStore {
   /** Stop trying to reach the server. */
   close(): void {
     this.#closed = true;
+    this.#outbox.hurry();
     this.#listeners.clear();
   }
 

@@ -9,7 +9,6 @@ import {
   History,
   type OpenedDocument,
   same,
-  type Surroundings,
 } from "../../src/model";
 
 export class Unreachable extends Error {}
@@ -92,7 +91,7 @@ export class ScriptedServer implements DocumentServer {
 }
 
 /** A clock that only moves when told, ids that count, and waits that are written down. */
-export function stillSurroundings(name: string): Surroundings & { time_s: number; readonly waits: number[] } {
+export function stillSurroundings(name: string) {
   let id = 0;
   const around = {
     time_s: 0,

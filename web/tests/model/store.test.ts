@@ -111,6 +111,22 @@ describe("a lost connection", () => {
     expect(store.state).toBe("saved");
   });
 
+  test("that is back is used at once", async () => {
+    const { server, around, store } = await opened();
+    around.wait = () => new Promise(() => undefined);
+    server.troubles = ["out of reach", "out of reach"];
+    store.apply(setNumber("travel_mm", 3.5));
+    const lost = new Promise<void>((resolve) => store.onChange(() => store.state === "lost" && resolve()));
+    await lost;
+    expect([store.unsaved, server.troubles.length]).toEqual([1, 1]);
+    await store.refresh();
+    await new Promise((resolve) => setTimeout(resolve, 0));
+    expect([store.state, server.troubles.length]).toEqual(["lost", 0]);
+    await store.refresh();
+    await store.settled();
+    expect([store.state, server.has(store.model)]).toEqual(["saved", true]);
+  });
+
   test("shows one line while it lasts", async () => {
     const { server, store } = await opened();
     const lines: (string | null)[] = [];
