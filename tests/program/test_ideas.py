@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.program import Program, check_program, load_shipped, make, programs
+from fdvv.model import load_builtin
+from fdvv.program import Program, Recipe, check_program, load_shipped, make, programs, ranges
 
 from ._pressing import TICKS_PER_S, path, press
 
@@ -176,3 +177,24 @@ def test_parameters_change_only_what_they_name() -> None:
     assert before.surfaces == after.surfaces
     assert before.states[:2] == after.states[:2]
     assert after.states[2].repeat_ms == 100
+
+
+@pytest.mark.parametrize("recipe", programs(), ids=lambda recipe: recipe.name)
+def test_a_parameter_may_be_what_its_range_says_and_no_more(recipe: Recipe) -> None:
+    base = load_builtin("mx-red")
+    allowed = ranges(recipe.name, base)
+    assert list(allowed) == [parameter.name for parameter in recipe.parameters]
+    for parameter in recipe.parameters:
+        low, high = allowed[parameter.name]
+        assert low <= parameter.default <= high
+        step = 1 if isinstance(parameter.default, int) else 0.01
+        make(recipe.name, base, **{parameter.name: low})
+        with pytest.raises(InputError, match="must be"):
+            make(recipe.name, base, **{parameter.name: low - step})
+        with pytest.raises(InputError, match="must be"):
+            make(recipe.name, base, **{parameter.name: high + step})
+
+
+def test_more_levels_leave_less_room_for_a_detent() -> None:
+    base = load_builtin("mx-red")
+    assert ranges("multi-level", base, levels=3)["detent_mm"][1] == pytest.approx(base.travel_mm / 4)

@@ -9,6 +9,7 @@ from fdvv.program._file import SUFFIX, load_program, program_from_json, program_
 from fdvv.program._library import Parameter, Recipe, load_shipped, make, programs
 from fdvv.program._limits import Limits
 from fdvv.program._program import During, Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program._ranges import ranges
 from fdvv.program._records import VERSION, schema
 from fdvv.program._surface import Surface, flat, line, of_model, of_surface, raised, scaled
 from fdvv.program._synth import (
@@ -78,6 +79,7 @@ __all__ = [
     "program_to_json",
     "programs",
     "raised",
+    "ranges",
     "read_status",
     "render",
     "require_accepted",

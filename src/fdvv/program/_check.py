@@ -38,12 +38,14 @@ class Finding:
     state : name of the state it is about; empty for the whole program.
     place : where in it.
     reason : what is wrong, with the figures.
+    remedy : what to do about it.
     """
 
     severity: Severity
     state: str
     place: str
     reason: str
+    remedy: str
 
     def __str__(self) -> str:
         where = f"state {self.state!r}, " if self.state else ""
@@ -124,12 +126,12 @@ def require_accepted(program: Program, limits: Limits | None = None) -> Report:
     return report
 
 
-def _refused(state: str, place: str, reason: str) -> Finding:
-    return Finding(Severity.REFUSED, state, place, reason)
+def _refused(state: str, place: str, reason: str, remedy: str) -> Finding:
+    return Finding(Severity.REFUSED, state, place, reason, remedy)
 
 
-def _warning(state: str, place: str, reason: str) -> Finding:
-    return Finding(Severity.WARNING, state, place, reason)
+def _warning(state: str, place: str, reason: str, remedy: str) -> Finding:
+    return Finding(Severity.WARNING, state, place, reason, remedy)
 
 
 def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
@@ -137,14 +139,14 @@ def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
     try:
         compiled = compile_program(program, limits)
     except InputError as error:
-        return [_refused("", error.place, error.reason)], limits.worst_grid_error_cN
+        return [_refused("", error.place, error.reason, error.remedy)], limits.worst_grid_error_cN
     return [], max(compiled.grid_error_cN.values()) + compiled.rounding_cN
 
 
 def _travel(program: Program, limits: Limits) -> Iterator[Finding]:
     if program.travel_mm > limits.largest_travel_mm:
         reason = f"{program.travel_mm:g} mm, the rig's stop reaches {limits.largest_travel_mm:g}"
-        yield _refused("", "travel", reason)
+        yield _refused("", "travel", reason, "shorten it")
 
 
 def _state(program: Program, state: State, limits: Limits) -> Iterator[Finding]:
@@ -154,16 +156,17 @@ def _state(program: Program, state: State, limits: Limits) -> Iterator[Finding]:
         slew_cN_s = 1000 * abs(state.bias_end_cN - state.bias_cN) / state.bias_ms
         if slew_cN_s > limits.slew_cN_s:
             reason = f"{slew_cN_s:.3g} cN/s, the rig's force changes by {limits.slew_cN_s:.3g}"
-            yield _refused(state.name, "bias", reason)
+            yield _refused(state.name, "bias", reason, "make bias_ms longer")
     for signal in program.signals:
         if signal.name == state.repeat_signal and state.repeat_ms < 1000 * signal.duration_s:
             reason = f"every {state.repeat_ms} ms, it lasts {1000 * signal.duration_s:g} ms"
-            yield _refused(state.name, f"repeated signal {signal.name!r}", reason)
+            remedy = "make repeat_ms longer or the signal shorter"
+            yield _refused(state.name, f"repeated signal {signal.name!r}", reason, remedy)
     for i, transition in enumerate(state.transitions):
         when = transition.when
         if when.when is When.DEEPER_THAN and when.value >= program.travel_mm:
             reason = f"{when}, the travel ends at {program.travel_mm:g} mm"
-            yield _warning(state.name, f"transition {i + 1}", reason)
+            yield _warning(state.name, f"transition {i + 1}", reason, "move it up")
 
 
 def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding]:
@@ -174,7 +177,7 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
     strongest_cN = max(map(abs, ends))
     if strongest_cN > limits.force_cN:
         reason = f"{strongest_cN:.4g} cN, weight included, the rig gives {limits.force_cN:g}"
-        yield _refused(state.name, place, reason)
+        yield _refused(state.name, place, reason, "weaken it")
     slope_cN_mm, at_mm = _slope_cN_mm(surface, limits)
     slew_cN_s = slope_cN_mm * FASTEST_PRESS_mm_s
     where = f"{place} at {at_mm:.2f} mm"
@@ -183,10 +186,10 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
             f"{slope_cN_mm:.0f} cN/mm at {FASTEST_PRESS_mm_s:g} mm/s is {slew_cN_s:.3g} cN/s, "
             f"the rig's force changes by {limits.slew_cN_s:.3g}"
         )
-        yield _refused(state.name, where, reason)
+        yield _refused(state.name, where, reason, "make the step there wider or lower")
     elif slope_cN_mm > limits.stiffness_cN_mm:
         reason = f"{slope_cN_mm:.0f} cN/mm, a held cap may buzz above {limits.stiffness_cN_mm:.0f}"
-        yield _warning(state.name, where, reason)
+        yield _warning(state.name, where, reason, "make the step there wider or lower")
 
 
 def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
@@ -217,10 +220,10 @@ def _heat(state: State, force_cN: float, limits: Limits) -> Iterator[Finding]:
     reason = f"{force_cN:.0f} cN held warms the coil by {rise_K:.0f} K"
     if rise_K > limits.settings.heat_limit_K:
         reason += f", the rig stops at {limits.settings.heat_limit_K}"
-        yield _refused(state.name, "at the bottom", reason)
+        yield _refused(state.name, "at the bottom", reason, "weaken the force there")
     elif rise_K > limits.settings.derate_start_K:
         reason += f", above {limits.settings.derate_start_K} the rig weakens it"
-        yield _warning(state.name, "at the bottom", reason)
+        yield _warning(state.name, "at the bottom", reason, "weaken the force there")
 
 
 def _unreachable(program: Program) -> Iterator[Finding]:
@@ -231,7 +234,9 @@ def _unreachable(program: Program) -> Iterator[Finding]:
         new += fresh
     for state in program.states:
         if state.name not in reached:
-            yield _refused(state.name, "whole state", "no way leads to it")
+            yield _refused(
+                state.name, "whole state", "no way leads to it", "add a transition to it, or remove it"
+            )
 
 
 def _hang(program: Program) -> Iterator[Finding]:
@@ -239,7 +244,8 @@ def _hang(program: Program) -> Iterator[Finding]:
     if found:
         cycle, stillness = found
         place = f"at {stillness.displacement_mm:.2f} mm"
-        yield _refused(cycle[0], place, f"without any motion it goes {' → '.join(cycle)} for ever")
+        reason = f"without any motion it goes {' → '.join(cycle)} for ever"
+        yield _refused(cycle[0], place, reason, "move two of their conditions apart, or add an after_ms")
 
 
 def _flaws(returning: Returning) -> Iterator[Finding]:
@@ -248,4 +254,4 @@ def _flaws(returning: Returning) -> Iterator[Finding]:
         cycle = returning.cycle_flaw()
         flaws = [cycle] if cycle else []
     for flaw in flaws:
-        yield _refused(flaw.state, flaw.place, flaw.reason)
+        yield _refused(flaw.state, flaw.place, flaw.reason, flaw.remedy)

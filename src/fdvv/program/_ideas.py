@@ -13,16 +13,8 @@ from fdvv.model import FDVVModel, Mode, Stroke
 from fdvv.program._button import key_points_mm, vibrations_of
 from fdvv.program._condition import Condition, Transition, When
 from fdvv.program._program import Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program._ranges import HOLD_mm, NEAR_BOTTOM_mm, check_ranges
 from fdvv.program._surface import STEP_mm, Surface, flat, of_model, raised, scaled
-
-NEAR_BOTTOM_mm = 0.3
-HOLD_mm = 0.2
-"""How far a cap must come back before a place counts as left."""
-
-
-def _within(name: str, value: float, low: float, high: float) -> None:
-    if not low <= value <= high:
-        raise InputError(name, "value", f"must be {low:g} to {high:g}, got {value:g}", "choose another")
 
 
 def _surfaces(base: FDVVModel) -> tuple[Surface, Surface]:
@@ -64,10 +56,8 @@ def fast_tapping(
     Below trigger_mm the cap is pulled down with pull_cN, key 1, until it is 0.3 mm above the bottom or
     drop_ms are over; then it is pushed up with push_cN, key 0, and armed again at half of trigger_mm.
     """
-    _within("trigger_mm", trigger_mm, 0.4, base.travel_mm - 2 * NEAR_BOTTOM_mm)
-    _within("pull_cN", pull_cN, 6, 200)
-    _within("push_cN", push_cN, 20, 300)
-    _within("drop_ms", drop_ms, 5, 1000)
+    given = {"trigger_mm": trigger_mm, "pull_cN": pull_cN, "push_cN": push_cN, "drop_ms": drop_ms}
+    check_ranges("fast-tapping", base, **given)
     press, release = _surfaces(base)
     signals, events = _snaps(base, "ready")
     bottom_mm = base.travel_mm - NEAR_BOTTOM_mm
@@ -96,9 +86,13 @@ def non_newtonian(
     every tick and held from fastest_mm_s on. The release is the base's times soft_ratio at any speed, so that
     the speed cannot push the cap up. Key 1 between the base's actuation and reset.
     """
-    _within("soft_ratio", soft_ratio, 0.1, 1.5)
-    _within("stiffening_per_m_s", stiffening_per_m_s, 0, 20)
-    _within("fastest_mm_s", fastest_mm_s, 10, 1000)
+    check_ranges(
+        "non-newtonian",
+        base,
+        soft_ratio=soft_ratio,
+        stiffening_per_m_s=stiffening_per_m_s,
+        fastest_mm_s=fastest_mm_s,
+    )
     slow_press, slow_release = (of_model(base, s, velocity_mm_s=_slowest(base, s)) for s in Stroke)
     press = scaled(
         slow_press,
@@ -137,9 +131,7 @@ def multi_level(
     by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz
     more per level. The key is the level; it is left 0.1 mm above where it begins. The release has no detents.
     """
-    _within("levels", levels, 1, 8)
-    _within("detent_cN", detent_cN, 0, 100)
-    _within("detent_mm", detent_mm, 0.1, base.travel_mm / (levels + 1))
+    check_ranges("multi-level", base, levels=levels, detent_cN=detent_cN, detent_mm=detent_mm)
     press, release = _surfaces(base)
     starts_mm = [STEP_mm * round(base.travel_mm * k / (levels + 1) / STEP_mm) for k in range(1, levels + 1)]
     bumps = [
@@ -167,9 +159,8 @@ def dwell_ticks(base: FDVVModel, period_ms: int = 250, bottom_mm: float = 0.3) -
     Within bottom_mm of the bottom the key is 2 and a tick of 12 ms is felt at once and every period_ms; it
     ends when the cap has come back by 0.2 mm more. Otherwise the base, key 1 between actuation and reset.
     """
-    _within("period_ms", period_ms, 20, 10_000)
+    check_ranges("dwell-ticks", base, period_ms=period_ms, bottom_mm=bottom_mm)
     actuation_mm, reset_mm = key_points_mm(base)
-    _within("bottom_mm", bottom_mm, 0.05, base.travel_mm - actuation_mm - 2 * HOLD_mm)
     press, release = _surfaces(base)
     signals, events = _snaps(base)
     edge_mm = base.travel_mm - bottom_mm
@@ -201,10 +192,8 @@ def returning_later(
     `event`. Then the base's force returns within fade_ms, key 0, and the button is armed again at half the
     actuation depth.
     """
-    _within("cooldown_ms", cooldown_ms, 1, 60_000)
-    _within("event", event, 0, 31)
-    _within("sunk_cN", sunk_cN, 6, 100)
-    _within("fade_ms", fade_ms, 0, 2000)
+    given = {"cooldown_ms": cooldown_ms, "event": event, "sunk_cN": sunk_cN, "fade_ms": fade_ms}
+    check_ranges("returning-later", base, **given)
     actuation_mm, _ = key_points_mm(base)
     press, release = _surfaces(base)
     signals, events = _snaps(base, "ready", "returning")
@@ -239,8 +228,8 @@ def rapid_trigger(
         "top_dead_mm": top_dead_mm,
         "bottom_dead_mm": bottom_dead_mm,
     }
+    check_ranges("rapid-trigger", base, **steps)
     for name, value in steps.items():
-        _within(name, value, 0.01, base.travel_mm / 2 - 0.1)
         if abs(value * 100 - round(value * 100)) > 1e-6:
             raise InputError(name, "value", f"goes in steps of 0.01, got {value:g}", "round it")
     press, release = _surfaces(base)

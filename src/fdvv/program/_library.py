@@ -75,7 +75,7 @@ def _recipe(name: str) -> Recipe:
     return Recipe(name, summary, details, tuple(Parameter(p.name, p.default) for p in given))
 
 
-def make(name: str, base: FDVVModel | str | None = None, **parameters: float) -> Program:
+def make(name: str, base: FDVVModel | str | None = None, /, **parameters: float) -> Program:
     """Make a shipped program.
 
     base : the model it stands on, or the name of a built-in; mx-red by default.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import islice
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +21,8 @@ from fdvv.protocol import VelocitySource
 TRAVEL_mm = (0.2, 6.4)
 LONGEST_fade_ms = 2000
 LONGEST_ms = 65_535
+LISTED = 16
+"""How many known names an error tells; a device holds no more states or surfaces."""
 
 
 class Velocity(StrEnum):
@@ -221,21 +225,25 @@ class Program:
         return next(surface for surface in self.surfaces if surface.name == name)
 
 
-def _names(things: Iterable[Named], what: str) -> list[str]:
-    found = [thing.name for thing in things]
-    twice = {name for name in found if found.count(name) > 1}
+def _names(things: Iterable[Named], what: str) -> dict[str, int]:
+    """Count names that must be each there once, in their order."""
+    found = Counter(thing.name for thing in things)
+    twice = [name for name, count in found.items() if count > 1]
     if twice:
-        raise ModelError(f"two {what}s are called {sorted(twice)[0]!r}")
+        raise ModelError(f"two {what}s are called {min(twice)!r}")
     return found
 
 
-def _check_known(name: str, known: list[str], what: str, place: str) -> None:
+def _check_known(name: str, known: Collection[str], what: str, place: str) -> None:
     if name not in known:
-        listed = ", ".join(repr(k) for k in known) or "none"
+        listed = ", ".join(repr(k) for k in islice(known, LISTED)) or "none"
+        listed += f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
         raise ModelError(f"{place}: no {what} is called {name!r}; there is {listed}")
 
 
-def _check_state(state: State, states: list[str], surfaces: list[str], signals: list[str]) -> None:
+def _check_state(
+    state: State, states: Collection[str], surfaces: Collection[str], signals: Collection[str]
+) -> None:
     place = f"state {state.name!r}"
     for name in (state.press, state.release):
         _check_known(name, surfaces, "surface", place)

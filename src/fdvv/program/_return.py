@@ -41,11 +41,12 @@ class Node(NamedTuple):
 
 @dataclass(frozen=True)
 class Flaw:
-    """Why the return cannot be proven: the state, the place in it, and what may happen."""
+    """Why the return cannot be proven: the state, the place in it, what may happen, and what helps."""
 
     state: str
     place: str
     reason: str
+    remedy: str
 
 
 class Returning:
@@ -147,14 +148,15 @@ class Returning:
         for i, state in enumerate(self.program.states):
             lifts = self.motion.lifts(i)
             if not lifts and state.name == self.program.start:
-                found.append(
-                    Flaw(state.name, self._weakest(i), "may not lift the cap, and is the start state")
-                )
+                reason = "may not lift the cap, and is the start state"
+                found.append(Flaw(state.name, self._weakest(i), reason, "raise its forces there"))
             elif not lifts and self.motion.longest_stay_s(i) is None:
                 reason = "may not lift the cap, and no after_ms without a guard ends it"
-                found.append(Flaw(state.name, self._weakest(i), reason))
+                remedy = "raise its forces there, or let an after_ms without only_if end it"
+                found.append(Flaw(state.name, self._weakest(i), reason, remedy))
             elif lifts and self.motion.stay_at_top_s(i) is None and state.name != self.program.start:
-                found.append(Flaw(state.name, "at the top", "nothing is sure to lead on to the start state"))
+                reason, remedy = "nothing is sure to lead on to the start state", "add a shallower_than_mm"
+                found.append(Flaw(state.name, "at the top", reason, remedy))
         return found
 
     def _weakest(self, state: int) -> str:
@@ -209,7 +211,7 @@ class Returning:
         told = [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
         edge_mm = self.cells.edges_mm[max(node.cell for node in cycle)]
         reason = f"with the finger off it may go {' → '.join(told if len(told) > 1 else told * 2)} for ever"
-        return Flaw(names[0], f"near {edge_mm:.2f} mm", reason)
+        return Flaw(names[0], f"near {edge_mm:.2f} mm", reason, "move the conditions of these states apart")
 
     # -- time ----------------------------------------------------------------------------------------------
 

@@ -1,3 +1,4 @@
+/// <reference types="node" />
 /** Numbers from the Python side; tools/make_studio_golden.py writes them. */
 
 import { readFileSync } from "node:fs";

@@ -1,0 +1,236 @@
+"""What stands against a program, each with the place in its document, and how much of a device it takes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from fdvv.errors import InputError
+from fdvv.program import Compiled, Finding, Limits, Program, Severity, check_program, compile_program
+from fdvv.protocol import (
+    IMAGE_BYTES,
+    SLOTS,
+    STATES,
+    SURFACE_DISPLACEMENTS,
+    SURFACE_VELOCITIES,
+    SURFACES,
+    TRANSITIONS,
+    VIBRATIONS,
+)
+from fdvv.workflow._program_shelf import read_program
+
+PARTS = {"state": "states", "surface": "surfaces", "signal": "signals"}
+"""Kinds of named parts, and the fields of a document that list them."""
+
+
+@dataclass(frozen=True)
+class PlacedFinding:
+    """One thing that is wrong or doubtful, with its place in the document.
+
+    Attributes
+    ----------
+    severity : refused or a warning.
+    path : of the part it concerns, such as ``states[1].transitions[0]``; empty for the whole program.
+    state, place, reason, remedy : as in a Finding; `state` is empty where it concerns none.
+    at_mm : the displacement it is about, or None.
+    """
+
+    severity: Severity
+    path: str
+    state: str
+    place: str
+    reason: str
+    remedy: str
+    at_mm: float | None = None
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much of something a program takes, and how much a device holds; None if it cannot be told yet."""
+
+    what: str
+    taken: int | None
+    most: int
+
+
+@dataclass(frozen=True)
+class SurfaceSize:
+    """What a surface becomes in an image: even columns, rows of velocities, and what that costs in force."""
+
+    name: str
+    columns: int
+    rows: int
+    error_cN: float
+
+
+@dataclass(frozen=True)
+class ProgramStanding:
+    """What a check found and what compiling would give.
+
+    Attributes
+    ----------
+    findings : refusals first.
+    sizes : image bytes first, then the counts.
+    surfaces : empty while the program cannot be compiled.
+    return_s : bound of the time in which the cap comes back; None if unproven.
+    stiffness_cN_mm, rise_K : as a Report has them; None if the program was not checked so far.
+    """
+
+    findings: tuple[PlacedFinding, ...]
+    sizes: tuple[Size, ...] = ()
+    surfaces: tuple[SurfaceSize, ...] = ()
+    return_s: float | None = None
+    stiffness_cN_mm: float | None = None
+    rise_K: float | None = None
+
+    @property
+    def accepted(self) -> bool:
+        """Tell whether a device may be given it."""
+        return not any(f.severity is Severity.REFUSED for f in self.findings)
+
+
+def program_standing(text: str, limits: Limits | None = None) -> ProgramStanding:
+    """Check the text of a program file as far as it goes; never raises for what a person can mend.
+
+    A text that is no program has one finding. One that no device could hold is not checked further than
+    that, for the proof that the cap comes back takes time that grows with the program.
+    """
+    limits = limits or Limits()
+    try:
+        program = read_program(text)
+    except InputError as error:
+        return ProgramStanding((_unreadable(text, error),))
+    try:
+        compiled = compile_program(program, limits)
+    except InputError as error:
+        if _beyond(program):
+            return ProgramStanding((_uncompiled(program, error),), _sizes(program, None))
+        compiled = None
+    report = check_program(program, limits)
+    return ProgramStanding(
+        tuple(_placed(program, finding) for finding in report.findings),
+        _sizes(program, compiled),
+        _surface_sizes(program, compiled),
+        report.return_s,
+        report.stiffness_cN_mm,
+        report.rise_K,
+    )
+
+
+def _counts(program: Program) -> tuple[tuple[str, int, int], ...]:
+    return (
+        ("states", len(program.states), STATES),
+        ("transitions", sum(len(s.transitions) for s in program.states), TRANSITIONS),
+        ("surfaces", len(program.surfaces), SURFACES),
+        ("vibrations", len(program.vibrations), VIBRATIONS),
+        ("signals", len(program.signals), SLOTS),
+        ("velocities", max(len(s.velocity_mm_s) for s in program.surfaces), SURFACE_VELOCITIES),
+    )
+
+
+def _beyond(program: Program) -> bool:
+    return any(taken > most for _, taken, most in _counts(program))
+
+
+def _sizes(program: Program, compiled: Compiled | None) -> tuple[Size, ...]:
+    columns = max(compiled.columns.values()) if compiled else None
+    return (
+        Size("bytes", len(compiled.image) if compiled else None, IMAGE_BYTES),
+        *(Size(*count) for count in _counts(program)),
+        Size("columns", columns, SURFACE_DISPLACEMENTS),
+    )
+
+
+def _surface_sizes(program: Program, compiled: Compiled | None) -> tuple[SurfaceSize, ...]:
+    if compiled is None:
+        return ()
+    return tuple(
+        SurfaceSize(s.name, compiled.columns[s.name], len(s.velocity_mm_s), compiled.grid_error_cN[s.name])
+        for s in program.surfaces
+    )
+
+
+def _names(program: Program) -> dict[str, list[str]]:
+    return {
+        "state": [s.name for s in program.states],
+        "surface": [s.name for s in program.surfaces],
+        "signal": [s.name for s in program.signals],
+    }
+
+
+def _placed(program: Program, finding: Finding) -> PlacedFinding:
+    names = _names(program)
+    told = f"state {finding.state!r}, {finding.place}" if finding.state else finding.place
+    number = re.search(r"(-?\d+(?:\.\d+)?) mm\b", finding.place)
+    return PlacedFinding(
+        finding.severity,
+        path_of(told, names),
+        finding.state,
+        finding.place,
+        finding.reason,
+        finding.remedy,
+        float(number[1]) if number else None,
+    )
+
+
+def _uncompiled(program: Program, error: InputError) -> PlacedFinding:
+    path = path_of(error.place, _names(program))
+    return PlacedFinding(Severity.REFUSED, path, "", error.place, error.reason, error.remedy)
+
+
+def _unreadable(text: str, error: InputError) -> PlacedFinding:
+    """Place what makes a text no program: by the path that was told, or by the part that is named."""
+    path = error.place.removeprefix("$").removeprefix(".") if error.place.startswith("$") else ""
+    if not path:
+        path = path_of(error.reason, _names_in(text))
+    return PlacedFinding(Severity.REFUSED, path, "", error.place, error.reason, error.remedy)
+
+
+def _names_in(text: str) -> dict[str, list[str]]:
+    """Find the names of the parts in a text that need not be a program."""
+    try:
+        document = msgspec.json.decode(text)
+    except (msgspec.MsgspecError, UnicodeError, RecursionError):
+        return {}
+    held = document if isinstance(document, dict) else {}
+    return {kind: [_name(part) for part in _listed(held.get(field))] for kind, field in PARTS.items()}
+
+
+def _listed(value: object) -> list[object]:
+    return value if isinstance(value, list) else []
+
+
+def _name(part: object) -> str:
+    return str(part.get("name")) if isinstance(part, dict) else ""
+
+
+def path_of(told: str, names: dict[str, list[str]]) -> str:
+    """Turn words such as ``state 'up', transition 1`` into the path of that part; empty for the whole.
+
+    A surface named within a state is the part that is meant, for it is what can be mended.
+    """
+    found = {kind: _named(told, kind, names.get(kind, ())) for kind in PARTS}
+    if found["surface"] is not None:
+        return f"surfaces[{found['surface']}]"
+    if found["state"] is not None:
+        path = f"states[{found['state']}]"
+        transition = re.search(r", transition (\d+)", told)
+        return f"{path}.transitions[{int(transition[1]) - 1}]" if transition else path
+    if found["signal"] is not None:
+        return f"signals[{found['signal']}]"
+    vibration = re.match(r"vibration (\d+)", told)
+    if vibration:
+        return f"vibrations[{int(vibration[1]) - 1}]"
+    return {"travel": "travel_mm", "travel_mm": "travel_mm", "start:": "start"}.get(told.split(" ")[0], "")
+
+
+def _named(told: str, kind: str, names: Sequence[str]) -> int | None:
+    """Give which part is named where the words begin or go on after a comma; the last of equal names."""
+    for i in reversed(range(len(names))):
+        words = f"{kind} {names[i]!r}"
+        if told.startswith(words) or f", {words}" in told or told == f"two {kind}s are called {names[i]!r}":
+            return i
+    return None

@@ -1,0 +1,208 @@
+/** An open program: its history, what is chosen in it, what the check says of it, and its way to the server. */
+
+import type { ProgramCheck, ProgramFinding, ProgramText } from "../../net/messages";
+import { computed, signal, type Signal } from "../../ui/signal";
+import { readDocument, writeDocument, type ProgramDocument } from "../../programs/document";
+import { History } from "../../programs/history";
+import { isThere, WHOLE, type Choice } from "../../programs/path";
+import { problemsOf } from "../../programs/problems";
+
+/** What a book needs of a server; all reject with one line for the person. */
+export interface ProgramServer {
+  check(text: string): Promise<ProgramCheck>;
+  save(program: string, text: string, revision: string): Promise<ProgramText>;
+}
+
+/**
+ * saved: the file is what is shown. waiting: it will be written. saving: it is being written.
+ * scratch: a shipped program, whose changes live on this page alone. refused: it cannot be written, as `line` tells.
+ */
+export interface SaveState {
+  readonly kind: "saved" | "waiting" | "saving" | "scratch" | "refused";
+  readonly line: string;
+}
+
+export const CHECK_AFTER_ms = 200;
+export const SAVE_AFTER_ms = 700;
+
+/** One program while it is open. */
+export class ProgramBook {
+  readonly id: string;
+  readonly document: Signal<ProgramDocument>;
+  readonly choice: Signal<Choice> = signal<Choice>(WHOLE);
+  readonly check: Signal<ProgramCheck | null> = signal<ProgramCheck | null>(null);
+  readonly checking: Signal<boolean> = signal(false);
+  readonly saved: Signal<SaveState>;
+  readonly undoLabel: Signal<string | null> = signal<string | null>(null);
+  readonly redoLabel: Signal<string | null> = signal<string | null>(null);
+  /** What is wrong: at once what the page can tell, else what the check found. */
+  readonly findings: () => readonly ProgramFinding[];
+  private readonly history: History<ProgramDocument>;
+  private revision: string;
+  private checkTimer: ReturnType<typeof setTimeout> | undefined;
+  private saveTimer: ReturnType<typeof setTimeout> | undefined;
+  private turn = 0;
+  private writing = false;
+  /** The document that was last checked and saved, or is about to be: a drag shows others before it ends. */
+  private handled: ProgramDocument;
+
+  constructor(
+    private readonly server: ProgramServer,
+    opened: ProgramText,
+  ) {
+    this.id = opened.program;
+    this.revision = opened.revision;
+    const document = readDocument(opened.text);
+    this.history = new History(document);
+    this.document = signal(document);
+    this.handled = document;
+    this.saved = signal(this.settled);
+    this.findings = computed(() => localFindings(this.document()) ?? this.check()?.findings ?? []);
+    void this.runCheck();
+  }
+
+  /** Whether the program is one of the person's, and written as it is edited. */
+  get own(): boolean {
+    return this.id.startsWith("own:");
+  }
+
+  /** The text as it is now. */
+  get text(): string {
+    return writeDocument(this.document.peek());
+  }
+
+  /** Do an edit as one step of undo; edits of one `nudge` that follow each other are one. */
+  edit(label: string, change: (document: ProgramDocument) => ProgramDocument, nudge?: string): void {
+    this.history.apply(label, change(this.history.present), nudge ?? null);
+    this.changed();
+  }
+
+  /** Choose what is looked at. */
+  choose(choice: Choice): void {
+    this.choice.set(choice);
+  }
+
+  /** Begin a drag. */
+  mark(label: string): void {
+    this.history.mark(label);
+  }
+
+  /** Show what a drag gives so far, told from the document as it was when it began. */
+  drag(change: (before: ProgramDocument) => ProgramDocument): void {
+    this.history.drag(change);
+    this.document.set(this.history.present);
+  }
+
+  /** End a drag as one step. */
+  release(): void {
+    this.history.release();
+    this.changed();
+  }
+
+  /** End a drag as if it had not been. */
+  cancel(): void {
+    this.history.cancel();
+    this.document.set(this.history.present);
+  }
+
+  undo(): void {
+    this.history.undo();
+    this.changed();
+  }
+
+  redo(): void {
+    this.history.redo();
+    this.changed();
+  }
+
+  /** Write now what waits to be written; again after it was refused. */
+  async save(): Promise<void> {
+    clearTimeout(this.saveTimer);
+    if (!this.own || this.writing || this.saved.peek().kind === "saved") return;
+    this.writing = true;
+    const sent = this.document.peek();
+    this.saved.set({ kind: "saving", line: "" });
+    try {
+      this.revision = (await this.server.save(this.id, writeDocument(sent), this.revision)).revision;
+      this.saved.set(this.settled);
+    } catch (error) {
+      this.saved.set({ kind: "refused", line: lineOf(error) });
+    }
+    this.writing = false;
+    if (this.document.peek() !== sent) this.saveSoon();
+  }
+
+  /** Stop waiting: what is unsaved is written now. */
+  close(): void {
+    clearTimeout(this.checkTimer);
+    this.turn += 1;
+    void this.save();
+  }
+
+  private get settled(): SaveState {
+    return { kind: this.own ? "saved" : "scratch", line: "" };
+  }
+
+  private changed(): void {
+    const document = this.history.present;
+    this.undoLabel.set(this.history.undoLabel);
+    this.redoLabel.set(this.history.redoLabel);
+    this.document.set(document);
+    if (document === this.handled) return;
+    this.handled = document;
+    if (!isThere(document, this.choice.peek())) this.choice.set(WHOLE);
+    clearTimeout(this.checkTimer);
+    this.checkTimer = setTimeout(() => void this.runCheck(), CHECK_AFTER_ms);
+    this.saveSoon();
+  }
+
+  private saveSoon(): void {
+    if (!this.own) return;
+    clearTimeout(this.saveTimer);
+    if (this.saved.peek().kind !== "saving") this.saved.set({ kind: "waiting", line: "" });
+    this.saveTimer = setTimeout(() => void this.save(), SAVE_AFTER_ms);
+  }
+
+  private async runCheck(): Promise<void> {
+    const turn = ++this.turn;
+    this.checking.set(true);
+    try {
+      const found = await this.server.check(this.text);
+      if (turn === this.turn) this.check.set(found);
+    } catch (error) {
+      if (turn === this.turn) this.check.set(unchecked(lineOf(error)));
+    }
+    if (turn === this.turn) this.checking.set(false);
+  }
+}
+
+function localFindings(document: ProgramDocument): readonly ProgramFinding[] | null {
+  const found = problemsOf(document);
+  if (found.length === 0) return null;
+  return found.map(({ path, reason, remedy }) => ({
+    severity: "refused",
+    path,
+    state: "",
+    place: path || "program",
+    reason,
+    remedy,
+    at_mm: null,
+  }));
+}
+
+function unchecked(line: string): ProgramCheck {
+  const finding: ProgramFinding = {
+    severity: "refused",
+    path: "",
+    state: "",
+    place: "check",
+    reason: line,
+    remedy: "it is checked again after the next edit",
+    at_mm: null,
+  };
+  return { accepted: false, findings: [finding], sizes: [], surfaces: [], return_s: null, stiffness_cN_mm: null, rise_K: null };
+}
+
+function lineOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,154 @@
+/** Drawing the forces of a state: curves per velocity, where it leads on, where it vibrates, what was found. */
+
+import { palette, series, type Brush, type View } from "../../draw";
+import type { ProgramFinding } from "../../net/messages";
+import { placeOf_mm, shortly } from "../../programs/condition";
+import { transitionsOf, type ProgramDocument, type State, type Stroke, type Surface } from "../../programs/document";
+import { vibrationsIn } from "../../programs/edits_parts";
+import { forceAt_cN } from "../../programs/surface";
+import { shown } from "../../ui";
+import { handlesOf } from "./forces_points";
+
+/** What there is to draw of a state. */
+export interface ForcePicture {
+  readonly document: ProgramDocument;
+  readonly state: State;
+  readonly stroke: Stroke;
+  readonly row: number;
+  readonly press: Surface | null;
+  readonly release: Surface | null;
+  readonly findings: readonly ProgramFinding[];
+}
+
+const RELEASE_DASH = [6, 4];
+const CELLS = { x: 90, y: 28 } as const;
+const FASTEST_mm_s = 300;
+
+/** Draw every row of both strokes, the edited one strong, and the displacements that mean something. */
+export function drawCurves(brush: Brush, view: View, picture: ForcePicture): void {
+  drawZero(brush, view);
+  drawTravel(brush, view, picture);
+  for (const stroke of ["release", "press"] as const) drawStroke(brush, view, picture, stroke);
+  drawWays(brush, view, picture);
+  drawVibrations(brush, view, picture);
+  drawFindings(brush, view, picture);
+}
+
+function drawZero(brush: Brush, view: View): void {
+  const y = view.y.px(0);
+  brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: palette().muted, opacity: 0.6 });
+}
+
+function drawTravel(brush: Brush, view: View, { document }: ForcePicture): void {
+  const left = view.x.px(document.travel_mm);
+  const width = view.box.left + view.box.width - left;
+  if (width <= 0) return;
+  brush.rect({ left, top: view.box.top, width, height: view.box.height }, { colour: palette().muted, opacity: 0.16 });
+}
+
+function drawStroke(brush: Brush, view: View, picture: ForcePicture, stroke: Stroke): void {
+  const surface = picture[stroke];
+  if (!surface) return;
+  surface.force_cN.forEach((row, i) => {
+    const edited = stroke === picture.stroke && i === picture.row;
+    const { colour } = series(stroke === "press" ? 2 * i : 2 * i + 1);
+    const places = [view.x.range.low, ...surface.displacement_mm, view.x.range.high];
+    const forces = [row[0]!, ...row, row[row.length - 1]!];
+    brush.line(places.map((x_mm) => view.x.px(x_mm)), forces.map((cN) => view.y.px(cN)), {
+      colour,
+      width_px: edited ? 2.5 : 1.4,
+      opacity: edited ? 1 : 0.75,
+      ...(stroke === "release" ? { dash: RELEASE_DASH } : {}),
+    });
+    label(brush, view, surface, stroke, i, colour);
+  });
+}
+
+/** Name a curve on itself, at a place of its own, so that colour is not all that tells them apart. */
+function label(brush: Brush, view: View, surface: Surface, stroke: Stroke, row: number, colour: string): void {
+  const count = surface.velocity_mm_s.length;
+  const ratio = (stroke === "press" ? 0.3 : 0.55) + (0.3 * row) / Math.max(1, count);
+  const x_mm = view.x.range.low + ratio * (view.x.range.high - view.x.range.low);
+  const speed = surface.velocity_mm_s[row]!;
+  const words = count > 1 ? `${stroke} ${shown(speed)} mm/s` : stroke;
+  const up = stroke === "press" ? -9 : 10;
+  const at = { x_px: view.x.px(x_mm), y_px: view.y.px(forceAt_cN(surface, x_mm, speed)) + up };
+  brush.text(words, at, { colour, align: "center", size_px: 11, halo: palette().surface });
+}
+
+/** A line at every displacement that leads on, with where to; words of neighbours stand below each other. */
+function drawWays(brush: Brush, view: View, { state }: ForcePicture): void {
+  const colour = palette().accent;
+  transitionsOf(state).forEach((way, i) => {
+    const told = [way.when, way.only_if ?? null].find((held) => held && placeOf_mm(held) !== null);
+    const x_mm = told ? placeOf_mm(told) : null;
+    if (!told || x_mm === null) return;
+    const x = view.x.px(x_mm);
+    const below = view.box.top + 10 + 15 * (i % 5);
+    brush.line([x, x], [view.box.top, view.box.top + view.box.height], { colour, dash: [3, 3], opacity: 0.8 });
+    const right = x < view.box.left + view.box.width * 0.7;
+    const at = { x_px: x + (right ? 5 : -5), y_px: below };
+    const words = `${shortly(told)} → ${way.to}`;
+    brush.text(words, at, { colour, size_px: 11, align: right ? "left" : "right", halo: palette().surface });
+  });
+}
+
+function drawVibrations(brush: Brush, view: View, { document, state }: ForcePicture): void {
+  const colour = series(3).colour;
+  const bottom = view.box.top + view.box.height;
+  vibrationsIn(document, state.name).forEach((event) => {
+    const x = view.x.px(event.at_mm);
+    brush.line([x, x], [bottom, bottom - 26], { colour, width_px: 2 });
+    const arrow = { press: "↓", release: "↑", either: "↕" }[event.stroke ?? "press"];
+    brush.text(`♪${arrow}`, { x_px: x + 4, y_px: bottom - 20 }, { colour, size_px: 12, halo: palette().surface });
+  });
+}
+
+function drawFindings(brush: Brush, view: View, { state, findings }: ForcePicture): void {
+  findings
+    .filter((found) => found.at_mm !== null && found.state === state.name)
+    .forEach((found) => {
+      const refused = found.severity === "refused";
+      const colour = refused ? palette().danger : palette().warning;
+      const at = { x_px: view.x.px(found.at_mm!), y_px: view.box.top + view.box.height - 8 };
+      brush.text(refused ? "✕" : "!", at, { colour, size_px: 14, weight: 700, align: "center", halo: palette().surface });
+    });
+}
+
+/** Draw the points of the edited row that can be pulled, the chosen one filled. */
+export function drawPoints(brush: Brush, view: View, picture: ForcePicture, chosen: number): void {
+  const surface = picture[picture.stroke];
+  const row = surface?.force_cN[picture.row];
+  if (!surface || !row) return;
+  const { colour } = series(picture.stroke === "press" ? 2 * picture.row : 2 * picture.row + 1);
+  const held = Math.min(chosen, row.length - 1);
+  for (const column of new Set([...handlesOf(surface), held])) {
+    const at = { x_px: view.x.px(surface.displacement_mm[column]!), y_px: view.y.px(row[column]!) };
+    const fill = column === held ? colour : palette().surface;
+    brush.circle(at, column === held ? 5.5 : 4, { colour: fill }, { colour, width_px: 1.6 });
+  }
+}
+
+/** Draw the edited stroke as a map: displacement to the right, velocity up, the darker the stronger. */
+export function drawHeat(brush: Brush, view: View, picture: ForcePicture): void {
+  const surface = picture[picture.stroke];
+  if (!surface) return;
+  const speeds = surface.velocity_mm_s;
+  const fastest = Math.max(speeds[speeds.length - 1]!, speeds.length > 1 ? 0 : FASTEST_mm_s);
+  const strongest = Math.max(1, ...surface.force_cN.flat().map(Math.abs));
+  const cell = { width: view.box.width / CELLS.x, height: view.box.height / CELLS.y };
+  for (let i = 0; i < CELLS.x; i += 1)
+    for (let j = 0; j < CELLS.y; j += 1) {
+      const x_mm = view.x.value(view.box.left + (i + 0.5) * cell.width);
+      const force_cN = forceAt_cN(surface, x_mm, ((CELLS.y - j - 0.5) / CELLS.y) * fastest);
+      const colour = force_cN < 0 ? palette().danger : palette().accent;
+      const box = { left: view.box.left + i * cell.width, top: view.box.top + j * cell.height, width: cell.width + 0.5, height: cell.height + 0.5 };
+      brush.rect(box, { colour, opacity: Math.abs(force_cN) / strongest });
+    }
+  mapWords(brush, view, `0 to ${shown(fastest)} mm/s upwards; to ${shown(strongest)} cN`);
+}
+
+function mapWords(brush: Brush, view: View, words: string): void {
+  const { text, surface } = palette();
+  brush.text(words, { x_px: view.box.left + 8, y_px: view.box.top + 14 }, { colour: text, halo: surface, size_px: 12 });
+}

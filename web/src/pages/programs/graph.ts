@@ -1,0 +1,256 @@
+/** The graph of a program: nodes and arrows to choose, to drag and to draw. */
+
+import { condition } from "../../programs/condition";
+import { transitionsOf, type Condition, type ProgramDocument } from "../../programs/document";
+import { addState, addTransition, removeState, removeTransition } from "../../programs/edits";
+import { centreOf, holds, type Point } from "../../programs/layout/geometry";
+import { graphOf, neighbour, type Graph } from "../../programs/layout/layout";
+import type { Choice } from "../../programs/path";
+import { computed, effect, h, signal, svg, type Signal } from "../../ui";
+import type { ProgramBook } from "./book";
+import { drawnGraph, keyOf } from "./graph_parts";
+import { GraphView } from "./graph_view";
+
+/** What the graph shows beyond the document. */
+export interface GraphOptions {
+  readonly book: ProgramBook;
+  /** Centres of nodes that a person has put somewhere. */
+  readonly moved: Signal<ReadonlyMap<string, Point>>;
+  /** The state in which a press is just now, or null. */
+  readonly live: () => string | null;
+}
+
+const DRAG_px = 4;
+const STEP_px = 20;
+const ARROWS: Readonly<Record<string, Point>> = {
+  ArrowLeft: { x: -1, y: 0 },
+  ArrowRight: { x: 1, y: 0 },
+  ArrowUp: { x: 0, y: -1 },
+  ArrowDown: { x: 0, y: 1 },
+};
+
+/** What the hand does: a press may become a drag of a node, a new arrow, or a move of the view. */
+type Hand =
+  | { readonly kind: "node"; readonly state: string; readonly from: Point; readonly grab: Point; dragging: boolean }
+  | { readonly kind: "arrow"; readonly state: string }
+  | { readonly kind: "view"; readonly client: Point; readonly origin: Point };
+
+/** The graph with its keys: see the list that is shown with "?". */
+export class GraphPanel {
+  readonly element: HTMLElement;
+  /** The state from which an arrow is being drawn, by hand or by keys. */
+  readonly drawing: Signal<string | null> = signal<string | null>(null);
+  readonly graph: () => Graph;
+  readonly view: GraphView;
+  private readonly root: SVGSVGElement;
+  private readonly scene: SVGGElement;
+  private readonly pointer: Signal<Point | null> = signal<Point | null>(null);
+  private hand: Hand | null = null;
+
+  constructor(private readonly options: GraphOptions) {
+    this.graph = computed(() => graphOf(options.book.document(), options.moved()));
+    this.scene = svg("g");
+    this.root = svg("svg", { class: "graph", role: "group", "aria-label": "States and the transitions between them" }, this.scene);
+    this.view = new GraphView(this.root, this.graph);
+    this.element = h("div", { class: "graph-frame" }, this.root, h("p", { class: () => `graph-hint${this.drawing() ? "" : " visually-hidden"}`, role: "status" }, () => this.hint()));
+    effect(() => this.draw());
+    this.listen();
+  }
+
+  /** Put the keyboard on what is chosen. */
+  focusChosen(): void {
+    this.focus(keyOf(this.options.book.choice.peek()));
+  }
+
+  /** Add a state beside the chosen one, and choose it. */
+  addState(at: Point | null = null): string {
+    const { book } = this.options;
+    const [, name] = addState(book.document.peek());
+    book.edit(`add ${name}`, (held) => addState(held)[0]);
+    if (at) this.move(name, at);
+    book.choose({ kind: "state", state: name });
+    return name;
+  }
+
+  /** Add an arrow between two states, and choose it. */
+  connect(from: string, to: string): void {
+    const { book } = this.options;
+    book.edit(`add ${from} → ${to}`, (held) => addTransition(held, from, to, firstCondition(held, from)));
+    const state = book.document.peek().states.find((held) => held.name === from);
+    if (state) book.choose({ kind: "transition", state: from, index: transitionsOf(state).length - 1 });
+    this.drawing.set(null);
+    this.pointer.set(null);
+  }
+
+  /** Begin to draw an arrow by keys: the next state that is chosen with Enter is where it leads. */
+  begin(): void {
+    const choice = this.options.book.choice.peek();
+    if (choice.kind === "state") this.drawing.set(choice.state);
+  }
+
+  /** Remove what is chosen. */
+  remove(): void {
+    const { book } = this.options;
+    const choice = book.choice.peek();
+    if (choice.kind === "state") book.edit(`remove ${choice.state}`, (held) => removeState(held, choice.state));
+    if (choice.kind !== "transition") return;
+    book.edit("remove a transition", (held) => removeTransition(held, choice.state, choice.index));
+    book.choose({ kind: "state", state: choice.state });
+    this.focusChosen();
+  }
+
+  private hint(): string {
+    const from = this.drawing();
+    return from ? `Where does it lead from “${from}”? Choose a state, or Escape.` : "";
+  }
+
+  private draw(): void {
+    const { book, live } = this.options;
+    const focused = this.root.contains(document.activeElement) ? document.activeElement?.getAttribute("data-key") : null;
+    const graph = this.graph();
+    const document_ = book.document();
+    this.scene.replaceChildren(...drawnGraph({ graph, document: document_, choice: book.choice, findings: book.findings, live }));
+    effect(() => this.drawLoose(graph));
+    if (focused) this.focus(focused);
+  }
+
+  /** The arrow that has no end yet. */
+  private drawLoose(graph: Graph): void {
+    const [from, at] = [this.drawing(), this.pointer()];
+    this.scene.querySelector(".loose")?.remove();
+    const node = graph.nodes.find((held) => held.state === from);
+    if (!node || !at) return;
+    const begin = centreOf(node.box);
+    this.scene.append(svg("line", { class: "loose", x1: begin.x, y1: begin.y, x2: at.x, y2: at.y }));
+  }
+
+  private focus(key: string): void {
+    [...this.scene.querySelectorAll<SVGElement>("[data-key]")].find((held) => held.dataset["key"] === key)?.focus();
+  }
+
+  private move(state: string, to: Point): void {
+    this.options.moved.update((held) => new Map(held).set(state, { x: Math.round(to.x), y: Math.round(to.y) }));
+  }
+
+  private stateAt(at: Point): string | null {
+    return this.graph().nodes.find((node) => holds(node.box, at))?.state ?? null;
+  }
+
+  private listen(): void {
+    this.root.addEventListener("pointerdown", (event) => this.down(event));
+    this.root.addEventListener("pointermove", (event) => this.dragged(event));
+    this.root.addEventListener("pointerup", (event) => this.up(event));
+    this.root.addEventListener("pointercancel", () => this.drop());
+    this.root.addEventListener("keydown", (event) => this.key(event));
+    this.root.addEventListener("dblclick", (event) => {
+      // the pointer is captured, so the event's own target is the whole graph
+      const under = document.elementFromPoint(event.clientX, event.clientY);
+      if (!under?.closest("[data-key]")) this.addState(this.view.at(event));
+    });
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.button > 1) return;
+    const at = this.view.at(event);
+    const target = (event.target as Element).closest<SVGElement>("[data-key]");
+    const state = target?.dataset["state"];
+    const node = state === undefined ? undefined : this.graph().nodes.find((held) => held.state === state);
+    this.root.setPointerCapture(event.pointerId);
+    if (target && target.dataset["way"] !== undefined) return this.choose(event, target);
+    if (!node || !target) {
+      this.hand = { kind: "view", client: { x: event.clientX, y: event.clientY }, origin: this.view.origin };
+      return;
+    }
+    if (this.drawing.peek() && !this.hand) return this.connect(this.drawing.peek()!, node.state);
+    this.choose(event, target);
+    if ((event.target as Element).closest(".handle")) {
+      this.hand = { kind: "arrow", state: node.state };
+      this.drawing.set(node.state);
+    } else {
+      const centre = centreOf(node.box);
+      const grab = { x: at.x - centre.x, y: at.y - centre.y };
+      this.hand = { kind: "node", state: node.state, from: at, grab, dragging: false };
+    }
+  }
+
+  private choose(event: Event, target: SVGElement): void {
+    event.preventDefault();
+    const [state, way] = [target.dataset["state"] ?? "", target.dataset["way"]];
+    this.options.book.choose(way === undefined ? { kind: "state", state } : { kind: "transition", state, index: Number(way) });
+    this.focusChosen();
+  }
+
+  private dragged(event: PointerEvent): void {
+    const at = this.view.at(event);
+    if (this.drawing.peek()) this.pointer.set(at);
+    const hand = this.hand;
+    if (hand?.kind === "view") this.view.moveFrom(hand.origin, event.clientX - hand.client.x, event.clientY - hand.client.y);
+    if (hand?.kind !== "node") return;
+    if (!hand.dragging && Math.hypot(at.x - hand.from.x, at.y - hand.from.y) > DRAG_px / this.view.zoom) {
+      this.view.hold();
+      hand.dragging = true;
+    }
+    if (hand.dragging) this.move(hand.state, { x: at.x - hand.grab.x, y: at.y - hand.grab.y });
+  }
+
+  private up(event: PointerEvent): void {
+    const hand = this.hand;
+    this.hand = null;
+    if (hand?.kind !== "arrow") return;
+    const at = this.view.at(event);
+    const to = this.stateAt(at);
+    const node = this.graph().nodes.find((held) => held.state === hand.state);
+    // let go on the handle itself: the arrow's end is chosen by the next press
+    if (to === hand.state && node && at.x > node.box.x + node.box.width - 16) return;
+    if (!to && node && holds(node.box, at, 20)) return;
+    this.connect(hand.state, to ?? this.addState(at));
+  }
+
+  private drop(): void {
+    this.hand = null;
+    this.drawing.set(null);
+    this.pointer.set(null);
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = (event.target as Element).closest<SVGElement>("[data-key]");
+    const state = target?.dataset["state"];
+    if (!target || state === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrow = ARROWS[event.key];
+    if (arrow) this.step(state, arrow, event.shiftKey);
+    else if (event.key === "Enter" || event.key === " ") this.enter(event, target, state);
+    else if (event.key === "Delete" || event.key === "Backspace") this.remove();
+    else if (event.key === "t" || event.key === "T") this.begin();
+    else if (event.key === "n" || event.key === "N") this.addState();
+    else if (event.key === "Escape" && this.drawing.peek()) this.drop();
+    else return;
+    event.preventDefault();
+  }
+
+  private enter(event: KeyboardEvent, target: SVGElement, state: string): void {
+    const from = this.drawing.peek();
+    if (from && target.dataset["way"] === undefined) {
+      this.connect(from, state);
+      this.focusChosen();
+    } else this.choose(event, target);
+  }
+
+  private step(state: string, arrow: Point, moving: boolean): void {
+    const node = this.graph().nodes.find((held) => held.state === state);
+    if (moving && node) {
+      const at = centreOf(node.box);
+      return this.move(state, { x: at.x + arrow.x * STEP_px, y: at.y + arrow.y * STEP_px });
+    }
+    const next = neighbour(this.graph(), state, arrow.x, arrow.y);
+    if (!next) return;
+    const choice: Choice = { kind: "state", state: next };
+    if (!this.drawing.peek()) this.options.book.choose(choice);
+    this.focus(keyOf(choice));
+  }
+}
+
+/** A new arrow leads on beyond half the travel, or back above a quarter of it: far enough apart not to flutter. */
+function firstCondition(document: ProgramDocument, from: string): Condition {
+  const part_mm = (ratio: number): number => Math.round(document.travel_mm * ratio * 100) / 100;
+  return from === document.start ? condition("deeper_than_mm", part_mm(0.5)) : condition("shallower_than_mm", part_mm(0.25));
+}

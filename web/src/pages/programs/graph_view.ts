@@ -1,0 +1,96 @@
+/** What of a graph is seen: all of it until a person pans or zooms. */
+
+import type { Point } from "../../programs/layout/geometry";
+import type { Graph } from "../../programs/layout/layout";
+import { effect, onCleanup, signal } from "../../ui";
+
+const AIR = 26;
+const LARGEST = 1.25;
+const SMALLEST = 0.1;
+
+/** The window on a graph, kept in the `viewBox` of its root. */
+export class GraphView {
+  private readonly size = signal({ width: 1, height: 1 });
+  private readonly held = signal<{ readonly origin: Point; readonly zoom: number } | null>(null);
+
+  constructor(
+    private readonly root: SVGSVGElement,
+    private readonly graph: () => Graph,
+  ) {
+    const observer = new ResizeObserver(() => this.measure());
+    observer.observe(root);
+    onCleanup(() => observer.disconnect());
+    root.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    effect(() => {
+      const { width, height } = this.size();
+      const { origin, zoom } = this.seen();
+      root.setAttribute("viewBox", [origin.x, origin.y, width / zoom, height / zoom].map((n) => n.toFixed(2)).join(" "));
+    });
+  }
+
+  /** Pixels of the screen per pixel of the graph. */
+  get zoom(): number {
+    return this.seen().zoom;
+  }
+
+  /** The left upper corner of what is seen. */
+  get origin(): Point {
+    return this.seen().origin;
+  }
+
+  /** Where an event is, in the graph. */
+  at(event: MouseEvent): Point {
+    const frame = this.root.getBoundingClientRect();
+    const { origin, zoom } = this.seen();
+    return { x: origin.x + (event.clientX - frame.left) / zoom, y: origin.y + (event.clientY - frame.top) / zoom };
+  }
+
+  /** See everything, and go on seeing everything. */
+  fit(): void {
+    this.held.set(null);
+  }
+
+  /** Keep what is seen as it is, whatever becomes of the graph. */
+  hold(): void {
+    this.held.set(this.seen());
+  }
+
+  /** Zoom around a place, by default the middle. */
+  zoomBy(factor: number, around?: Point): void {
+    const { width, height } = this.size.peek();
+    const { origin, zoom } = this.seen();
+    const next = Math.min(4, Math.max(SMALLEST, zoom * factor));
+    const at = around ?? { x: origin.x + width / zoom / 2, y: origin.y + height / zoom / 2 };
+    const ratio = zoom / next;
+    this.held.set({ zoom: next, origin: { x: at.x + (origin.x - at.x) * ratio, y: at.y + (origin.y - at.y) * ratio } });
+  }
+
+  /** Move what is seen from an origin, by pixels of the screen. */
+  moveFrom(origin: Point, dx: number, dy: number): void {
+    const { zoom } = this.seen();
+    this.held.set({ zoom, origin: { x: origin.x - dx / zoom, y: origin.y - dy / zoom } });
+  }
+
+  private seen(): { readonly origin: Point; readonly zoom: number } {
+    return this.held() ?? this.whole();
+  }
+
+  private whole(): { readonly origin: Point; readonly zoom: number } {
+    const { width, height } = this.size();
+    const { bounds } = this.graph();
+    const zoom = Math.min(LARGEST, width / (bounds.width + 2 * AIR), height / (bounds.height + 2 * AIR));
+    const centre = { x: bounds.x + bounds.width / 2, y: bounds.y + bounds.height / 2 };
+    return { zoom, origin: { x: centre.x - width / zoom / 2, y: centre.y - height / zoom / 2 } };
+  }
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    this.zoomBy(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), this.at(event));
+  }
+
+  private measure(): void {
+    const { clientWidth: width, clientHeight: height } = this.root;
+    const now = this.size.peek();
+    if (width > 0 && height > 0 && (now.width !== width || now.height !== height)) this.size.set({ width, height });
+  }
+}
