@@ -132,8 +132,7 @@ def main(seconds: float = 60.0) -> None:
     for name, mode, rig in RIGS:
         print(f"  {name}: {real_time_factor(mode, rig):.0f}")
     passed, lost, busy = dropped(seconds)
-    print(f"dropped {1000 * lost:.0f} ms of {passed:.0f} s at real pace")
-    print(f"computing took {100 * busy:.0f} % of real time")
+    print(f"dropped {1000 * lost:.0f} ms of {passed:.0f} s at real pace; computing took {100 * busy:.0f} %")
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if chromium is None:
         print("hand to screen: Chromium is not installed")
