@@ -132,7 +132,7 @@ export function constrain(
 
 /**
  * Keep the work and the other constraints at once: by the conditions of Karush, Kuhn and Tucker the answer is
- * the projection of the points shifted along the weights, and its work rises with the shift.
+ * the projection of the points shifted along the weights, and its work never falls with the shift.
  */
 function settledAtWork(
   asked: Float64Array,
@@ -142,21 +142,25 @@ function settledAtWork(
 ): Float64Array {
   const free = freeWeights(work.weights, fixed);
   const squared = sum(free, free);
-  if (!squared) return settle(asked);
-  const missing = (c: Float64Array) => work.wanted - sum(work.weights, c);
   const at = (by: number) => settle(shifted(asked, free, by));
-  let from = 0;
-  let rest = missing(at(0));
-  let to = rest / squared;
-  for (let i = 0; i < 60 && missing(at(to)) * rest > 0; i++) [from, to] = [to, to * 2];
-  for (let i = 0; i < 100 && from !== to; i++) {
-    const [low, high] = [missing(at(from)), missing(at(to))];
-    if (high === 0) return at(to);
-    const middle = i % 2 || low === high ? 0.5 * (from + to) : from + ((to - from) * low) / (low - high);
-    if (middle === from || middle === to) break;
-    rest = missing(at(middle));
-    if (rest * low > 0) from = middle;
-    else to = middle;
+  const missing = (by: number) => work.wanted - sum(work.weights, at(by));
+  const rest = missing(0);
+  if (!squared || rest === 0) return at(0);
+  let reach = rest / squared;
+  for (let i = 0; i < 60 && missing(reach) * rest > 0; i++) reach *= 2;
+  return at(root(missing, 0, reach));
+}
+
+/** Find where a monotone, piecewise linear function is zero, between places where its signs differ. */
+function root(f: (x: number) => number, from: number, to: number): number {
+  let [a, b, fa, fb] = [from, to, f(from), f(to)];
+  for (let i = 0; i < 100 && fa * fb < 0; i++) {
+    // chords end on the right piece at once, halving gets there from afar
+    const x = i % 3 === 2 ? 0.5 * (a + b) : b - (fb * (b - a)) / (fb - fa);
+    const fx = f(x);
+    if (x === a || x === b) break;
+    if (fx * fa > 0) [a, fa] = [x, fx];
+    else [b, fb] = [x, fx];
   }
-  return at(to);
+  return Math.abs(fa) < Math.abs(fb) ? a : b;
 }

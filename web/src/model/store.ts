@@ -77,7 +77,10 @@ export class DocumentStore {
   #sending: Promise<void> | null = null;
   #closed = false;
   readonly #listeners = new Set<() => void>();
+  /** The id it was opened by. */
   readonly button: string;
+  /** The model when it was opened here, to compare with. */
+  readonly before: FDVVModel;
   readonly #server: DocumentServer;
   readonly #around: Surroundings;
 
@@ -87,6 +90,7 @@ export class DocumentStore {
     this.button = opened.button;
     this.#history = History.fromJSON(opened);
     this.#revision = this.#newest = opened.revision;
+    this.before = this.#history.model;
   }
 
   /** Open a document. Rejects as the server does. */
@@ -198,19 +202,28 @@ export class DocumentStore {
     this.#set("gone", line);
   }
 
-  /** In a conflict: take what the other tab made; what is unsaved here is dropped. */
-  takeTheirs(): void {
-    if (!this.#theirs) return;
+  /**
+   * After a conflict or a refusal: take what the server has; what is unsaved here is dropped. Rejects, and keeps
+   * everything, where the server is out of reach.
+   */
+  async takeTheirs(): Promise<void> {
+    const theirs = this.#theirs ?? (await this.#server.open(this.button));
     this.#queue = [];
-    this.#become(this.#theirs);
+    this.#become(theirs);
     this.#set("saved", null);
+    await this.#follow();
   }
 
   /** Keep the model as it is here under another name, and take theirs here. Gives the id of the copy. */
   async keepMine(name: string): Promise<string> {
     const button = await this.#server.copy(name, this.#history.model);
-    this.takeTheirs();
+    await this.takeTheirs();
     return button;
+  }
+
+  /** Look whether others changed the document while nobody told of it. */
+  async refresh(): Promise<void> {
+    await this.#follow(true);
   }
 
   /** Wait until nothing is on its way: everything is saved, or a person must decide. */
@@ -234,29 +247,34 @@ export class DocumentStore {
     this.#queue.push({ ...change, change_id: this.#around.newId() });
     if (this.#state === "saved") this.#state = "saving";
     this.#tell();
-    this.#sending ??= this.#drain().finally(() => {
-      this.#sending = null;
-    });
+    this.#sending ??= this.#drain();
   }
 
-  /** Send what is unsaved, one after the other. */
+  /** Send what is unsaved, one after the other, then look at what others did meanwhile. */
   async #drain(): Promise<void> {
-    for (let tries = 0; this.#queue.length && !this.#stuck(); ) {
-      const change = this.#queue[0]!;
-      try {
-        const answer = await this.#server.send(this.button, this.#revision, change);
-        tries = 0;
-        if ("conflict" in answer) this.#inConflict(answer.conflict);
-        else this.#taken(answer.revision);
-      } catch (error) {
-        if (!this.#server.unreachable(error)) this.#set("refused", lineOf(error));
-        else {
-          this.#set("lost", lineOf(error));
-          await this.#around.wait(AGAIN_ms[Math.min(tries++, AGAIN_ms.length - 1)]!);
-        }
+    do {
+      for (let tries = 0; this.#queue.length && !this.#stuck(); ) {
+        tries = (await this.#sendFirst()) ? 0 : tries + 1;
+        if (tries) await this.#around.wait(AGAIN_ms[Math.min(tries, AGAIN_ms.length) - 1]!);
       }
+      await this.#follow();
+      // an edit made during the last look has to be sent as well
+    } while (this.#queue.length && !this.#stuck());
+    this.#sending = null;
+  }
+
+  /** Send one change; false if the server was out of reach. */
+  async #sendFirst(): Promise<boolean> {
+    try {
+      const answer = await this.#server.send(this.button, this.#revision, this.#queue[0]!);
+      if ("conflict" in answer) this.#inConflict(answer.conflict);
+      else this.#taken(answer.revision);
+      return true;
+    } catch (error) {
+      const lost = this.#server.unreachable(error);
+      if (!this.#stuck()) this.#set(lost ? "lost" : "refused", lineOf(error));
+      return !lost;
     }
-    await this.#follow();
   }
 
   #stuck(): boolean {
@@ -281,21 +299,21 @@ export class DocumentStore {
   }
 
   /** Take over what another tab made, while nothing here is unsaved or being dragged. */
-  async #follow(): Promise<void> {
-    if (!this.#mayFollow()) return;
+  async #follow(anyway = false): Promise<void> {
+    if (!this.#idle() || !(anyway || this.#newest > this.#revision)) return;
     try {
       const opened = await this.#server.open(this.button);
-      if (this.#mayFollow() && opened.revision > this.#revision) {
-        this.#become(opened);
-        this.#tell();
-      }
+      if (!this.#idle() || opened.revision <= this.#revision) return;
+      this.#become(opened);
+      this.#tell();
     } catch (error) {
+      // out of reach is no news: what is shown is what is saved
       if (!this.#server.unreachable(error)) this.#set("gone", lineOf(error));
     }
   }
 
-  #mayFollow(): boolean {
-    return this.#newest > this.#revision && !this.#queue.length && !this.#history.dragging && !this.#stuck();
+  #idle(): boolean {
+    return !this.#queue.length && !this.#history.dragging && !this.#stuck();
   }
 
   #become(opened: OpenedDocument): void {

@@ -1,1 +1,1 @@
-import{f as e,o as t}from"./ui.js";var n={title:`Live work`,mount(n){n.append(e(`h1`,{},`Live work`),t(`Not there yet`,`This page is being built.`))}};export{n as page};
+import{o as e,p as t}from"./ui.js";var n={title:`Live work`,mount(n){n.append(t(`h1`,{},`Live work`),e(`Not there yet`,`This page is being built.`))}};export{n as page};

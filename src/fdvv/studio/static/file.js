@@ -1,0 +1,1 @@
+import{p as e}from"./ui.js";function t(t,n,r=`text/plain`){let i=typeof n==`string`?new Blob([n],{type:r}):n,a=URL.createObjectURL(i);e(`a`,{href:a,download:t}).click(),setTimeout(()=>URL.revokeObjectURL(a),1e4)}export{t};
