@@ -174,6 +174,17 @@ function guardTab(book: ProgramBook): void {
   addEventListener("beforeunload", ask);
   onCleanup(() => {
     removeEventListener("beforeunload", ask);
-    book.close();
+    void book.close().then(() => book.saved.peek().kind === "refused" && offerToKeep(book));
   });
+}
+
+/** What could not be written must not be lost by going elsewhere. */
+function offerToKeep(book: ProgramBook): void {
+  const { name } = book.document.peek();
+  const close = toast(`“${name}” was not saved: ${book.saved.peek().line}`, "wrong");
+  const keep = (): void => {
+    close();
+    call("program.keep", { text: book.text }).then((kept) => go("programs", kept.program), tell);
+  };
+  document.querySelector("#toasts > :last-child span")?.append(" ", button({ label: "Keep as another", act: keep }));
 }
