@@ -48,7 +48,7 @@ def saved(page: Page) -> None:
 
 
 def edited(page: Page) -> None:
-    """Wait until an edit has been written: the label of undo is there, then the file."""
+    """Wait until an edit that is seen has been written: there is something to undo, and nothing to save."""
     page.get_by_role("button", name="Undo", exact=True).and_(page.locator(":enabled")).wait_for()
     saved(page)
 
@@ -193,11 +193,13 @@ def test_the_forces_of_another_button_are_taken(own: Page, tmp_path: Path) -> No
     own.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
     own.get_by_role("button", name="Make its own").click()
     own.get_by_role("button", name="Take its forces").click()
+    wanted = of_model(load_builtin("mx-clear"), "press")
+    first = f"document.querySelectorAll('.point-values input')[1].value === '{wanted.force_cN[0][0]:g}'"
+    own.wait_for_function(first)
     edited(own)
     own.get_by_label("Map").check()
     own.get_by_role("img", name="over displacement and velocity").wait_for()
     kept = load_program(tmp_path / "project" / KEPT)
-    wanted = of_model(load_builtin("mx-clear"), "press")
     assert kept.surface(kept.state("up").press).force_cN == wanted.force_cN
     assert kept.surface(kept.state("down").press) == load_shipped("button").surface("press")
 
