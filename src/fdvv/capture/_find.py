@@ -8,7 +8,7 @@ from fdvv.capture._pairs import stroke_of
 from fdvv.errors import InputError
 from fdvv.model import Stroke
 
-SUFFIXES = {".csv", ".ods", ".json", ".txt"}
+SUFFIXES = (".csv", ".ods", ".json", ".txt")
 NOT_DATA = ("readme", "license", "licence", "copying", "changelog", "contributing", "notice")
 
 
@@ -28,7 +28,13 @@ def find_force_files(folder: str | Path) -> list[Path]:
 
 def _is_candidate(inside: Path) -> bool:
     hidden = any(part.startswith(".") for part in inside.parts)
-    return inside.suffix.lower() in SUFFIXES and not hidden and not inside.name.lower().startswith(NOT_DATA)
+    return not hidden and is_force_file(inside.name)
+
+
+def is_force_file(name: str) -> bool:
+    """Tell from a file's name alone whether it may hold force curves."""
+    lower = name.lower()
+    return lower.endswith(SUFFIXES) and not lower.startswith(NOT_DATA)
 
 
 def _second_half(path: Path, known: set[Path]) -> bool:

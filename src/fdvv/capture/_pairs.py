@@ -23,6 +23,12 @@ def stroke_of(path: Path) -> tuple[Stroke, Path] | None:
     return None
 
 
+def companion(path: Path) -> Path | None:
+    """Give where the other stroke of a pair would lie; None if the name says no stroke."""
+    named = stroke_of(path)
+    return None if named is None else named[1]
+
+
 def base_name(path: Path) -> str:
     """Give the name that both halves share."""
     stem = path.stem

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_documents", "_press", "_programs")
+PARTS = ("_about", "_documents", "_editor", "_library", "_press", "_programs", "_jobs_part", "_device_part")
 
 
 @dataclass(frozen=True)

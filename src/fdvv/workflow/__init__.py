@@ -1,7 +1,9 @@
 """The only place that joins rooms: open, fit, compare, compensate, probe, demonstrate."""
 
+from fdvv.workflow._achievable import AchievableCurve, LimitedRange, achievable
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._capture import CaptureResult, capture_session
+from fdvv.workflow._capture_cue import cue_events, cue_length_s
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_heard import HeardStroke
 from fdvv.workflow._capture_html import capture_html
@@ -47,12 +49,20 @@ from fdvv.workflow._feasibility import (
     feasibility,
     feasible_curves,
 )
+from fdvv.workflow._felt import (
+    FeltPress,
+    FORCE_JND_ratio,
+    felt_press,
+    intended_press,
+    noticeable_cN,
+)
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
 from fdvv.workflow._live_event import LiveEvent, LiveEventKind
 from fdvv.workflow._live_press import LivePress
 from fdvv.workflow._live_run import LiveFrame, LiveRun
+from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
 from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
 from fdvv.workflow._open_program import make_program, open_program
 from fdvv.workflow._parts import merge_parts, one_curve, open_part
@@ -62,7 +72,6 @@ from fdvv.workflow._press_choice import (
     button_choices,
     drawn_trace,
     program_choices,
-    program_of,
 )
 from fdvv.workflow._press_subject import (
     PRESS_RIGS,
@@ -86,13 +95,22 @@ from fdvv.workflow._program_standing import (
 from fdvv.workflow._programs import program_image
 from fdvv.workflow._real_pace import RealPace
 from fdvv.workflow._receipt import Receipt
+from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
 from fdvv.workflow._shelf import Shelf
+from fdvv.workflow._shelf_curves import sample_strokes
+from fdvv.workflow._shelf_index import ShelfIndex, ShelfStand
+from fdvv.workflow._shelf_read import row_of_model
+from fdvv.workflow._shelf_row import NUMBERS as SHELF_NUMBERS
+from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow
+from fdvv.workflow._shelf_search import ShelfFound, ShelfQuery, ShelfSearch
 from fdvv.workflow._spread_report import spread_reports
+from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
-from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
+from fdvv.workflow._tune_result import TunedVibration, TuneResult, TuneSetup, TuneTold
+from fdvv.workflow._tune_vibration import tune_vibration
 from fdvv.workflow._tuning import settings_with
 from fdvv.workflow._vibration_slots import (
     RenderedVibration,
@@ -105,8 +123,11 @@ from fdvv.workflow._vibration_slots import (
 
 __all__ = [
     "PRESS_RIGS",
+    "SHELF_NUMBERS",
+    "AchievableCurve",
     "Ask",
     "ButtonPress",
+    "ButtonType",
     "Candidates",
     "CaptureGuide",
     "CapturePlan",
@@ -127,7 +148,9 @@ __all__ = [
     "DraftStep",
     "Drafts",
     "EditMade",
+    "FORCE_JND_ratio",
     "FeasibilityReport",
+    "FeltPress",
     "FindVibrations",
     "FitSettings",
     "FolderButton",
@@ -135,14 +158,19 @@ __all__ = [
     "FolderSummary",
     "Guide",
     "HeardStroke",
+    "Kept",
     "KeptProgram",
+    "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
     "LiveFrame",
     "LivePress",
     "LiveRun",
+    "MeasuredBand",
+    "MeasuredButton",
     "ModelFit",
     "ModelTemplate",
+    "Origin",
     "PaceStanding",
     "Patch",
     "PinMade",
@@ -165,8 +193,17 @@ __all__ = [
     "RedoMade",
     "RenderedVibration",
     "Rendering",
+    "RigEntry",
+    "RigOnShelf",
+    "RigShelf",
     "Session",
     "Shelf",
+    "ShelfFound",
+    "ShelfIndex",
+    "ShelfQuery",
+    "ShelfRow",
+    "ShelfSearch",
+    "ShelfStand",
     "Size",
     "Standing",
     "Step",
@@ -174,8 +211,12 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "TickBinner",
+    "TickBins",
+    "TickPiece",
     "TuneResult",
     "TuneSetup",
+    "TuneTold",
     "TunedVibration",
     "UndoMade",
     "UnpinMade",
@@ -183,6 +224,7 @@ __all__ = [
     "VibrationChange",
     "Way",
     "acceleration_per_volt",
+    "achievable",
     "apply_patch",
     "button_choices",
     "button_files",
@@ -194,28 +236,35 @@ __all__ = [
     "compare",
     "compensate",
     "converter",
+    "cue_events",
+    "cue_length_s",
     "demo",
     "demo_report",
+    "diff",
     "drawn_trace",
     "drawn_traces",
     "fd_only",
     "feasibility",
     "feasible_curves",
+    "felt_press",
     "fit_file",
     "fit_files",
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
+    "intended_press",
     "inverse_patch",
     "join_logs",
     "load_actuation",
     "make_program",
+    "measured_button",
     "measured_files",
     "merge_parts",
     "model_of",
     "model_of_recording",
     "model_subject",
     "new_model",
+    "noticeable_cN",
     "one_curve",
     "open_device",
     "open_files",
@@ -231,7 +280,6 @@ __all__ = [
     "process_recording",
     "program_choices",
     "program_image",
-    "program_of",
     "program_standing",
     "program_subject",
     "quick_look",
@@ -241,6 +289,8 @@ __all__ = [
     "recorded_vibrations",
     "render_vibration",
     "rig_memory",
+    "row_of_model",
+    "sample_strokes",
     "save_actuation",
     "settings_with",
     "simulated_observer",

@@ -121,6 +121,49 @@ def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
 
 def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> ModelFit:
     """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve."""
+    parts = measured_parts(file)
+    fits = tuple(
+        fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
+        for p in parts.strokes
+    )
+    model = FDVVModel(
+        name=one_line(file.name) or "unnamed",
+        travel_mm=parts.travel_mm,
+        curves=tuple(fit.curve for fit in fits),
+        actuation_mm=parts.actuation_mm,
+        reset_mm=parts.reset_mm,
+        provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
+    )
+    found = landmarks(model) if model.of(Stroke.PRESS) else None
+    return ModelFit(model, parts.zero_mm, fits, parts.strokes, found, parts.warnings)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredParts:
+    """The active part of every stroke of a file, before anything is fitted.
+
+    Attributes
+    ----------
+    strokes : the mean of the repeats of each stroke and velocity, in reading order; displacement 0 is the
+        contact of the first press.
+    zero_mm : where that contact lies in the file's own displacement.
+    travel_mm, actuation_mm, reset_mm : in the strokes' displacement; None where a point is not known.
+    used, cycles : how many cycles the means hold, and how many the file has.
+    warnings : what was repaired, left out or could not be found.
+    """
+
+    strokes: tuple[MeasuredCurve, ...]
+    zero_mm: float
+    travel_mm: float
+    actuation_mm: float | None
+    reset_mm: float | None
+    used: int
+    cycles: int
+    warnings: tuple[str, ...]
+
+
+def measured_parts(file: ForceFile) -> MeasuredParts:
+    """Average the repeats of each velocity and cut every stroke from contact to bottom-out."""
     groups = average_by_velocity(file)
     warnings = [*file.warnings]
     for group in groups:
@@ -132,21 +175,16 @@ def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> Model
     for part in map(active_part, strokes):
         x = np.round(part.displacement_mm - zero, DECIMALS_mm)
         parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
-    parts.sort(key=reading_order)
-    fits = tuple(
-        fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
-        for p in parts
-    )
-    model = FDVVModel(
-        name=one_line(file.name) or "unnamed",
+    return MeasuredParts(
+        strokes=tuple(sorted(parts, key=reading_order)),
+        zero_mm=zero,
         travel_mm=travel,
-        curves=tuple(fit.curve for fit in fits),
         actuation_mm=_point([g.actuation_mm for g in groups], zero, travel, "actuation", warnings),
         reset_mm=_point([g.reset_mm for g in groups], zero, travel, "reset", warnings),
-        provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
+        used=sum(len(group.used) for group in groups),
+        cycles=len(file.cycles),
+        warnings=tuple(dict.fromkeys(warnings)),
     )
-    found = landmarks(model) if model.of(Stroke.PRESS) else None
-    return ModelFit(model, zero, fits, tuple(parts), found, tuple(dict.fromkeys(warnings)))
 
 
 def one_line(text: str) -> str:

@@ -64,7 +64,7 @@ class ProbeCurve:
         return np.asarray(np.abs(self.target_cN - self.rendered_cN).max(axis=1))
 
     def to_dict(self) -> dict[str, Any]:
-        """Give medians over the presses, with quartiles as spread."""
+        """Give medians over the presses with quartiles as spread, and the three quartiles of the force."""
         achieved = np.abs(self.at_achieved_cN - self.rendered_cN).mean(axis=1)
         return {
             "stroke": str(self.stroke),
@@ -77,6 +77,9 @@ class ProbeCurve:
             "mean_error_at_achieved_speed_cN": float(np.median(achieved)),
             "achieved_mm_s": float(np.median(self.achieved_mm_s)),
             "reached_ratio": self.reached_ratio,
+            "displacement_mm": self.displacement_mm.tolist(),
+            "target_cN": self.target_cN.tolist(),
+            "rendered_quartiles_cN": np.percentile(self.rendered_cN, [25, 50, 75], axis=0).tolist(),
         }
 
     @property

@@ -31,9 +31,9 @@ function plain(model: FDVVModel): Record<string, unknown> {
 
 /**
  * Keep a store up to date: other tabs are followed, and a page that is left with something unsaved asks first.
- * The function given back ends it, and the store.
+ * The function given back ends it, and the store. button : the id that it has by now.
  */
-export function follow(store: DocumentStore): Cleanup {
+export function follow(store: DocumentStore, button: () => string = () => store.button): Cleanup {
   let channel: LiveChannel<"documents"> | null = null;
   const watch = () => void channel?.send({ type: "watch" });
   channel = live().channel("documents", {
@@ -41,7 +41,7 @@ export function follow(store: DocumentStore): Cleanup {
     told: (news) => {
       // before the watch was in force others may have been at work
       if (news.type === "watching") return void store.refresh();
-      if (news.button !== store.button) return;
+      if (news.button !== button()) return;
       if (news.type === "changed") void store.told(news.revision);
       else store.gone(goneLine(news.renamed_to));
     },

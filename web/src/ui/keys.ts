@@ -6,7 +6,8 @@ export interface Shortcut {
   /** As it is written for people: "Ctrl+Z", "Shift+ArrowUp", "/", "Space". Ctrl means Cmd on a Mac. */
   readonly keys: string;
   readonly does: string;
-  readonly act: (event: KeyboardEvent) => void;
+  /** Left out where what has the focus works the key itself: then it is only listed. */
+  readonly act?: (event: KeyboardEvent) => void;
   /** Works while text is being typed too. */
   readonly always?: boolean;
 }
@@ -43,11 +44,11 @@ export function listenForShortcuts(): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented) return;
     const pressed = pressedKeys(event);
-    const found = shortcuts.peek().findLast((one) => one.keys === pressed && (one.always || !typing(event.target)));
+    const found = shortcuts.peek().findLast((one) => one.act && one.keys === pressed && (one.always || !typing(event.target)));
     // a focused control keeps the keys that work it
     const own = event.target instanceof HTMLElement && event.target.matches("button, a, [role=tab], summary") && (pressed === "Space" || pressed === "Enter");
     if (!found || own) return;
     event.preventDefault();
-    found.act(event);
+    found.act?.(event);
   });
 }

@@ -1,0 +1,171 @@
+"""Figures of a button for its row, read from its curves; what is not there is None, with the reason.
+
+Measured curves are not fitted for this: they are averaged over 20 um and joined by lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.model import Bump, FDVVModel, ForceCurve, MeasuredCurve, Stroke, find_bump, landmarks, running_mean
+from fdvv.units import FloatArray
+from fdvv.workflow._fit import MeasuredParts
+from fdvv.workflow._shelf_row import NUMBERS, SKETCH_POINTS, ButtonType, Sketch
+
+STEP_mm = 0.02
+SUDDEN_mm = 0.05
+STOP_SHARE_mm = 0.15
+"""A fall this near to the end of the travel is the stage turning or the stop giving way, not a bump."""
+
+CONTACT_STEP_mm = 0.15
+"""A peak within this of contact that the release does not repeat is breakaway friction."""
+
+SUDDEN_ratio, SUDDEN_drop_cN = 0.5, 10.0
+"""Click bars, leaves and buckling springs lose 0.64 to 0.93 of their fall within 50 um, tactile switches and
+MX Blue's jacket at most 0.36. Below 10 cN a jerk of the stage does the same."""
+
+DOME_rise_mm, DOME_fall_ratio = 0.14, 0.25
+"""Domes take 0.15 to 0.39 mm to reach half of their peak, switches with a contact step 0.03 to 0.12 mm; and
+they collapse over 0.29 to 0.45 of their travel, switches of that kind of rise over 0.1 to 0.18."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What the force of a button does, and by which fact."""
+
+    kind: ButtonType
+    reason: str
+
+
+def polyline_model(parts: MeasuredParts, name: str) -> FDVVModel:
+    """Make a model of degree 1 through the measured strokes, averaged over 20 um. Raises ModelError."""
+    curves = tuple(_polyline(stroke) for stroke in parts.strokes)
+    return FDVVModel(name, parts.travel_mm, curves, parts.actuation_mm, parts.reset_mm)
+
+
+def _polyline(stroke: MeasuredCurve) -> ForceCurve:
+    x, force, _ = stroke.by_displacement()
+    grid = np.linspace(x[0], x[-1], max(2, round((x[-1] - x[0]) / STEP_mm) + 1))
+    mean = np.interp(grid, x, running_mean(x, force, STEP_mm))
+    knots = np.concatenate([grid[:1], grid, grid[-1:]])
+    return ForceCurve(stroke.stroke, stroke.velocity_mm_s, 1, knots, mean)
+
+
+def bump_of(model: FDVVModel, stroke: Stroke) -> Bump | None:
+    """Find the bump of the slowest curve of a stroke; what falls at the stop is none."""
+    found = _samples(model, stroke)
+    if found is None:
+        return None
+    x, force = found
+    inside = x < model.travel_mm - STOP_SHARE_mm
+    return find_bump(x[inside], force[inside]) if np.count_nonzero(inside) > 2 else None
+
+
+def _samples(model: FDVVModel, stroke: Stroke) -> tuple[FloatArray, FloatArray] | None:
+    curve = model.nearest(stroke)
+    if curve is None:
+        return None
+    end = max(model.travel_mm, curve.start_mm + 0.1)
+    x = np.linspace(curve.start_mm, end, max(8, round((end - curve.start_mm) / 0.01) + 1))
+    return x, curve.force_cN(x)
+
+
+def kind_of(model: FDVVModel) -> Kind:
+    """Decide what the force does, from the slowest press and its release."""
+    found = _samples(model, Stroke.PRESS)
+    if found is None:
+        return Kind(ButtonType.UNCLEAR, "no press was measured")
+    bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
+    if bump is None:
+        return Kind(ButtonType.LINEAR, "the force of the press never falls by 4 cN")
+    fall = f"the press falls by {bump.drop_cN:.1f} cN at {bump.peak_mm:.2f} mm"
+    if back is None and model.of(Stroke.RELEASE):
+        if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
+            return Kind(ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN")
+        return Kind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
+    return _bumpy(bump, fall, model.travel_mm, *found)
+
+
+def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatArray) -> Kind:
+    sudden = _sudden_ratio(bump, x, force)
+    if sudden >= SUDDEN_ratio:
+        share = f"{fall}, {100 * sudden:.0f} % of it within 50 um"
+        if bump.drop_cN < SUDDEN_drop_cN:
+            return Kind(ButtonType.UNCLEAR, f"{share}: so small a jump may be the bench")
+        return Kind(ButtonType.CLICKY, f"{share}; force alone does not tell the sound")
+    rise_mm = float(x[int(np.argmax(force >= 0.5 * bump.peak_cN))] - x[0])
+    long_ratio = (bump.valley_mm - bump.peak_mm) / travel_mm
+    if rise_mm >= DOME_rise_mm and long_ratio >= DOME_fall_ratio:
+        reason = (
+            f"{fall} over {100 * long_ratio:.0f} % of the travel; half of the peak is reached after "
+            f"{rise_mm:.2f} mm, without a contact step"
+        )
+        return Kind(ButtonType.DOME, reason)
+    return Kind(ButtonType.TACTILE, fall)
+
+
+def _sudden_ratio(bump: Bump, x: FloatArray, force: FloatArray) -> float:
+    """Give the largest share of the fall that happens within 50 um."""
+    near = (x >= bump.peak_mm - 0.1) & (x <= bump.valley_mm + 0.05)
+    later = np.interp(x[near] + SUDDEN_mm, x, force)
+    return min(1.0, float(np.max(force[near] - later)) / bump.drop_cN)
+
+
+def figures_of(model: FDVVModel) -> dict[str, float | None]:
+    """Give the figures of a row by their names in ShelfRow; those of a press are None without one."""
+    known = {"actuation_mm": model.actuation_mm, "reset_mm": model.reset_mm, "travel_mm": model.travel_mm}
+    if model.nearest(Stroke.PRESS) is None:
+        return {**dict.fromkeys(NUMBERS), **known}
+    marks = landmarks(model)
+    back = bump_of(model, Stroke.RELEASE)
+    return {
+        **_bump_figures(bump_of(model, Stroke.PRESS)),
+        **known,
+        "release_drop_cN": back.drop_cN if back else None,
+        "actuation_cN": marks.actuation_cN,
+        "preload_cN": marks.preload_cN,
+        "bottom_out_cN": marks.bottom_out_cN,
+        "travel_mm": marks.travel_mm,
+        "pre_slope_cN_mm": marks.pre_slope_cN_mm,
+        "post_slope_cN_mm": marks.post_slope_cN_mm,
+        "work_mJ": marks.work_mJ,
+        "loss_mJ": marks.hysteresis_loss_mJ,
+    }
+
+
+def _bump_figures(bump: Bump | None) -> dict[str, float | None]:
+    names = ("peak_cN", "peak_mm", "valley_cN", "valley_mm", "drop_cN", "snap_ratio")
+    return {name: getattr(bump, name) if bump else None for name in names}
+
+
+def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str, ...]:
+    """Say why figures are None, each reason with its subject."""
+    release = model.of(Stroke.RELEASE)
+    told = {
+        "bump": figures["peak_cN"] is None and "not detected: the force never falls by 4 cN",
+        "release": (not release and "the source holds no release")
+        or (figures["release_drop_cN"] is None and "no bump detected: the force never falls by 4 cN"),
+        "actuation": figures["actuation_mm"] is None and "the source does not tell where the contact closes",
+        "reset": figures["reset_mm"] is None and "the source does not tell where the contact opens",
+        "speed": not model.velocities_mm_s(Stroke.PRESS) and "the source tells no speed: a slow bench",
+    }
+    if not model.of(Stroke.PRESS):
+        told |= {"bump": "the source holds no press", "press": "the source holds no press"}
+    return tuple(f"{subject}: {reason}" for subject, reason in told.items() if reason)
+
+
+def sketch_of(model: FDVVModel) -> Sketch:
+    """Draw the slowest press and its release with 64 points each, contact to end of travel."""
+    return Sketch(*(_sketch(model, stroke) for stroke in (Stroke.PRESS, Stroke.RELEASE)))
+
+
+def _sketch(model: FDVVModel, stroke: Stroke) -> tuple[int, ...]:
+    curve = model.nearest(stroke)
+    if curve is None:
+        return ()
+    x = np.linspace(0.0, model.travel_mm, SKETCH_POINTS)
+    tenths: Sequence[int] = np.rint(10 * np.clip(curve.force_cN(x), -3000, 3000)).astype(int).tolist()
+    return tuple(tenths)

@@ -1,0 +1,122 @@
+"""How unlike two buttons feel, from their rows: force along press and release, shape, landmarks.
+
+All is in just noticeable differences (JND). Of force that is 8 % (7 to 10 % are told for pressing fingers)
+of the force plus 10 cN, so that light forces do not count for more than their share; of places it is 0.2 mm.
+The three parts are mean squares and count alike; docs/explanation/library.md tells how well that works.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from fdvv.units import FloatArray
+from fdvv.workflow._shelf_row import SKETCH_POINTS, ShelfRow
+
+FORCE_jnd_ratio, FORCE_floor_cN = 0.08, 10.0
+PLACE_jnd_mm = 0.2
+STOP_cN_mm, STOP_most_cN = 150.0, 100.0
+"""Beyond its travel a button is taken to have a stop of this slope, up to this force above its bottom-out."""
+
+GRID_mm = np.arange(0.1, 4.51, 0.1)
+"""Where forces are compared, contact at 0; the first tenth of a millimetre is the contact step."""
+
+SHAPE_points = 32
+_SIZES = (GRID_mm.size, GRID_mm.size, SHAPE_points, SHAPE_points, 5)
+_FORCE, _SHAPE, _LANDMARKS = (0, 1), (2, 3), (4,)
+
+
+class LikeTable:
+    """What many buttons are compared by; positions count them in the order they were added."""
+
+    def __init__(self) -> None:
+        self._table: FloatArray = np.empty((0, sum(_SIZES)))
+        self._fresh: list[ShelfRow] = []
+
+    def extend(self, rows: Sequence[ShelfRow]) -> None:
+        """Add buttons at the end."""
+        self._fresh += rows
+
+    def parts(self, at: int) -> FloatArray:
+        """Give how far every button is from the one at a position: force, shape, landmarks in JND, (n, 3).
+
+        What either button lacks (a release, a bump's place) is left out; a part of which nothing is left is
+        infinite.
+        """
+        if self._fresh:
+            self._table = np.vstack([self._table, _vectors(self._fresh)])
+            self._fresh = []
+        gap = (self._table - self._table[at]) ** 2
+        ends = np.cumsum((0, *_SIZES))
+        means = [_mean(gap[:, a:b]) for a, b in pairwise(ends)]
+        parts = [_mean(np.column_stack([means[i] for i in part])) for part in (_FORCE, _SHAPE, _LANDMARKS)]
+        found = np.sqrt(np.column_stack(parts))
+        return np.where(np.isfinite(found), found, np.inf)
+
+    def distances(self, at: int) -> FloatArray:
+        """Give the root of the mean square of the three parts, (n,)."""
+        return distances(self.parts(at))
+
+
+def distances(parts: FloatArray) -> FloatArray:
+    """Give the root of the mean square of the three parts, (n,)."""
+    return np.asarray(np.sqrt(np.mean(parts**2, axis=1)))
+
+
+def _mean(squares: FloatArray) -> FloatArray:
+    """Average rows over what is known; NaN where nothing is."""
+    known = np.isfinite(squares)
+    count = known.sum(axis=1)
+    total = np.where(known, squares, 0.0).sum(axis=1)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _vectors(rows: Sequence[ShelfRow]) -> FloatArray:
+    """Give what buttons are compared by, a row each; NaN where it is unknown."""
+    travel_mm = np.array([[row.travel_mm] for row in rows])
+    strokes = [_sketches([row.sketch.press_dcN for row in rows])]
+    strokes.append(_sketches([row.sketch.release_dcN for row in rows]))
+    forces = [_in_jnd(stroke, travel_mm) for stroke in strokes]
+    return np.hstack([*forces, *map(_normalised, strokes), np.array([_landmarks(row) for row in rows])])
+
+
+def _sketches(found_dcN: Sequence[Sequence[int]]) -> FloatArray:
+    """Give forces in cN, (n, 64); NaN where a button has no such stroke."""
+    none = (np.nan,) * SKETCH_POINTS
+    return 0.1 * np.array([dcN or none for dcN in found_dcN], dtype=np.float64)
+
+
+def _at(force_cN: FloatArray, part: FloatArray) -> FloatArray:
+    """Read sketches at parts of the travel from 0 to 1, (n, m), between points by lines."""
+    place = np.clip(part, 0.0, 1.0) * (SKETCH_POINTS - 1)
+    before = np.minimum(place.astype(np.intp), SKETCH_POINTS - 2)
+    low, high = (np.take_along_axis(force_cN, before + k, axis=1) for k in (0, 1))
+    return np.asarray(low + (place - before) * (high - low))
+
+
+def _in_jnd(force_cN: FloatArray, travel_mm: FloatArray) -> FloatArray:
+    """Count the noticeable steps from no force to the force at each place of the grid."""
+    stop = np.clip(STOP_cN_mm * (GRID_mm - travel_mm), 0.0, STOP_most_cN)
+    all_cN = np.clip(_at(force_cN, GRID_mm / travel_mm) + stop, 0.0, None)
+    return np.asarray(np.log1p(all_cN / FORCE_floor_cN) / FORCE_jnd_ratio)
+
+
+def _normalised(force_cN: FloatArray) -> FloatArray:
+    """Give force by its mean on travel by its length, in JND."""
+    places = np.broadcast_to(np.linspace(0.02, 1.0, SHAPE_points), (len(force_cN), SHAPE_points))
+    part = _at(force_cN, places)
+    return np.asarray(part / np.maximum(part.mean(axis=1, keepdims=True), 1.0) / FORCE_jnd_ratio)
+
+
+def _landmarks(row: ShelfRow) -> list[float]:
+    """Give travel, places of peak and valley, drops of press and release; without a bump the drop is 0."""
+    typical_cN = 50.0 if row.bottom_out_cN is None else abs(row.bottom_out_cN)
+    step_cN = FORCE_jnd_ratio * (typical_cN + FORCE_floor_cN)
+    places = (row.travel_mm, row.peak_mm, row.valley_mm)
+    return [
+        *(np.nan if place is None else place / PLACE_jnd_mm for place in places),
+        (row.drop_cN or 0.0) / step_cN if row.sketch.press_dcN else np.nan,
+        (row.release_drop_cN or 0.0) / step_cN if row.sketch.release_dcN else np.nan,
+    ]

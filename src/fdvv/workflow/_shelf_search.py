@@ -1,0 +1,222 @@
+"""Questions to the shelf: words, kinds and ranges together, in any order, or nearest to one button."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import InputError
+from fdvv.units import FloatArray
+from fdvv.workflow._shelf_like import LikeTable, distances
+from fdvv.workflow._shelf_row import NUMBERS, ButtonType, Origin, ShelfRow
+from fdvv.workflow._shelf_text import Mask, TextTable
+
+Positions = npt.NDArray[np.intp]
+BINS = 24
+LABELS = ("name", "kind", "origin", "date")
+"""Columns to sort by besides NUMBERS; "match" sorts by words, or by likeness where one is asked for."""
+
+
+@dataclass(frozen=True)
+class ShelfQuery:
+    """What is sought; all of it must hold.
+
+    Attributes
+    ----------
+    text : words, every one of which must match.
+    kinds, origins : any of these; empty for all.
+    ranges : lowest and highest by name in NUMBERS, None for no end; what has no such figure is left out.
+    like : the id of the button that others are to feel like.
+    sort : "match", or a name in LABELS or NUMBERS; what has no such figure comes last.
+    """
+
+    text: str = ""
+    kinds: tuple[ButtonType, ...] = ()
+    origins: tuple[Origin, ...] = ()
+    ranges: dict[str, tuple[float | None, float | None]] = field(default_factory=dict)
+    like: str | None = None
+    sort: str = "match"
+    descending: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Histogram:
+    """How many buttons that match everything but this range lie where, in BINS equal bins.
+
+    Attributes
+    ----------
+    lowest, highest : the ends of the bins; beyond them lie 1 % of all buttons on either side, counted in
+        the outermost bins.
+    """
+
+    lowest: float
+    highest: float
+    counts: npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class ShelfFound:
+    """The answer.
+
+    Attributes
+    ----------
+    positions : of the rows that match, in the order asked for.
+    distances : in JND to the button they are to be like, in that order, parts too (n, 3); else empty.
+    histograms : by name in NUMBERS.
+    kinds, origins : how many match everything else.
+    without : how many would match if a filter were dropped, by its name ("text", "kinds", "origins" or a
+        range's).
+    mended : words that were read with a typo.
+    """
+
+    positions: Positions
+    distances: FloatArray
+    parts: FloatArray
+    histograms: dict[str, Histogram]
+    kinds: dict[str, int]
+    origins: dict[str, int]
+    without: dict[str, int]
+    mended: tuple[str, ...]
+
+
+class ShelfSearch:
+    """Rows made ready to be searched; more may be added at the end."""
+
+    def __init__(self) -> None:
+        self.rows: list[ShelfRow] = []
+        self._at: dict[str, int] = {}
+        self._text, self._like = TextTable(), LikeTable()
+        self._numbers: FloatArray = np.empty((0, len(NUMBERS)))
+        self._ends: FloatArray = np.empty((2, 0))
+
+    def extend(self, rows: Sequence[ShelfRow]) -> None:
+        """Add rows at the end."""
+        if not rows:
+            return
+        self._at |= {row.id: len(self.rows) + i for i, row in enumerate(rows)}
+        self.rows += rows
+        self._text.extend(rows)
+        self._like.extend(rows)
+        table = [[getattr(row, name) for name in NUMBERS] for row in rows]
+        self._numbers = np.vstack([self._numbers, np.array(table, dtype=np.float64)])
+        self._ends = _ends(self._numbers)
+
+    def row(self, button_id: str) -> ShelfRow | None:
+        """Give the row of a button; None if it is not among them."""
+        at = self._at.get(button_id)
+        return None if at is None else self.rows[at]
+
+    def _position(self, button_id: str) -> int:
+        if button_id not in self._at:
+            reason = f"no button is called {button_id!r:.80}"
+            raise InputError("library", "button", reason, "choose one of the list, or wait for the index")
+        return self._at[button_id]
+
+    def find(self, query: ShelfQuery) -> ShelfFound:
+        """Answer a question. Raises InputError on a name that is not there."""
+        _check(query)
+        matches, score, mended = self._text.match(query.text)
+        masks = {"text": matches, **self._choices(query), **self._ranges(query)}
+        every = np.logical_and.reduce(list(masks.values())) if self.rows else np.zeros(0, bool)
+        parts, distance = self._distances(query)
+        keys = score if query.like is None else -distance
+        positions = self._ordered(query, np.flatnonzero(every), keys)
+        if query.like is not None:
+            positions = positions[positions != self._position(query.like)]
+        others = {name: _all_but(masks, name) for name in masks}
+        return ShelfFound(
+            positions=positions,
+            distances=distance[positions] if query.like else np.empty(0),
+            parts=parts[positions] if query.like else np.empty((0, 3)),
+            histograms=self._histograms({name: others.get(name, every) for name in NUMBERS}),
+            kinds=_counts([row.kind for row in self.rows], others["kinds"]),
+            origins=_counts([row.origin for row in self.rows], others["origins"]),
+            without={name: int(others[name].sum()) for name in _active(query)},
+            mended=mended,
+        )
+
+    def _choices(self, query: ShelfQuery) -> dict[str, Mask]:
+        kinds = [not query.kinds or row.kind in query.kinds for row in self.rows]
+        origins = [not query.origins or row.origin in query.origins for row in self.rows]
+        return {"kinds": np.array(kinds, bool), "origins": np.array(origins, bool)}
+
+    def _ranges(self, query: ShelfQuery) -> dict[str, Mask]:
+        masks = {}
+        for name, (low, high) in query.ranges.items():
+            values = self._numbers[:, NUMBERS.index(name)]
+            masks[name] = (values >= (-np.inf if low is None else low)) & (
+                values <= (np.inf if high is None else high)
+            )
+        return masks
+
+    def _distances(self, query: ShelfQuery) -> tuple[FloatArray, FloatArray]:
+        if query.like is None:
+            return np.empty((0, 3)), np.empty(0)
+        parts = self._like.parts(self._position(query.like))
+        return parts, distances(parts)
+
+    def _ordered(
+        self, query: ShelfQuery, found: npt.NDArray[np.intp], score: FloatArray
+    ) -> npt.NDArray[np.intp]:
+        """Sort positions; equal ones stay in the shelf's order, what is unknown comes last."""
+        if query.sort == "match":
+            return found[np.argsort(-score[found], kind="stable")]
+        if query.sort in LABELS:
+            labels = [str(getattr(self.rows[i], query.sort) or "").casefold() for i in found]
+            order = sorted(range(len(found)), key=labels.__getitem__, reverse=query.descending)
+            return found[[i for i in order if labels[i]] + [i for i in order if not labels[i]]]
+        values = self._numbers[found, NUMBERS.index(query.sort)]
+        return found[np.argsort(-values if query.descending else values, kind="stable")]
+
+    def _histograms(self, masks: dict[str, Mask]) -> dict[str, Histogram]:
+        found = {}
+        for i, name in enumerate(NUMBERS):
+            values = self._numbers[masks[name], i]
+            low, high = self._ends[:, i] if self._ends.size else (np.nan, np.nan)
+            if high > low:
+                inside = np.clip(values[np.isfinite(values)], low, high)
+                counts = np.histogram(inside, BINS, (low, high))[0]
+                found[name] = Histogram(float(low), float(high), counts)
+        return found
+
+
+def _ends(numbers: FloatArray) -> FloatArray:
+    """Give the 1st and the 99th percentile of every column, (2, k); NaN for a column without figures."""
+    ends = np.full((2, numbers.shape[1]), np.nan)
+    for i, column in enumerate(numbers.T):
+        known = column[np.isfinite(column)]
+        if known.size:
+            ends[:, i] = np.percentile(known, (1, 99))
+    return ends
+
+
+def _all_but(masks: dict[str, Mask], name: str) -> Mask:
+    return np.asarray(
+        np.logical_and.reduce([np.ones_like(masks[name]), *(m for n, m in masks.items() if n != name)])
+    )
+
+
+def _counts(labels: Sequence[str], mask: Mask) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for label, there in zip(labels, mask, strict=True):
+        found[str(label)] = found.get(str(label), 0) + int(there)
+    return found
+
+
+def _active(query: ShelfQuery) -> list[str]:
+    """Name the filters that are set."""
+    told = {"text": query.text.strip(), "kinds": query.kinds, "origins": query.origins}
+    return [name for name, value in told.items() if value] + list(query.ranges)
+
+
+def _check(query: ShelfQuery) -> None:
+    columns = ("match", *LABELS, *NUMBERS)
+    for place, name, known in (
+        ("sort", query.sort, columns),
+        *(("ranges", name, NUMBERS) for name in query.ranges),
+    ):
+        if name not in known:
+            raise InputError("library", place, f"no column {name!r:.40}", f"use one of {', '.join(known)}")

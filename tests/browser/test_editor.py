@@ -1,0 +1,310 @@
+"""The editor, driven by a real mouse and real keys."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from fdvv.model import FDVVModel, ForceCurve, load_builtin, load_model
+
+if TYPE_CHECKING:
+    from playwright.sync_api import BrowserContext, Page
+
+FORCE = 2
+POINT = 5
+"""The sixth control point of MX Clear's slowest press: 1.4 mm, 66.1146 cN."""
+
+
+def number(text: str) -> float:
+    return float(text.replace("−", "-"))
+
+
+def opened(page: Page, button: str) -> Page:
+    page.evaluate(f"location.hash = '#/edit/' + encodeURIComponent('{button}')")
+    page.wait_for_selector(".edit-points")
+    page.wait_for_selector(".edit-follows", timeout=30_000)
+    return page
+
+
+@pytest.fixture
+def editor(page: Page) -> Page:
+    """The editor with MX Clear."""
+    return opened(page, "builtin:mx-clear")
+
+
+def cell(page: Page, row: int, column: int = FORCE) -> str:
+    return page.locator(".edit-points tbody tr").nth(row).locator("td").nth(column).inner_text()
+
+
+def force_cN(page: Page, row: int = POINT) -> float:
+    return number(cell(page, row))
+
+
+def scales(page: Page) -> Callable[[float, float], tuple[float, float]]:
+    """Learn from the numbers under the pointer where a place of the axes lies on the screen."""
+    box = page.locator(".edit-plot").bounding_box()
+    assert box is not None
+    at = np.array([[box["x"] + p * box["width"], box["y"] + p * box["height"]] for p in (0.3, 0.7)])
+    read = []
+    for x, y in at:
+        page.mouse.move(x, y)
+        words = page.locator(".edit-pointer").inner_text().split()
+        read.append([number(words[0]), number(words[3])])
+
+    def to_screen(x_mm: float, y_cN: float) -> tuple[float, float]:
+        x, y = at[0] + (np.array([x_mm, y_cN]) - read[0]) * (at[1] - at[0]) / np.subtract(read[1], read[0])
+        return float(x), float(y)
+
+    return to_screen
+
+
+def drag(page: Page, start: tuple[float, float], by: tuple[float, float]) -> None:
+    page.mouse.move(*start)
+    page.mouse.down()
+    for part in (0.3, 0.7, 1.0):
+        page.mouse.move(start[0] + part * by[0], start[1] + part * by[1])
+    page.mouse.up()
+
+
+def saved(page: Page) -> None:
+    expect(page.locator(".edit-saved")).to_have_text("saved")
+
+
+def own_model(project: Path) -> FDVVModel:
+    files = list((project / "buttons").glob("*.fdvv.json"))
+    assert len(files) == 1
+    return load_model(files[0])
+
+
+def slowest(model: FDVVModel) -> ForceCurve:
+    return model.of("press")[0]
+
+
+def test_a_point_dragged_with_the_mouse_is_one_step_and_is_there_after_a_reload(
+    editor: Page, tmp_path: Path
+) -> None:
+    to_screen, before = scales(editor), slowest(load_builtin("mx-clear"))
+    x_mm, y_cN = before.control_points_mm[POINT], before.control_points_cN[POINT]
+    start, end = to_screen(x_mm, y_cN), to_screen(x_mm, y_cN + 12)
+    drag(editor, start, (0.0, end[1] - start[1]))
+    assert force_cN(editor) == pytest.approx(y_cN + 12, abs=0.5)
+    others = [i for i in range(before.control_points_cN.size) if i != POINT]
+    assert [force_cN(editor, i) for i in others] == pytest.approx(before.control_points_cN[others], abs=1e-4)
+    saved(editor)
+    after = force_cN(editor)
+    assert "own%3A" in editor.url
+    kept = slowest(own_model(tmp_path / "project"))
+    assert kept.control_points_cN[POINT] == pytest.approx(after, abs=1e-4)
+    editor.reload()
+    editor.wait_for_selector(".edit-points")
+    assert force_cN(editor) == after
+    editor.keyboard.press("Control+z")
+    assert force_cN(editor) == pytest.approx(y_cN, abs=1e-4)
+    assert editor.locator("button[aria-label=Undo]").is_disabled()
+
+
+def test_fifty_steps_by_keys_are_undone_to_the_number_they_began_at(editor: Page) -> None:
+    editor.keyboard.press("c")
+    editor.keyboard.press("Home")
+    for _ in range(POINT):
+        editor.keyboard.press("ArrowRight")
+    at = force_cN(editor)
+    for i in range(50):
+        editor.keyboard.press(("ArrowUp", "Shift+ArrowUp", "Alt+ArrowDown", "ArrowDown")[i % 4])
+    assert force_cN(editor) != at
+    editor.click("role=tab[name=Steps]")
+    assert editor.locator(".edit-step").count() == 51
+    editor.click("role=tab[name=Points]")
+    for _ in range(50):
+        editor.keyboard.press("Control+z")
+    assert force_cN(editor) == at
+    for _ in range(50):
+        editor.keyboard.press("Control+y")
+    editor.click("role=tab[name=Steps]")
+    editor.locator(".edit-step").last.click()
+    editor.click("role=tab[name=Points]")
+    assert force_cN(editor) == at
+
+
+def test_an_exact_number_is_typed_into_the_table_and_kept_to_the_last_digit(
+    editor: Page, tmp_path: Path
+) -> None:
+    editor.locator(".edit-points tbody tr").nth(POINT).locator("td").nth(FORCE).click()
+    editor.keyboard.type("61.23456789")
+    editor.keyboard.press("Enter")
+    editor.keyboard.type("nonsense")
+    assert cell(editor, POINT) == "61.2346"
+    saved(editor)
+    assert slowest(own_model(tmp_path / "project")).control_points_cN[POINT] == 61.23456789
+    focused = editor.evaluate(
+        "[...document.activeElement.closest('tr').parentElement.children]"
+        ".indexOf(document.activeElement.closest('tr'))"
+    )
+    assert focused == POINT + 1
+
+
+def test_the_peak_moves_with_the_hand_and_escape_gives_the_drag_up(editor: Page) -> None:
+    editor.click("role=tab[name=Figures]")
+    peak = editor.locator(".edit-figures tr", has_text="Peak").first.locator("td").first
+    was = number(peak.inner_text())
+    to_screen, curve = scales(editor), slowest(load_builtin("mx-clear"))
+    x, y = to_screen(curve.control_points_mm[POINT], curve.control_points_cN[POINT])
+    editor.mouse.move(x, y)
+    editor.mouse.down()
+    editor.mouse.move(x, y - 40)
+    assert number(peak.inner_text()) > was + 2
+    editor.keyboard.press("Escape")
+    assert number(peak.inner_text()) == was
+    editor.mouse.up()
+    assert editor.locator("button[aria-label=Undo]").is_disabled()
+
+
+def test_a_place_of_the_travel_is_moved_by_the_mouse_and_by_keys(editor: Page) -> None:
+    actuation = editor.locator("[role=slider][aria-label='Actuation point']")
+    to_screen = scales(editor)
+    box = actuation.bounding_box()
+    assert box is not None
+    grip = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    drag(editor, grip, (to_screen(1.5, 0)[0] - to_screen(2.0, 0)[0], 0.0))
+    assert float(actuation.get_attribute("aria-valuenow") or "nan") == pytest.approx(1.5, abs=0.02)
+    before = float(actuation.get_attribute("aria-valuenow") or "nan")
+    actuation.focus()
+    editor.keyboard.press("ArrowRight")
+    assert float(actuation.get_attribute("aria-valuenow") or "nan") == pytest.approx(before + 0.05, abs=1e-6)
+
+
+def test_points_are_boxed_added_and_removed(editor: Page) -> None:
+    to_screen = scales(editor)
+    drag(editor, to_screen(0.7, 52), tuple(np.subtract(to_screen(1.5, 75), to_screen(0.7, 52))))
+    selected = editor.locator(".edit-points tr[aria-selected=true]")
+    assert selected.count() == 3
+    rows = editor.locator(".edit-points tbody tr")
+    count = rows.count()
+    editor.keyboard.press("Delete")
+    assert rows.count() == count - 3
+    editor.mouse.dblclick(*to_screen(3.3, 20))
+    assert rows.count() == count - 2
+    for _ in range(2):
+        editor.keyboard.press("Control+z")
+    assert rows.count() == count
+
+
+def test_what_the_rig_makes_of_it_follows_the_hand_and_says_where_it_cannot(editor: Page) -> None:
+    assert editor.locator(".edit-follows").inner_text() == "can follow"
+    assert "simulated" in editor.locator(".edit-verdict select option:checked").inner_text()
+    editor.keyboard.press("c")
+    editor.keyboard.press("Control+a")
+    for _ in range(45):
+        editor.keyboard.press("Shift+ArrowUp")
+    expect(editor.locator(".edit-follows")).to_have_text("cannot")
+    expect(editor.locator(".edit-verdict")).to_contain_text("the limit is 440")
+    for _ in range(45):
+        editor.keyboard.press("Control+z")
+    expect(editor.locator(".edit-follows")).to_have_text("can follow")
+
+
+def nudge(page: Page) -> None:
+    page.keyboard.press("c")
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowUp")
+
+
+def cut(page: Page) -> None:
+    """Let no change reach the studio."""
+    page.route("**/api/document.change", lambda route: route.abort())
+
+
+def test_two_tabs_follow_each_other(editor: Page, context: BrowserContext) -> None:
+    nudge(editor)
+    saved(editor)
+    other = context.new_page()
+    other.goto(editor.url)
+    other.wait_for_selector(".edit-points")
+    at = force_cN(editor, 0)
+    assert force_cN(other, 0) == at
+    nudge(other)
+    expect(editor.locator(".edit-points tbody tr").first.locator("td").nth(FORCE)).to_have_text(
+        cell(other, 0)
+    )
+    assert force_cN(editor, 0) == at + 1
+
+
+def test_a_conflict_of_two_tabs_is_put_to_the_person(editor: Page, context: BrowserContext) -> None:
+    nudge(editor)
+    saved(editor)
+    other = context.new_page()
+    other.goto(editor.url)
+    other.wait_for_selector(".edit-points")
+    cut(other)
+    nudge(other)
+    expect(other.locator(".edit-saved")).to_have_text("not saved yet, trying again")
+    mine = force_cN(other, 0)
+    nudge(editor)
+    nudge(editor)
+    saved(editor)
+    other.unroute("**/api/document.change")
+    expect(other.locator(".edit-conflict")).to_contain_text("another tab edited this button")
+    assert force_cN(other, 0) == mine
+    other.click("text=Keep mine as a copy")
+    expect(other.locator("h1")).to_contain_text("mine")
+    assert force_cN(other, 0) == mine
+    assert force_cN(editor, 0) == mine + 1
+
+
+def test_a_curve_is_copied_to_another_speed_and_assigned_by_parts(editor: Page, tmp_path: Path) -> None:
+    editor.get_by_label("Copy to", exact=True).fill("120")
+    editor.keyboard.press("Enter")
+    assert editor.locator(".edit-curves tbody tr").count() == 6
+    editor.click("role=tab[name=Assign]")
+    editor.get_by_label("Curve", exact=True).select_option("press@200")
+    editor.get_by_label("Stroke", exact=True).select_option("press")
+    editor.get_by_label("Only a part of the travel").check()
+    editor.click("text=Assign the part")
+    saved(editor)
+    kept = own_model(tmp_path / "project")
+    assert kept.velocities_mm_s("press") == (0.5, 50.0, 100.0, 120.0, 150.0, 200.0)
+    assert "assigned from press at 200 mm/s" in kept.provenance.method
+
+
+def test_a_vibration_is_shaped_by_number_and_the_surface_is_drawn(editor: Page, tmp_path: Path) -> None:
+    editor.click("role=tab[name=Vibration]")
+    editor.get_by_label("frequency of mode 1, Hz").fill("321.5")
+    editor.keyboard.press("Enter")
+    saved(editor)
+    model = own_model(tmp_path / "project")
+    assert next(v for v in model.vibrations if v.stroke == "press").modes[0].frequency_Hz == 321.5
+    editor.click("role=tab[name=Surface]")
+    canvas = editor.locator(".edit-surface")
+    canvas.wait_for()
+    before = canvas.screenshot()
+    canvas.focus()
+    editor.keyboard.press("ArrowRight")
+    editor.keyboard.press("ArrowUp")
+    for _ in range(50):
+        if canvas.screenshot() != before:
+            break
+    assert canvas.screenshot() != before
+
+
+def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path: Path) -> None:
+    def taken(name: str) -> Path:
+        editor.click("summary:has-text('Export')")
+        with editor.expect_download() as waiting:
+            editor.click(f"role=button[name='{name}']")
+        path = tmp_path / waiting.value.suggested_filename
+        waiting.value.save_as(path)
+        return path
+
+    assert load_model(taken("Model file")) == load_builtin("mx-clear")
+    rows = taken("Curves, CSV").read_text().splitlines()
+    assert rows[0].split(",")[0] == "press_0.5_mm_s_displacement_mm"
+    assert number(rows[1].split(",")[1]) == pytest.approx(2.952)
+    assert taken("View, SVG").read_text().count("<path") > 20
+    assert taken("View, PNG").read_bytes().startswith(b"\x89PNG")
+    assert json.loads((tmp_path / "mx-clear.fdvv.json").read_text())["format"] == "fdvv-model"

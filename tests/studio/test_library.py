@@ -1,0 +1,163 @@
+"""The library's calls and channel, asked as the page asks."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from starlette.testclient import TestClient
+from tests.studio.conftest import LIVE, ORIGIN, TOKEN
+from tests.workflow.conftest import write_cycle
+
+from fdvv.model import SUFFIX, builtin_names, load_builtin, save_model
+from fdvv.studio import Studio, create_app, door_of
+from fdvv.workflow import SHELF_NUMBERS
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("bench")
+    for i, name in enumerate(("Kailh Pro", "Gateron Yellow")):
+        write_cycle(folder / f"{name}.csv", added_cN=5 * i, seed=i)
+    (folder / "bad.csv").write_text("text,of,no,kind\n1,2,3,4\n")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory, bench: Path) -> Iterator[TestClient]:
+    """A studio whose index has read everything."""
+    project = tmp_path_factory.mktemp("library") / "project"
+    save_model(load_builtin("mx-red"), project / "buttons" / f"mine{SUFFIX}")
+    app = create_app(Studio(project, (bench,)), door_of("127.0.0.1", 8377, TOKEN))
+    with TestClient(app, base_url=ORIGIN, headers={"origin": ORIGIN}) as client:
+        client.get("/", params={"token": TOKEN})
+        with client.websocket_connect(LIVE, headers={"origin": ORIGIN}) as live:
+            live.send_json({"channel": "library", "body": {"type": "watch"}})
+            while not live.receive_json()["body"]["ended"]:
+                pass
+        yield client
+
+
+def ask(client: TestClient, name: str, **question: Any) -> Any:
+    answer = client.post(f"/api/library.{name}", json=question)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_the_index_gives_every_button_as_columns(client: TestClient) -> None:
+    found = ask(client, "index")
+    count = len(builtin_names()) + 3
+    assert found["standing"] | {"epoch": 0} == {
+        **{"type": "standing", "epoch": 0, "rows": count, "refused": 1, "done": 4, "total": 4},
+        **{"ended": True, "sources": 1, "trouble": ""},
+    }
+    assert set(found["numbers"]) == set(SHELF_NUMBERS)
+    for column in (found["ids"], found["kinds"], *found["numbers"].values()):
+        assert len(column) == count
+    sketches = np.frombuffer(base64.b64decode(found["sketches"]), "<i2").reshape(count, 2, 64)
+    clear = found["ids"].index("builtin:mx-clear")
+    expected = load_builtin("mx-clear").force_cN(np.linspace(0, 4, 64), 0.5)
+    np.testing.assert_allclose(0.1 * sketches[clear, 0], expected, atol=0.0501)
+
+
+def test_rows_that_the_page_has_are_not_sent_again(client: TestClient) -> None:
+    whole = ask(client, "index")
+    epoch = whole["standing"]["epoch"]
+    rest = ask(client, "index", epoch=epoch, first=4)
+    assert (rest["first"], rest["ids"]) == (4, whole["ids"][4:])
+    assert ask(client, "index", epoch=epoch + 1, first=4)["ids"] == whole["ids"]
+
+
+def test_what_is_found_are_positions_of_the_index(client: TestClient) -> None:
+    names = ask(client, "index")["names"]
+    found = ask(client, "find", text="gatreon", ranges={"travel_mm": {"low": 3}})
+    assert [names[at] for at in found["positions"]] == ["Gateron Yellow"]
+    assert found["mended"] == ["gatreon"]
+    assert found["without"] == {"text": len(names), "travel_mm": 1}
+    assert sum(found["histograms"]["travel_mm"]["counts"]) == 1
+
+
+def test_a_picker_gets_rows(client: TestClient) -> None:
+    found = ask(client, "search", text="mx", limit=2)
+    assert [row["id"] for row in found["rows"]] == ["builtin:mx-black", "builtin:mx-blue"]
+    assert found["total"] == 6
+    assert found["ended"]
+    assert found["rows"][0]["peak_cN"] is None
+    assert found["rows"][1]["peak_cN"] == pytest.approx(66.5, abs=0.5)
+
+
+def test_the_nearest_come_first_with_what_they_differ_in(client: TestClient) -> None:
+    alike = ask(client, "like", id="own:mine", limit=3)["alike"]
+    assert alike[0]["row"]["id"] == "builtin:mx-red"
+    assert alike[0]["distance_jnd"] == 0
+    for one in alike:
+        parts = np.array([one["force_jnd"], one["shape_jnd"], one["landmarks_jnd"]])
+        assert one["distance_jnd"] == pytest.approx(np.sqrt(np.mean(parts**2)), abs=2e-3)
+
+
+def test_curves_come_with_all_that_is_known_and_a_stale_id_keeps_no_other_back(client: TestClient) -> None:
+    ids = ask(client, "index")["ids"]
+    measured = next(one for one in ids if one.startswith("measured:"))
+    found = ask(client, "curves", ids=["own:gone", "builtin:mx-clear", measured])
+    assert [one["id"] for one in found["buttons"]] == ["builtin:mx-clear", measured]
+    assert [one["id"] for one in found["missing"]] == ["own:gone"]
+    assert "no button is called" in found["missing"][0]["reason"]
+    clear = found["buttons"][0]
+    model = load_builtin("mx-clear")
+    assert len(clear["strokes"]) == len(model.curves)
+    for stroke, curve in zip(clear["strokes"], model.curves, strict=True):
+        assert (stroke["stroke"], stroke["velocity_mm_s"]) == (curve.stroke, curve.velocity_mm_s)
+        x = stroke["start_mm"] + stroke["step_mm"] * np.arange(len(stroke["force_cN"]))
+        np.testing.assert_allclose(stroke["force_cN"], curve.force_cN(x), atol=6e-4)
+    assert found["buttons"][1]["cycles"] == 1
+    assert "reset: " not in " ".join(found["buttons"][1]["why"])
+
+
+def test_refusals_are_told_without_a_path_of_the_machine(client: TestClient, bench: Path) -> None:
+    (file,) = ask(client, "refused")["files"]
+    assert file["place"].endswith("bad.csv")
+    assert str(bench.parent) not in file["place"] + file["reason"]
+
+
+@pytest.mark.parametrize(
+    ("name", "question", "status"),
+    [
+        ("find", {"sort": "weight"}, 422),
+        ("find", {"ranges": {"../x": {}}}, 422),
+        ("find", {"text": "x" * 201}, 400),
+        ("like", {"id": "own:none"}, 422),
+        ("like", {"id": "own:mine", "limit": 0}, 400),
+        ("curves", {"ids": ["x"] * 101}, 400),
+        ("index", {"first": -1}, 400),
+        ("search", {"path": "/"}, 400),
+    ],
+)
+def test_wrong_questions_are_refused_in_one_line(
+    client: TestClient, name: str, question: dict[str, Any], status: int
+) -> None:
+    answer = client.post(f"/api/library.{name}", json=question)
+    assert answer.status_code == status
+    assert "\n" not in answer.json()["error"]
+
+
+def test_a_rescan_finds_what_came_and_went_and_the_page_is_told(client: TestClient, bench: Path) -> None:
+    with client.websocket_connect(LIVE, headers={"origin": ORIGIN}) as live:
+        live.send_json({"channel": "library", "body": {"type": "watch"}})
+        before = live.receive_json()["body"]
+
+        def rescanned(rows: int) -> Any:
+            ask(client, "rescan")
+            while (told := live.receive_json()["body"])["rows"] != rows or not told["ended"]:
+                pass
+            return told
+
+        write_cycle(bench / "Later.csv")
+        assert rescanned(before["rows"] + 1)["epoch"] > before["epoch"]
+        assert ask(client, "search", text="later")["total"] == 1
+        (bench / "Later.csv").unlink()
+        rescanned(before["rows"])
+        assert ask(client, "search", text="later")["total"] == 0

@@ -1,0 +1,100 @@
+"""What the editor is told of a rig while a curve is being drawn. Simulated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.compensate import load_memory, save_rig
+from fdvv.errors import InputError
+from fdvv.model import FDVVModel, ForceCurve, Stroke, load_builtin
+from fdvv.workflow import RigOnShelf, RigShelf, achievable, feasibility
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("project")
+
+
+@pytest.fixture(scope="module")
+def light(project: Path) -> RigOnShelf:
+    return RigShelf(project).rig("shipped:light")
+
+
+def raised(model: FDVVModel, by_cN: float) -> FDVVModel:
+    def lifted(c: ForceCurve) -> ForceCurve:
+        return replace(c, control_points_cN=c.control_points_cN + by_cN, spread=None)
+
+    return replace(model, curves=tuple(map(lifted, model.curves)))
+
+
+def test_a_shipped_rig_is_met_once_and_kept_in_the_project(project: Path, light: RigOnShelf) -> None:
+    kept = project / "rigs" / "light.simulated.rig.json"
+    assert load_memory(kept).known == light.known
+    written = kept.stat().st_mtime_ns
+    again = RigShelf(project)
+    assert again.rig("shipped:light").known == light.known
+    assert kept.stat().st_mtime_ns == written
+    assert {e.rig_id: e.known for e in again.entries()} == {
+        "shipped:default": False,
+        "shipped:paper": False,
+        "shipped:light": True,
+    }
+    assert light.entry.simulated
+
+
+def test_a_file_of_a_person_is_on_the_shelf_and_not_called_simulated(
+    tmp_path: Path, light: RigOnShelf
+) -> None:
+    save_rig(light.known, tmp_path / "rigs" / "bench.rig.json")
+    shelf = RigShelf(tmp_path)
+    assert [e.rig_id for e in shelf.entries()][-1] == "own:bench"
+    found = shelf.rig("own:bench")
+    assert found.known == light.known
+    assert not found.entry.simulated
+
+
+@pytest.mark.parametrize("rig_id", ["own:../rigs/light", "shipped:heavy", "", "own:light.simulated"])
+def test_an_unknown_rig_is_refused_with_those_there_are(project: Path, rig_id: str) -> None:
+    with pytest.raises(InputError, match="choose one of shipped:default, shipped:paper, shipped:light"):
+        RigShelf(project).rig(rig_id)
+
+
+@pytest.mark.parametrize("speed_mm_s", [0.5, 50.0, 200.0])
+def test_the_curves_told_are_those_of_the_feasibility_report(light: RigOnShelf, speed_mm_s: float) -> None:
+    model = load_builtin("mx-clear")
+    told = achievable(model, light, [speed_mm_s])
+    full = feasibility(model, light.known, light.settings, [speed_mm_s], info=light.info).curves
+    assert [c.stroke for c in told] == list(Stroke)
+    for curve, of in zip(told, full, strict=True):
+        reached = of.reached
+        # in fewer steps of time, a tenth of a centinewton is nothing on a screen
+        np.testing.assert_allclose(curve.achievable_cN[::5], reached.achievable_cN[::10], atol=0.1)
+        np.testing.assert_allclose(
+            curve.intended_cN, model.force_cN(curve.displacement_mm, speed_mm_s, curve.stroke), atol=0.05
+        )
+        assert (curve.verdict, curve.reasons) == (str(of.verdict.following), of.verdict.reasons)
+        assert curve.expected_mean_cN == pytest.approx(of.expected.mean_cN, abs=0.05)
+
+
+def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: RigOnShelf) -> None:
+    strong = raised(load_builtin("mx-clear"), 600.0)
+    press = achievable(strong, light, [50.0])[0]
+    cut = [r for r in press.limited if r.limit == "force"]
+    assert cut
+    assert press.verdict == "cannot"
+    assert press.reasons
+    inside = np.zeros(press.displacement_mm.size, dtype=bool)
+    for part in cut:
+        inside |= (press.displacement_mm >= part.start_mm) & (press.displacement_mm <= part.end_mm)
+    missing = press.intended_cN - press.achievable_cN
+    assert missing[inside].min() > 0
+    assert achievable(load_builtin("mx-clear"), light, [50.0])[0].limited == ()
+
+
+def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_told_once(light: RigOnShelf) -> None:
+    told = achievable(load_builtin("mx-red"), light, [None, 50.0])
+    assert [(c.stroke, c.velocity_mm_s) for c in told] == [(Stroke.PRESS, 50.0), (Stroke.RELEASE, 50.0)]

@@ -1,0 +1,205 @@
+/** The pointer on the canvas: from events to the tool's records, and from its acts to edits. */
+
+import type { DataPoint, View } from "../../draw";
+import { controlPoints_mm, snap } from "../../math";
+import { movePoints } from "../../model";
+import { cancelled, type CurveToolState, IDLE, pointerStep } from "../../tools/curve_tool";
+import type { Scene } from "../../tools/reach";
+import type { Act, Grip, Place, PointerRecord, Way } from "../../tools/records";
+import { batch, onCleanup } from "../../ui";
+import type { EditorCanvas } from "./canvas";
+import { type Desk, refOf } from "./desk";
+import { pointerRecord } from "./events";
+import { handlesOnCanvas, heldPlace, placeHandles, pullEdit } from "./handles";
+import { addAt } from "./point_edits";
+import { away_px, inPixels, sampled } from "./samples";
+import { timed } from "./timing";
+
+/** What a drag began with: every move is computed from it. */
+interface Mark {
+  readonly view: View;
+  readonly start: DataPoint;
+  readonly curve: ReturnType<Desk["curve"]>;
+  readonly places: ReturnType<typeof placeHandles>;
+  readonly bumps: readonly { readonly name: string; readonly x_mm: number }[];
+}
+
+/** Listens to the pointer for as long as the page is there. */
+export class Hand {
+  private state: CurveToolState = IDLE;
+  private mark: Mark | null = null;
+  private down: Place = { x_px: 0, y_px: 0 };
+  private space = false;
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly canvas: EditorCanvas,
+  ) {
+    const { element } = canvas.plot;
+    const listen = (name: "pointerdown" | "pointermove" | "pointerup" | "pointercancel") =>
+      element.addEventListener(name, (event) => this.onPointer(event));
+    for (const name of ["pointerdown", "pointermove", "pointerup", "pointercancel"] as const) listen(name);
+    element.addEventListener("pointerleave", () => canvas.hover.set(null));
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    const held = (event: KeyboardEvent) => {
+      if (event.key === " ") this.space = event.type === "keydown" && event.target === element;
+      if (this.space && event.key === " ") event.preventDefault();
+    };
+    addEventListener("keydown", held);
+    addEventListener("keyup", held);
+    onCleanup(() => {
+      removeEventListener("keydown", held);
+      removeEventListener("keyup", held);
+      this.cancel();
+    });
+  }
+
+  /** Whether something is being dragged or drawn. */
+  get busy(): boolean {
+    return this.state.mode !== "idle";
+  }
+
+  /** Escape, or a page that goes away. */
+  cancel(): void {
+    const told = cancelled(this.state);
+    this.state = told.state;
+    told.acts.forEach((act) => this.act(act));
+  }
+
+  private onPointer(event: PointerEvent): void {
+    const at = this.canvas.plot.at(event);
+    if (event.type === "pointerdown") this.begin(event, at);
+    const work = () =>
+      batch(() => {
+        this.canvas.hover.set(event.pointerType === "touch" ? null : at);
+        const told = pointerStep(this.state, this.record(event, at), this.scene());
+        this.state = told.state;
+        told.acts.forEach((act) => this.act(act));
+      });
+    if (this.state.mode === "dragging") timed("fdvv-hand", work);
+    else work();
+  }
+
+  private begin(event: PointerEvent, at: Place): void {
+    this.down = at;
+    if (this.state.mode !== "dragging") this.mark = null;
+    this.canvas.plot.element.focus({ preventScroll: true });
+    // the plot itself pans with the middle button
+    if (event.button !== 1) this.canvas.plot.element.setPointerCapture(event.pointerId);
+  }
+
+  private record(event: PointerEvent, at: Place): PointerRecord {
+    const record = pointerRecord(event, at, this.space);
+    // the plot pans with the middle button: to the tool it is one that does nothing
+    return record.button === 1 ? { ...record, button: 2 } : record;
+  }
+
+  private scene(): Scene {
+    const view = this.canvas.plot.view();
+    const curve = this.desk.curve();
+    const [x, y] = [inPixels(view.x, controlPoints_mm(curve)), inPixels(view.y, curve.control_points_cN)];
+    const others = this.desk.others();
+    const off = (at: Place) => others.map((one) => away_px(sampled(one), view.x, view.y, at));
+    return {
+      points: Array.from(x, (x_px, index) => ({ index, x_px, y_px: y[index]! })),
+      handles: handlesOnCanvas(view, this.desk.model(), curve),
+      away_px: (at) => away_px(sampled(curve), view.x, view.y, at),
+      nearestCurve: (at) => {
+        const away = off(at);
+        const index = away.indexOf(Math.min(...away));
+        return index < 0 ? null : { index, away_px: away[index]! };
+      },
+      selection: this.desk.selection.peek(),
+    };
+  }
+
+  private act(act: Act): void {
+    const { desk, canvas } = this;
+    switch (act.kind) {
+      case "select":
+        return desk.selection.set(act.points);
+      case "activate":
+        return desk.activate(desk.others()[act.curve]!);
+      case "begin":
+        return this.take(act.grip);
+      case "shift":
+        return this.shift(act.grip, act.way);
+      case "commit":
+        return this.letGo(() => desk.release());
+      case "cancel":
+        return this.letGo(() => desk.cancel());
+      case "box":
+        return canvas.box.set({ from: act.from, to: act.to });
+      case "box-end":
+        return canvas.box.set(null);
+      case "add":
+        return void this.add(act.at);
+      case "pan":
+      case "pinch":
+        return this.look(act);
+    }
+  }
+
+  private take(grip: Grip): void {
+    const view = this.canvas.plot.view();
+    const { x_px, y_px } = this.down;
+    const [model, curve] = [this.desk.model(), this.desk.curve()];
+    const handles = handlesOnCanvas(view, model, curve);
+    this.mark = {
+      view,
+      start: { x: view.x.value(x_px), y: view.y.value(y_px) },
+      curve,
+      places: placeHandles(model, curve),
+      bumps: handles.map(({ name, x_px: at }) => ({ name, x_mm: view.x.value(at) })),
+    };
+    this.desk.mark("drag");
+    this.canvas.held.set(grip.kind === "handle" ? grip.name : grip.kind);
+  }
+
+  private shift(grip: Grip, { dx_px, dy_px }: Way): void {
+    const { mark, desk } = this;
+    if (!mark) return;
+    const { view, curve } = mark;
+    const by_cN = view.y.value(dy_px) - view.y.value(0);
+    const constraints = desk.constraints.peek();
+    if (grip.kind === "point") {
+      const step = constraints.step_cN ?? 0;
+      const points = [{ ...refOf(curve), indices: desk.selection.peek() }];
+      return desk.drag(movePoints(points, snap(by_cN, step), constraints));
+    }
+    if (grip.kind === "line") return desk.drag(pullEdit(curve, mark.start.x, by_cN, constraints));
+    if (grip.kind !== "handle") return;
+    const bump = grip.name === "peak" || grip.name === "valley";
+    const x_mm = mark.bumps.find(({ name }) => name === grip.name)?.x_mm ?? mark.start.x;
+    if (bump) return desk.drag(pullEdit(curve, x_mm, by_cN, constraints));
+    const place = mark.places.find(({ name }) => name === grip.name);
+    const by_mm = view.x.value(dx_px) - view.x.value(0);
+    if (place) desk.drag(place.edit(heldPlace(desk.settled.peek(), place.name, place.at_mm + by_mm)));
+  }
+
+  private letGo(end: () => void): void {
+    this.mark = null;
+    this.canvas.held.set(null);
+    end();
+  }
+
+  private add({ x_px }: Place): void {
+    const x_mm = snap(this.canvas.plot.view().x.value(x_px), 0.01);
+    addAt(this.desk, x_mm);
+  }
+
+  /** Pan and pinch, from the view that there was when it began. */
+  private look(act: Extract<Act, { readonly kind: "pan" | "pinch" }>): void {
+    const { plot } = this.canvas;
+    this.mark ??= { view: plot.view(), start: { x: 0, y: 0 }, curve: this.desk.curve(), places: [], bumps: [] };
+    const { x, y } = this.mark.view;
+    const around = act.kind === "pinch" ? { x: x.value(act.around.x_px), y: y.value(act.around.y_px) } : { x: 0, y: 0 };
+    const factor = act.kind === "pinch" ? 1 / Math.max(0.05, act.ratio) : 1;
+    const moved = (scale: View["x"], px: number, at: number) => {
+      const by = scale.value(px) - scale.value(0);
+      const seen = (edge: number) => at + (edge - at) * factor - by * factor;
+      return { low: seen(scale.range.low), high: seen(scale.range.high) };
+    };
+    plot.window.set({ x: moved(x, act.way.dx_px, around.x), y: moved(y, act.way.dy_px, around.y) });
+  }
+}

@@ -1,0 +1,39 @@
+/** The view as a picture or as numbers. */
+
+import { csv, download } from "../../draw";
+import { tell } from "../../ui";
+import { AXES, type Drawn, type Overlay } from "./overlay";
+import { speedText } from "./columns";
+import type { ViewName } from "./state";
+
+const NAME = "fdvv-buttons";
+
+export function exportSvg(overlay: Overlay): void {
+  download(`${NAME}.svg`, overlay.stamped(origin(), () => overlay.plot.toSvg()), "image/svg+xml");
+}
+
+export function exportPng(overlay: Overlay): void {
+  overlay.stamped(origin(), () => overlay.plot.toPng()).then((picture) => download(`${NAME}.png`, picture), tell);
+}
+
+export function exportCsv(overlay: Overlay, view: ViewName): void {
+  download(`${NAME}.csv`, csv(columns(overlay.drawn(), view)), "text/csv");
+}
+
+function origin(): string {
+  return `fdvv studio, ${new Date().toISOString().slice(0, 10)}`;
+}
+
+/** Two columns for every curve: its displacement and its values; names say button, stroke and speed. */
+export function columns(drawn: readonly Drawn[], view: ViewName): [string, ArrayLike<number>][] {
+  const { label, unit } = AXES[view];
+  return drawn.flatMap((one) => {
+    const simulated = one.button.simulated ? ", simulated" : "";
+    const who = `${one.button.name}${simulated}, ${one.stroke}, ${speedText(one.velocity_mm_s)}`;
+    const round = (column: Float64Array) => Array.from(column, (value) => Number(value.toFixed(4)));
+    return [
+      [`${who}: displacement, mm`, round(one.line.x_mm)],
+      [`${who}: ${label}, ${unit}`, round(one.line.y)],
+    ] as [string, ArrayLike<number>][];
+  });
+}

@@ -1,0 +1,159 @@
+/** What the library page knows: rows, the question and its answer, and the curves that are compared. */
+
+import { keepQuery, route } from "../../app/route";
+import { call, live, type LiveChannel } from "../../net";
+import type { LibraryButton, LibraryFound, LibraryStanding } from "../../net/messages";
+import { batch, effect, onCleanup, signal, tell, untracked, type Signal } from "../../ui";
+import { Rows } from "./rows";
+import { asked, AT_FIRST, EVERYTHING, MOST, readState, writeState, type Query, type Shown } from "./state";
+
+const NOTHING: LibraryFound = {
+  epoch: 0,
+  positions: [],
+  distances_jnd: [],
+  histograms: {},
+  kinds: {},
+  origins: {},
+  without: {},
+  mended: [],
+};
+
+export class LibraryStore {
+  readonly rows = new Rows();
+  /** Counts what came into the rows. */
+  readonly grown = signal(0);
+  readonly standing: Signal<LibraryStanding | null> = signal(null);
+  readonly query: Signal<Query> = signal(EVERYTHING);
+  readonly shown: Signal<Shown> = signal(AT_FIRST);
+  readonly found: Signal<LibraryFound> = signal(NOTHING);
+  /** Place in the list of found rows that the keys are at. */
+  readonly active = signal(0);
+  /** Buttons of the overlay whose curves are here, and the reasons of those that cannot be had. */
+  readonly buttons: Signal<ReadonlyMap<string, LibraryButton>> = signal(new Map());
+  readonly missing: Signal<ReadonlyMap<string, string>> = signal(new Map());
+  private loading = false;
+  private again = false;
+  private searching: AbortController | null = null;
+  private readonly fetching = new Set<string>();
+
+  constructor() {
+    this.followAddress();
+    effect(() => keepQuery(writeState(this.query(), this.shown())));
+    effect(() => {
+      this.query();
+      this.grown();
+      this.search();
+    });
+    effect(() => this.fetchCurves(this.shown().overlay));
+    this.watch();
+  }
+
+  ask(change: Partial<Query>): void {
+    batch(() => {
+      this.query.update((query) => ({ ...query, ...change }));
+      this.active.set(0);
+    });
+  }
+
+  show(change: Partial<Shown>): void {
+    this.shown.update((shown) => ({ ...shown, ...change }));
+  }
+
+  /** Take a button into the overlay, or out of it. */
+  toggle(id: string): void {
+    const { overlay, reference } = this.shown.peek();
+    const next = overlay.includes(id) ? overlay.filter((one) => one !== id) : [...overlay, id].slice(0, MOST);
+    this.show({ overlay: next, reference: reference && next.includes(reference) ? reference : (next[0] ?? null) });
+  }
+
+  /** Give the id of the row that the keys are at. */
+  activeId(): string | null {
+    const at = this.found().positions[this.active()];
+    return at === undefined ? null : (this.rows.ids[at] ?? null);
+  }
+
+  rescan(): void {
+    call("library.rescan", {}).catch(tell);
+  }
+
+  private followAddress(): void {
+    effect(() => {
+      const now = route();
+      if (now.page !== "library") return;
+      const state = readState(now.query);
+      untracked(() =>
+        batch(() => {
+          this.query.set(state.query);
+          this.shown.set(state.shown);
+        }),
+      );
+    });
+  }
+
+  private watch(): void {
+    let channel: LiveChannel<"library"> | null = null;
+    const watch = () => channel?.send({ type: "watch" });
+    channel = live().channel("library", {
+      told: (standing) => {
+        this.standing.set(standing);
+        void this.load();
+      },
+      wrong: tell,
+      opened: watch,
+    });
+    watch();
+    onCleanup(() => channel.close());
+    this.rescan();
+  }
+
+  /** Fetch the rows that are new, one request at a time. */
+  private async load(): Promise<void> {
+    this.again = true;
+    if (this.loading) return;
+    this.loading = true;
+    try {
+      while (this.again) {
+        this.again = false;
+        const standing = this.standing.peek();
+        const { epoch, length } = this.rows;
+        if (standing && standing.epoch === epoch && standing.rows === length) continue;
+        this.rows.take(await call("library.index", { epoch, first: length }));
+        this.grown.update((n) => n + 1);
+      }
+    } catch (error) {
+      tell(error);
+    } finally {
+      this.loading = false;
+    }
+  }
+
+  private search(): void {
+    this.searching?.abort();
+    const mine = new AbortController();
+    this.searching = mine;
+    call("library.find", asked(this.query.peek()), mine.signal).then(
+      (found) => {
+        if (mine === this.searching && found.epoch === this.rows.epoch) this.found.set(found);
+      },
+      (error: unknown) => {
+        if (!(error instanceof DOMException)) tell(error);
+      },
+    );
+  }
+
+  private fetchCurves(overlay: readonly string[]): void {
+    const [here, gone] = [this.buttons.peek(), this.missing.peek()];
+    const ids = overlay.filter((id) => !here.has(id) && !gone.has(id) && !this.fetching.has(id));
+    if (!ids.length) return;
+    ids.forEach((id) => this.fetching.add(id));
+    call("library.curves", { ids })
+      .then(({ buttons, missing }) =>
+        batch(() => {
+          this.buttons.update((map) => new Map([...map, ...buttons.map((one) => [one.id, one] as const)]));
+          this.missing.update((map) => new Map([...map, ...missing.map((one) => [one.id, one.reason] as const)]));
+        }),
+      )
+      .catch(tell)
+      .finally(() => ids.forEach((id) => this.fetching.delete(id)));
+  }
+}
