@@ -132,8 +132,8 @@ class LiveConnection:
         """Queue a message, or an error, for the page."""
         if self._over:
             return
-        told = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
-        whole = told if error else told[:-1] + b',"body":' + body + b"}"
+        head = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
+        whole = head if error else head[:-1] + b',"body":' + body + b"}"
         try:
             self._outgoing.put_nowait(whole)
         except asyncio.QueueFull:

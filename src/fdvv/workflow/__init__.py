@@ -72,7 +72,6 @@ from fdvv.workflow._press_choice import (
     button_choices,
     drawn_trace,
     program_choices,
-    program_of,
 )
 from fdvv.workflow._press_subject import (
     PRESS_RIGS,
@@ -281,7 +280,6 @@ __all__ = [
     "process_recording",
     "program_choices",
     "program_image",
-    "program_of",
     "program_standing",
     "program_subject",
     "quick_look",
