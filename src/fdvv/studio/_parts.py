@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_documents", "_editor", "_library", "_press", "_programs", "_jobs_part", "_device_part")
+PARTS = ("_about", "_device_part", "_documents", "_editor", "_jobs_part", "_library", "_press", "_programs")
 
 
 @dataclass(frozen=True)
