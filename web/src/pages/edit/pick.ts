@@ -5,6 +5,7 @@ import type { LibraryRow } from "../../net/messages";
 import { canonical, type FDVVModel } from "../../model";
 import { freshId, h, onCleanup, signal, tell } from "../../ui";
 import { Latest } from "./latest";
+import { filled } from "./rows";
 
 const MANY = 8;
 
@@ -34,7 +35,7 @@ export function pickButton(label: string, chosen: (model: FDVVModel) => void): H
   });
   const entry = (row: LibraryRow) =>
     h("li", {}, h("button", { type: "button", class: "button quiet", on: { click: () => take(row) } }, row.name, h("span", { class: "muted" }, ` ${row.collection || row.origin}`)));
-  const element = h("div", { class: "edit-pick" }, h("label", { for: id, class: "muted" }, label), input, h("ul", { "aria-label": "Buttons found" }, () => rows().map(entry)));
+  const element = h("div", { class: "edit-pick" }, h("label", { for: id, class: "muted" }, label), input, filled(h("ul", { "aria-label": "Buttons found" }), () => rows().map(entry)));
   element.addEventListener("keydown", (event) => {
     if (event.key === "Escape") rows.set([]);
   });
