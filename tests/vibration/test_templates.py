@@ -1,12 +1,13 @@
 """Templates: the paper's three, and those around a measured vibration."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Stroke, Vibration
+from fdvv.model import Mode, ModeSpread, Stroke, Vibration, VibrationSpread
 from fdvv.units import FloatArray
 from fdvv.vibration import Template, TemplateGrid, paper_templates, templates_around
 
@@ -33,6 +34,11 @@ def test_an_envelope_goes_from_the_first_voltage_to_the_last(template: Template)
 
 def test_a_template_that_ends_at_nothing_ends_40_dB_down() -> None:
     assert np.exp(-paper_templates()[0].decay_1_s * 0.016) == pytest.approx(0.01)
+
+
+def test_it_knows_nothing_of_how_the_measured_one_differs_between_presses() -> None:
+    spread = VibrationSpread(5, modes=(ModeSpread(3.0), ModeSpread(9.0)))
+    assert Template(250.0, 0.01, 2.0, 0.5).vibration(replace(SNAP, spread=spread), 3.0).spread is None
 
 
 def test_as_a_vibration_it_keeps_stroke_velocity_and_onset() -> None:

@@ -12,3 +12,5 @@ followAddress();
 listenForShortcuts();
 live().open();
 mountShell(document.body);
+// what runs is in view on every page
+void import("./pages/live/list").then(({ showInHeader }) => showInHeader());

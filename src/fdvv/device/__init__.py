@@ -13,7 +13,7 @@ from fdvv.device._image import surface_image
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._lockstep import Board, LockstepPort
 from fdvv.device._monitor import watch
-from fdvv.device._open import KINDS, open_device
+from fdvv.device._open import BUILT_ELF, KINDS, open_device
 from fdvv.device._plant import Inputs, Outputs, Person, Plant, PressedPlant, Truth
 from fdvv.device._port import Port
 from fdvv.device._pressed import PressedDevice
@@ -29,6 +29,7 @@ from fdvv.device._wire import RefusedError, Wire
 
 __all__ = [
     "BENCHES",
+    "BUILT_ELF",
     "KINDS",
     "BenchInfo",
     "Board",

@@ -9,9 +9,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 
-from fdvv.errors import FdvvError, InputError
+from fdvv.errors import FdvvError
 from fdvv.studio._contract import Call
 from fdvv.studio._studio import Studio
+from fdvv.studio._told import told
 
 LARGEST_bytes = 8_000_000
 """Of a question: a model of many curves is some hundred kB."""
@@ -61,10 +62,3 @@ async def answer(studio: Studio, call: Call, request: Request) -> Response:
         log.exception("%s failed", call.name)
         return line(f"{call.name} failed; the studio's terminal tells why", 500)
     return Response(msgspec.json.encode(found), media_type="application/json")
-
-
-def told(error: FdvvError) -> str:
-    """Give an error's one line; whoever looks at the page needs no path of this machine."""
-    if isinstance(error, InputError):
-        return f"{error.place}: {error.reason}; {error.remedy}"
-    return str(error)

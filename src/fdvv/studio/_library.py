@@ -9,7 +9,6 @@ from threading import Lock
 import numpy as np
 
 from fdvv.errors import FdvvError
-from fdvv.studio._ask import told
 from fdvv.studio._contract import Call, Channel, ChannelKind, Tell
 from fdvv.studio._messages_library import (
     LibraryAlike,
@@ -36,6 +35,7 @@ from fdvv.studio._messages_library import (
     LibraryWatch,
 )
 from fdvv.studio._studio import Studio
+from fdvv.studio._told import told
 from fdvv.workflow import (
     SHELF_NUMBERS,
     Origin,

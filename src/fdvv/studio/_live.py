@@ -15,9 +15,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
-from fdvv.studio._ask import told
 from fdvv.studio._contract import Channel, ChannelKind, Tell
 from fdvv.studio._studio import Studio
+from fdvv.studio._told import told
 
 WAITING = 4000
 """So many messages may wait for a page; one that does not read is cut off and may come again."""
@@ -132,8 +132,8 @@ class LiveConnection:
         """Queue a message, or an error, for the page."""
         if self._over:
             return
-        told = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
-        whole = told if error else told[:-1] + b',"body":' + body + b"}"
+        head = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
+        whole = head if error else head[:-1] + b',"body":' + body + b"}"
         try:
             self._outgoing.put_nowait(whole)
         except asyncio.QueueFull:

@@ -11,7 +11,7 @@ import msgspec
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_documents", "_editor", "_library", "_press", "_programs")
+PARTS = ("_about", "_documents", "_editor", "_library", "_press", "_programs", "_jobs_part", "_device_part")
 
 
 @dataclass(frozen=True)

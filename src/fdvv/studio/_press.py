@@ -23,9 +23,9 @@ from fdvv.workflow import (
     LiveRun,
     PressSubject,
     PressTrace,
+    ProgramShelf,
     drawn_trace,
     model_subject,
-    program_of,
     program_subject,
     read_press_trace,
 )
@@ -33,7 +33,7 @@ from fdvv.workflow import (
 
 def list_choices(studio: Studio, _ask: m.PressListAsk) -> m.PressList:
     """Tell what can be pressed."""
-    return choices(studio.shelf)
+    return choices(studio.shelf, ProgramShelf(studio.project))
 
 
 def read_trace(_studio: Studio, ask: m.TraceReadAsk) -> m.TraceRead:
@@ -52,7 +52,7 @@ def subject_of(studio: Studio, ask: m.PressStart) -> PressSubject:
     if ask.model is not None:
         return model_subject(model_from_json(msgspec.json.encode(ask.model), "model"), ask.mode, ask.rig)
     if ask.program is not None:
-        return program_subject(program_of(studio.project, ask.program), ask.mode, ask.rig)
+        return program_subject(ProgramShelf(studio.project).program(ask.program), ask.mode, ask.rig)
     return program_subject(program_from_json(msgspec.json.encode(ask.code), "program"), ask.mode, ask.rig)
 
 

@@ -14,6 +14,7 @@ from fdvv.workflow import (
     LiveFrame,
     PressSubject,
     PressTrace,
+    ProgramShelf,
     Shelf,
     button_choices,
     drawn_traces,
@@ -26,11 +27,11 @@ PICTURE_POINTS = 60
 DIGITS = 4
 
 
-def choices(shelf: Shelf) -> m.PressList:
+def choices(shelf: Shelf, programs: ProgramShelf) -> m.PressList:
     """Tell what can be pressed."""
     return m.PressList(
         [m.PressItem(c.id, c.name, c.hint) for c in button_choices(shelf)],
-        [m.PressItem(c.id, c.name, c.hint) for c in program_choices(shelf.project)],
+        [m.PressItem(c.id, c.name, c.hint) for c in program_choices(programs)],
         [_trace(trace) for trace in drawn_traces()],
         list(PRESS_RIGS),
     )

@@ -53,7 +53,8 @@ class Template:
     def vibration(self, like: Vibration, m_s2_V: float) -> Vibration:
         """Give what a model keeps of it: at the stroke, velocity and onset of another, m_s2_V per volt."""
         mode = Mode(self.frequency_Hz, m_s2_V * self.start_V, self.decay_1_s)
-        return replace(like, duration_s=self.duration_s, modes=(mode,))
+        # how the measured one differs between presses is not known of what was made up
+        return replace(like, duration_s=self.duration_s, modes=(mode,), spread=None)
 
 
 def paper_templates(

@@ -3,6 +3,7 @@
 from fdvv.workflow._achievable import AchievableCurve, LimitedRange, achievable
 from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
 from fdvv.workflow._capture import CaptureResult, capture_session
+from fdvv.workflow._capture_cue import cue_events, cue_length_s
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_heard import HeardStroke
 from fdvv.workflow._capture_html import capture_html
@@ -48,6 +49,13 @@ from fdvv.workflow._feasibility import (
     feasibility,
     feasible_curves,
 )
+from fdvv.workflow._felt import (
+    FeltPress,
+    FORCE_JND_ratio,
+    felt_press,
+    intended_press,
+    noticeable_cN,
+)
 from fdvv.workflow._fit import FitSettings, ModelFit, fit_file, fit_force_file
 from fdvv.workflow._folder import FolderFit, FolderSummary, fit_files, fit_folder, measured_files, summarise
 from fdvv.workflow._join_logs import join_logs
@@ -64,7 +72,6 @@ from fdvv.workflow._press_choice import (
     button_choices,
     drawn_trace,
     program_choices,
-    program_of,
 )
 from fdvv.workflow._press_subject import (
     PRESS_RIGS,
@@ -99,9 +106,11 @@ from fdvv.workflow._shelf_row import NUMBERS as SHELF_NUMBERS
 from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow
 from fdvv.workflow._shelf_search import ShelfFound, ShelfQuery, ShelfSearch
 from fdvv.workflow._spread_report import spread_reports
+from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
 from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
 from fdvv.workflow._tune_observer import simulated_observer
-from fdvv.workflow._tune_vibration import TunedVibration, TuneResult, TuneSetup, tune_vibration
+from fdvv.workflow._tune_result import TunedVibration, TuneResult, TuneSetup, TuneTold
+from fdvv.workflow._tune_vibration import tune_vibration
 from fdvv.workflow._tuning import settings_with
 from fdvv.workflow._vibration_slots import (
     RenderedVibration,
@@ -139,7 +148,9 @@ __all__ = [
     "DraftStep",
     "Drafts",
     "EditMade",
+    "FORCE_JND_ratio",
     "FeasibilityReport",
+    "FeltPress",
     "FindVibrations",
     "FitSettings",
     "FolderButton",
@@ -200,8 +211,12 @@ __all__ = [
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
+    "TickBinner",
+    "TickBins",
+    "TickPiece",
     "TuneResult",
     "TuneSetup",
+    "TuneTold",
     "TunedVibration",
     "UndoMade",
     "UnpinMade",
@@ -221,6 +236,8 @@ __all__ = [
     "compare",
     "compensate",
     "converter",
+    "cue_events",
+    "cue_length_s",
     "demo",
     "demo_report",
     "diff",
@@ -229,11 +246,13 @@ __all__ = [
     "fd_only",
     "feasibility",
     "feasible_curves",
+    "felt_press",
     "fit_file",
     "fit_files",
     "fit_folder",
     "fit_force_file",
     "identify_exciter",
+    "intended_press",
     "inverse_patch",
     "join_logs",
     "load_actuation",
@@ -245,6 +264,7 @@ __all__ = [
     "model_of_recording",
     "model_subject",
     "new_model",
+    "noticeable_cN",
     "one_curve",
     "open_device",
     "open_files",
@@ -260,7 +280,6 @@ __all__ = [
     "process_recording",
     "program_choices",
     "program_image",
-    "program_of",
     "program_standing",
     "program_subject",
     "quick_look",

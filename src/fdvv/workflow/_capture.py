@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.device import CaptureDevice, Cue
 from fdvv.errors import DeviceError
 from fdvv.recording import Recording, RecordingLog, Stage, Take
-from fdvv.workflow._capture_cue import events, step_s
+from fdvv.workflow._capture_cue import cue_events, cue_length_s
 from fdvv.workflow._capture_events import CaptureGuide, PaceStanding, TakeAsk, TakeDone
 from fdvv.workflow._capture_look import Verdict, quick_look
 from fdvv.workflow._capture_plan import CapturePlan, Outcome, Step, settle
@@ -133,8 +133,8 @@ def _recorded(device: CaptureDevice, state: Progress, guide: CaptureGuide, log: 
         travel_mm = state.travel_mm or TRAVEL_mm
         again = state.judged[-1][1].reason if wanted.tries else ""
         show = guide.cue(TakeAsk(step, state.settled + 1, total, travel_mm, again))
-        length_s = step_s(step.stage, step.velocity_mm_s, travel_mm)
-        cue = Cue(length_s, events(step.velocity_mm_s, travel_mm), show)
+        length_s = cue_length_s(step.stage, step.velocity_mm_s, travel_mm)
+        cue = Cue(length_s, cue_events(step.velocity_mm_s, travel_mm), show)
         take = device.take(log.next_number, step.stage, step.velocity_mm_s, cue)
         with held_back():
             log.add(take)

@@ -21,14 +21,14 @@ def stroke_s(velocity_mm_s: float, travel_mm: float) -> float:
     return travel_mm / velocity_mm_s
 
 
-def step_s(stage: Stage, velocity_mm_s: float | None, travel_mm: float) -> float:
+def cue_length_s(stage: Stage, velocity_mm_s: float | None, travel_mm: float) -> float:
     """Give the time from the begin of a take's cue to its end."""
     if velocity_mm_s is None:
         return COUNT_IN_s + REST_s
     return COUNT_IN_s + 2 * stroke_s(velocity_mm_s, travel_mm) + DWELL_s
 
 
-def events(velocity_mm_s: float | None, travel_mm: float) -> tuple[tuple[str, float], ...]:
+def cue_events(velocity_mm_s: float | None, travel_mm: float) -> tuple[tuple[str, float], ...]:
     """Give the moments that are told with a beep, as fdvv.device.Cue has them."""
     if velocity_mm_s is None:
         return ()

@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.recording import Stage
-from fdvv.workflow._capture_cue import PROBE_mm_s, step_s
+from fdvv.workflow._capture_cue import PROBE_mm_s, cue_length_s
 
 BETWEEN_s = 1.2
 """A person takes this long to read what became of a press and to be ready again."""
@@ -72,7 +72,9 @@ class CapturePlan:
     def duration_s(self, travel_mm: float, repeated: int = 0) -> float:
         """Tell how long the whole takes a person; repeated : presses made again, at the slowest pace."""
         again = [Step(Stage.PRESS, min(self.paces_mm_s))] * repeated
-        return sum(step_s(s.stage, s.velocity_mm_s, travel_mm) + BETWEEN_s for s in (*self.steps(), *again))
+        return sum(
+            cue_length_s(s.stage, s.velocity_mm_s, travel_mm) + BETWEEN_s for s in (*self.steps(), *again)
+        )
 
 
 @dataclass(frozen=True)

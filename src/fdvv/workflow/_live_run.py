@@ -49,9 +49,10 @@ class LiveRun:
     refused : called with one line when something asked for cannot be done; the rest goes on.
     failed : called once with one line if the press cannot go on.
     clock : monotonic, s.
+    silent_s : a page that says nothing for so long looks no more.
 
-    It runs until close(), pauses with the finger lifted when nothing was heard for SILENT_s, and goes on
-    with the next thing that is heard. All methods may be called from any thread.
+    It runs until close(), pauses with the finger lifted when nobody looks, and goes on with the next thing
+    that is heard. All methods may be called from any thread.
     """
 
     def __init__(
@@ -61,12 +62,14 @@ class LiveRun:
         refused: Callable[[str], None],
         failed: Callable[[str], None],
         clock: Callable[[], float] = time.monotonic,
+        silent_s: float = SILENT_s,
     ) -> None:
-        self._press, self._show, self._clock = press, show, clock
+        self._press, self._show, self._clock, self._silent_s = press, show, clock, silent_s
         self._refused, self._failed = refused, failed
         self._changed = Condition()
         self._asked: list[Callable[[LivePress], None]] = []
-        self._sequence, self._over, self._looking, self._dropped_s = 0, False, True, 0.0
+        self._sequence, self._over, self._looking = 0, False, True
+        self._dropped_s, self._shown_sequence = 0.0, 0
         self._heard_s = clock()
         self._thread = Thread(target=self._run, name="live press", daemon=True)
         self._thread.start()
@@ -115,46 +118,62 @@ class LiveRun:
 
     def _look(self) -> None:
         """Simulate at real pace while somebody looks; then lift the finger."""
-        pace = RealPace(self._clock)
-        gathered = _Gathered(self._clock())
+        pace, gathered = RealPace(self._clock), _Gathered(self._clock())
         while self._goes_on():
             due_s, lost_s = pace.due()
             self._dropped_s += lost_s
-            sequence = self._do_asked()
+            gathered.led |= self._do_asked()
             began_s = self._clock()
             gathered.take(*self._press.advance(due_s), self._clock() - began_s)
-            if (now_s := self._clock()) - gathered.since_s >= FRAME_s:
-                self._show(gathered.frame(sequence, self._dropped_s, now_s))
-                gathered = _Gathered(now_s)
+            if gathered.due(self._clock()):
+                gathered = self._frame(gathered)
+        if not gathered.empty:
+            self._frame(gathered)
         self._press.lift()
+
+    def _frame(self, gathered: _Gathered) -> _Gathered:
+        """Show a frame, and begin to gather the next."""
+        now_s = self._clock()
+        self._show(gathered.frame(self._shown_sequence, self._dropped_s, now_s))
+        return _Gathered(now_s)
 
     def _goes_on(self) -> bool:
         """Wait for the next step; False once nobody looks."""
         with self._changed:
             self._changed.wait(STEP_s)
-            if self._clock() - self._heard_s > SILENT_s:
+            if self._clock() - self._heard_s > self._silent_s:
                 self._looking = False
             return self._looking and not self._over
 
-    def _do_asked(self) -> int:
+    def _do_asked(self) -> bool:
+        """Do what was asked for; tell whether anything was."""
         with self._changed:
-            asked, self._asked, sequence = self._asked, [], self._sequence
+            asked, self._asked, self._shown_sequence = self._asked, [], self._sequence
         for work in asked:
             try:
                 work(self._press)
             except FdvvError as error:
                 self._refused(str(error))
-        return sequence
+        return bool(asked)
 
 
 class _Gathered:
     """What is gathered for the next frame."""
 
     def __init__(self, now_s: float) -> None:
-        self.since_s = now_s
+        self.since_s, self.led = now_s, False
         self._columns: list[LedTicks] = []
         self._events: list[LiveEvent] = []
         self._busy_s = 0.0
+
+    def due(self, now_s: float) -> bool:
+        """Whether to show it: at once what happened, sooner what the hand did than what goes on by itself."""
+        waited_s = now_s - self.since_s
+        return bool(self._events) or waited_s >= (FRAME_s / 2 if self.led else FRAME_s)
+
+    @property
+    def empty(self) -> bool:
+        return not self._columns
 
     def take(self, columns: LedTicks, events: tuple[LiveEvent, ...], busy_s: float) -> None:
         self._columns.append(columns)

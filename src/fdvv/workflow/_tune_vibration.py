@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,110 +13,24 @@ from fdvv.compensate import judge
 from fdvv.device import Device
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model import FDVVModel, ForceSurface, Vibration
-from fdvv.vibration import Comparing, Job, KnownExciter, Preferred, Question, Rating, Standing, TemplateGrid
+from fdvv.vibration import Comparing, Job, KnownExciter, Preferred, Question, Rating
 from fdvv.workflow._answer_log import AnswerLog, Given
 from fdvv.workflow._compensate import check_speeds
 from fdvv.workflow._exciter import prepare_exciter
 from fdvv.workflow._held_back import held_back
-from fdvv.workflow._receipt import Receipt, make_receipt, save_receipt
+from fdvv.workflow._receipt import make_receipt, save_receipt
 from fdvv.workflow._session import Session
 from fdvv.workflow._session_events import Ask, Guide
 from fdvv.workflow._session_log import REMEDY
 from fdvv.workflow._session_manifest import make_manifest, now, plain, table_digest
 from fdvv.workflow._session_run import clear_latched, let_go
 from fdvv.workflow._tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
+from fdvv.workflow._tune_result import OBSERVERS, TunedVibration, TuneResult, TuneSetup, TuneTold
 
 State = Any
 Answerer = Callable[[Question], int | Preferred | None]
 """Asks a person, or a simulated observer, once the presses are made; None: press again."""
 PATIENCE = 10
-OBSERVERS = ("person", "simulated observer")
-
-
-@dataclass(frozen=True, eq=False)
-class TuneSetup:
-    """What is put on the device while a vibration is tuned.
-
-    Attributes
-    ----------
-    surface : forces as compensation learned them; None: the model's own.
-    exciter : where it is known, vibrations are played through its inverse.
-    grid : of templates.
-    observer : "person", or "simulated observer": then nothing that comes out is evidence of anything.
-    """
-
-    surface: ForceSurface | None = None
-    exciter: KnownExciter | None = None
-    grid: TemplateGrid = field(default_factory=TemplateGrid)
-    observer: str = OBSERVERS[0]
-
-    def __post_init__(self) -> None:
-        if self.observer not in OBSERVERS:
-            raise ModelError(f"observer must be one of {', '.join(OBSERVERS)}, got {self.observer!r}")
-
-
-@dataclass(frozen=True, eq=False)
-class TunedVibration:
-    """What came out at one velocity."""
-
-    candidates: Candidates
-    standing: Standing
-
-    @property
-    def vibration(self) -> Vibration:
-        """Give the vibration that is kept."""
-        return self.candidates.vibrations[self.standing.best]
-
-    @property
-    def sentence(self) -> str:
-        """Say how sure that is."""
-        s, count = self.standing, len(self.candidates.vibrations)
-        if not s.told_apart:
-            return f"no difference found between {count} vibrations; the measured one is kept"
-        others = len(s.alike) - 1
-        tied = f", {others} more cannot be told from it" if others else ""
-        return f"{'the measured one' if not s.best else f'template {s.best}'} of {count} was best{tied}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as plain values."""
-        s = self.standing
-        rows = zip(self.candidates.plain(), s.scores, s.errors, self.candidates.scores(), strict=True)
-        return {
-            "velocity_mm_s": self.candidates.velocity_mm_s,
-            "best": s.best,
-            "alike": list(s.alike),
-            "answers": s.answers,
-            "explanation": self.sentence,
-            "candidates": [
-                {"vibration": v, "score": score, "error": error, "objective": objective}
-                for v, score, error, objective in rows
-            ],
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class TuneResult:
-    """A tuned model and how it came about; simulated if device or observer is."""
-
-    model: FDVVModel
-    method: str
-    device: str
-    observer: str
-    simulated: bool
-    tuned: tuple[TunedVibration, ...]
-    receipt: Receipt
-
-    @property
-    def answers(self) -> int:
-        """Count the answers."""
-        return self.receipt.used
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give the report."""
-        head = {
-            name: getattr(self, name) for name in ("method", "device", "observer", "simulated", "answers")
-        }
-        return {"model": self.model.name, **head, "velocities": [t.to_dict() for t in self.tuned]}
 
 
 def tune_vibration(
@@ -128,10 +42,12 @@ def tune_vibration(
     setup: TuneSetup | None = None,
     session: Session | None = None,
     guide: Guide | None = None,
+    told: Callable[[TuneTold], None] = lambda _told: None,
 ) -> TuneResult:
     """Have vibrations pressed and rated or compared until the method is done; keep the best of each velocity.
 
     answer : is given what was pressed, and asks; it must show neither templates nor answers so far.
+    told : called after every answer, once it is on file.
     session : its folder keeps every answer before the next is asked, and goes on where it stopped.
 
     Raises InputError on a model without a vibration of the press and on a folder that is no session of this
@@ -152,12 +68,12 @@ def tune_vibration(
     with session.begun_answers(manifest) as log:
         state = _replayed(method, candidates, log)
         _greet(guide, log, method.done(state))
-        course = _Course(device, candidates, upload, answer, session, guide, model.travel_mm)
+        course = _Course(device, candidates, upload, answer, session, guide, model.travel_mm, told)
         state = _asked(course, method, state, log)
         receipt = make_receipt(manifest, log.runs, [given.entry for given in log.answers])
         if session.folder:
             save_receipt(session.folder, receipt)
-    found = tuple(TunedVibration(c, s) for c, s in zip(candidates, method.best(state), strict=True))
+    found = _standing(candidates, method, state)
     simulated = device.info().simulated or setup.observer != OBSERVERS[0]
     result = TuneResult(model, name, device.info().name, setup.observer, simulated, found, receipt)
     return replace(result, model=_with_provenance(result))
@@ -174,6 +90,7 @@ class _Course:
     session: Session
     guide: Guide
     travel_mm: float
+    told: Callable[[TuneTold], None]
 
 
 def _uploader(
@@ -236,6 +153,12 @@ def _greet(guide: Guide, log: AnswerLog, done: bool) -> None:
         guide.notice(f"the session in {log.folder}, with {len(log.answers)} answers, {rest}")
 
 
+def _standing(
+    candidates: Sequence[Candidates], method: Rating | Comparing, state: State
+) -> tuple[TunedVibration, ...]:
+    return tuple(TunedVibration(c, s) for c, s in zip(candidates, method.best(state), strict=True))
+
+
 def _asked(course: _Course, method: Rating | Comparing, state: State, log: AnswerLog) -> State:
     """Press and ask until nothing is left to ask."""
     one: Any = method
@@ -247,8 +170,10 @@ def _asked(course: _Course, method: Rating | Comparing, state: State, log: Answe
                 after = one.tell(state, told)
                 kept = str(told) if isinstance(told, Preferred) else told
                 velocity, templates = _place(asked, course.candidates)
-                log.add(Given(asked.number, velocity, templates, kept, speeds, now()))
+                given = Given(asked.number, velocity, templates, kept, speeds, now())
+                log.add(given)
                 state = after
+            course.told(TuneTold(given, asked.total, _standing(course.candidates, method, state)))
         return state
     except KeyboardInterrupt:
         let_go(course.device)

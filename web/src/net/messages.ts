@@ -1,6 +1,16 @@
 // The studio's messages, made by tools/make_studio_types.py from src/fdvv/studio/_messages_*.py.
 
 export interface Calls {
+  readonly "device.arm": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.clear_fault": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.connect": { readonly ask: DeviceConnect; readonly answer: DeviceStanding };
+  readonly "device.disconnect": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.facts": { readonly ask: DeviceAsk; readonly answer: DeviceFacts };
+  readonly "device.press": { readonly ask: DevicePress; readonly answer: DeviceStanding };
+  readonly "device.selftest": { readonly ask: DeviceAsk; readonly answer: SelfTest };
+  readonly "device.standing": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.stop": { readonly ask: DeviceAsk; readonly answer: DeviceStanding };
+  readonly "device.upload": { readonly ask: DeviceUpload; readonly answer: DeviceStanding };
   readonly "document.change": { readonly ask: DocumentChange; readonly answer: DocumentAnswer };
   readonly "document.copy": { readonly ask: DocumentCopy; readonly answer: DocumentNamed };
   readonly "document.create": { readonly ask: DocumentCreate; readonly answer: DocumentNamed };
@@ -12,6 +22,13 @@ export interface Calls {
   readonly "editor.button": { readonly ask: ButtonAsk; readonly answer: ButtonTold };
   readonly "editor.measured": { readonly ask: MeasuredAsk; readonly answer: Measured };
   readonly "editor.rigs": { readonly ask: RigsAsk; readonly answer: Rigs };
+  readonly "jobs.answer": { readonly ask: JobAnswer; readonly answer: JobRow };
+  readonly "jobs.cancel": { readonly ask: JobAsk; readonly answer: JobRow };
+  readonly "jobs.choices": { readonly ask: JobsAsk; readonly answer: WorkChoices };
+  readonly "jobs.detail": { readonly ask: JobAsk; readonly answer: JobDetail };
+  readonly "jobs.list": { readonly ask: JobsAsk; readonly answer: JobRows };
+  readonly "jobs.resume": { readonly ask: JobAsk; readonly answer: JobRow };
+  readonly "jobs.start": { readonly ask: StartJob; readonly answer: JobRow };
   readonly "library.curves": { readonly ask: LibraryCurvesAsk; readonly answer: LibraryCurves };
   readonly "library.find": { readonly ask: LibraryFind; readonly answer: LibraryFound };
   readonly "library.index": { readonly ask: LibraryIndexAsk; readonly answer: LibraryIndex };
@@ -37,8 +54,68 @@ export interface Calls {
 
 export interface Channels {
   readonly "documents": { readonly asks: DocumentsWatch; readonly tells: DocumentsWatching | DocumentChanged | DocumentGone };
+  readonly "jobs": { readonly asks: WatchJobs | WatchJob; readonly tells: JobsTold | JobChanged | EventsTold };
   readonly "library": { readonly asks: LibraryWatch; readonly tells: LibraryStanding };
   readonly "press": { readonly asks: PressStart | PressLead | PressPush | PressLift | PressReplay | PressHostEvent | PressHere | PressPause | PressStop | PressFail | PressClear; readonly tells: PressReady | PressMeant | PressFrame | PressRefused | PressOver };
+  readonly "scope": { readonly asks: WatchScope; readonly tells: DeviceStanding | ScopeTold | PressSeen };
+}
+
+export interface DeviceAsk {
+}
+
+export interface DeviceStanding {
+  readonly type: "standing";
+  readonly device?: string;
+  readonly name?: string;
+  readonly simulated?: boolean;
+  readonly streams?: boolean;
+  readonly person?: boolean;
+  readonly force_sensor?: boolean;
+  readonly tick_s?: number;
+  readonly mode?: string;
+  readonly programmed?: string;
+  readonly travel_mm?: number | null;
+  readonly fault?: string;
+  readonly missing_ticks?: number;
+  readonly late_ticks?: number;
+  readonly missing_frames?: number;
+  readonly lost_records?: number;
+}
+
+export interface DeviceConnect {
+  readonly device: string;
+  readonly rig?: string;
+  readonly seed?: number;
+}
+
+export interface DeviceFacts {
+  readonly facts: readonly DeviceFact[];
+}
+
+export interface DeviceFact {
+  readonly name: string;
+  readonly value: string;
+}
+
+export interface DevicePress {
+  readonly velocity_mm_s: number;
+}
+
+export interface SelfTest {
+  readonly parts: readonly PartVerdict[];
+  readonly note: string;
+}
+
+export interface PartVerdict {
+  readonly part: string;
+  readonly verdict: string;
+  readonly value: number;
+}
+
+export interface DeviceUpload {
+  readonly button: string;
+  readonly actuation?: string;
+  readonly velocities_mm_s?: readonly number[];
 }
 
 export interface DocumentChange {
@@ -246,6 +323,144 @@ export interface RigChoice {
   readonly about: string;
   readonly simulated: boolean;
   readonly known: boolean;
+}
+
+export interface JobAnswer {
+  readonly job: string;
+  readonly number: number;
+  readonly answer: string;
+}
+
+export interface JobRow {
+  readonly job: string;
+  readonly kind: "capture" | "compensate" | "probe" | "tune";
+  readonly title: string;
+  readonly device: string;
+  readonly simulated: boolean;
+  readonly state: "cancelled" | "done" | "failed" | "needs you" | "running" | "waiting";
+  readonly line: string;
+  readonly now: string;
+  readonly done: number;
+  readonly total: number;
+  readonly events: number;
+  readonly resumable: boolean;
+  readonly created: string;
+  readonly ended: string | null;
+  readonly results: readonly JobResult[];
+}
+
+export interface JobResult {
+  readonly kind: "actuation" | "button" | "measured" | "recording" | "rig";
+  readonly name: string;
+}
+
+export interface JobAsk {
+  readonly job: string;
+}
+
+export interface JobsAsk {
+}
+
+export interface WorkChoices {
+  readonly buttons: readonly ButtonChoice[];
+  readonly devices: readonly DeviceChoice[];
+  readonly rigs: readonly string[];
+  readonly known_rigs: readonly string[];
+  readonly actuations: readonly string[];
+  readonly switches: readonly string[];
+  readonly participants: readonly string[];
+  readonly note: string;
+}
+
+export interface ButtonChoice {
+  readonly button: string;
+  readonly name: string;
+  readonly vibrates: boolean;
+}
+
+export interface DeviceChoice {
+  readonly device: string;
+  readonly about: string;
+  readonly simulated: boolean;
+  readonly rig: boolean;
+  readonly bench: boolean;
+  readonly used_by: string;
+}
+
+export interface JobDetail {
+  readonly row: JobRow;
+  readonly order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder;
+}
+
+export interface CompensateOrder {
+  readonly type: "compensate";
+  readonly button: string;
+  readonly name: string;
+  readonly device?: string;
+  readonly rig?: string;
+  readonly seed?: number;
+  readonly velocities_mm_s?: readonly number[];
+  readonly method?: "paper" | "rig-aware";
+  readonly rounds?: number;
+  readonly presses?: number;
+  readonly known_rig?: string;
+  readonly pace_ratio?: number;
+  readonly probe_presses?: number;
+}
+
+export interface ProbeOrder {
+  readonly type: "probe";
+  readonly button: string;
+  readonly name: string;
+  readonly actuation?: string;
+  readonly device?: string;
+  readonly rig?: string;
+  readonly seed?: number;
+  readonly velocities_mm_s?: readonly number[];
+  readonly presses?: number;
+  readonly pace_ratio?: number;
+}
+
+export interface CaptureOrder {
+  readonly type: "capture";
+  readonly name: string;
+  readonly device?: string;
+  readonly switch?: string;
+  readonly participant?: string;
+  readonly seed?: number;
+  readonly paces_mm_s?: readonly number[];
+  readonly presses?: number;
+  readonly probe?: boolean;
+  readonly shuffled?: boolean;
+  readonly repeats?: number;
+  readonly pace_ratio?: number;
+  readonly watch?: boolean;
+}
+
+export interface TuneOrder {
+  readonly type: "tune";
+  readonly button: string;
+  readonly name: string;
+  readonly actuation?: string;
+  readonly device?: string;
+  readonly rig?: string;
+  readonly seed?: number;
+  readonly velocities_mm_s?: readonly number[];
+  readonly observer?: "person" | "simulated observer";
+  readonly asking?: "compare" | "rate";
+  readonly comparisons?: number;
+  readonly repeats?: number;
+  readonly frequency_ratios?: readonly number[];
+  readonly gain_ratios?: readonly number[];
+  readonly pace_ratio?: number;
+}
+
+export interface JobRows {
+  readonly jobs: readonly JobRow[];
+}
+
+export interface StartJob {
+  readonly order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder;
 }
 
 export interface LibraryCurvesAsk {
@@ -618,6 +833,196 @@ export interface DocumentGone {
   readonly renamed_to: string | null;
 }
 
+export interface WatchJobs {
+  readonly type: "watch_jobs";
+}
+
+export interface WatchJob {
+  readonly type: "watch_job";
+  readonly job: string;
+  readonly from_event: number;
+}
+
+export interface JobsTold {
+  readonly type: "jobs";
+  readonly jobs: readonly JobRow[];
+}
+
+export interface JobChanged {
+  readonly type: "job";
+  readonly row: JobRow;
+}
+
+export interface EventsTold {
+  readonly type: "events";
+  readonly job: string;
+  readonly from_event: number;
+  readonly events: readonly (JobBegun | StageTold | JobNoticed | CurveIntended | PressAsked | PressTold | TakeAsked | CueBegun | TakeTold | QuestionAsked | QuestionAnswered | JobOutcome | JobEnded)[];
+}
+
+export interface JobBegun {
+  readonly type: "begun";
+  readonly run: number;
+  readonly device: string;
+  readonly simulated: boolean;
+}
+
+export interface StageTold {
+  readonly type: "stage";
+  readonly stage: "capture" | "compensate" | "probe" | "process" | "tune";
+  readonly text: string;
+}
+
+export interface JobNoticed {
+  readonly type: "notice";
+  readonly text: string;
+}
+
+export interface CurveIntended {
+  readonly type: "intended";
+  readonly velocity_mm_s: number;
+  readonly displacement_mm: readonly number[];
+  readonly press_cN: readonly number[];
+  readonly release_cN: readonly number[];
+  readonly noticeable_press_cN: number;
+  readonly noticeable_release_cN: number;
+}
+
+export interface PressAsked {
+  readonly type: "press_asked";
+  readonly velocity_mm_s: number;
+  readonly travel_mm: number;
+  readonly number: number;
+  readonly total: number;
+}
+
+export interface PressTold {
+  readonly type: "press";
+  readonly stage: "compensate" | "probe";
+  readonly velocity_mm_s: number;
+  readonly done: number;
+  readonly total: number;
+  readonly skipped: string;
+  readonly achieved_mm_s: number | null;
+  readonly told: string;
+  readonly made: number;
+  readonly wanted: number | null;
+  readonly curves: readonly CurveStanding[];
+  readonly felt: FeltCurve | null;
+}
+
+export interface CurveStanding {
+  readonly stroke: "press" | "release";
+  readonly velocity_mm_s: number;
+  readonly error_cN: readonly number[];
+  readonly mean_error_cN: number | null;
+  readonly max_error_cN: number | null;
+}
+
+export interface FeltCurve {
+  readonly press_cN: readonly (number | null)[];
+  readonly release_cN: readonly (number | null)[];
+}
+
+export interface TakeAsked {
+  readonly type: "take_asked";
+  readonly step: "press" | "probe" | "rest";
+  readonly velocity_mm_s: number | null;
+  readonly travel_mm: number;
+  readonly number: number;
+  readonly total: number;
+  readonly again: string;
+  readonly contact_s: number | null;
+  readonly bottom_s: number | null;
+  readonly length_s: number;
+}
+
+export interface CueBegun {
+  readonly type: "cue";
+}
+
+export interface TakeTold {
+  readonly type: "take";
+  readonly number: number;
+  readonly step: "press" | "probe" | "rest";
+  readonly velocity_mm_s: number | null;
+  readonly ok: boolean;
+  readonly reason: string;
+  readonly achieved_mm_s: number | null;
+  readonly travel_mm: number | null;
+  readonly done: number;
+  readonly total: number;
+  readonly missed: boolean;
+  readonly paces: readonly PaceTold[];
+}
+
+export interface PaceTold {
+  readonly velocity_mm_s: number;
+  readonly good: number;
+  readonly wanted: number;
+  readonly made: number;
+  readonly missed: number;
+  readonly achieved_mm_s: readonly number[];
+}
+
+export interface QuestionAsked {
+  readonly type: "asked";
+  readonly number: number;
+  readonly total: number;
+  readonly velocity_mm_s: number;
+  readonly waves: readonly PlayedWave[];
+  readonly measured: PlayedWave;
+}
+
+export interface PlayedWave {
+  readonly rate_Hz: number;
+  readonly acceleration_m_s2: readonly number[];
+}
+
+export interface QuestionAnswered {
+  readonly type: "answered";
+  readonly number: number;
+  readonly total: number;
+  readonly velocity_mm_s: number;
+  readonly answer: string;
+  readonly rankings: readonly TuneRanking[];
+}
+
+export interface TuneRanking {
+  readonly velocity_mm_s: number;
+  readonly answers: number;
+  readonly sentence: string;
+  readonly candidates: readonly TuneCandidate[];
+}
+
+export interface TuneCandidate {
+  readonly name: string;
+  readonly frequency_Hz: number;
+  readonly amplitude_m_s2: number;
+  readonly score: number;
+  readonly error: number | null;
+  readonly alike: boolean;
+  readonly best: boolean;
+}
+
+export interface JobOutcome {
+  readonly type: "outcome";
+  readonly stage: "capture" | "compensate" | "probe" | "tune";
+  readonly sentence: string;
+  readonly presses: number;
+  readonly skipped: number;
+  readonly simulated: boolean;
+  readonly curves?: readonly CurveStanding[];
+  readonly rankings?: readonly TuneRanking[];
+  readonly warnings?: readonly string[];
+}
+
+export interface JobEnded {
+  readonly type: "ended";
+  readonly state: "cancelled" | "done" | "failed";
+  readonly line: string;
+}
+
 export interface LibraryWatch {
   readonly type: "watch";
 }
@@ -766,4 +1171,35 @@ export interface PressRefused {
 export interface PressOver {
   readonly type: "over";
   readonly reason: string;
+}
+
+export interface WatchScope {
+  readonly type: "watch_scope";
+  readonly bin_s: number;
+}
+
+export interface ScopeTold {
+  readonly type: "scope";
+  readonly bin_s: number;
+  readonly bin: readonly number[];
+  readonly displacement_low_mm: readonly number[];
+  readonly displacement_high_mm: readonly number[];
+  readonly force_low_cN: readonly (number | null)[];
+  readonly force_high_cN: readonly (number | null)[];
+  readonly commanded_low_cN: readonly number[];
+  readonly commanded_high_cN: readonly number[];
+  readonly state: readonly number[];
+  readonly cut: readonly boolean[];
+  readonly ticks: readonly number[];
+}
+
+export interface PressSeen {
+  readonly type: "press_seen";
+  readonly velocity_mm_s: number;
+  readonly simulated: boolean;
+  readonly displacement_mm: readonly number[];
+  readonly felt_press_cN: readonly (number | null)[];
+  readonly felt_release_cN: readonly (number | null)[];
+  readonly intended_press_cN: readonly number[];
+  readonly intended_release_cN: readonly number[];
 }

@@ -35,8 +35,8 @@ export class PressSession {
   readonly fault: Signal<string> = signal("");
   readonly rows = new Rolling();
   readonly latency = new Latency();
-  /** Called with every event as soon as it is told, with the simulated time of the frame that told it. */
-  onEvent: (event: PressHappened, now_s: number) => void = () => undefined;
+  /** Called with every frame as soon as it is told. */
+  onFrame: (frame: PressFrame) => void = () => undefined;
   /** Called when something new is under the finger. */
   onReady: (ready: PressReady) => void = () => undefined;
   private readonly channel: LiveChannel<"press">;
@@ -137,8 +137,7 @@ export class PressSession {
       this.frame.set(frame);
       for (const event of frame.events) this.takeEvent(event);
     });
-    const now_s = this.rows.now_s();
-    for (const event of frame.events) this.onEvent(event, now_s);
+    this.onFrame(frame);
   }
 
   private takeEvent(event: PressHappened): void {

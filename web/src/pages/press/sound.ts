@@ -1,6 +1,6 @@
 /** The click: a vibration's own samples, played when the simulated cap begins to shake. */
 
-import { vibrationSamples } from "../../math";
+import { acceleration_m_s2 } from "../../math";
 import type { ShakeSignal } from "../../net/messages";
 
 /** Acceleration that fills the loudspeaker at full volume. */
@@ -8,7 +8,10 @@ export const FULL_m_s2 = 20;
 /** Speed of a press at which a click is as loud as its model says. */
 export const AS_MODELLED_mm_s = 100;
 /** What a moment of the simulation is heard after it was told; steadies what the network does not. */
-export const DELAY_s = 0.03;
+export const DELAY_s = 0.04;
+/** Clocks that moved so far apart were stopped; between two frames good ones drift by so much at most. */
+const APART_s = 0.1;
+const DRIFT_s = 2e-6;
 /** Silence before and after a click in a file. */
 export const QUIET_s = 0.02;
 
@@ -20,8 +23,9 @@ export function loudness(velocity_mm_s: number): number {
 /** Make the samples of a signal as a buffer of a context, FULL_m_s2 as 1. */
 export function bufferOf(context: BaseAudioContext, signal: ShakeSignal): AudioBuffer {
   const like = { ...signal, stroke: "press" as const, velocity_mm_s: null, onset_mm: 0 };
-  const samples = vibrationSamples(like, context.sampleRate, 0);
-  const buffer = context.createBuffer(1, Math.max(1, samples.length), context.sampleRate);
+  const count = Math.round(signal.duration_s * context.sampleRate) + 1;
+  const samples = acceleration_m_s2(like, Float64Array.from({ length: count }, (_, i) => i / context.sampleRate));
+  const buffer = context.createBuffer(1, count, context.sampleRate);
   buffer.getChannelData(0).set(Float32Array.from(samples, (a) => a / FULL_m_s2));
   return buffer;
 }
@@ -42,22 +46,24 @@ export async function rendered(signal: ShakeSignal, velocity_mm_s: number, rate_
   return (await context.startRendering()).getChannelData(0);
 }
 
-/** Where a simulated time is on the loudspeaker's clock: the quickest frame so far tells how late all are. */
-export class SoundClock {
-  private ahead_s: number | null = null;
+/** How far apart two clocks are, where what is read is often late but never early: the least so far, which may drift. */
+export class Steady {
+  private least_s: number | null = null;
 
-  /** A frame that ends at now_s was told at audio_s. Gives the offset from simulated to audio time. */
-  heard(now_s: number, audio_s: number): number {
-    const found = audio_s - now_s;
-    // time that was dropped, or a pause, moves the clocks apart for good
-    const jumped = this.ahead_s !== null && Math.abs(found - this.ahead_s) > 0.1;
-    if (this.ahead_s === null || jumped) this.ahead_s = found;
-    else this.ahead_s = Math.min(found, this.ahead_s + 1e-4);
-    return this.ahead_s;
+  /** Take a reading. */
+  take(apart_s: number): void {
+    // a pause moves clocks apart for good; one late reading is put right by the next
+    if (this.least_s === null || apart_s > this.least_s + APART_s) this.least_s = apart_s;
+    else this.least_s = Math.min(apart_s, this.least_s + DRIFT_s);
+  }
+
+  /** Give how far apart they are by the last reading; 0 before the first. */
+  now_s(): number {
+    return this.least_s ?? 0;
   }
 
   reset(): void {
-    this.ahead_s = null;
+    this.least_s = null;
   }
 }
 
@@ -68,7 +74,9 @@ export class Clicker {
   private context: AudioContext | null = null;
   private buffers: AudioBuffer[] = [];
   private signals: readonly ShakeSignal[] = [];
-  private readonly clock = new SoundClock();
+  /** From simulated time to the page's clock, and from the loudspeaker's clock to it. */
+  private readonly shown = new Steady();
+  private readonly heard = new Steady();
 
   /** The person did something: from now on there may be sound. */
   wake(): void {
@@ -82,22 +90,24 @@ export class Clicker {
 
   load(signals: readonly ShakeSignal[]): void {
     this.signals = signals;
-    this.clock.reset();
+    this.shown.reset();
     const context = this.context;
     this.buffers = context ? signals.map((signal) => bufferOf(context, signal)) : [];
   }
 
-  /** Follow the simulation: call with every frame's last time. */
+  /** Follow the simulation: call with every frame's last time, as it arrives. */
   follow(now_s: number): void {
-    if (this.context) this.clock.heard(now_s, this.context.currentTime);
+    const page_s = performance.now() / 1000;
+    this.shown.take(page_s - now_s);
+    if (this.context) this.heard.take(page_s - this.context.currentTime);
   }
 
-  /** Play a slot that starts at t_s of the simulation, which stands at now_s. */
-  click(slot: number, t_s: number, now_s: number, velocity_mm_s: number): void {
+  /** Play a slot that starts at t_s of the simulation, on the clock that follow() is told of. */
+  click(slot: number, t_s: number, velocity_mm_s: number): void {
     const [context, buffer] = [this.context, this.buffers[slot]];
     if (!context || !buffer || this.muted || context.state !== "running") return;
-    const offset_s = this.clock.heard(now_s, context.currentTime);
-    const at_s = Math.max(context.currentTime, offset_s + t_s + DELAY_s);
+    const offset_s = this.shown.now_s() - this.heard.now_s();
+    const at_s = Math.max(context.currentTime, t_s + offset_s + DELAY_s);
     playAt(context, context.destination, buffer, at_s, this.volume * loudness(velocity_mm_s));
   }
 

@@ -1,6 +1,6 @@
 /** A button to press: drawn, felt as curves, heard. Any page may put one up and start things on it. */
 
-import { effect, h, numberField, onCleanup, shown, signal, toggle, type Child, type Signal } from "../../ui";
+import { h, numberField, onCleanup, shown, signal, toggle, type Child, type Signal } from "../../ui";
 import { feltPlot, timePlots } from "./charts";
 import { Clicker } from "./sound";
 import { Hands } from "./hands";
@@ -99,12 +99,12 @@ function hear(session: PressSession, clicker: Clicker, hands: Hands): void {
     clicker.load(ready.signals);
     hands.resume();
   };
-  session.onEvent = (event, now_s) => {
-    if (event.kind === "vibration") clicker.click(event.number, event.t_s, now_s, event.velocity_mm_s);
+  session.onFrame = (frame) => {
+    // time that was dropped has passed for the ear all the same
+    clicker.follow(session.rows.now_s() + frame.dropped_s);
+    for (const event of frame.events)
+      if (event.kind === "vibration") clicker.click(event.number, event.t_s + frame.dropped_s, event.velocity_mm_s);
   };
-  effect(() => {
-    if (session.frame()) clicker.follow(session.rows.now_s());
-  });
 }
 
 function handTools(hands: Hands, pace_mm_s: Signal<number>, push_cN: Signal<number>, used: () => void): HTMLElement {

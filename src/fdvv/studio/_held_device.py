@@ -1,0 +1,181 @@
+"""A device that a thread of its own holds open: what is asked of it waits for its turn, ticks are told."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from fdvv.device import Device, LinkedDevice, Remote, TickColumns, TwinDevice
+from fdvv.errors import DeviceError
+from fdvv.protocol import Mode, TickFlag
+from fdvv.twin import Trace
+from fdvv.workflow import TickPiece
+
+Answer = TypeVar("Answer")
+
+GONE = "the device is gone; connect it again"
+GLANCE_s = 0.05
+"""Of a device's time between two looks at what it tells."""
+PATIENCE_s = 120.0
+"""For an answer: an emulated board takes a minute for some presses."""
+BETWEEN_s = 0.25
+"""Shown between two presses of a device that has no time of its own."""
+CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
+
+
+class _Turn:
+    """Something that is asked of a device."""
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self.work, self.answer = work, Future[Any]()
+
+    def run(self) -> None:
+        """Do it, and answer whoever asked."""
+        try:
+            self.answer.set_result(self.work())
+        except BaseException as error:
+            self.answer.set_exception(error)
+
+
+class HeldDevice:
+    """A device in use by the studio.
+
+    Parameters
+    ----------
+    device : open; closed with this.
+    told : called with ticks as they come. lost : called once if the device goes away. Both in the thread.
+    """
+
+    def __init__(
+        self, device: Device, told: Callable[[TickPiece], None], lost: Callable[[DeviceError], None]
+    ) -> None:
+        self.device = device
+        self._told, self._lost = told, lost
+        self._asked: queue.Queue[_Turn] = queue.Queue()
+        self._over, self._lock = threading.Event(), threading.Lock()
+        self._twin_s = 0.0
+        self._thread = threading.Thread(target=self._serve, name="device", daemon=True)
+        self._thread.start()
+
+    @property
+    def remote(self) -> Remote | None:
+        """Get the device as one that tells of its ticks; None if it does not."""
+        return self.device if isinstance(self.device, Remote) else None
+
+    def do(self, work: Callable[[], Answer]) -> Answer:
+        """Have something done in the device's thread. Raises what it raises; DeviceError if it is gone."""
+        if threading.current_thread() is self._thread:
+            return work()
+        turn = _Turn(work)
+        with self._lock:
+            if self._over.is_set():
+                raise DeviceError(GONE)
+            self._asked.put(turn)
+        try:
+            return cast(Answer, turn.answer.result(PATIENCE_s))
+        except TimeoutError:
+            raise DeviceError(f"the device has not answered for {PATIENCE_s:g} s; disconnect it") from None
+
+    def press(self, velocity_mm_s: float) -> Any:
+        """Have the simulated person press once, and tell the ticks of it; call it by do. DeviceError."""
+        if isinstance(self.device, TwinDevice):
+            trace = self.device.press_trace(velocity_mm_s)
+            self._told(self._of_twin(trace))
+            return trace.press(velocity_mm_s)
+        press = self.device.press(velocity_mm_s)
+        self._tell_ticks()
+        return press
+
+    def close(self) -> None:
+        """Let the device fall to zero force and go."""
+        self._over.set()
+        self._thread.join(PATIENCE_s)
+
+    def _serve(self) -> None:
+        lost = None
+        try:
+            while not self._over.is_set():
+                self._turn()
+        except DeviceError as error:
+            lost = error
+        finally:
+            self._refuse()
+            device: Any = self.device
+            if hasattr(device, "close"):
+                device.close()
+        if lost:
+            self._lost(lost)
+
+    def _refuse(self) -> None:
+        """Answer whoever still waits: nothing is done any more."""
+        with self._lock:
+            self._over.set()
+            while not self._asked.empty():
+                self._asked.get().answer.set_exception(DeviceError(GONE))
+
+    def _turn(self) -> None:
+        """Do what is asked, or look at what the device tells for a moment."""
+        wait_s = self._watch() if self.remote else GLANCE_s
+        try:
+            self._asked.get(timeout=max(wait_s, 0.001)).run()
+        except queue.Empty:
+            return
+        if self.remote:
+            # what was not told while something else was done is not missing
+            self.remote.client.telemetry.clear()
+            self.remote.client.stream(1)
+
+    def _watch(self) -> float:
+        """Listen for a moment; give what is left of it: a device in lockstep is no faster than the clock."""
+        assert self.remote
+        client, begun_s = self.remote.client, time.monotonic()
+        if client.telemetry.last is None:
+            client.stream(1)
+        client.listen(client.port.now_s() + GLANCE_s)
+        self._tell_ticks()
+        lockstep = isinstance(self.device, LinkedDevice)
+        return GLANCE_s - (time.monotonic() - begun_s) if lockstep else 0.0
+
+    def _tell_ticks(self) -> None:
+        assert self.remote
+        ticks = self.remote.client.telemetry.take()
+        if ticks.tick.size:
+            self._told(self._of_ticks(ticks))
+
+    def _of_ticks(self, ticks: TickColumns) -> TickPiece:
+        settings = self.device.settings()
+        force_cN = ticks.force_cN if settings.force_gain_q14 else np.full(ticks.tick.size, np.nan)
+        return TickPiece(
+            ticks.tick.astype(np.float64) * settings.tick_us * 1e-6,
+            ticks.displacement_mm,
+            force_cN,
+            ticks.commanded_cN,
+            ticks.state,
+            (ticks.flags & CUT) > 0,
+        )
+
+    def _of_twin(self, trace: Trace) -> TickPiece:
+        """Give the ticks of a simulated press; presses follow each other on one clock."""
+        rows = trace.tick
+        t_s = self._twin_s + BETWEEN_s + trace.t_s[rows]
+        self._twin_s = float(t_s[-1])
+        return TickPiece(
+            t_s,
+            trace.displacement_mm[rows],
+            trace.force_cN[rows],
+            trace.commanded_cN[rows],
+            trace.state[rows].astype(np.int64),
+            trace.saturated[rows],
+        )
+
+
+def mode_of(remote: Remote) -> str:
+    """Name the mode that a device told last."""
+    last = remote.client.telemetry.last
+    return Mode(last.mode).name.lower() if last else ""

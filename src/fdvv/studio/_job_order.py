@@ -1,0 +1,147 @@
+"""Check an order, and collect copies of all that it works on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fdvv.errors import InputError
+from fdvv.model import FDVVModel, model_to_json
+from fdvv.studio._job_file import JobFolder
+from fdvv.studio._job_results import check_name, kept_file
+from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
+from fdvv.twin import PARTICIPANTS, button_names, load_rig, rig_to_toml
+from fdvv.workflow import Shelf
+
+RIGS = ("default", "light", "paper")
+SLOWEST_mm_s, FASTEST_mm_s, MOST_SPEEDS = 5.0, 500.0, 12
+MOST = {
+    "rounds": (0, 20),
+    "presses": (1, 200),
+    "probe_presses": (0, 100),
+    "repeats": (0, 20),
+    "comparisons": (0, 1000),
+    "seed": (0, 2**31),
+}
+"""Least and most of what is counted."""
+BENCH = "the capture bench "
+"""Before the name of a simulated bench: it is no rig."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a job begins with.
+
+    Attributes
+    ----------
+    title : for people. device : that it uses, as leases know it. simulated : that device is.
+    files : of the job's folder, by name.
+    """
+
+    title: str
+    device: str
+    simulated: bool
+    files: dict[str, str | bytes] = field(default_factory=dict)
+
+
+def inputs_of(order: Order, shelf: Shelf, project: Path, devices: Sequence[str]) -> Inputs:
+    """Check an order and collect what it needs. devices : that there are. InputError."""
+    check_name(order.name)
+    _check_counts(order)
+    _check_ratio("pace_ratio", order.pace_ratio, 0.05, 1.0)
+    if order.device not in devices:
+        raise InputError("device", "device", f"there is no {order.device[:80]!r}", "choose one of the list")
+    if isinstance(order, CaptureOrder):
+        return _capture(order)
+    model = shelf.model(order.button)
+    check_speeds(order.velocities_mm_s, SLOWEST_mm_s)
+    files = _shared_files(order, model, project)
+    if isinstance(order, TuneOrder):
+        _check_tuning(order, model)
+    if isinstance(order, CompensateOrder):
+        _check_learning(order)
+    words = {CompensateOrder: "Compensate", ProbeOrder: "Probe", TuneOrder: "Tune"}
+    simulated = not order.device.startswith("serial:")
+    return Inputs(f"{words[type(order)]} {model.name} on {order.device}", order.device, simulated, files)
+
+
+def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float) -> None:
+    """Refuse speeds that cannot be pressed at. InputError."""
+    good = all(math.isfinite(v) and slowest_mm_s <= v <= FASTEST_mm_s for v in speeds_mm_s)
+    if not good or not 0 < len(set(speeds_mm_s)) == len(speeds_mm_s) <= MOST_SPEEDS:
+        told = ", ".join(f"{v:g}" for v in speeds_mm_s[:20]) or "none"
+        remedy = f"give 1 to {MOST_SPEEDS} different ones of {slowest_mm_s:g} to {FASTEST_mm_s:g} mm/s"
+        raise InputError("velocities", "velocities", f"cannot be {told} mm/s", remedy)
+
+
+def _capture(order: CaptureOrder) -> Inputs:
+    check_speeds(order.paces_mm_s, 20.0)
+    simulated = order.device == "twin"
+    if simulated and order.switch not in button_names():
+        raise InputError("switch", "switch", f"there is no {order.switch[:80]!r}", "choose one of the list")
+    if simulated and order.participant not in PARTICIPANTS:
+        reason = f"there is no {order.participant[:80]!r}"
+        raise InputError("participant", "participant", reason, f"use one of {', '.join(PARTICIPANTS)}")
+    if not simulated and not order.device.startswith("serial:"):
+        reason = f"{order.device} is no capture bench"
+        raise InputError("device", "device", reason, "use the simulated bench, or one on a serial port")
+    on = BENCH + order.device if simulated else order.device
+    return Inputs(f"Capture {order.name} on {on}", on, simulated)
+
+
+def _shared_files(
+    order: CompensateOrder | ProbeOrder | TuneOrder, model: FDVVModel, project: Path
+) -> dict[str, str | bytes]:
+    """Copy the button, the simulated rig, and what was learned before."""
+    names = JobFolder(Path())
+    if order.rig not in RIGS:
+        raise InputError("rig", "rig", f"there is no {order.rig[:80]!r}", f"use one of {', '.join(RIGS)}")
+    files: dict[str, str | bytes] = {names.button.name: model_to_json(model)}
+    if order.rig != "default":
+        files[names.rig.name] = rig_to_toml(load_rig(order.rig))
+    if isinstance(order, CompensateOrder):
+        if order.known_rig:
+            files[names.known_rig.name] = kept_file(project, "rig", order.known_rig).read_bytes()
+    elif order.actuation:
+        files[names.actuation.name] = kept_file(project, "actuation", order.actuation).read_bytes()
+    return files
+
+
+def _check_counts(order: Order) -> None:
+    for name, (least, most) in MOST.items():
+        value = getattr(order, name, least)
+        if not least <= value <= most:
+            raise InputError(name, name, f"cannot be {value}", f"give {least} to {most}")
+
+
+def _check_learning(order: CompensateOrder) -> None:
+    if order.method == "paper" and order.known_rig:
+        reason = "belongs to the method rig-aware"
+        raise InputError("known_rig", "known rig", reason, "choose that method, or no known rig")
+    if not order.rounds and not order.known_rig:
+        reason = "cannot be 0 where the rig is not known"
+        raise InputError("rounds", "rounds", reason, "give 1 or more, or a known rig")
+
+
+def _check_tuning(order: TuneOrder, model: FDVVModel) -> None:
+    for name, least, most in (("frequency_ratios", 0.1, 10.0), ("gain_ratios", 0.05, 20.0)):
+        ratios = getattr(order, name)
+        if not 0 < len(ratios) <= 5:
+            raise InputError(name, name, f"cannot be {len(ratios)} of them", "give 1 to 5")
+        for ratio in ratios:
+            _check_ratio(name, ratio, least, most)
+    if order.asking == "rate" and order.repeats < 2:
+        raise InputError("repeats", "repeats", f"cannot be {order.repeats}", "rate each at least twice")
+    if order.observer != "person" and order.device.startswith("serial:"):
+        reason = "a person presses this device, and nobody's answers would be kept"
+        raise InputError("observer", "observer", reason, "answer yourself")
+    if not any(v.stroke == "press" for v in model.vibrations):
+        reason = f"{model.name} has no vibration of the press to tune"
+        raise InputError("button", "button", reason, "give it one in the editor first")
+
+
+def _check_ratio(name: str, value: float, least: float, most: float) -> None:
+    if not (math.isfinite(value) and least <= value <= most):
+        raise InputError(name, name.replace("_", " "), f"cannot be {value:g}", f"give {least:g} to {most:g}")

@@ -1,0 +1,151 @@
+"""The work of a job that learns an actuation, and of one that judges it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fdvv.compensate import Acceptance, PaperLaw, RigAware, Tuning, load_memory, save_rig
+from fdvv.device import Device
+from fdvv.files import write_atomic
+from fdvv.model import FDVVModel, load_model
+from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
+from fdvv.studio._messages_orders import CompensateOrder, ProbeOrder
+from fdvv.studio._work import Work, curve_standing, let_close
+from fdvv.workflow import (
+    CompensationResult,
+    ProbeResult,
+    Session,
+    compensate,
+    load_actuation,
+    probe,
+    save_actuation,
+    uncompensated,
+)
+
+PROBE_SEED = 1
+"""Added to the seed that was learned with: what judges is fresh."""
+
+
+def learn(work: Work, order: CompensateOrder) -> None:
+    """Learn, keep what was learned, and judge it on fresh presses if that is wanted."""
+    model = load_model(work.folder.button)
+    session = _session(work, order, order.seed, probing=False)
+    device = session.open_device(order.device)
+    try:
+        _begin(work, device, model, order.velocities_mm_s)
+        work.tell(StageTold("compensate", "learning what makes the rig feel like the button"))
+        result = compensate(
+            device,
+            model,
+            order.velocities_mm_s,
+            _law(work, order),
+            work.pressed(model.travel_mm),
+            session,
+            work.guide(order.device),
+        )
+    finally:
+        let_close(device)
+    _keep(work, result)
+    if order.probe_presses:
+        _judge_learned(work, order, model, result)
+
+
+def judge(work: Work, order: ProbeOrder) -> None:
+    """Judge a learned table, or the model's own force, on fresh presses."""
+    model = load_model(work.folder.button)
+    learned = load_actuation(work.folder.actuation) if work.folder.actuation.exists() else None
+    session = _session(work, order, order.seed, probing=True)
+    device = session.open_device(order.device)
+    try:
+        _begin(work, device, model, order.velocities_mm_s)
+        surface = learned.surface if learned else uncompensated(device, model, order.velocities_mm_s)
+        about = (learned.method, learned.outcome.tuning) if learned else ("not compensated", Tuning())
+        _probe(work, order, (device, session), model, (surface, *about), order.presses)
+    finally:
+        let_close(device)
+
+
+def _judge_learned(work: Work, order: CompensateOrder, model: FDVVModel, result: CompensationResult) -> None:
+    session = _session(work, order, order.seed + PROBE_SEED, probing=True)
+    device = session.open_device(order.device)
+    try:
+        table = result.surface, result.method, result.outcome.tuning
+        _probe(work, order, (device, session), model, table, order.probe_presses)
+    finally:
+        let_close(device)
+
+
+def _probe(
+    work: Work,
+    order: CompensateOrder | ProbeOrder,
+    pressed: tuple[Device, Session],
+    model: FDVVModel,
+    table: tuple[Any, str, Tuning],
+    presses: int,
+) -> None:
+    device, session = pressed
+    surface, method, tuning = table
+    work.tell(StageTold("probe", "judging on fresh presses, in true displacement"))
+    told, guide = work.pressed(model.travel_mm), work.guide(order.device)
+    speeds = order.velocities_mm_s
+    result = probe(device, model, surface, speeds, presses, told, method, session, guide, tuning)
+    write_atomic(
+        work.folder.result("measured"), json.dumps(measured(result, order.button), allow_nan=False) + "\n"
+    )
+    worst = max(result.curves, key=lambda c: c.outcome.mean_error_cN).outcome
+    sentence = (
+        f"mean error on fresh presses at most {worst.mean_error_cN:.2f} cN "
+        f"({worst.stroke} at {worst.velocity_mm_s:g} mm/s)"
+    )
+    curves = tuple(curve_standing(curve.outcome) for curve in result.curves)
+    counts = result.presses, len(result.skipped)
+    work.tell(JobOutcome("probe", sentence, *counts, result.simulated, curves))
+
+
+def measured(result: ProbeResult, button: str) -> dict[str, Any]:
+    """Give the report of a probe with its curves: median and quartiles of the presses over displacement.
+
+    button : id of what was judged.
+    """
+    import numpy as np
+
+    document = {**result.to_dict(), "button": button}
+    for told, curve in zip(document["curves"], result.curves, strict=True):
+        low, middle, high = np.percentile(curve.rendered_cN, [25, 50, 75], axis=0).round(3).tolist()
+        told |= {
+            "displacement_mm": curve.displacement_mm.round(4).tolist(),
+            "target_cN": curve.target_cN.round(3).tolist(),
+            "rendered_cN": middle,
+            "rendered_quartiles_cN": [low, high],
+        }
+    return document
+
+
+def _keep(work: Work, result: CompensationResult) -> None:
+    """Keep what was learned in the job's folder, and tell of it."""
+    save_actuation(result, work.folder.result("actuation"))
+    if result.memory:
+        save_rig(result.memory, work.folder.result("rig"))
+    curves = tuple(curve_standing(curve) for curve in result.outcome.curves)
+    counts = result.presses, len(result.skipped)
+    work.tell(JobOutcome("compensate", result.outcome.sentence, *counts, result.simulated, curves))
+
+
+def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
+    if order.method == "paper":
+        return PaperLaw(rounds=order.rounds, presses_per_round=order.presses)
+    known = work.folder.known_rig
+    return RigAware(order.rounds, load_memory(known) if known.exists() else None)
+
+
+def _session(work: Work, order: CompensateOrder | ProbeOrder, seed: int, probing: bool) -> Session:
+    folder = work.folder.probe if probing else work.folder.session
+    rig = work.folder.rig if work.folder.rig.exists() else None
+    return Session(folder, seed, rig, None, Acceptance(pace_ratio=order.pace_ratio))
+
+
+def _begin(work: Work, device: Device, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
+    info = device.info()
+    work.tell(JobBegun(work.run, info.name, info.simulated))
+    work.intended(model, velocities_mm_s)

@@ -1,0 +1,193 @@
+"""Long work on the page, driven as a person does: learning, tuning, capturing, looking at a device."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from tests.studio.running import RunningStudio
+
+if TYPE_CHECKING:
+    from playwright.sync_api import BrowserContext, Page
+
+LONG_ms = 60_000
+# work on a machine that does much else takes longer than the default limit of a test
+pytestmark = pytest.mark.timeout(180)
+DONE = ".job-head .job-state.done"
+
+
+def opened(page: Page, section: str) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#/live/{section}")
+    page.wait_for_selector("main[data-page=live]")
+
+
+def set_field(page: Page, label: str, value: str) -> None:
+    field = page.get_by_label(label, exact=True)
+    field.fill(value)
+    field.press("Enter")
+    field.blur()
+
+
+def learn(page: Page, speeds: str, rounds: str, presses: str, judged: str = "0") -> None:
+    """Order the paper's law, whose errors fall press by press."""
+    opened(page, "compensate")
+    page.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
+    set_field(page, "Speeds", speeds)
+    page.get_by_label("Method").select_option("paper")
+    set_field(page, "Rounds", rounds)
+    set_field(page, "Presses per round", presses)
+    set_field(page, "Fresh presses to judge", judged)
+    page.get_by_role("button", name="Start learning").click()
+    page.wait_for_selector(".job-head")
+
+
+def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None:
+    learn(page, "100", "1", "12", "2")
+    page.wait_for_selector(DONE, timeout=LONG_ms)
+    assert page.locator(".multiple").count() == 1
+    assert page.locator(".job-head .tag.simulated").is_visible()
+    page.get_by_text("Figures").click()
+    rows = page.get_by_role("table", name="Errors of every curve").locator("tbody tr")
+    press = rows.nth(0).locator("td").all_inner_texts()
+    assert press[0] == "12"
+    first_cN, last_cN = float(press[1]), float(press[2])
+    assert last_cN < 0.5 * first_cN
+    page.get_by_role("tab", name="On fresh presses").click()
+    page.get_by_text("Figures").click()
+    assert rows.nth(0).locator("td").nth(0).inner_text() == "2"
+    kept = page.locator(".job-results").inner_text()
+    assert re.search(r"table\s+mx-clear", kept)
+    assert re.search(r"measured on fresh presses\s+mx-clear", kept)
+    table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
+    assert table.count() == 14
+
+
+def test_a_page_that_is_reloaded_finds_its_job_stops_it_and_goes_on(page: Page) -> None:
+    learn(page, "50, 100, 150", "3", "12")
+    page.locator(".press-scroll tbody tr").nth(3).wait_for()
+    page.reload()
+    page.locator(".press-scroll tbody tr").nth(3).wait_for()
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job-head .job-state.cancelled")
+    assert "what was made is kept" in page.locator(".job-line").inner_text()
+    assert page.locator(".job-sign").is_hidden()
+    page.get_by_role("button", name="Go on").click()
+    page.locator(".job-sign").wait_for()
+    page.wait_for_selector(DONE, timeout=LONG_ms)
+    assert "goes on" in page.locator(".job-notices").inner_text()
+
+
+def test_a_job_is_found_from_every_page(page: Page) -> None:
+    learn(page, "50, 100, 150, 200", "4", "12")
+    page.keyboard.press("Alt+1")
+    page.wait_for_selector("main[data-page=library]")
+    page.click(".job-sign")
+    page.wait_for_selector(".job-head")
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job-head .job-state.cancelled")
+
+
+def test_vibrations_are_tuned_with_keys_alone(page: Page) -> None:
+    opened(page, "tune")
+    set_field(page, "Questions at most", "3")
+    page.get_by_role("button", name="Start tuning").press("Enter")
+    for number, key in enumerate("120", start=1):
+        page.get_by_role("heading", name=f"Question {number} of 3").wait_for()
+        page.keyboard.press(key)
+    page.wait_for_selector(DONE, timeout=LONG_ms)
+    ranking = page.get_by_role("table", name="Ranking at 100 mm/s")
+    assert ranking.locator("tbody tr").count() >= 3
+    assert "kept" in ranking.inner_text()
+    page.get_by_role("button", name="Open in the editor").click()
+    page.wait_for_url("**/#/edit/own%3A*")
+
+
+def test_answers_are_blind_until_they_are_given(page: Page) -> None:
+    opened(page, "tune")
+    page.get_by_role("button", name="Start tuning").click()
+    page.get_by_role("heading", name="Question 1").wait_for()
+    assert "template" not in page.inner_text("main")
+    page.keyboard.press("2")
+    page.get_by_role("heading", name="Question 2").wait_for()
+    assert page.locator("details summary", has_text="may lead your answers").is_visible()
+    assert "template" not in page.inner_text("main")
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job-head .job-state.cancelled")
+
+
+def test_a_capture_on_the_simulated_bench_becomes_a_button_of_ones_own(page: Page) -> None:
+    opened(page, "capture")
+    set_field(page, "Name of the button", "my clear")
+    set_field(page, "Paces", "100")
+    set_field(page, "Presses", "3")
+    page.get_by_role("button", name="Start the capture").click()
+    page.wait_for_selector(DONE, timeout=LONG_ms)
+    takes = page.get_by_role("table", name="Takes, newest first")
+    assert takes.locator("tbody tr").count() >= 5
+    assert "good" in takes.inner_text()
+    assert page.get_by_text("simulated", exact=True).first.is_visible()
+    opened(page, "compensate")
+    page.get_by_label("Button", exact=True).select_option("own:my clear")
+
+
+def test_the_pace_is_led_by_a_moving_cue(page: Page) -> None:
+    opened(page, "capture")
+    set_field(page, "Paces", "100")
+    set_field(page, "Presses", "1")
+    page.get_by_label("A slow probe first").uncheck()
+    page.get_by_label("Show the cue in a person's time").check()
+    page.get_by_role("button", name="Start the capture").click()
+    page.get_by_text("Hands off").wait_for()
+    page.get_by_text("Press down to the stop and let go: 100 mm/s").wait_for()
+    for count in ("3", "2", "1"):
+        page.locator(".cue-count", has_text=count).wait_for()
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job-head .job-state.cancelled")
+
+
+def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> None:
+    opened(page, "device")
+    page.get_by_label("Device", exact=True).select_option("host")
+    page.get_by_role("button", name="Connect").click()
+    page.get_by_role("button", name="Upload").click()
+    page.get_by_text("program: ").wait_for()
+    page.get_by_role("button", name="Press once").click()
+    page.get_by_text("felt in true displacement, simulated").wait_for()
+    assert page.get_by_role("img", name="Place of the cap over time").is_visible()
+    page.get_by_text("Each column is the least and the most").wait_for()
+    page.get_by_role("button", name="Arm").click()
+    page.locator(".job-state.mode-armed").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".job-state.mode-idle").wait_for()
+    page.get_by_role("button", name="Self-test").click()
+    page.locator(".verdicts li.passed").first.wait_for()
+    page.reload()
+    page.locator(".job-state.mode-idle").wait_for()
+    page.get_by_role("button", name="Disconnect").click()
+    page.get_by_text("No device is connected").wait_for()
+
+
+def test_what_the_studio_refuses_is_told_in_one_line(context: BrowserContext, studio: RunningStudio) -> None:
+    # a page of its own: a browser writes every refusal to the console, which fails others' tests
+    page = context.new_page()
+    page.goto(studio.address)
+    page.wait_for_selector("html[data-ready]")
+    learn(page, "50, 100, 150, 200", "4", "12")
+    job = page.url
+    opened(page, "tune")
+    with page.expect_response("**/api/jobs.start") as answer:
+        page.get_by_role("button", name="Start tuning").click()
+    assert answer.value.status == 422
+    assert "twin is used by job 1" in page.locator(".toast.wrong").inner_text()
+    page.goto(job)
+    page.get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job-head .job-state.cancelled")
+
+
+@pytest.mark.parametrize("section", ["compensate", "capture", "tune", "device"])
+def test_empty_pages_say_what_to_do_next(page: Page, section: str) -> None:
+    opened(page, section)
+    page.locator(".work-fields").first.wait_for()
+    assert page.get_by_text("No jobs yet").is_visible()
+    assert page.locator(".button.main").count() >= 1

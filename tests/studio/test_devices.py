@@ -1,0 +1,142 @@
+"""A device held open: ticks and presses that it tells, zero force when nobody looks, who may use it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.studio.jobs import DEVICES, PATIENCE_s, learning
+
+from fdvv.errors import DeviceError, InputError
+from fdvv.studio import Studio
+from fdvv.studio import _device_part as part
+from fdvv.studio._jobs import Jobs
+from fdvv.studio._messages_device import (
+    DeviceAsk,
+    DeviceConnect,
+    DevicePress,
+    DeviceStanding,
+    DeviceUpload,
+    PressSeen,
+    ScopeTold,
+    WatchScope,
+)
+
+CLEAR = DeviceUpload("builtin:mx-clear")
+
+
+class Page:
+    """A page that looks on, and waits for what it is told."""
+
+    def __init__(self, studio: Studio) -> None:
+        self.told: list[Any] = []
+        self._news = threading.Condition()
+        self.channel = part.ScopeChannel(studio, self._tell)
+        self.channel.receive(WatchScope(0.01))
+
+    def _tell(self, message: Any) -> None:
+        with self._news:
+            self.told.append(message)
+            self._news.notify_all()
+
+    def of(self, kind: type[Any]) -> list[Any]:
+        return [message for message in self.told if isinstance(message, kind)]
+
+    def wait(self, kind: type[Any], wanted: Any = lambda _message: True) -> Any:
+        with self._news:
+            assert self._news.wait_for(lambda: any(map(wanted, self.of(kind))), PATIENCE_s)
+            return next(message for message in self.of(kind) if wanted(message))
+
+
+@pytest.fixture
+def studio(tmp_path: Path) -> Iterator[Studio]:
+    studio = Studio(tmp_path / "project")
+    yield studio
+    studio.close()
+
+
+@pytest.fixture
+def page(studio: Studio) -> Iterator[Page]:
+    page = Page(studio)
+    yield page
+    page.channel.close()
+
+
+def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> None:
+    found = part.connect(studio, DeviceConnect("host"))
+    assert (found.device, found.simulated, found.streams, found.fault) == ("host", True, True, "")
+    page.wait(ScopeTold)
+    assert part.upload(studio, CLEAR).programmed == "mx-clear"
+    part.press(studio, DevicePress(100.0))
+    deep = page.wait(ScopeTold, lambda told: max(told.displacement_high_mm) > 3.5)
+    assert deep.bin_s == 0.01
+    assert max(max(told.commanded_high_cN) for told in page.of(ScopeTold)) > 20
+    # the default rig has no force sensor
+    assert {force for told in page.of(ScopeTold) for force in told.force_high_cN} == {None}
+    seen = page.wait(PressSeen)
+    assert seen.simulated
+    assert max(force for force in seen.felt_press_cN if force is not None) > 20
+    assert len(seen.intended_press_cN) == len(seen.displacement_mm) == len(seen.felt_release_cN)
+
+
+def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page: Page) -> None:
+    part.connect(studio, DeviceConnect("host"))
+    part.upload(studio, CLEAR)
+    assert part.arm(studio, DeviceAsk()).fault == ""
+    page.wait(DeviceStanding, lambda told: told.mode == "armed")
+    other = Page(studio)
+    other.channel.close()
+    assert part.standing(studio, DeviceAsk()).mode == "armed"
+    page.channel.close()
+    again = Page(studio)
+    again.wait(DeviceStanding, lambda told: told.mode == "idle")
+    again.channel.close()
+
+
+def test_the_twin_shows_presses_without_firmware(studio: Studio, page: Page) -> None:
+    assert not part.connect(studio, DeviceConnect("twin")).streams
+    part.upload(studio, CLEAR)
+    part.press(studio, DevicePress(100.0))
+    told = page.wait(ScopeTold)
+    assert max(told.displacement_high_mm) > 3.5
+    assert None not in told.force_high_cN
+    assert part.selftest(studio, DeviceAsk()).note
+    with pytest.raises(DeviceError, match="no firmware"):
+        part.arm(studio, DeviceAsk())
+
+
+def test_facts_and_self_test_are_those_of_the_firmware(studio: Studio) -> None:
+    part.connect(studio, DeviceConnect("host"))
+    facts = {fact.name: fact.value for fact in part.facts(studio, DeviceAsk()).facts}
+    assert (facts["name"], facts["simulated"]) == ("host", "True")
+    verdicts = {found.part: found.verdict for found in part.selftest(studio, DeviceAsk()).parts}
+    assert (verdicts["position_sensor"], verdicts["force_sensor"]) == ("passed", "absent")
+
+
+def test_a_device_in_view_is_not_used_by_a_job_nor_the_other_way_round(studio: Studio) -> None:
+    part.connect(studio, DeviceConnect("twin"))
+    with pytest.raises(InputError, match="twin is used by the device view"):
+        studio.part(Jobs).start(learning(), DEVICES)
+    with pytest.raises(InputError, match="disconnect it first"):
+        part.connect(studio, DeviceConnect("host"))
+    assert part.disconnect(studio, DeviceAsk()).device == ""
+    assert part.connect(studio, DeviceConnect("host")).device == "host"
+
+
+@pytest.mark.parametrize(
+    ("ask", "told"),
+    [(DeviceConnect("serial:/dev/none"), "there is no"), (DeviceConnect("twin", "../paper"), "rig")],
+)
+def test_only_what_is_listed_is_connected(studio: Studio, ask: DeviceConnect, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        part.connect(studio, ask)
+
+
+def test_without_a_device_one_line_says_so(studio: Studio) -> None:
+    for work in (part.stop, part.arm, part.facts, part.selftest):
+        with pytest.raises(DeviceError, match="connect one first"):
+            work(studio, DeviceAsk())
+    assert part.standing(studio, DeviceAsk()) == DeviceStanding()

@@ -1,0 +1,83 @@
+"""Orders are checked before anything begins; what they name is looked up, never joined to a path."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.studio.jobs import DEVICES, learning, tuning
+
+from fdvv.errors import InputError
+from fdvv.model import model_from_json
+from fdvv.studio._job_order import inputs_of
+from fdvv.studio._job_results import PLACES, kept_file, kept_names
+from fdvv.studio._messages_orders import CaptureOrder, Order
+from fdvv.workflow import Shelf
+
+
+def checked(order: Order, project: Path) -> Any:
+    return inputs_of(order, Shelf(project), project, DEVICES)
+
+
+WRONG: list[tuple[Order, str]] = [
+    (learning(name="../up"), "name"),
+    (learning(name=".hidden"), "name"),
+    (learning(name=""), "name"),
+    (learning(name="a/b"), "name"),
+    (learning(name="a" * 81), "name"),
+    (learning(button="builtin:none"), "none"),
+    (learning(button="own:../../etc/passwd"), "no such button"),
+    (learning(device="serial:/dev/none"), "there is no"),
+    (learning(device="replay:/etc/passwd"), "there is no"),
+    (learning(rig="../default"), "rig"),
+    (learning(known_rig="../../x"), "none of this name"),
+    (learning(velocities_mm_s=()), "velocities"),
+    (learning(velocities_mm_s=(50.0, 50.0)), "velocities"),
+    (learning(velocities_mm_s=(float("nan"),)), "velocities"),
+    (learning(velocities_mm_s=(4.0,)), "velocities"),
+    (learning(rounds=0), "rounds"),
+    (learning(rounds=21), "rounds"),
+    (learning(pace_ratio=0.0), "pace ratio"),
+    (learning(method="paper", known_rig="x"), "none of this name"),
+    (tuning(actuation="../x"), "none of this name"),
+    (tuning(gain_ratios=()), "gain_ratios"),
+    (tuning(asking="rate", repeats=1), "repeats"),
+    (CaptureOrder("x", switch="../mx-clear"), "switch"),
+    (CaptureOrder("x", participant="nobody"), "participant"),
+    (CaptureOrder("x", device="host"), "no capture bench"),
+    (CaptureOrder("x", paces_mm_s=(10.0,)), "velocities"),
+]
+
+
+@pytest.mark.parametrize(("order", "told"), WRONG, ids=lambda value: str(value)[:60])
+def test_an_order_that_cannot_be_done_is_refused_in_one_line(order: Order, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told) as refused:
+        checked(order, tmp_path)
+    assert "\n" not in str(refused.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_order_takes_copies_of_all_that_it_works_on(tmp_path: Path) -> None:
+    known = PLACES["rig"].file(tmp_path, "twin-paper")
+    known.parent.mkdir()
+    known.write_text("{}")
+    found = checked(learning(rig="paper", known_rig="twin-paper"), tmp_path)
+    assert set(found.files) == {"button.fdvv.json", "rig.toml", "known.rig.json"}
+    assert model_from_json(found.files["button.fdvv.json"]).name == "mx-clear"
+    assert (found.device, found.simulated, found.title) == ("twin", True, "Compensate mx-clear on twin")
+
+
+def test_a_bench_is_another_device_than_the_rig_of_the_same_name(tmp_path: Path) -> None:
+    assert checked(CaptureOrder("x"), tmp_path).device != checked(learning(), tmp_path).device
+
+
+def test_what_is_kept_is_found_by_name_among_what_is_there(tmp_path: Path) -> None:
+    for name in ("a", "b 2"):
+        file = PLACES["actuation"].file(tmp_path, name)
+        file.parent.mkdir(exist_ok=True)
+        file.write_text("{}")
+    assert kept_names(tmp_path, "actuation") == ("a", "b 2")
+    assert kept_file(tmp_path, "actuation", "b 2").is_file()
+    with pytest.raises(InputError, match="none of this name"):
+        kept_file(tmp_path, "actuation", "../actuations/a")

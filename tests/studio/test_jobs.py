@@ -1,0 +1,194 @@
+"""Long work as a process of its own: told, stopped, gone on with, answered, one device at a time."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
+
+from fdvv.errors import InputError
+from fdvv.model import load_model
+from fdvv.studio import Studio
+from fdvv.studio._job import BROKEN_OFF
+from fdvv.studio._job_file import JOB
+from fdvv.studio._jobs import Jobs
+from fdvv.studio._messages_events import JobOutcome, PressTold, QuestionAnswered, QuestionAsked
+from fdvv.studio._messages_jobs import JobResult
+from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder
+from fdvv.workflow import load_actuation
+
+
+@pytest.fixture
+def studio(tmp_path: Path) -> Iterator[Studio]:
+    """A studio with an empty project, closed at the end."""
+    studio = Studio(tmp_path / "project")
+    yield studio
+    studio.close()
+
+
+@pytest.fixture
+def jobs(studio: Studio) -> Jobs:
+    return studio.part(Jobs)
+
+
+def pressed(event: object) -> bool:
+    return isinstance(event, PressTold)
+
+
+def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
+    return Follower(jobs, jobs.start(order, DEVICES).job)
+
+
+def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: Studio, jobs: Jobs) -> None:
+    told = begin(jobs, learning())
+    row = told.over()
+    assert (row.state, row.line, row.simulated) == ("done", "", True)
+    presses = [event for event in told.events if isinstance(event, PressTold)]
+    assert [p.stage for p in presses] == ["compensate"] * (len(presses) - 1) + ["probe"]
+    assert [(p.done, p.total) for p in presses[:-1]] == [
+        (i + 1, len(presses) - 1) for i in range(len(presses) - 1)
+    ]
+    assert told.numbers == list(range(row.events))
+    assert set(row.results) == {
+        JobResult("actuation", "clear"),
+        JobResult("measured", "clear"),
+        JobResult("rig", "twin-default"),
+    }
+    learned = load_actuation(studio.project / "actuations" / "clear.actuation.json")
+    outcome = next(e for e in told.events if isinstance(e, JobOutcome) and e.stage == "compensate")
+    kept = [round(error, 3) for error in learned.outcome.curves[0].error_cN]
+    assert kept == list(outcome.curves[0].error_cN)
+    # a page that comes back, to this studio or to the next one, gets the events from its number on
+    assert Follower(jobs, "0001", 3).events == told.events[3:]
+    studio.close()
+    again = Studio(studio.project)
+    late = Follower(again.part(Jobs), "0001", 3)
+    assert (late.numbers[0], late.events) == (3, told.events[3:])
+    again.close()
+
+
+def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
+    told = begin(jobs, long_learning())
+    told.wait(pressed)
+    with pytest.raises(InputError, match="twin is used by job 1, Compensate mx-clear on twin"):
+        jobs.start(tuning(), DEVICES)
+    assert [row.job for row in jobs.rows()] == ["0001"]
+    asked_s = time.monotonic()
+    jobs.cancel("0001")
+    row = told.over()
+    assert time.monotonic() - asked_s < 3
+    assert (row.state, row.resumable) == ("cancelled", True)
+    made = row.done
+    assert 0 < made < PRESSES
+    jobs.resume("0001")
+    row = told.over()
+    assert (row.state, row.done) == ("done", PRESSES)
+    used = [event.done for event in told.events if isinstance(event, PressTold) and not event.skipped]
+    # no press is made twice; one that was on file when it stopped may not have been told
+    assert used == sorted(set(used))
+    assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
+
+
+def test_work_that_fails_says_why_and_a_damaged_job_hinders_no_other(tmp_path: Path) -> None:
+    folder = tmp_path / "jobs" / "0007"
+    folder.mkdir(parents=True)
+    (folder / JOB).write_text("{")
+    jobs = Studio(tmp_path).part(Jobs)
+    assert jobs.rows() == ()
+    row = begin(jobs, learning(device="host")).over()
+    assert (row.job, row.state) == ("0008", "failed")
+    assert "no force sensor" in row.line
+    assert "\n" not in row.line
+
+
+def test_questions_are_answered_once_each_and_the_best_becomes_a_button(studio: Studio, jobs: Jobs) -> None:
+    told = Follower(jobs, jobs.start(tuning(), DEVICES).job)
+    for number in (1, 2):
+        question = told.wait(lambda e, n=number: isinstance(e, QuestionAsked) and e.number == n)  # type: ignore[misc]
+        assert jobs.job("0001").row.state == "needs you"
+        with pytest.raises(InputError, match="does not wait"):
+            jobs.answer("0001", number + 1, "first")
+        with pytest.raises(InputError, match="cannot be 'best'"):
+            jobs.answer("0001", number, "best")
+        jobs.answer("0001", number, "first")
+        assert isinstance(question, QuestionAsked)
+        assert len(question.waves) == 2
+    row = told.over()
+    assert (row.state, row.results) == ("done", (JobResult("button", "clear tuned"),))
+    assert [e.answer for e in told.events if isinstance(e, QuestionAnswered)] == ["first", "first"]
+    assert studio.shelf.model("own:clear tuned").vibrations
+
+
+@pytest.mark.slow
+def test_a_process_that_is_killed_costs_nothing_that_was_told(jobs: Jobs) -> None:
+    told = begin(jobs, long_learning())
+    told.wait(pressed)
+    start = jobs.job("0001").start
+    assert start
+    os.kill(start.pid, signal.SIGKILL)
+    row = told.over()
+    assert (row.state, row.resumable) == ("failed", True)
+    assert "status -9" in row.line
+    made = row.done
+    jobs.resume("0001")
+    row = told.over()
+    assert (row.state, row.done) == ("done", PRESSES)
+    assert made > 0
+
+
+SERVER = """
+import sys, time
+from pathlib import Path
+from fdvv.studio import Studio
+from fdvv.studio._jobs import Jobs
+from tests.studio.jobs import DEVICES, PATIENCE_s, PRESSES, Follower, learning, long_learning, tuning
+jobs = Studio(Path(sys.argv[1])).part(Jobs)
+told = Follower(jobs, jobs.start(long_learning(), DEVICES).job)
+told.wait(lambda event: type(event).__name__ == "PressTold")
+print(jobs.job("0001").start.pid, flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.mark.slow
+def test_work_of_a_studio_that_was_killed_is_found_and_gone_on_with(tmp_path: Path) -> None:
+    root = Path(__file__).resolve().parents[2]
+    server = subprocess.Popen(
+        [sys.executable, "-c", SERVER, str(tmp_path)], stdout=subprocess.PIPE, text=True, cwd=root
+    )
+    assert server.stdout
+    child = int(server.stdout.readline())
+    server.kill()
+    server.wait()
+    server.stdout.close()
+    until_s = time.monotonic() + PATIENCE_s
+    while Path(f"/proc/{child}").exists():
+        assert time.monotonic() < until_s, "the work goes on without its studio"
+        time.sleep(0.02)
+    studio = Studio(tmp_path)
+    jobs = studio.part(Jobs)
+    row = jobs.job("0001").row
+    assert (row.state, row.line, row.resumable) == ("cancelled", BROKEN_OFF, True)
+    told = Follower(jobs, jobs.resume("0001").job)
+    assert (told.over().state, told.over().done) == ("done", PRESSES)
+    studio.close()
+
+
+@pytest.mark.slow
+def test_a_capture_becomes_a_button_of_the_persons_own(studio: Studio, jobs: Jobs) -> None:
+    order = CaptureOrder("my clear", paces_mm_s=(50.0, 100.0), presses=3)
+    row = Follower(jobs, jobs.start(order, DEVICES).job).over()
+    assert row.state == "done", row.line
+    model = studio.shelf.model("own:my clear")
+    assert model.provenance.simulated
+    assert {curve.velocity_mm_s for curve in model.curves} >= {50.0, 100.0}
+    assert load_model(studio.project / "buttons" / "my clear.fdvv.json") == model
+    again = Follower(jobs, jobs.start(order, DEVICES).job).over()
+    assert {result.name for result in again.results} == {"my clear 2"}

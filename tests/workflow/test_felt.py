@@ -1,0 +1,35 @@
+"""What was felt and what was intended on one grid."""
+
+import numpy as np
+import pytest
+
+from fdvv.device import TwinDevice
+from fdvv.model import ForceSurface, Stroke, load_builtin
+from fdvv.workflow import FORCE_JND_ratio, PressDone, felt_press, intended_press, noticeable_cN, probe
+
+MODEL = load_builtin("mx-clear")
+
+
+def test_what_was_felt_is_what_a_probe_judges() -> None:
+    device, surface = TwinDevice(seed=3), ForceSurface.of_model(MODEL, [100.0])
+    made: list[PressDone] = []
+    result = probe(device, MODEL, surface, [100.0], 1, made.append)
+    press = made[0].press
+    assert press
+    found = felt_press(press, MODEL.travel_mm)
+    for curve, felt_cN in zip(result.curves, (found.press_cN, found.release_cN), strict=True):
+        rows = np.searchsorted(found.displacement_mm, curve.displacement_mm - 1e-9)
+        assert np.nan_to_num(felt_cN[rows]) == pytest.approx(curve.rendered_cN[0])
+
+
+def test_what_was_intended_is_the_models_force() -> None:
+    found = intended_press(MODEL, 80.0)
+    assert found.displacement_mm[-1] == pytest.approx(MODEL.travel_mm, abs=0.03)
+    assert found.press_cN == pytest.approx(MODEL.force_cN(found.displacement_mm, 80.0, Stroke.PRESS))
+
+
+def test_what_is_noticeable_is_a_part_of_the_mean_force() -> None:
+    down, up = noticeable_cN(MODEL, 100.0)
+    wanted = intended_press(MODEL, 100.0)
+    assert FORCE_JND_ratio * wanted.press_cN.min() < down < FORCE_JND_ratio * wanted.press_cN.max()
+    assert 0 < up < down

@@ -1,0 +1,119 @@
+"""Real pace: nothing runs unseen, nothing is made up for in a burst."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from fdvv.errors import DeviceError
+from fdvv.model import load_builtin
+from fdvv.workflow import LiveEventKind, LiveFrame, LivePress, LiveRun, RealPace, model_subject
+
+
+class Seen:
+    """Collects frames and lines, and waits for what is to come."""
+
+    def __init__(self) -> None:
+        self.frames: list[LiveFrame] = []
+        self.lines: list[str] = []
+        self._more = threading.Condition()
+
+    def show(self, frame: LiveFrame) -> None:
+        with self._more:
+            self.frames.append(frame)
+            self._more.notify_all()
+
+    def told(self, line: str) -> None:
+        with self._more:
+            self.lines.append(line)
+            self._more.notify_all()
+
+    def wait_for(self, found: Callable[[], object]) -> None:
+        with self._more:
+            assert self._more.wait_for(lambda: bool(found()), timeout=20.0)
+
+    @property
+    def kinds(self) -> list[LiveEventKind]:
+        return [event.kind for frame in self.frames for event in frame.events]
+
+
+def begun(seen: Seen, silent_s: float = 60.0) -> LiveRun:
+    press = LivePress(model_subject(load_builtin("mx-clear")))
+    return LiveRun(press, seen.show, seen.told, seen.told, silent_s=silent_s)
+
+
+def test_time_that_cannot_be_kept_up_with_is_dropped_and_told() -> None:
+    times = iter([0.0, 0.01, 0.02, 0.52, 0.53, 9.0, 9.01])
+    pace = RealPace(lambda: next(times), longest_s=0.1)
+    found = [pace.due() for _ in range(5)]
+    assert np.array(found) == pytest.approx(
+        np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.0), (0.1, 0.4), (0.01, 0.0)])
+    )
+    pace.pause()
+    assert np.array([pace.due(), pace.due()]) == pytest.approx(np.array([(0.0, 0.0), (0.01, 0.0)]))
+
+
+def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
+    seen, start = Seen(), time.monotonic()
+    run = begun(seen)
+    run.ask(lambda press: press.lead(8.0), 17)
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    run.ask(LivePress.lift, 18)
+    seen.wait_for(lambda: LiveEventKind.PRESSED in seen.kinds)
+    run.close()
+    passed_s = time.monotonic() - start
+    last = seen.frames[-1]
+    assert last.sequence == 18
+    assert [frame.sequence for frame in seen.frames] == sorted(frame.sequence for frame in seen.frames)
+    simulated_s = last.columns.t_s[-1] + last.dropped_s
+    assert simulated_s <= passed_s
+    t = np.concatenate([frame.columns.t_s for frame in seen.frames])
+    assert np.diff(t) == pytest.approx(np.full(t.size - 1, 1e-4)), "no tick is missing between frames"
+
+
+def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted() -> None:
+    seen = Seen()
+    run = begun(seen, silent_s=0.2)
+    run.ask(lambda press: press.lead(8.0))
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    last_s = seen.frames[-1].columns.t_s[-1]
+    stopped = threading.Event()
+    while not stopped.wait(0.3):  # until no frame has come in so long
+        if seen.frames[-1].columns.t_s[-1] == last_s:
+            stopped.set()
+        last_s = seen.frames[-1].columns.t_s[-1]
+    run.here()
+    seen.wait_for(lambda: LiveEventKind.PRESSED in seen.kinds)
+    run.close()
+    resumed = next(frame for frame in seen.frames if frame.columns.t_s[0] > last_s)
+    assert resumed.columns.t_s[0] - last_s < 0.01, "the pause was not simulated"
+    assert resumed.dropped_s == seen.frames[0].dropped_s or resumed.dropped_s < 0.2
+
+
+def test_a_pause_lasts_until_the_page_is_seen_again() -> None:
+    seen = Seen()
+    run = begun(seen)
+    seen.wait_for(lambda: seen.frames)
+    run.pause()
+    run.here()
+    count = len(seen.frames)
+    seen.wait_for(lambda: len(seen.frames) > count)
+    run.close()
+
+
+def test_what_cannot_be_done_is_told_and_the_rest_goes_on() -> None:
+    def impossible(_press: LivePress) -> None:
+        raise DeviceError("it cannot be done")
+
+    seen = Seen()
+    run = begun(seen)
+    run.ask(impossible)
+    seen.wait_for(lambda: seen.lines)
+    count = len(seen.frames)
+    seen.wait_for(lambda: len(seen.frames) > count)
+    run.close()
+    assert seen.lines == ["it cannot be done"]

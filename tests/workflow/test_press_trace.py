@@ -1,0 +1,67 @@
+"""Traces of a key's travel: drawn, read, refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from fdvv.errors import InputError
+from fdvv.workflow import drawn_traces, read_press_trace
+
+
+def test_drawn_traces_begin_and_end_with_the_key_up_and_have_names_of_their_own() -> None:
+    traces = drawn_traces()
+    assert len({trace.name for trace in traces}) == len(traces)
+    for trace in traces:
+        assert trace.displacement_mm[[0, -1]] == pytest.approx([0.0, 0.0])
+        assert trace.displacement_mm.max() > 2.0
+        speed = np.diff(trace.displacement_mm) / np.diff(trace.t_s)
+        assert np.abs(np.diff(speed)).max() < 40.0, "a drawn move has no jump of its speed, mm/s"
+
+
+@pytest.mark.parametrize("header", ["t_s,displacement_mm", "time_ms,travel_mm", "x_mm,t_s"])
+def test_columns_are_found_by_their_names(header: str) -> None:
+    t, x = [0.0, 0.5, 1.0, 1.5], [0.0, 1.0, 4.0, 0.0]
+    names = header.split(",")
+    values = {"t_s": t, "time_ms": [1000 * v for v in t], "displacement_mm": x, "travel_mm": x, "x_mm": x}
+    rows = zip(*(values[name] for name in names), strict=True)
+    text = "\n".join([header, *(",".join(map(str, row)) for row in rows)])
+    for data in (text, json.dumps({name: values[name] for name in names})):
+        trace = read_press_trace(data.encode(), "keys")
+        assert trace.t_s == pytest.approx(t)
+        assert trace.displacement_mm == pytest.approx(x)
+
+
+def test_an_analogue_keyboards_log_gives_the_key_that_moved_most() -> None:
+    rows = [(1000 + i, 40 if i % 2 else 41, 0.1 if i % 2 else i / 40) for i in range(40)]
+    text = "unixtime,keyCode,keyValue\n" + "\n".join(f"{a},{b},{c}" for a, b, c in rows)
+    trace = read_press_trace(text.encode(), "log")
+    assert trace.t_s.size == 20
+    assert trace.displacement_mm.max() == pytest.approx(4.0 * 38 / 40)
+    assert trace.t_s[1] == pytest.approx(0.002)
+
+
+@pytest.mark.parametrize(
+    ("data", "place"),
+    [
+        (b"\xff\xfe", "whole file"),
+        (b"", "header"),
+        (b"a,b\n1,2\n", "header"),
+        (b"t_s,displacement_mm\n0,one\n", "line 2"),
+        (b"t_s,displacement_mm\n0\n", "line 2"),
+        (b"t_s,displacement_mm\n0,1\n1,2\n", "columns"),
+        (b"t_s,displacement_mm\n" + b"".join(b"%d,1\n" % (100 * i) for i in range(9)), "columns"),
+        (b"t_s,displacement_mm\n0,0\n1,90\n2,0\n3,0\n", "columns"),
+        (b"t_s,displacement_mm\n0,0\n1,nan\n2,0\n3,0\n", "columns"),
+        (b'{"t_s": "x"}', "$"),
+        (b'{"t_s": [0, 1], "x_mm": [0]}', "columns"),
+        (b"x" * 4_000_001, "whole file"),
+    ],
+)
+def test_a_file_that_is_no_trace_is_refused_with_place_and_remedy(data: bytes, place: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read_press_trace(data, "keys.csv")
+    assert refused.value.place == place
+    assert refused.value.remedy

@@ -1,0 +1,110 @@
+/** Set up learning, or judging what was learned. */
+
+import type { WorkChoices } from "../../net";
+import { button, choice, computed, h, numberField, signal, type Signal } from "../../ui";
+import { buttonOptions, choices, deviceOptions, nameFor } from "./choices";
+import { form, speedsField, textField } from "./fields";
+import { startJob, type Order } from "./jobs";
+import { askedButton, goToJob } from "./where";
+
+type Compensate = Extract<Order, { type: "compensate" }>;
+
+const draft = {
+  button: signal(""),
+  name: signal(""),
+  device: signal("twin"),
+  rig: signal("default"),
+  speeds: signal<readonly number[]>([50, 100, 150, 200]),
+  method: signal<"rig-aware" | "paper">("rig-aware"),
+  rounds: signal(3),
+  presses: signal(12),
+  known_rig: signal(""),
+  probe_presses: signal(5),
+  seed: signal(0),
+  pace_percent: signal(35),
+};
+
+/** What a signal holds, for a control. */
+export function bound<T>(to: Signal<T>): { readonly value: () => T; readonly set: (value: T) => void } {
+  return { value: () => to(), set: (value) => to.set(value) };
+}
+
+export function compensateForm(): HTMLElement {
+  const found = choices() as WorkChoices;
+  const first = askedButton() || draft.button.peek() || found.buttons[0]?.button || "";
+  draft.button.set(first);
+  if (!draft.name.peek()) draft.name.set(nameFor(first, ""));
+  const paper = computed(() => draft.method() === "paper");
+  const probe = button({ label: "Only judge its own force", act: () => void startProbe(), hint: "What the rig makes of the button without any compensation" });
+  return form(
+    "Compensate a button on a rig",
+    [
+      choice({ label: "Button", options: buttonOptions(found), value: () => draft.button(), set: setButton }),
+      textField({ label: "Name of the result", ...bound(draft.name) }),
+      choice({ label: "Device", options: deviceOptions(found, "rig"), ...bound(draft.device) }),
+      choice({ label: "Simulated rig", options: found.rigs.map((name) => [name, name]), ...bound(draft.rig) }),
+      speedsField({ label: "Speeds", ...bound(draft.speeds), least_mm_s: 5 }),
+      choice({ label: "Method", options: METHODS, ...bound(draft.method) }),
+      numberField({ label: "Rounds", unit: "", ...bound(draft.rounds), least: 0, most: 20, digits: 0 }),
+      h("span", { hidden: () => !paper() }, numberField({ label: "Presses per round", unit: "", ...bound(draft.presses), least: 1, most: 100, digits: 0 })),
+      h("span", { hidden: paper }, knownRigs(found)),
+      numberField({ label: "Fresh presses to judge", unit: "per speed", ...bound(draft.probe_presses), least: 0, most: 100, digits: 0 }),
+      numberField({ label: "Pace may miss by", unit: "%", ...bound(draft.pace_percent), least: 5, most: 100, digits: 0 }),
+      numberField({ label: "Seed of the simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 }),
+    ],
+    [button({ label: "Start learning", kind: "main", act: () => void start() }), probe],
+  );
+}
+
+const METHODS = [
+  ["rig-aware", "rig-aware: knows the rig, then learns the rest"],
+  ["paper", "the paper's iterative law"],
+] as const;
+
+function knownRigs(found: WorkChoices): HTMLElement {
+  const options = [["", "identify it first"], ...found.known_rigs.map((name): [string, string] => [name, name])] as const;
+  return choice({ label: "Known rig", options, ...bound(draft.known_rig) });
+}
+
+function setButton(value: string): void {
+  const before = nameFor(draft.button.peek(), "");
+  draft.button.set(value);
+  // a name that a person has typed stays
+  if (draft.name.peek() === before) draft.name.set(nameFor(value, ""));
+}
+
+async function start(): Promise<void> {
+  const paper = draft.method() === "paper";
+  const order: Compensate = {
+    type: "compensate",
+    ...shared(),
+    method: draft.method(),
+    rounds: draft.rounds(),
+    presses: draft.presses(),
+    known_rig: paper ? "" : draft.known_rig(),
+    probe_presses: draft.probe_presses(),
+  };
+  await begin(order);
+}
+
+async function startProbe(): Promise<void> {
+  await begin({ type: "probe", ...shared(), name: `${draft.name()} uncompensated`, actuation: "", presses: Math.max(1, draft.probe_presses()) });
+}
+
+function shared() {
+  return {
+    button: draft.button(),
+    name: draft.name().trim(),
+    device: draft.device(),
+    rig: draft.rig(),
+    seed: draft.seed(),
+    velocities_mm_s: draft.speeds(),
+    pace_ratio: draft.pace_percent() / 100,
+  };
+}
+
+/** Start work, and look at it. */
+export async function begin(order: Order): Promise<void> {
+  const row = await startJob(order);
+  if (row) goToJob(row);
+}

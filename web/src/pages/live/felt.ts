@@ -1,0 +1,75 @@
+/** What was intended and what the finger felt of the last presses at one speed. */
+
+import { Plot, rangeOf, series, type Brush, type Range, type View } from "../../draw";
+import { choice, h, signal, type Child } from "../../ui";
+import { listOf, speedsKey, swatch } from "./converge";
+import { watched } from "./jobs";
+import type { NumberedPress } from "./picture";
+
+const SHOWN = 3;
+/** Speed that is looked at; "last" follows the presses. */
+const chosen = signal("last");
+
+export function feltPanel(): Child {
+  const speeds = speedsKey();
+  return () => view(listOf(speeds()));
+}
+
+function view(speeds: readonly number[]): HTMLElement {
+  chosen.set("last");
+  const plot = new Plot({
+    label: "Force over displacement: intended, and felt in the last presses",
+    x: { label: "displacement", unit: "mm" },
+    y: { label: "force", unit: "cN" },
+    whole,
+    still: draw,
+    zoom: true,
+    height_px: 300,
+  });
+  const pick = choice({
+    label: "Speed",
+    options: [["last", "of the last press"], ...speeds.map((v): [string, string] => [String(v), `${v} mm/s`])],
+    value: () => chosen(),
+    set: (value) => chosen.set(value),
+  });
+  const legend = h("span", { class: "legend" }, swatch(0, "intended"), swatch(1, "felt, press"), swatch(2, "felt, release"));
+  return h("div", { class: "stack" }, h("div", { class: "row spread" }, pick, legend), plot.element);
+}
+
+function speed(): number | null {
+  const last = watched().picture.presses.at(-1)?.press.velocity_mm_s;
+  const first = watched().picture.intended.keys().next().value;
+  return chosen() === "last" ? (last ?? first ?? null) : Number(chosen());
+}
+
+function lastPresses(velocity_mm_s: number): readonly NumberedPress[] {
+  return watched().picture.presses.filter((one) => one.press.velocity_mm_s === velocity_mm_s && one.press.felt).slice(-SHOWN);
+}
+
+function whole(): { x: Range; y: Range } {
+  const { intended } = watched().picture;
+  const columns = [...intended.values()].flatMap((one) => [one.press_cN, one.release_cN]);
+  const x = [...intended.values()][0]?.displacement_mm ?? [0, 4];
+  const y = rangeOf(columns, 0.15) ?? { low: 0, high: 100 };
+  return { x: { low: 0, high: x.at(-1) as number }, y: { low: Math.min(0, y.low), high: y.high } };
+}
+
+function draw(brush: Brush, view_: View): void {
+  const velocity_mm_s = speed();
+  const wanted = velocity_mm_s === null ? undefined : watched().picture.intended.get(velocity_mm_s);
+  if (!wanted || velocity_mm_s === null) return;
+  const x = wanted.displacement_mm.map((mm) => view_.x.px(mm));
+  const line = (values: readonly (number | null)[], n: number, opacity: number, width_px: number) => {
+    const { colour, dash } = series(n);
+    const y = values.map((cN) => (cN === null ? NaN : view_.y.px(cN)));
+    brush.line(x, y, { colour, dash, opacity, width_px });
+  };
+  const presses = lastPresses(velocity_mm_s);
+  presses.forEach(({ press }, i) => {
+    const opacity = (i + 1) / presses.length;
+    line(press.felt?.press_cN ?? [], 1, opacity, 1.5);
+    line(press.felt?.release_cN ?? [], 2, opacity, 1.5);
+  });
+  line(wanted.press_cN, 0, 1, 2);
+  line(wanted.release_cN, 0, 0.6, 2);
+}

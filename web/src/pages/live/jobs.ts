@@ -1,0 +1,102 @@
+/** The jobs as the server tells them: all rows, and the events of the one that is looked at. */
+
+import { call, live, type JobRow, type LiveChannel, type StartJob } from "../../net";
+import { signal, tell, toast, untracked, type Signal } from "../../ui";
+import { emptyPicture, fold, type JobEvent, type JobPicture } from "./picture";
+
+export type Order = StartJob["order"];
+
+/** All jobs, newest first; null until the server has told. */
+export const rows: Signal<readonly JobRow[] | null> = signal<readonly JobRow[] | null>(null);
+
+/** The job that is looked at and what its events come to; a new object with every change. */
+export const watched: Signal<Watched> = signal<Watched>({ job: "", events: 0, picture: emptyPicture() });
+
+export interface Watched {
+  readonly job: string;
+  /** So many events are in the picture. */
+  readonly events: number;
+  readonly picture: JobPicture;
+}
+
+// it may be open already, and then `opened` is called before there is a channel to send on
+let channel: LiveChannel<"jobs"> | null = null;
+channel = live().channel("jobs", {
+  opened: begin,
+  told: (message) => {
+    if (message.type === "jobs") rows.set(message.jobs);
+    else if (message.type === "job") changed(message.row);
+    else take(message.job, message.from_event, message.events);
+  },
+  wrong: (line) => toast(line, "wrong"),
+});
+begin();
+
+function begin(): void {
+  channel?.send({ type: "watch_jobs" });
+  askEvents();
+}
+
+function changed(row: JobRow): void {
+  const known = rows.peek() ?? [];
+  const there = known.some((one) => one.job === row.job);
+  rows.set(there ? known.map((one) => (one.job === row.job ? row : one)) : [row, ...known]);
+}
+
+/** Look at a job: its events so far are told, and then each as it comes. Empty looks at none. */
+export function watchJob(job: string): void {
+  if (untracked(() => watched().job) === job) return;
+  watched.set({ job, events: 0, picture: emptyPicture() });
+  askEvents();
+}
+
+function askEvents(): void {
+  const { job, events } = watched.peek();
+  if (job) channel?.send({ type: "watch_job", job, from_event: events });
+}
+
+/** Take events in; what is there already is passed over, after a gap they are asked for anew. */
+function take(job: string, from_event: number, events: readonly JobEvent[]): void {
+  const now = watched.peek();
+  if (job !== now.job) return;
+  if (from_event > now.events) return askEvents();
+  const fresh = events.slice(now.events - from_event);
+  for (const event of fresh) fold(now.picture, event);
+  if (fresh.length) watched.set({ ...now, events: now.events + fresh.length });
+}
+
+export function rowOf(job: string): JobRow | null {
+  return rows()?.find((row) => row.job === job) ?? null;
+}
+
+export function isUnderWay(row: JobRow): boolean {
+  return row.state === "waiting" || row.state === "running" || row.state === "needs you";
+}
+
+/** Begin work; null if the studio refused, which has been told. */
+export async function startJob(order: Order): Promise<JobRow | null> {
+  return done(call("jobs.start", { order }));
+}
+
+export async function cancelJob(job: string): Promise<void> {
+  await done(call("jobs.cancel", { job }));
+}
+
+export async function resumeJob(job: string): Promise<void> {
+  await done(call("jobs.resume", { job }));
+}
+
+export async function answerJob(job: string, number: number, answer: string): Promise<void> {
+  await done(call("jobs.answer", { job, number, answer }));
+}
+
+async function done(asked: Promise<JobRow>): Promise<JobRow | null> {
+  try {
+    const row = await asked;
+    changed(row);
+    return row;
+  } catch (error) {
+    tell(error);
+    return null;
+  }
+}

@@ -1,0 +1,70 @@
+/** What the connected device tells while it is looked at. */
+
+import { live, type DeviceStanding, type LiveChannel, type PressSeen } from "../../net";
+import { effect, onCleanup, signal, toast, type Signal } from "../../ui";
+import { addBins, emptyBins, type ScopeBins } from "./scope";
+
+/** Pixel columns that a device's ticks are told in. */
+export const COLUMNS = 600;
+
+export const span_s: Signal<number> = signal(5);
+export const seen: Signal<PressSeen | null> = signal<PressSeen | null>(null);
+/** The bins of now; a new object each time that some were added. */
+export const scope: Signal<{ readonly bins: ScopeBins }> = signal({ bins: emptyBins(5 / COLUMNS) });
+
+const NONE: DeviceStanding = { type: "standing" };
+const told = signal<DeviceStanding>(NONE);
+
+export type Standing = Required<DeviceStanding>;
+const DEFAULTS: Standing = {
+  type: "standing",
+  device: "",
+  name: "",
+  simulated: false,
+  streams: false,
+  person: false,
+  force_sensor: false,
+  tick_s: 0,
+  mode: "",
+  programmed: "",
+  travel_mm: null,
+  fault: "",
+  missing_ticks: 0,
+  late_ticks: 0,
+  missing_frames: 0,
+  lost_records: 0,
+};
+
+/** How the device is. */
+export const standing = Object.assign((): Standing => ({ ...DEFAULTS, ...told() }), {
+  set: (value: DeviceStanding) => told.set(value),
+});
+
+/** Look on for as long as the scope in which this is called lasts. */
+export function followDevice(): void {
+  // it may be open already, and then `opened` is called before there is a channel to send on
+  let channel: LiveChannel<"scope"> | null = null;
+  channel = live().channel("scope", {
+    opened: () => begin(),
+    told: (message) => {
+      if (message.type === "standing") told.set(message);
+      else if (message.type === "press_seen") seen.set(message);
+      else {
+        const { bins } = scope.peek();
+        addBins(bins, message, COLUMNS);
+        scope.set({ bins });
+      }
+    },
+    wrong: (line) => toast(line, "wrong"),
+  });
+  function begin(): void {
+    const bins = emptyBins(span_s.peek() / COLUMNS);
+    scope.set({ bins });
+    channel?.send({ type: "watch_scope", bin_s: bins.bin_s });
+  }
+  effect(() => {
+    span_s();
+    begin();
+  });
+  onCleanup(() => channel?.close());
+}
