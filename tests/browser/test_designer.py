@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import unquote
 
 import pytest
 from playwright.sync_api import expect
@@ -32,6 +33,8 @@ def found_by_typing(page: Page, words: str) -> None:
     page.keyboard.type(words)
     expect(page.locator(".lib-row:not([hidden])")).to_have_count(1, timeout=40_000)
     page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="Edit a copy")).to_be_focused()
     page.keyboard.press("Enter")
     page.wait_for_selector(".edit-points")
 
@@ -85,7 +88,7 @@ def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
     presses(page, 1)
 
     page.goto(f"{studio.base}/#/live/compensate")
-    page.get_by_label("Button", exact=True).select_option(label=kept.name.removesuffix(".fdvv.json"))
+    page.get_by_label("Button", exact=True).select_option(unquote(own))
     speeds = page.get_by_label("Speeds", exact=True)
     speeds.fill("100")
     speeds.press("Enter")
@@ -96,7 +99,7 @@ def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
     page.reload()
     page.wait_for_selector(".edit-points")
     assert forces(page) == dragged
-    page.get_by_role("button", name="Export").click()
+    page.locator("summary", has_text="Export").click()
     with page.expect_download() as file:
         page.get_by_role("button", name="Model file").click()
     exported = tmp_path / "exported.fdvv.json"
