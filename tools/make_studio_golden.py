@@ -124,7 +124,7 @@ def buttons() -> list[dict[str, Any]]:
 
 
 def _button(model: FDVVModel, built_in: bool) -> dict[str, Any]:
-    speeds = (0.2, 40.0, 73.0, 400.0)
+    speeds = (0.2, 73.0, 400.0)
     x = PLACES[::2]
     fields = [
         {

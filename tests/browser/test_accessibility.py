@@ -18,6 +18,9 @@ PAGES = (
     "press",
     "press/builtin:mx-brown",
     "live",
+    "live/capture",
+    "live/tune",
+    "live/device",
     "programs",
     "programs/shipped:multi-level",
 )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from playwright.sync_api import expect
+from tests.browser.test_accessibility import audit
 
 from fdvv.model import FDVVModel, ForceCurve, load_builtin, load_model
 
@@ -272,6 +273,46 @@ def test_a_curve_is_copied_to_another_speed_and_assigned_by_parts(editor: Page, 
     assert "assigned from press at 200 mm/s" in kept.provenance.method
 
 
+def test_a_curve_of_another_button_is_found_by_name_and_assigned(editor: Page, tmp_path: Path) -> None:
+    editor.click("role=tab[name=Assign]")
+    editor.get_by_label("Another button").fill("mx-red")
+    editor.locator(".edit-pick li button", has_text="mx-red").first.click()
+    expect(editor.get_by_label("Curve", exact=True)).to_have_value("press@unknown")
+    editor.get_by_label("Stroke", exact=True).select_option("press")
+    editor.get_by_label("Speed").last.fill("100")
+    editor.keyboard.press("Enter")
+    editor.click("text=Assign the curve")
+    saved(editor)
+    taken = own_model(tmp_path / "project").nearest("press", 100.0)
+    red = slowest(load_builtin("mx-red"))
+    assert taken is not None
+    np.testing.assert_array_equal(taken.control_points_cN, red.control_points_cN)
+
+
+def test_two_fingers_zoom_and_one_pans_without_an_edit(editor: Page) -> None:
+    to_screen = scales(editor)
+    (x, y), (far, _) = to_screen(1.0, 5.0), to_screen(3.0, 5.0)
+    fingers = editor.context.new_cdp_session(editor)
+
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": px, "y": py, "id": i} for i, (px, py) in enumerate(places)]
+        fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", (x, y), (far, y))
+    for part in (0.25, 0.5):
+        touch("touchMove", (x - part * (far - x), y), (far, y))
+    touch("touchEnd")
+    zoomed = scales(editor)
+    assert zoomed(3.0, 0.0)[0] - zoomed(1.0, 0.0)[0] == pytest.approx(1.5 * (far - x), rel=0.02)
+    touch("touchStart", (x, y))
+    touch("touchMove", (x + 60, y))
+    touch("touchEnd")
+    assert scales(editor)(1.0, 0.0)[0] - zoomed(1.0, 0.0)[0] == pytest.approx(60, abs=2)
+    assert editor.locator("button[aria-label=Undo]").is_disabled()
+    editor.keyboard.press("f")
+    assert scales(editor)(1.0, 0.0) == pytest.approx(to_screen(1.0, 0.0), abs=1)
+
+
 def test_a_vibration_is_shaped_by_number_and_the_surface_is_drawn(editor: Page, tmp_path: Path) -> None:
     editor.click("role=tab[name=Vibration]")
     editor.get_by_label("frequency of mode 1, Hz").fill("321.5")
@@ -290,6 +331,50 @@ def test_a_vibration_is_shaped_by_number_and_the_surface_is_drawn(editor: Page, 
         if canvas.screenshot() != before:
             break
     assert canvas.screenshot() != before
+
+
+def test_every_part_of_the_editor_is_without_serious_fault_before_axe(editor: Page) -> None:
+    found = {}
+    for name in ("Points", "Figures", "Assign", "Vibration", "Surface", "Steps"):
+        editor.click(f"role=tab[name={name}]")
+        expect(editor.locator(".edit-side > *").first).to_be_visible()
+        found[name] = audit(editor)
+    assert {name: lines for name, lines in found.items() if lines} == {}
+
+
+def test_constraints_hold_while_a_point_is_moved(editor: Page) -> None:
+    editor.get_by_label("Never falls").check()
+    editor.keyboard.press("c")
+    editor.keyboard.press("Home")
+    editor.keyboard.press("Shift+ArrowDown")
+    forces = [force_cN(editor, row) for row in range(editor.locator(".edit-points tbody tr").count())]
+    assert forces == sorted(forces)
+    editor.keyboard.press("Control+z")
+    editor.get_by_label("Never falls").uncheck()
+    editor.get_by_label("Keep the work").check()
+    editor.click("role=tab[name=Figures]")
+    work = editor.locator(".edit-figures tr", has_text="Work of the press").locator("td").first
+    was = work.inner_text()
+    editor.keyboard.press("c")
+    editor.keyboard.press("Shift+ArrowUp")
+    assert work.inner_text() == was
+    assert number(
+        editor.locator(".edit-figures tr", has_text="Peak").first.locator("td").last.inner_text() or "0"
+    )
+
+
+def test_a_button_is_renamed_and_duplicated(editor: Page, tmp_path: Path) -> None:
+    nudge(editor)
+    saved(editor)
+    editor.click("summary:has-text('Button')")
+    editor.get_by_label("New name").fill("my clear")
+    editor.keyboard.press("Enter")
+    expect(editor.locator("h1")).to_have_text("my clear")
+    editor.click("summary:has-text('Button')")
+    editor.click("role=button[name=Duplicate]")
+    expect(editor.locator("h1")).not_to_have_text("my clear")
+    names = {path.name for path in (tmp_path / "project" / "buttons").glob("*.fdvv.json")}
+    assert len(names) == 2
 
 
 def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path: Path) -> None:

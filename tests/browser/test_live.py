@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 import pytest
+from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -61,6 +62,12 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     assert re.search(r"measured on fresh presses\s+mx-clear", kept)
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
     assert table.count() == 14
+    assert audit(page) == []
+    page.get_by_role("button", name="New one").click()
+    page.get_by_label("or only judge, on fresh presses,").select_option("mx-clear")
+    page.get_by_role("button", name="Judge", exact=True).click()
+    page.get_by_role("heading", name="Probe mx-clear on twin").wait_for()
+    page.wait_for_selector(DONE, timeout=LONG_ms)
 
 
 def test_a_page_that_is_reloaded_finds_its_job_stops_it_and_goes_on(page: Page) -> None:
@@ -94,6 +101,7 @@ def test_vibrations_are_tuned_with_keys_alone(page: Page) -> None:
     page.get_by_role("button", name="Start tuning").press("Enter")
     for number, key in enumerate("120", start=1):
         page.get_by_role("heading", name=f"Question {number} of 3").wait_for()
+        assert audit(page) == []
         page.keyboard.press(key)
     page.wait_for_selector(DONE, timeout=LONG_ms)
     ranking = page.get_by_role("table", name="Ranking at 100 mm/s")
@@ -162,6 +170,7 @@ def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> N
     page.locator(".job-state.mode-idle").wait_for()
     page.get_by_role("button", name="Self-test").click()
     page.locator(".verdicts li.passed").first.wait_for()
+    assert audit(page) == []
     page.reload()
     page.locator(".job-state.mode-idle").wait_for()
     page.get_by_role("button", name="Disconnect").click()

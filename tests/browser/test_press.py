@@ -247,3 +247,11 @@ def test_a_program_tells_its_levels_and_what_to_try(page: Page, wire: Wire) -> N
     page.wait_for_selector(f"{LAMP}[data-key='3']:has-text('level 3')")
     page.keyboard.up(" ")
     page.wait_for_selector("[data-value=state]:has-text('level 0')")
+
+
+def test_an_address_that_names_no_button_is_told_and_another_can_be_chosen(page: Page) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#/press/own:nobody")
+    page.wait_for_selector(".press-standing:has-text('no button is called')")
+    page.select_option("select >> nth=0", "button builtin:mx-red")
+    ready(page)
+    page.wait_for_selector(".press-view[aria-label^='mx-red']")

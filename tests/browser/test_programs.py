@@ -11,7 +11,8 @@ import pytest
 from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
 
-from fdvv.program import load_program, load_shipped
+from fdvv.model import load_builtin
+from fdvv.program import load_program, load_shipped, of_model
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
@@ -47,7 +48,7 @@ def saved(page: Page) -> None:
 
 
 def edited(page: Page) -> None:
-    """Wait until an edit has been written: the label of undo is there, then the file."""
+    """Wait until an edit that is seen has been written: there is something to undo, and nothing to save."""
     page.get_by_role("button", name="Undo", exact=True).and_(page.locator(":enabled")).wait_for()
     saved(page)
 
@@ -153,7 +154,7 @@ def test_a_point_of_the_forces_is_pulled_by_mouse_and_nudged_by_keys(own: Page, 
     before = load_shipped("button").surface("press")
     force = own.get_by_label("force", exact=True)
     first = force.input_value()
-    plot = own.locator(".forces .plot")
+    plot = own.locator(".forces .curves")
     plot.focus()
     own.keyboard.press("ArrowRight")
     own.wait_for_function(
@@ -166,6 +167,41 @@ def test_a_point_of_the_forces_is_pulled_by_mouse_and_nudged_by_keys(own: Page, 
     kept = load_program(tmp_path / "project" / KEPT).surface("press")
     column = kept.displacement_mm.index(float(at))
     assert kept.force_cN[0][column] == pytest.approx(before.force_cN[0][column] + 10, abs=1e-3)
+
+
+def test_a_program_is_pressed_as_it_is_edited_and_the_graph_tells_its_state(own: Page) -> None:
+    own.get_by_role("tab", name="Press it").click()
+    own.locator(".node.live[data-state='up']").wait_for()
+    view = own.locator(".press-view")
+    view.focus()
+    own.keyboard.down("Space")
+    own.locator(".node.live[data-state='down']").wait_for()
+    own.keyboard.up("Space")
+    own.locator(".node.live[data-state='up']").wait_for()
+    # a state renamed is under the finger as soon as it is checked
+    state(own, "up").click()
+    name = own.get_by_label("Name", exact=True)
+    name.fill("at rest")
+    name.press("Enter")
+    own.locator(".node.live[data-state='at rest']").wait_for()
+    own.get_by_role("tab", name="Forces").click()
+    own.locator(".node.live").wait_for(state="detached")
+
+
+def test_the_forces_of_another_button_are_taken(own: Page, tmp_path: Path) -> None:
+    own.locator("summary", has_text="take from a button").click()
+    own.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
+    own.get_by_role("button", name="Make its own").click()
+    own.get_by_role("button", name="Take its forces").click()
+    wanted = of_model(load_builtin("mx-clear"), "press")
+    first = f"document.querySelectorAll('.point-values input')[1].value === '{wanted.force_cN[0][0]:g}'"
+    own.wait_for_function(first)
+    edited(own)
+    own.get_by_label("Map").check()
+    own.get_by_role("img", name="over displacement and velocity").wait_for()
+    kept = load_program(tmp_path / "project" / KEPT)
+    assert kept.surface(kept.state("up").press).force_cN == wanted.force_cN
+    assert kept.surface(kept.state("down").press) == load_shipped("button").surface("press")
 
 
 def test_what_another_tab_saved_is_not_overwritten(own: Page, context: BrowserContext) -> None:

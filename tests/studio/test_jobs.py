@@ -18,6 +18,7 @@ from fdvv.model import load_model
 from fdvv.studio import Studio
 from fdvv.studio._job import BROKEN_OFF
 from fdvv.studio._job_file import JOB
+from fdvv.studio._job_process import PATIENCE_s as LETTING_GO_s
 from fdvv.studio._jobs import Jobs
 from fdvv.studio._messages_events import JobOutcome, PressTold, QuestionAnswered, QuestionAsked
 from fdvv.studio._messages_jobs import JobResult
@@ -83,7 +84,8 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     asked_s = time.monotonic()
     jobs.cancel("0001")
     row = told.over()
-    assert time.monotonic() - asked_s < 3
+    # by itself, not by force
+    assert time.monotonic() - asked_s < LETTING_GO_s
     assert (row.state, row.resumable) == ("cancelled", True)
     made = row.done
     assert 0 < made < PRESSES

@@ -103,8 +103,8 @@ def _is(found: object, wanted: object) -> None:
     [
         ({}, "name one"),
         ({"button": "builtin:mx-clear", "program": "shipped:button"}, "name one"),
-        ({"button": "builtin:../../etc"}, "no model is called"),
-        ({"button": "own:../secret"}, "no such button"),
+        ({"button": "builtin:../../etc"}, "no button is called"),
+        ({"button": "own:../secret"}, "no button is called"),
         ({"program": "own:../secret"}, "no such program"),
         ({"program": "shipped:none"}, "use one of"),
         ({"button": "builtin:mx-red", "mode": "rendered", "rig": "/etc/passwd"}, "paper, light"),

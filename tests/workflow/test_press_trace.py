@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.workflow import drawn_traces, read_press_trace
+from fdvv.model import load_builtin
+from fdvv.workflow import LiveEventKind, LivePress, drawn_traces, model_subject, read_press_trace
 
 
 def test_drawn_traces_begin_and_end_with_the_key_up_and_have_names_of_their_own() -> None:
@@ -41,6 +43,28 @@ def test_an_analogue_keyboards_log_gives_the_key_that_moved_most() -> None:
     assert trace.t_s.size == 20
     assert trace.displacement_mm.max() == pytest.approx(4.0 * 38 / 40)
     assert trace.t_s[1] == pytest.approx(0.002)
+
+
+def test_a_key_that_a_log_is_silent_of_stays_where_it_was() -> None:
+    rows = "".join(f"{t},4,{x}\n" for t, x in ((0, 0.5), (9, 0), (900, 0.1), (910, 1)))
+    text = f"unixtime,keyCode,keyValue\n{rows}"
+    trace = read_press_trace(text.encode(), "log")
+    assert np.interp(0.85, trace.t_s, trace.displacement_mm) == 0.0
+
+
+@pytest.mark.shared
+def test_a_persons_typing_can_be_replayed(shared_data: Path) -> None:
+    """Of an analogue keyboard (wooting-analog): strokes of 5 to 20 ms, hard to follow."""
+    path = shared_data / "wooting-analog" / "001_KMJ_20240531.csv"
+    trace = read_press_trace(path.read_bytes(), path.name)
+    press = LivePress(model_subject(load_builtin("mx-red")))
+    press.replay(trace)
+    ticks, events = press.advance(10.0)
+    wanted = np.minimum(np.interp(ticks.t_s, trace.t_s, trace.displacement_mm), press.subject.travel_mm)
+    assert np.abs(ticks.displacement_mm - wanted).mean() < 0.1
+    speeds = [event.velocity_mm_s for event in events if event.kind is LiveEventKind.PRESSED]
+    assert len(speeds) > 3
+    assert np.median(speeds) > 50.0
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from fdvv.workflow import (
     Session,
     TuneResult,
     TuneSetup,
+    TuneTold,
     candidates_for,
     open_receipt,
     simulated_observer,
@@ -78,7 +79,7 @@ def tune(device: Any, answer: Any, folder: Path | None = None, **changed: Any) -
     about: dict[str, Any] = {"model": MODEL, "speeds": SPEEDS, "method": METHOD, "setup": SETUP, **changed}
     return tune_vibration(
         device, about["model"], about["speeds"], about["method"], answer, about["setup"], Session(folder, 0),
-        changed.get("guide"),
+        changed.get("guide"), changed.get("told", lambda _told: None),
     )  # fmt: skip
 
 
@@ -98,6 +99,17 @@ def test_the_best_of_each_velocity_is_in_the_model_which_tells_how_it_came_about
     assert "At 50 mm/s template 2 of 3 was best" in told
     save_model(result.model, tmp_path / "tuned.fdvv.json")
     assert load_model(tmp_path / "tuned.fdvv.json") == result.model
+
+
+def test_every_answer_is_told_with_what_all_so_far_say_once_it_is_on_file(tmp_path: Path) -> None:
+    told: list[tuple[int, int, int]] = []
+
+    def look(now: TuneTold) -> None:
+        on_file = len((tmp_path / ANSWERS).read_text().splitlines()) - 1
+        told.append((now.given.number, on_file, sum(t.standing.answers for t in now.tuned)))
+
+    result = tune(Hand(), prefers(2, 1, 0), tmp_path, told=look)
+    assert told == [(n, n, n) for n in range(1, result.answers + 1)]
 
 
 def test_where_nothing_can_be_told_apart_the_measured_vibration_is_kept_and_that_is_said() -> None:

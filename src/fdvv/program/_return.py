@@ -155,7 +155,8 @@ class Returning:
                 remedy = "raise its forces there, or let an after_ms without only_if end it"
                 found.append(Flaw(state.name, self._weakest(i), reason, remedy))
             elif lifts and self.motion.stay_at_top_s(i) is None and state.name != self.program.start:
-                reason, remedy = "nothing is sure to lead on to the start state", "add a shallower_than_mm"
+                reason = "nothing is sure to lead on to the start state"
+                remedy = "let a shallower_than_mm lead towards it"
                 found.append(Flaw(state.name, "at the top", reason, remedy))
         return found
 

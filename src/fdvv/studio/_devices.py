@@ -6,31 +6,23 @@ import contextlib
 import threading
 from collections.abc import Callable
 
-import numpy as np
-
-from fdvv.device import FaultReport, Remote
+from fdvv.device import Remote
 from fdvv.errors import DeviceError, FdvvError, InputError
-from fdvv.model import FDVVModel, ForceSurface, Press
-from fdvv.program import button_program, compile_program
-from fdvv.protocol import Fault
+from fdvv.model import FDVVModel
+from fdvv.studio._device_told import press_seen, put_button, with_faults
 from fdvv.studio._held_device import HeldDevice, mode_of
 from fdvv.studio._job_order import RIGS, check_speeds
 from fdvv.studio._jobs import SharedLeases
 from fdvv.studio._messages_device import DeviceConnect, DeviceStanding, DeviceUpload, PressSeen
 from fdvv.studio._studio import Studio
 from fdvv.twin import load_rig
-from fdvv.units import FloatArray
 from fdvv.workflow import (
     CompensationResult,
     TickPiece,
-    felt_press,
-    intended_press,
-    settings_with,
 )
 
 HOLDER = "the device view"
 NONE = "no device is connected"
-STEP_mm = 0.05
 
 
 class Look:
@@ -102,7 +94,7 @@ class Devices:
         """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
         held = self.held()
         check_speeds(ask.velocities_mm_s, 5.0)
-        held.do(lambda: _put(held, model, learned, sorted(ask.velocities_mm_s)))
+        held.do(lambda: put_button(held, model, learned, sorted(ask.velocities_mm_s)))
         self._model = model
         return self.refresh(f"{model.name}{f', {ask.actuation}' if ask.actuation else ''}")
 
@@ -117,7 +109,7 @@ class Devices:
         finally:
             self.refresh()
         if self._model:
-            seen = _seen(press, self._model, velocity_mm_s)
+            seen = press_seen(press, self._model, velocity_mm_s)
             for look in self._all():
                 look.press(seen)
         return self._standing
@@ -181,7 +173,7 @@ class Devices:
             programmed=programmed,
             travel_mm=self._model.travel_mm if self._model else None,
         )
-        return held.do(lambda: _with_faults(common, remote)) if remote else common
+        return held.do(lambda: with_faults(common, remote)) if remote else common
 
     def _ticks(self, piece: TickPiece) -> None:
         for look in self._all():
@@ -208,61 +200,3 @@ class Devices:
     def _all(self) -> tuple[Look, ...]:
         with self._lock:
             return tuple(self._looks)
-
-
-def _with_faults(known: DeviceStanding, remote: Remote) -> DeviceStanding:
-    """Add the mode, the latched fault and what is missing."""
-    import msgspec
-
-    telemetry, report = remote.client.telemetry, remote.fault()
-    return msgspec.structs.replace(
-        known,
-        mode="fault" if report.fault is not Fault.NONE else mode_of(remote),
-        fault=_fault_line(report),
-        missing_ticks=telemetry.missing_ticks,
-        late_ticks=telemetry.late_ticks,
-        missing_frames=telemetry.missing_frames,
-        lost_records=telemetry.lost_records,
-    )
-
-
-def _fault_line(report: FaultReport) -> str:
-    return "" if report.fault is Fault.NONE else str(report)
-
-
-def _put(
-    held: HeldDevice, model: FDVVModel, learned: CompensationResult | None, speeds_mm_s: list[float]
-) -> None:
-    """Put a button on a device: what was learned under its tuning, or the button's own program."""
-    device = held.device
-    if learned:
-        wanted = settings_with(device.settings(), learned.outcome.tuning)
-        if wanted != device.settings():
-            device.configure(wanted)
-        device.upload(learned.surface, learned.travel_mm, learned.outcome.tuning.paced)
-        return
-    if not model.of("press"):
-        raise InputError(model.name, "curves", "it has no press, there is nothing to render", "give it one")
-    program = button_program(model, ForceSurface.of_model(model, speeds_mm_s, STEP_mm))
-    device.upload_program(compile_program(program).image)  # type: ignore[attr-defined]  # all that are listed do
-
-
-def _seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSeen:
-    felt, wanted = felt_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
-    return PressSeen(
-        velocity_mm_s,
-        press.simulated,
-        _plain(felt.displacement_mm),
-        _known(felt.press_cN),
-        _known(felt.release_cN),
-        _plain(wanted.press_cN),
-        _plain(wanted.release_cN),
-    )
-
-
-def _plain(row: FloatArray) -> tuple[float, ...]:
-    return tuple(row.round(3).tolist())
-
-
-def _known(row: FloatArray) -> tuple[float | None, ...]:
-    return tuple(v if np.isfinite(v) else None for v in row.round(3).tolist())

@@ -20,11 +20,10 @@ from fdvv.studio._messages_events import (
     QuestionAnswered,
     QuestionAsked,
     StageTold,
-    TakeAsked,
-    TakeTold,
 )
 from fdvv.studio._messages_jobs import JobRow, JobState
 from fdvv.studio._messages_orders import kind_of
+from fdvv.studio._messages_takes import TakeAsked, TakeTold
 
 Heard = Callable[[int, Sequence[JobEvent]], None]
 """Is given the number of the first event, and events."""

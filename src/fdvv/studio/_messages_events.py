@@ -6,14 +6,12 @@ from typing import Literal
 
 import msgspec
 
+from fdvv.studio._messages_takes import CueBegun, TakeAsked, TakeTold
+
 StrokeName = Literal["press", "release"]
 
 
-class Event(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What every event is."""
-
-
-class JobBegun(Event, frozen=True, tag="begun"):
+class JobBegun(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="begun"):
     """The work begins, or goes on.
 
     Attributes
@@ -26,20 +24,20 @@ class JobBegun(Event, frozen=True, tag="begun"):
     simulated: bool
 
 
-class StageTold(Event, frozen=True, tag="stage"):
+class StageTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="stage"):
     """A part of the work begins."""
 
     stage: Literal["compensate", "probe", "capture", "process", "tune"]
     text: str
 
 
-class JobNoticed(Event, frozen=True, tag="notice"):
+class JobNoticed(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="notice"):
     """What a person should know."""
 
     text: str
 
 
-class CurveIntended(Event, frozen=True, tag="intended"):
+class CurveIntended(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="intended"):
     """What a button asks for at one speed, and how much of a difference is just noticeable.
 
     Attributes
@@ -79,7 +77,7 @@ class FeltCurve(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     release_cN: tuple[float | None, ...]
 
 
-class PressAsked(Event, frozen=True, tag="press_asked"):
+class PressAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press_asked"):
     """A person is asked for one press."""
 
     velocity_mm_s: float
@@ -88,7 +86,7 @@ class PressAsked(Event, frozen=True, tag="press_asked"):
     total: int
 
 
-class PressTold(Event, frozen=True, tag="press"):
+class PressTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press"):
     """A press that is on file.
 
     Attributes
@@ -113,66 +111,6 @@ class PressTold(Event, frozen=True, tag="press"):
     felt: FeltCurve | None
 
 
-class TakeAsked(Event, frozen=True, tag="take_asked"):
-    """One take is asked for.
-
-    Attributes
-    ----------
-    step : what is recorded. velocity_mm_s : None at rest. number, total : of the steps.
-    again : why once more; empty the first time.
-    contact_s, bottom_s : when contact and bottom are told, from the begin of the cue; None at rest.
-    length_s : of the cue.
-    """
-
-    step: Literal["rest", "probe", "press"]
-    velocity_mm_s: float | None
-    travel_mm: float
-    number: int
-    total: int
-    again: str
-    contact_s: float | None
-    bottom_s: float | None
-    length_s: float
-
-
-class CueBegun(Event, frozen=True, tag="cue"):
-    """The cue of the take asked for last begins now."""
-
-
-class PaceTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How far one pace is; achieved_mm_s of the good presses."""
-
-    velocity_mm_s: float
-    good: int
-    wanted: int
-    made: int
-    missed: int
-    achieved_mm_s: tuple[float, ...]
-
-
-class TakeTold(Event, frozen=True, tag="take"):
-    """A take that is on file.
-
-    Attributes
-    ----------
-    reason : why it cannot be used and what to do; empty if it can.
-    achieved_mm_s, travel_mm : None where there is none.
-    missed : it was asked for often enough, the session goes on without.
-    """
-
-    number: int
-    step: Literal["rest", "probe", "press"]
-    velocity_mm_s: float | None
-    ok: bool
-    reason: str
-    achieved_mm_s: float | None
-    travel_mm: float | None
-    done: int
-    total: int
-    missed: bool
-    paces: tuple[PaceTold, ...]
-
-
 class PlayedWave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Acceleration of the cap, to be played."""
 
@@ -180,7 +118,7 @@ class PlayedWave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     acceleration_m_s2: tuple[float, ...]
 
 
-class QuestionAsked(Event, frozen=True, tag="asked"):
+class QuestionAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="asked"):
     """A question to whoever tunes; what is asked about bears no name.
 
     Attributes
@@ -216,7 +154,7 @@ class TuneRanking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     candidates: tuple[TuneCandidate, ...]
 
 
-class QuestionAnswered(Event, frozen=True, tag="answered"):
+class QuestionAnswered(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="answered"):
     """An answer that is on file: who was preferred, or a rating; and what all so far say."""
 
     number: int
@@ -226,7 +164,7 @@ class QuestionAnswered(Event, frozen=True, tag="answered"):
     rankings: tuple[TuneRanking, ...]
 
 
-class JobOutcome(Event, frozen=True, tag="outcome"):
+class JobOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="outcome"):
     """What came out of a part of the work.
 
     Attributes
@@ -245,7 +183,7 @@ class JobOutcome(Event, frozen=True, tag="outcome"):
     warnings: tuple[str, ...] = ()
 
 
-class JobEnded(Event, frozen=True, tag="ended"):
+class JobEnded(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="ended"):
     """The work is over for now; line says why where it was not finished."""
 
     state: Literal["done", "cancelled", "failed"]

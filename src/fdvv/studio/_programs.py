@@ -32,8 +32,8 @@ def _shelf(studio: Studio) -> ProgramShelf:
 
 def list_programs(studio: Studio, _ask: m.ProgramsAsk) -> m.ProgramRows:
     """List what there is to begin with."""
-    from fdvv.model import builtin_names
     from fdvv.program import programs
+    from fdvv.workflow import button_choices
 
     rows = [
         m.ProgramRow(e.id, e.name, e.summary, e.states, e.transitions, e.problem)
@@ -42,7 +42,7 @@ def list_programs(studio: Studio, _ask: m.ProgramsAsk) -> m.ProgramRows:
     recipes = [
         m.ProgramRecipe(r.name, r.summary, r.details, _parameters(studio, r, PLAINEST)) for r in programs()
     ]
-    return m.ProgramRows(rows, recipes, [f"builtin:{name}" for name in builtin_names()])
+    return m.ProgramRows(rows, recipes, [b.id for b in button_choices(studio.shelf)])
 
 
 def _parameters(studio: Studio, recipe: Recipe, base: str, levels: int = 1) -> list[m.ProgramParameter]:

@@ -10,16 +10,9 @@ from typing import Literal
 from fdvv.device import open_bench
 from fdvv.model import save_model
 from fdvv.recording import Stage
-from fdvv.studio._messages_events import (
-    CueBegun,
-    JobBegun,
-    JobOutcome,
-    PaceTold,
-    StageTold,
-    TakeAsked,
-    TakeTold,
-)
+from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
 from fdvv.studio._messages_orders import CaptureOrder
+from fdvv.studio._messages_takes import CueBegun, PaceTold, TakeAsked, TakeTold
 from fdvv.studio._work import DIGITS, Work
 from fdvv.workflow import (
     CaptureGuide,

@@ -111,6 +111,9 @@ class LiveRun:
                 self._wait_for_someone()
         except FdvvError as error:
             self._failed(str(error))
+        except Exception:
+            self._failed("the live press failed; the studio's terminal tells why")
+            raise
 
     def _wait_for_someone(self) -> None:
         with self._changed:

@@ -23,6 +23,8 @@ RATIO, KEY = "keyValue", "keyCode"
 FULL_mm = 4.0
 """Travel that a part of it is taken of."""
 STEP_s = 0.002
+SILENT_s = 0.02
+"""A keyboard that tells of a key only while it moves told nothing for so long: it did not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,8 +124,14 @@ def _time_and_place(columns: dict[str, FloatArray], source: str) -> tuple[FloatA
     if KEY in columns and t.size:
         keys, own = columns[KEY], np.unique(columns[KEY])
         most = max(own, key=lambda key: float(np.abs(np.diff(x[keys == key])).sum()))
-        t, x = t[keys == most], x[keys == most]
+        t, x = _held(t[keys == most], x[keys == most])
     return t, x
+
+
+def _held(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Keep a key where it was while its keyboard had nothing to tell of it."""
+    silent = np.flatnonzero(np.diff(t) > SILENT_s)
+    return np.insert(t, silent + 1, t[silent + 1] - STEP_s), np.insert(x, silent + 1, x[silent])
 
 
 def drawn_traces() -> tuple[PressTrace, ...]:

@@ -47,7 +47,11 @@ export function limit(value: number, least = -Infinity, most = Infinity): number
  * Pool adjacent violators between the held points, then bounded by them, which is the exact projection. Held
  * points that contradict each other are first projected among themselves.
  */
-export function monotone(c: Numbers, held: ReadonlySet<number> = new Set(), way: "rising" | "falling" = "rising"): Float64Array {
+export function monotone(
+  c: Numbers,
+  held: ReadonlySet<number> = new Set(),
+  way: "rising" | "falling" = "rising",
+): Float64Array {
   const sign = way === "rising" ? 1 : -1;
   const y = Float64Array.from(c, (value) => sign * value);
   const fixed = [...held].filter((i) => i >= 0 && i < y.length).sort((a, b) => a - b);

@@ -1,7 +1,8 @@
 /** Other knots for the same curve, or nearly: insert, add and remove a control point, refit. */
 
 import { linspace } from "./arrays";
-import { basis, evaluate, findSpan, greville, multiplicity } from "./bspline";
+import { basis, findSpan, greville, multiplicity } from "./bspline";
+import { forceAt_cN } from "./curve";
 import { quadrature } from "./integral";
 import { solve } from "./linear";
 import { ModelError, type Numbers, type Spline } from "./types";
@@ -28,7 +29,7 @@ export interface Added extends Spline {
 }
 
 /** Insert one knot (Boehm): the shape stays, to rounding. Throws ModelError outside the curve. */
-export function insertKnot(curve: Spline, x_mm: number): { knots_mm: Float64Array; control_points_cN: Float64Array } {
+export function insertKnot(curve: Spline, x_mm: number): Omit<Added, "degree" | "index"> {
   const { knots_mm: t, control_points_cN: c, degree: k } = curve;
   if (!(x_mm > t[0]! && x_mm < t[t.length - 1]!)) {
     throw new ModelError(`a control point goes inside the curve, ${t[0]} to ${t[t.length - 1]} mm, got ${x_mm}`);
@@ -135,7 +136,7 @@ function normalEquations(curve: Spline, k: number, t: Float64Array, fixed: Float
   const right = new Float64Array(size);
   const values = new Float64Array(k + 1);
   quadrature(breaksOf(curve.knots_mm, t), (x, weight) => {
-    const rest = evaluate(curve.knots_mm, curve.control_points_cN, curve.degree, [x])[0]! - evaluate(t, fixed, k, [x])[0]!;
+    const rest = -gap_cN(curve, { degree: k, knots_mm: t, control_points_cN: fixed }, x);
     const i = findSpan(t, k, x);
     basis(t, k, i, x, values);
     for (let a = 0; a <= k; a++) {
@@ -156,7 +157,7 @@ function breaksOf(a: Numbers, b: Numbers): number[] {
 }
 
 /** Tell how far two curves are apart: largest and where, and the integral of the square. */
-function compared(before: Spline, after: Spline & { knots_mm: Float64Array; control_points_cN: Float64Array }): [Refitted, number] {
+function compared(before: Spline, after: Omit<Refitted, "largest_cN" | "at_mm">): [Refitted, number] {
   let error = 0;
   let [largest, at] = [0, before.knots_mm[0]!];
   const breaks = breaksOf(before.knots_mm, after.knots_mm);
@@ -173,6 +174,5 @@ function compared(before: Spline, after: Spline & { knots_mm: Float64Array; cont
 }
 
 function gap_cN(a: Spline, b: Spline, x: number): number {
-  const one = evaluate(a.knots_mm, a.control_points_cN, a.degree, [x])[0]!;
-  return evaluate(b.knots_mm, b.control_points_cN, b.degree, [x])[0]! - one;
+  return forceAt_cN(b, x) - forceAt_cN(a, x);
 }

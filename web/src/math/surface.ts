@@ -24,7 +24,12 @@ export function surface(button: ButtonLike, stroke: Stroke, velocity_mm_s: Numbe
 }
 
 /** Give displacements over the travel and velocities over what was measured, for a view of rows x columns. */
-export function surfaceGrid(button: ButtonLike, stroke: Stroke, rows: number, columns: number): [Float64Array, Float64Array] {
+export function surfaceGrid(
+  button: ButtonLike,
+  stroke: Stroke,
+  rows: number,
+  columns: number,
+): [Float64Array, Float64Array] {
   const known = curvesOf(button, stroke).flatMap((c) => (c.velocity_mm_s === null ? [] : [c.velocity_mm_s]));
   const [slow, fast] = known.length ? [known[0]!, known[known.length - 1]!] : [1, 1];
   return [linspace(slow, fast, fast > slow ? rows : 1), linspace(0, button.travel_mm, columns)];

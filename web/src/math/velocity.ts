@@ -144,7 +144,10 @@ function endSlope(h0: number, h1: number, d0: number, d1: number, of0: number, o
 }
 
 /** Give the curves of one stroke, velocities rising. */
-export function curvesOf<Curve extends CurveLike>(button: { readonly curves: readonly Curve[] }, stroke: Stroke): Curve[] {
+export function curvesOf<Curve extends CurveLike>(
+  button: { readonly curves: readonly Curve[] },
+  stroke: Stroke,
+): Curve[] {
   return button.curves
     .filter((curve) => curve.stroke === stroke)
     .sort((a, b) => (a.velocity_mm_s ?? 0) - (b.velocity_mm_s ?? 0));

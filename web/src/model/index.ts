@@ -54,12 +54,5 @@ export {
   setModes,
   setOnset,
 } from "./vibrations";
-export {
-  type Answer,
-  type Change,
-  type DocumentServer,
-  DocumentStore,
-  type OpenedDocument,
-  type SaveState,
-  type Surroundings,
-} from "./store";
+export type { Answer, Change, DocumentServer, OpenedDocument, Surroundings } from "./server";
+export { DocumentStore, type HistoryView, type SaveState } from "./store";

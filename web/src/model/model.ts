@@ -4,7 +4,14 @@ import { ModelError, speed, type Stroke } from "../math";
 import type { CurveRef, FDVVModel, ForceCurve, Provenance, Vibration } from "./types";
 
 /** Of a model that does not say where it comes from. */
-export const NO_PROVENANCE: Provenance = { source: "", licence: "", citation: "", method: "", assumptions: [], simulated: false };
+export const NO_PROVENANCE: Provenance = {
+  source: "",
+  licence: "",
+  citation: "",
+  method: "",
+  assumptions: [],
+  simulated: false,
+};
 
 /** A model as a file may write it: what has a default may be absent. */
 export type FileModel = Omit<FDVVModel, "vibrations" | "provenance" | "version"> & {
@@ -33,8 +40,8 @@ export function canonical(model: FileModel): FDVVModel {
 
 function canonicalVibration(vibration: Vibration): Vibration {
   const complete = vibration.modes.every((mode) => mode.phase_rad !== undefined);
-  const modes = complete ? vibration.modes : vibration.modes.map((mode) => ({ ...mode, phase_rad: mode.phase_rad ?? 0 }));
-  return withoutEmptySpread(complete ? vibration : { ...vibration, modes });
+  const modes = () => vibration.modes.map((mode) => ({ ...mode, phase_rad: mode.phase_rad ?? 0 }));
+  return withoutEmptySpread(complete ? vibration : { ...vibration, modes: modes() });
 }
 
 function withoutEmptySpread<Part extends { readonly spread?: unknown }>(part: Part): Part {

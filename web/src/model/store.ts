@@ -8,41 +8,17 @@
  */
 
 import type { Edit } from "./edit";
-import { History, type HistoryRecord, type Made, type Pin, type Step } from "./history";
-import type { Patch } from "./patch";
+import { History, type Made, type Pin, type Step } from "./history";
+import { Outbox, type Sent } from "./outbox";
+import {
+  BROWSER,
+  type Change,
+  type DocumentServer,
+  type Doing,
+  type OpenedDocument,
+  type Surroundings,
+} from "./server";
 import type { FDVVModel } from "./types";
-
-/** A document as the server gives it. */
-export interface OpenedDocument extends HistoryRecord {
-  /** Such as `own:my-button`. */
-  readonly button: string;
-  /** Counts every change of it. */
-  readonly revision: number;
-}
-
-/** One thing to tell the server, in the order it was done. */
-export type Change = { readonly change_id: string } & (
-  | { readonly type: "edit"; readonly label: string; readonly patch: Patch; readonly joins: boolean; readonly time_s: number }
-  | { readonly type: "undo"; readonly count: number }
-  | { readonly type: "redo"; readonly count: number }
-  | { readonly type: "pin"; readonly label: string }
-  | { readonly type: "unpin"; readonly index: number }
-);
-
-type Told = Change extends infer C ? (C extends Change ? Omit<C, "change_id"> : never) : never;
-
-/** What became of a change: the revision it made, or the document as others left it. */
-export type Answer = { readonly revision: number } | { readonly conflict: OpenedDocument };
-
-/** What the store needs of a server; `open` and `send` reject where it is out of reach or refuses. */
-export interface DocumentServer {
-  open(button: string): Promise<OpenedDocument>;
-  send(button: string, revision: number, change: Change): Promise<Answer>;
-  /** Keep a model under another name; gives its id. */
-  copy(name: string, model: FDVVModel): Promise<string>;
-  /** Whether an error means that the server was out of reach, so that it is worth trying again. */
-  unreachable(error: unknown): boolean;
-}
 
 /**
  * saved: the server has everything. saving: it is being sent. lost: it will be, once the server answers.
@@ -50,51 +26,44 @@ export interface DocumentServer {
  */
 export type SaveState = "saved" | "saving" | "lost" | "conflict" | "refused" | "gone";
 
-/** Time, chance and patience, passed in so that tests hold them. */
-export interface Surroundings {
-  readonly now_s: () => number;
-  readonly newId: () => string;
-  readonly wait: (ms: number) => Promise<void>;
-}
+/** The history as a page reads it. */
+export type HistoryView = Pick<
+  History,
+  "opening" | "steps" | "done" | "canUndo" | "canRedo" | "undoLabel" | "redoLabel" | "dragging" | "at" | "changed"
+>;
 
-const AGAIN_ms = [300, 1000, 2000, 5000] as const;
-
-const REAL: Surroundings = {
-  now_s: () => Date.now() / 1000,
-  newId: () => crypto.randomUUID(),
-  wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)),
-};
+const IN_CONFLICT = "another tab edited this button; take theirs, or keep yours as a copy";
 
 /** An open document: its history, and its way to the server. */
 export class DocumentStore {
   #history: History;
   #revision: number;
-  #queue: Change[] = [];
+  #newest: number;
   #state: SaveState = "saved";
   #line: string | null = null;
   #theirs: OpenedDocument | null = null;
-  #newest: number;
-  #sending: Promise<void> | null = null;
   #closed = false;
+  readonly #outbox: Outbox;
   readonly #listeners = new Set<() => void>();
+  readonly #server: DocumentServer;
+  readonly #around: Surroundings;
   /** The id it was opened by. */
   readonly button: string;
   /** The model when it was opened here, to compare with. */
   readonly before: FDVVModel;
-  readonly #server: DocumentServer;
-  readonly #around: Surroundings;
 
-  constructor(server: DocumentServer, opened: OpenedDocument, around: Surroundings = REAL) {
+  constructor(server: DocumentServer, opened: OpenedDocument, around: Surroundings = BROWSER) {
     this.#server = server;
     this.#around = around;
     this.button = opened.button;
     this.#history = History.fromJSON(opened);
     this.#revision = this.#newest = opened.revision;
     this.before = this.#history.model;
+    this.#outbox = new Outbox(around, (change) => this.#post(change), () => this.#stuck(), () => this.#follow());
   }
 
   /** Open a document. Rejects as the server does. */
-  static async open(server: DocumentServer, button: string, around: Surroundings = REAL): Promise<DocumentStore> {
+  static async open(server: DocumentServer, button: string, around: Surroundings = BROWSER): Promise<DocumentStore> {
     return new DocumentStore(server, await server.open(button), around);
   }
 
@@ -104,7 +73,7 @@ export class DocumentStore {
   }
 
   /** The history, to read; it is changed through the store. */
-  get history(): Pick<History, "opening" | "steps" | "done" | "canUndo" | "canRedo" | "undoLabel" | "redoLabel" | "dragging" | "at" | "changed"> {
+  get history(): HistoryView {
     return this.#history;
   }
 
@@ -127,7 +96,7 @@ export class DocumentStore {
 
   /** How many changes the server does not have yet. */
   get unsaved(): number {
-    return this.#queue.length;
+    return this.#outbox.size;
   }
 
   /** Run a listener after every change of model, history or state; the function given back ends it. */
@@ -158,43 +127,49 @@ export class DocumentStore {
   release(): boolean {
     const time_s = this.#around.now_s();
     const made = this.#made(this.#history.release(time_s), time_s);
-    if (!made) this.#settled();
+    if (!made) this.#rested();
     return made;
   }
 
   /** End a drag as if it had not been. */
   cancel(): void {
     this.#history.cancel();
-    this.#settled();
+    this.#rested();
   }
 
   undo(count = 1): number {
     const done = this.#history.undo(count);
-    if (done) this.#send({ type: "undo", count: done });
+    if (done) this.#do({ type: "undo", count: done });
     return done;
   }
 
   redo(count = 1): number {
     const done = this.#history.redo(count);
-    if (done) this.#send({ type: "redo", count: done });
+    if (done) this.#do({ type: "redo", count: done });
     return done;
   }
 
   /** Keep the present state to compare with. */
   pin(label: string): void {
     this.#history.pin(label);
-    this.#send({ type: "pin", label });
+    this.#do({ type: "pin", label });
   }
 
   unpin(index: number): void {
     this.#history.unpin(index);
-    this.#send({ type: "unpin", index });
+    this.#do({ type: "unpin", index });
   }
 
   /** Take the news of another tab: the document has this revision. */
   async told(revision: number): Promise<void> {
     this.#newest = Math.max(this.#newest, revision);
     await this.#follow();
+  }
+
+  /** The server is there again: send what waits, and look whether others changed the document meanwhile. */
+  async refresh(): Promise<void> {
+    this.#outbox.hurry();
+    await this.#follow(true);
   }
 
   /** Take the news that the document was deleted or renamed. */
@@ -208,7 +183,7 @@ export class DocumentStore {
    */
   async takeTheirs(): Promise<void> {
     const theirs = this.#theirs ?? (await this.#server.open(this.button));
-    this.#queue = [];
+    this.#outbox.clear();
     this.#become(theirs);
     this.#set("saved", null);
     await this.#follow();
@@ -221,79 +196,57 @@ export class DocumentStore {
     return button;
   }
 
-  /** Look whether others changed the document while nobody told of it. */
-  async refresh(): Promise<void> {
-    await this.#follow(true);
-  }
-
   /** Wait until nothing is on its way: everything is saved, or a person must decide. */
-  async settled(): Promise<void> {
-    while (this.#sending) await this.#sending;
+  settled(): Promise<void> {
+    return this.#outbox.settled();
   }
 
   /** Stop trying to reach the server. */
   close(): void {
     this.#closed = true;
+    this.#outbox.hurry();
     this.#listeners.clear();
   }
 
   #made(made: Made | null, time_s: number): boolean {
-    if (!made) return false;
-    this.#send({ type: "edit", ...made, time_s });
-    return true;
+    if (made) this.#do({ type: "edit", ...made, time_s });
+    return made !== null;
   }
 
-  #send(change: Told): void {
-    this.#queue.push({ ...change, change_id: this.#around.newId() });
+  #do(doing: Doing): void {
+    this.#outbox.add(doing);
     if (this.#state === "saved") this.#state = "saving";
     this.#tell();
-    this.#sending ??= this.#drain();
+    this.#outbox.start();
   }
 
-  /** Send what is unsaved, one after the other, then look at what others did meanwhile. */
-  async #drain(): Promise<void> {
-    do {
-      for (let tries = 0; this.#queue.length && !this.#stuck(); ) {
-        tries = (await this.#sendFirst()) ? 0 : tries + 1;
-        if (tries) await this.#around.wait(AGAIN_ms[Math.min(tries, AGAIN_ms.length) - 1]!);
-      }
-      await this.#follow();
-      // an edit made during the last look has to be sent as well
-    } while (this.#queue.length && !this.#stuck());
-    this.#sending = null;
-  }
-
-  /** Send one change; false if the server was out of reach. */
-  async #sendFirst(): Promise<boolean> {
+  async #post(change: Change): Promise<Sent> {
     try {
-      const answer = await this.#server.send(this.button, this.#revision, this.#queue[0]!);
-      if ("conflict" in answer) this.#inConflict(answer.conflict);
-      else this.#taken(answer.revision);
-      return true;
+      const answer = await this.#server.send(this.button, this.#revision, change);
+      if (!("conflict" in answer)) return this.#kept(change, answer.revision);
+      this.#theirs = answer.conflict;
+      this.#set("conflict", IN_CONFLICT);
+      return "stopped";
     } catch (error) {
       const lost = this.#server.unreachable(error);
       if (!this.#stuck()) this.#set(lost ? "lost" : "refused", lineOf(error));
-      return !lost;
+      return lost ? "lost" : "stopped";
     }
+  }
+
+  #kept(change: Change, revision: number): Sent {
+    if (!this.#outbox.taken(change)) return "kept";
+    this.#revision = revision;
+    this.#newest = Math.max(this.#newest, revision);
+    if (!this.#stuck()) this.#set(this.#outbox.size ? "saving" : "saved", null);
+    return "kept";
   }
 
   #stuck(): boolean {
     return this.#closed || this.#state === "conflict" || this.#state === "refused" || this.#state === "gone";
   }
 
-  #taken(revision: number): void {
-    this.#queue.shift();
-    this.#revision = revision;
-    this.#newest = Math.max(this.#newest, revision);
-    if (!this.#stuck()) this.#set(this.#queue.length ? "saving" : "saved", null);
-  }
-
-  #inConflict(theirs: OpenedDocument): void {
-    this.#theirs = theirs;
-    this.#set("conflict", "another tab edited this button; take theirs, or keep yours as a copy");
-  }
-
-  #settled(): void {
+  #rested(): void {
     this.#tell();
     void this.#follow();
   }
@@ -313,7 +266,7 @@ export class DocumentStore {
   }
 
   #idle(): boolean {
-    return !this.#queue.length && !this.#history.dragging && !this.#stuck();
+    return !this.#outbox.size && !this.#history.dragging && !this.#stuck();
   }
 
   #become(opened: OpenedDocument): void {

@@ -38,7 +38,9 @@ function expectModel(got: unknown, wanted: unknown, place = "$"): void {
   } else expect(got, place).toBe(wanted);
 }
 
-test.each(golden<Case>("edits").map((one, i) => [i, one.op, one] as const))("edit %i, %s, is Python's", (_, __, one) => {
+const cases = golden<Case>("edits").map((one, i) => [i, one.op, one] as const);
+
+test.each(cases)("edit %i, %s, is Python's", (_, __, one) => {
   const work = () => m.applyEdit(example(one.on), editOf(one));
   if (one.made) expectModel(work(), one.made);
   else expect(work).toThrow(ModelError);
@@ -95,7 +97,8 @@ describe("facts", () => {
   test("a point that is set loses its spread, another keeps it", () => {
     const spreads = example("spreads");
     expect(m.applyEdit(spreads, m.setNumber("actuation_mm", 1.5)).actuation_spread).toBeUndefined();
-    expect(m.applyEdit(spreads, m.setNumber("reset_mm", 1.5)).actuation_spread).toEqual({ spread_mm: 0.02, presses: 9 });
+    const other = m.applyEdit(spreads, m.setNumber("reset_mm", 1.5));
+    expect(other.actuation_spread).toEqual({ spread_mm: 0.02, presses: 9 });
     expect(m.applyEdit(spreads, m.setNumber("actuation_mm", 1.7)).actuation_spread).toBeDefined();
   });
 
@@ -112,12 +115,15 @@ test.each<[string, m.Edit]>([
   ["name must be text without spaces at its ends, got ''", m.renameModel("  ")],
   ["control_points_cN must be finite, got Infinity at index 3", m.setPoints([{ ...slow, values_cN: [[3, Infinity]] }])],
   ["control_points_cN must stay within 1000000, got 2000000", m.setPoints([{ ...slow, values_cN: [[3, 2e6]] }])],
-  ["a press curve of unknown velocity must stand alone, got [unknown, 50, 100, 150, 200] mm/s", m.setVelocity(slow, null)],
+  ["press curve of unknown velocity must stand alone, got [unknown, 50, 100, 150, 200] mm/s", m.setVelocity(slow, null)],
   ["there is a press curve at 50 mm/s already; remove it first", m.setVelocity(slow, 50)],
   ["velocity_mm_s must be positive and finite, got -3", m.setVelocity(slow, -3)],
   ["a vibration needs at least one mode", m.removeMode({ stroke: "press", velocity_mm_s: null }, 0)],
   ["duration_s must be positive and finite, got 0", m.setDuration({ stroke: "press", velocity_mm_s: null }, 0)],
-  ["'mx-clear' has no press vibration at 50 mm/s; it has press at unknown velocity, release at unknown velocity", m.removeVibration({ stroke: "press", velocity_mm_s: 50 })],
+  [
+    "'mx-clear' has no press vibration at 50 mm/s; it has press at unknown velocity, release at unknown velocity",
+    m.removeVibration({ stroke: "press", velocity_mm_s: 50 }),
+  ],
 ])("refused: %s", (line, edit) => {
   const before = JSON.stringify(clear);
   expect(() => m.applyEdit(clear, edit)).toThrow(line);
@@ -128,15 +134,17 @@ describe("vibrations", () => {
   const all = { stroke: "press", velocity_mm_s: null } as const;
 
   test("are edited number by number", () => {
-    const made = m.applyEdit(clear, m.together("tune", [m.setOnset(all, 1.9), m.setMode(all, 0, { decay_1_s: 80 }), m.addMode(all)]));
+    const edits = [m.setOnset(all, 1.9), m.setMode(all, 0, { decay_1_s: 80 }), m.addMode(all)];
+    const made = m.applyEdit(clear, m.together("tune", edits));
     const vibration = m.vibrationAt(made, all)!;
     expect([vibration.onset_mm, vibration.modes[0]!.decay_1_s, vibration.modes.length]).toEqual([1.9, 80, 2]);
   });
 
   test("are copied to another stroke", () => {
     const bare = m.applyEdit(clear, m.removeVibration({ stroke: "release", velocity_mm_s: null }));
-    const made = m.applyEdit(bare, m.copyVibration(all, { stroke: "release", velocity_mm_s: 50 }));
-    expect(m.vibrationAt(made, { stroke: "release", velocity_mm_s: 50 })!.modes).toEqual(m.vibrationAt(clear, all)!.modes);
+    const to = { stroke: "release", velocity_mm_s: 50 } as const;
+    const made = m.applyEdit(bare, m.copyVibration(all, to));
+    expect(m.vibrationAt(made, to)!.modes).toEqual(m.vibrationAt(clear, all)!.modes);
   });
 });
 
@@ -148,7 +156,8 @@ test("copying a stroke replaces the other one", () => {
 });
 
 test("the models that random edits make are those that Python has accepted", async () => {
-  const made = ["mixed", "two", "unknown", "spreads"].flatMap((name, i) => walk(example(name), drawn(100 + i), 25).slice(-4));
+  const names = ["mixed", "two", "unknown", "spreads"];
+  const made = names.flatMap((name, i) => walk(example(name), drawn(100 + i), 25).slice(-4));
   const lines = made.map((model) => JSON.stringify(model)).join(",\n");
   await expect(`[\n${lines}\n]\n`).toMatchFileSnapshot("../golden/edited.json");
 });

@@ -132,7 +132,8 @@ test("an edit after an undo begins a new line", () => {
 test("an edit that changes nothing is no step, one that is refused changes nothing", () => {
   const history = new History(clear);
   expect(history.apply(setNumber("reset_mm", 2), { time_s: 0 })).toBeNull();
-  expect(() => history.apply(removeCurve({ stroke: "press", velocity_mm_s: 7 }), { time_s: 0 })).toThrow("has no press curve");
+  const wrong = removeCurve({ stroke: "press", velocity_mm_s: 7 });
+  expect(() => history.apply(wrong, { time_s: 0 })).toThrow("has no press curve");
   expect([history.model, history.canUndo, history.changed]).toEqual([clear, false, false]);
 });
 

@@ -11,7 +11,9 @@ interface Case {
   readonly fits_unknown: boolean;
 }
 
-test.each(golden<Case>("patches").map((one, i) => [i, one] as const))("patch %i is Python's and leads there and back", (_, one) => {
+const cases = golden<Case>("patches").map((one, i) => [i, one] as const);
+
+test.each(cases)("patch %i is Python's and leads there and back", (_, one) => {
   expect(diff(one.before, one.after)).toEqual(one.patch);
   expect(applyPatch(one.before, one.patch)).toEqual(one.after);
   expect(applyPatch(one.after, invert(one.patch))).toEqual(one.before);

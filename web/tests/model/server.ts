@@ -9,7 +9,6 @@ import {
   History,
   type OpenedDocument,
   same,
-  type Surroundings,
 } from "../../src/model";
 
 export class Unreachable extends Error {}
@@ -25,7 +24,7 @@ export class ScriptedServer implements DocumentServer {
   /** Taken from the front, one for each change; undefined is no trouble. */
   troubles: (Trouble | undefined)[] = [];
   readonly copies: [string, FDVVModel][] = [];
-  readonly seen: string[] = [];
+  readonly changes: Change[] = [];
   /** Told of each new revision, as another tab would be. */
   readonly tabs = new Set<(revision: number) => void>();
   #known = new Map<string, number>();
@@ -33,6 +32,11 @@ export class ScriptedServer implements DocumentServer {
 
   constructor(model: FDVVModel) {
     this.history = new History(model);
+  }
+
+  /** The kinds of changes that were made, in order. */
+  get seen(): string[] {
+    return this.changes.map((change) => change.type);
   }
 
   async open(): Promise<OpenedDocument> {
@@ -54,7 +58,7 @@ export class ScriptedServer implements DocumentServer {
 
   /** Make a change, as if a tab had sent it. */
   make(change: Change): void {
-    this.seen.push(change.type);
+    this.changes.push(change);
     const { opening, steps, done } = this.history.toJSON();
     if (change.type === "edit") {
       applyPatch(this.history.model, change.patch);
@@ -86,17 +90,14 @@ export class ScriptedServer implements DocumentServer {
   }
 }
 
-let tabs = 0;
-
 /** A clock that only moves when told, ids that count, and waits that are written down. */
-export function stillSurroundings(): Surroundings & { time_s: number; readonly waits: number[] } {
+export function stillSurroundings(name: string) {
   let id = 0;
-  const tab = tabs++;
   const around = {
     time_s: 0,
     waits: [] as number[],
     now_s: () => around.time_s,
-    newId: () => `${tab}-${id++}`,
+    newId: () => `${name}-${id++}`,
     wait: async (ms: number) => {
       around.waits.push(ms);
     },

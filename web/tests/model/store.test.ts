@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { DocumentStore, movePoints, type SaveState, setNumber } from "../../src/model";
-import { builtIn } from "../golden/golden";
+import { builtIn, example } from "../golden/golden";
 import { drawn } from "../math/near";
 import { randomEdit } from "./random";
 import { BUTTON, ScriptedServer, stillSurroundings } from "./server";
@@ -8,8 +8,8 @@ import { BUTTON, ScriptedServer, stillSurroundings } from "./server";
 const clear = builtIn("mx-clear");
 const points = { stroke: "press", velocity_mm_s: 0.5, indices: [4] } as const;
 
-async function opened(server = new ScriptedServer(clear)) {
-  const around = stillSurroundings();
+async function opened(server = new ScriptedServer(clear), name = "one") {
+  const around = stillSurroundings(name);
   const store = await DocumentStore.open(server, BUTTON, around);
   const states: SaveState[] = [];
   store.onChange(() => {
@@ -25,6 +25,18 @@ test("an edit is seen at once, then saved", async () => {
   await store.settled();
   expect([store.state, store.unsaved, states]).toEqual(["saved", 0, ["saving", "saved"]]);
   expect(server.has(store.model)).toBe(true);
+});
+
+test("who hears that it is saved finds nothing unsaved", async () => {
+  const { store } = await opened();
+  const unsaved: number[] = [];
+  store.onChange(() => {
+    if (store.state === "saved") unsaved.push(store.unsaved);
+  });
+  store.apply(setNumber("travel_mm", 3.5));
+  store.apply(setNumber("travel_mm", 3.6));
+  await store.settled();
+  expect(unsaved).toEqual([0]);
 });
 
 test("what is done fast is sent in order, and all of it", async () => {
@@ -99,6 +111,22 @@ describe("a lost connection", () => {
     expect(store.state).toBe("saved");
   });
 
+  test("that is back is used at once", async () => {
+    const { server, around, store } = await opened();
+    around.wait = () => new Promise(() => undefined);
+    server.troubles = ["out of reach", "out of reach"];
+    store.apply(setNumber("travel_mm", 3.5));
+    const lost = new Promise<void>((resolve) => store.onChange(() => store.state === "lost" && resolve()));
+    await lost;
+    expect([store.unsaved, server.troubles.length]).toEqual([1, 1]);
+    await store.refresh();
+    await new Promise((resolve) => setTimeout(resolve, 0));
+    expect([store.state, server.troubles.length]).toEqual(["lost", 0]);
+    await store.refresh();
+    await store.settled();
+    expect([store.state, server.has(store.model)]).toEqual(["saved", true]);
+  });
+
   test("shows one line while it lasts", async () => {
     const { server, store } = await opened();
     const lines: (string | null)[] = [];
@@ -144,10 +172,32 @@ test("random work over a bad line arrives whole", async () => {
   }
 });
 
+test("a random session is one that Python replays to the same model", async () => {
+  const random = drawn(41);
+  const server = new ScriptedServer(example("mixed"));
+  const { store } = await opened(server);
+  for (let i = 0; i < 40; i++) {
+    const which = random();
+    if (which < 0.15) store.undo(1 + Math.floor(random() * 3));
+    else if (which < 0.3) store.redo();
+    else if (which < 0.35) store.pin(`pin ${i}`);
+    else {
+      try {
+        store.apply(randomEdit(store.model, random), which < 0.7 ? "nudge" : undefined);
+      } catch (error) {
+        expect((error as Error).name).toBe("ModelError");
+      }
+    }
+  }
+  await store.settled();
+  const session = { opening: example("mixed"), changes: server.changes, left: await server.open() };
+  await expect(`${JSON.stringify(session)}\n`).toMatchFileSnapshot("../golden/session.json");
+});
+
 describe("two tabs", () => {
   async function pair() {
     const one = await opened();
-    const two = await opened(one.server);
+    const two = await opened(one.server, "two");
     const heard: Promise<void>[] = [];
     for (const { store } of [one, two]) one.server.tabs.add((revision) => heard.push(store.told(revision)));
     const quiet = async () => {
@@ -247,7 +297,8 @@ test("what the server refuses is said, kept here, and can be kept as a copy or d
   server.troubles = ["refused"];
   store.apply(setNumber("travel_mm", 3.5));
   await store.settled();
-  expect([store.state, store.line, store.unsaved, store.model.travel_mm]).toEqual(["refused", "the model would break", 1, 3.5]);
+  expect([store.state, store.line]).toEqual(["refused", "the model would break"]);
+  expect([store.unsaved, store.model.travel_mm]).toEqual([1, 3.5]);
   await store.takeTheirs();
   expect([store.state, store.unsaved, store.model.travel_mm]).toEqual(["saved", 0, 4]);
 });

@@ -6,6 +6,7 @@ import { button, h, numberField, panel, svg } from "../../ui";
 import { type Desk, refOf } from "./desk";
 import { bumpHandles } from "./handles";
 import { lineOf, longName, wordsOf } from "./look";
+import { filled } from "./rows";
 
 /** The panel. */
 export function curvesPanel(desk: Desk): HTMLElement {
@@ -23,7 +24,7 @@ function table(desk: Desk): HTMLElement {
         STROKES.map((stroke) => h("td", {}, () => cell(desk, { stroke, velocity_mm_s }))),
       ),
     );
-  return h("table", { class: "edit-curves", "aria-label": "Curves by speed and stroke" }, h("thead", {}, head), h("tbody", {}, rows));
+  return h("table", { class: "edit-curves", "aria-label": "Curves by speed and stroke" }, h("thead", {}, head), filled(h("tbody", {}), rows));
 }
 
 function arrow(stroke: Stroke): string {

@@ -2,6 +2,7 @@
 
 import { button, h, panel } from "../../ui";
 import type { Desk } from "./desk";
+import { filled } from "./rows";
 
 /** The panels of the history. */
 export function historyPanels(desk: Desk): HTMLElement[] {
@@ -24,7 +25,7 @@ function steps(desk: Desk): HTMLElement {
       );
     return [entry("opened", 0), ...all.map((step, i) => entry(step.label, i + 1))].reverse();
   };
-  return h("ol", { class: "edit-steps", reversed: true, "aria-label": "Steps, the newest first" }, rows);
+  return filled(h("ol", { class: "edit-steps", reversed: true, "aria-label": "Steps, the newest first" }), rows);
 }
 
 function before(desk: Desk): HTMLElement {

@@ -19,6 +19,7 @@ import {
 import { addShortcuts, button, computed, empty, h, numberField, panel, type Signal, signal, untracked } from "../../ui";
 import { type Desk, refOf } from "./desk";
 import { wordsOf } from "./look";
+import { filled } from "./rows";
 import { playVibration } from "./sound";
 import { wavePlot } from "./wave_plot";
 
@@ -121,7 +122,7 @@ function modesTable(desk: Desk, serving: Serving, chosen: Signal<number>): HTMLE
   return h(
     "div",
     { class: "stack" },
-    h("div", { class: "edit-scroll" }, h("table", { class: "edit-modes" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows))),
+    h("div", { class: "edit-scroll" }, h("table", { class: "edit-modes" }, h("thead", {}, h("tr", {}, head)), filled(h("tbody", {}), rows))),
     h("div", { class: "row" }, button({ label: "Add mode", act: add })),
   );
 }

@@ -19,6 +19,7 @@ const draft = {
   rounds: signal(3),
   presses: signal(12),
   known_rig: signal(""),
+  actuation: signal(""),
   probe_presses: signal(5),
   seed: signal(0),
   pace_percent: signal(35),
@@ -35,7 +36,8 @@ export function compensateForm(): HTMLElement {
   draft.button.set(first);
   if (!draft.name.peek()) draft.name.set(nameFor(first, ""));
   const paper = computed(() => draft.method() === "paper");
-  const probe = button({ label: "Only judge its own force", act: () => void startProbe(), hint: "What the rig makes of the button without any compensation" });
+  const tables = [["", "its own force, uncompensated"], ...found.actuations.map((name): [string, string] => [name, name])] as const;
+  const judged = choice({ label: "or only judge, on fresh presses,", options: tables, ...bound(draft.actuation) });
   return form(
     "Compensate a button on a rig",
     [
@@ -52,7 +54,11 @@ export function compensateForm(): HTMLElement {
       numberField({ label: "Pace may miss by", unit: "%", ...bound(draft.pace_percent), least: 5, most: 100, digits: 0 }),
       numberField({ label: "Seed of the simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 }),
     ],
-    [button({ label: "Start learning", kind: "main", act: () => void start() }), probe],
+    [
+      button({ label: "Start learning", kind: "main", act: () => void start() }),
+      judged,
+      button({ label: "Judge", act: () => void startProbe(), hint: "What the rig makes of the button with this table" }),
+    ],
   );
 }
 
@@ -88,7 +94,10 @@ async function start(): Promise<void> {
 }
 
 async function startProbe(): Promise<void> {
-  await begin({ type: "probe", ...shared(), name: `${draft.name()} uncompensated`, actuation: "", presses: Math.max(1, draft.probe_presses()) });
+  const actuation = draft.actuation();
+  const name = actuation || `${draft.name().trim()} uncompensated`;
+  // what judges is never the chance that was learned from
+  await begin({ type: "probe", ...shared(), name, actuation, seed: draft.seed() + 1, presses: Math.max(1, draft.probe_presses()) });
 }
 
 function shared() {

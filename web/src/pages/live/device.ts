@@ -161,8 +161,13 @@ function aboutView(): Child {
     { class: "stack" },
     h("div", { class: "row" }, button({ label: "Read", act: () => void read() }), button({ label: "Self-test", act: () => void test() })),
     () => verdicts(tested()),
-    h("dl", { class: "facts" }, () => facts().map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value)))),
+    () => factList(facts()),
   );
+}
+
+function factList(found: readonly (readonly [string, string])[]): Child {
+  if (!found.length) return null;
+  return h("dl", { class: "facts" }, found.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
 }
 
 function verdicts(found: SelfTest | null): Child {

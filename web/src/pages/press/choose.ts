@@ -77,7 +77,10 @@ export class Chooser {
 
   private options(): (readonly [string, string])[] {
     const named = (kind: string, group: string) => (item: PressItem) => [`${kind} ${item.id}`, `${group}: ${item.name}`] as const;
-    return [...this.list.buttons.map(named("button", "Button")), ...this.list.programs.map(named("program", "Program"))];
+    const listed = [...this.list.buttons.map(named("button", "Button")), ...this.list.programs.map(named("program", "Program"))];
+    // a measured button that the address names is on no list
+    const { item } = this.picks.A.peek();
+    return this.found(item) ? listed : [[item, this.nameOf(item)], ...listed];
   }
 
   private found(item: string): PressItem | undefined {

@@ -132,11 +132,11 @@ export class ProgramBook {
     if (this.document.peek() !== sent) this.saveSoon();
   }
 
-  /** Stop waiting: what is unsaved is written now. */
-  close(): void {
+  /** Stop checking, and write what is unsaved now; settled when that is done. */
+  async close(): Promise<void> {
     clearTimeout(this.checkTimer);
     this.turn += 1;
-    void this.save();
+    await this.save();
   }
 
   private get settled(): SaveState {

@@ -6,7 +6,7 @@ import { call } from "../../net";
 import type { ProgramText } from "../../net/messages";
 import type { Point } from "../../programs/layout/geometry";
 import { choiceAt, pathOf, type Choice } from "../../programs/path";
-import { addShortcuts, button, effect, h, onCleanup, panel, signal, tell, toast, toolbar } from "../../ui";
+import { addShortcuts, button, effect, h, onCleanup, panel, signal, tabs, tell, toast, toolbar, untracked } from "../../ui";
 import { ProgramBook, type SaveState } from "./book";
 import { findingsPanel } from "./findings";
 import { ForcePanel } from "./forces";
@@ -36,11 +36,30 @@ export function editor(host: HTMLElement, opened: ProgramText, at: string): void
       "div",
       { class: "program" },
       graphPanel(book, graph, moved),
-      forces.element,
-      h("div", { class: "stack" }, inspector(book, graph)),
-      h("div", { class: "stack" }, findingsPanel(book, (choice) => lead(book, graph, choice)), tryPanel(book, live.set)),
+      beside(book, forces, live.set),
+      inspector(book, graph),
+      findingsPanel(book, (choice) => lead(book, graph, choice)),
     ),
   );
+}
+
+/** Beside the graph: the forces of the state, or a finger on the program, which runs only while it is seen. */
+function beside(book: ProgramBook, forces: ForcePanel, live: (state: string | null) => void): HTMLElement {
+  const shown = signal<"forces" | "try">("forces");
+  const place = h("div", { class: "beside-place" });
+  effect(() => {
+    place.replaceChildren(shown() === "forces" ? forces.element : untracked(() => tryPanel(book, live)));
+  });
+  const choice = tabs({
+    label: "Beside the graph",
+    tabs: [
+      ["forces", "Forces"],
+      ["try", "Press it"],
+    ],
+    value: shown,
+    set: shown.set,
+  });
+  return h("div", { class: "beside" }, choice, place);
 }
 
 /** The forces shown are those of the state that is chosen, or begins the chosen transition. */
@@ -155,6 +174,17 @@ function guardTab(book: ProgramBook): void {
   addEventListener("beforeunload", ask);
   onCleanup(() => {
     removeEventListener("beforeunload", ask);
-    book.close();
+    void book.close().then(() => book.saved.peek().kind === "refused" && offerToKeep(book));
   });
+}
+
+/** What could not be written must not be lost by going elsewhere. */
+function offerToKeep(book: ProgramBook): void {
+  const { name } = book.document.peek();
+  const close = toast(`“${name}” was not saved: ${book.saved.peek().line}`, "wrong");
+  const keep = (): void => {
+    close();
+    call("program.keep", { text: book.text }).then((kept) => go("programs", kept.program), tell);
+  };
+  document.querySelector("#toasts > :last-child span")?.append(" ", button({ label: "Keep as another", act: keep }));
 }

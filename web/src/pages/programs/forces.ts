@@ -4,7 +4,7 @@ import { Plot, rangeOf, type Range } from "../../draw";
 import { surfaceNamed, type Stroke, type Surface } from "../../programs/document";
 import { replaceSurface, usesOfSurface } from "../../programs/edits_parts";
 import { movedColumn, pulledSurface, withColumn, withoutColumn } from "../../programs/surface";
-import { button, choice, computed, h, numberField, panel, shown, signal, toggle, toolbar, type Signal } from "../../ui";
+import { button, choice, computed, effect, h, numberField, panel, shown, signal, toggle, toolbar, type Signal } from "../../ui";
 import type { ProgramBook } from "./book";
 import { drawCurves, drawHeat, drawPoints, type ForcePicture } from "./forces_draw";
 import { handlesOf, nearestHandle } from "./forces_points";
@@ -13,6 +13,8 @@ import { surfaceTools } from "./forces_tools";
 const REACH_mm = 0.3;
 const DENSE = 25;
 const NEAR_px = 22;
+/** How fast fingers press at most, mostly: the map goes so far. */
+const FASTEST_mm_s = 300;
 
 /** Which state's forces are shown, and which line of them is edited. */
 export interface Editing {
@@ -55,16 +57,17 @@ export class ForcePanel {
       whole: () => this.frozen() ?? this.whole(),
       still: (brush, view) => {
         const picture = this.picture();
-        if (picture) (this.heat() ? drawHeat : drawCurves)(brush, view, picture);
+        if (picture) drawCurves(brush, view, picture);
       },
       moving: (brush, view) => {
         const picture = this.picture();
-        if (picture && !this.heat()) drawPoints(brush, view, picture, this.editing.column());
+        if (picture) drawPoints(brush, view, picture, this.editing.column());
       },
       zoom: true,
       height_px: 280,
     });
-    this.element = panel("Forces of the state", this.controls(), this.plot.element, this.values(), surfaceTools(book, this.editing, this.surface));
+    this.plot.element.classList.add("curves");
+    this.element = panel("Forces of the state", this.controls(), this.picturesElement(), this.values(), surfaceTools(book, this.editing, this.surface));
     this.element.classList.add("forces");
     this.listen();
   }
@@ -72,6 +75,29 @@ export class ForcePanel {
   /** See everything. */
   fit(): void {
     this.plot.fit();
+  }
+
+  /** The curves, or the map of all velocities in their place. */
+  private picturesElement(): HTMLElement {
+    const map = new Plot({
+      label: "Force of the edited stroke by colour, over displacement and velocity",
+      x: { label: "displacement", unit: "mm" },
+      y: { label: "velocity", unit: "mm/s" },
+      whole: () => {
+        const speeds = this.surface()?.velocity_mm_s ?? [0];
+        return { x: { low: 0, high: this.book.document().travel_mm }, y: { low: 0, high: Math.max(FASTEST_mm_s, ...speeds) } };
+      },
+      still: (brush, view) => {
+        const picture = this.picture();
+        if (picture) drawHeat(brush, view, picture);
+      },
+      height_px: 280,
+    });
+    effect(() => {
+      this.plot.element.hidden = this.heat();
+      map.element.hidden = !this.heat();
+    });
+    return h("div", {}, this.plot.element, map.element);
   }
 
   private pictured(): ForcePicture | null {
@@ -94,7 +120,6 @@ export class ForcePanel {
     const travel_mm = picture?.document.travel_mm ?? 4;
     const rows = [picture?.press, picture?.release].flatMap((surface) => surface?.force_cN ?? []);
     const forces = rangeOf([...rows, [0, 10]], 0.08) ?? { low: 0, high: 100 };
-    if (this.heat()) return { x: { low: 0, high: travel_mm }, y: { low: 0, high: 1 } };
     return { x: { low: -0.1, high: travel_mm * 1.04 }, y: forces };
   }
 
@@ -214,7 +239,7 @@ export class ForcePanel {
 
   private down(event: PointerEvent): void {
     const surface = this.surface();
-    if (event.button !== 0 || !surface || this.heat()) return;
+    if (event.button !== 0 || !surface) return;
     const column = nearestHandle(surface, this.row(), this.plot.view(), this.plot.at(event), NEAR_px);
     if (column === null) return;
     event.preventDefault();

@@ -22,7 +22,6 @@ export interface ForcePicture {
 
 const RELEASE_DASH = [6, 4];
 const CELLS = { x: 90, y: 28 } as const;
-const FASTEST_mm_s = 300;
 
 /** Draw every row of both strokes, the edited one strong, and the displacements that mean something. */
 export function drawCurves(brush: Brush, view: View, picture: ForcePicture): void {
@@ -133,19 +132,26 @@ export function drawPoints(brush: Brush, view: View, picture: ForcePicture, chos
 export function drawHeat(brush: Brush, view: View, picture: ForcePicture): void {
   const surface = picture[picture.stroke];
   if (!surface) return;
-  const speeds = surface.velocity_mm_s;
-  const fastest = Math.max(speeds[speeds.length - 1]!, speeds.length > 1 ? 0 : FASTEST_mm_s);
-  const strongest = Math.max(1, ...surface.force_cN.flat().map(Math.abs));
-  const cell = { width: view.box.width / CELLS.x, height: view.box.height / CELLS.y };
+  const strongest_cN = Math.max(1, ...surface.force_cN.map((row) => Math.max(...row.map(Math.abs))));
+  const { accent, danger } = palette();
+  const [columns, rows] = [edges(view.box.left, view.box.width, CELLS.x), edges(view.box.top, view.box.height, CELLS.y)];
   for (let i = 0; i < CELLS.x; i += 1)
     for (let j = 0; j < CELLS.y; j += 1) {
-      const x_mm = view.x.value(view.box.left + (i + 0.5) * cell.width);
-      const force_cN = forceAt_cN(surface, x_mm, ((CELLS.y - j - 0.5) / CELLS.y) * fastest);
-      const colour = force_cN < 0 ? palette().danger : palette().accent;
-      const box = { left: view.box.left + i * cell.width, top: view.box.top + j * cell.height, width: cell.width + 0.5, height: cell.height + 0.5 };
-      brush.rect(box, { colour, opacity: Math.abs(force_cN) / strongest });
+      const box = { left: columns[i]!, top: rows[j]!, width: columns[i + 1]! - columns[i]!, height: rows[j + 1]! - rows[j]! };
+      const at = [view.x.value(box.left + box.width / 2), view.y.value(box.top + box.height / 2)] as const;
+      const force_cN = forceAt_cN(surface, ...at);
+      brush.rect(box, { colour: force_cN < 0 ? danger : accent, opacity: Math.abs(force_cN) / strongest_cN });
     }
-  mapWords(brush, view, `0 to ${shown(fastest)} mm/s upwards; to ${shown(strongest)} cN`);
+  for (const speed of surface.velocity_mm_s) {
+    const y = view.y.px(speed);
+    brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: palette().text, dash: [2, 4], opacity: 0.7 });
+  }
+  mapWords(brush, view, `darkest: ${shown(strongest_cN, 0)} cN; dashed: velocities that have a row`);
+}
+
+/** Whole pixels, so that neighbouring cells neither overlap nor leave a gap. */
+function edges(from: number, size: number, count: number): readonly number[] {
+  return Array.from({ length: count + 1 }, (_, i) => Math.round(from + (i * size) / count));
 }
 
 function mapWords(brush: Brush, view: View, words: string): void {

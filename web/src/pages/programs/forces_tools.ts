@@ -65,7 +65,7 @@ function shaping(put: Put, book: ProgramBook, editing: Editing): HTMLElement {
   return h(
     "div",
     { class: "row" },
-    numberField({ label: "Times", unit: "", value: ratio, set: ratio.set, step: 0.1, least: -5, most: 5, bare: true }),
+    numberField({ label: "Times", unit: "×", value: ratio, set: ratio.set, step: 0.1, least: -5, most: 5, bare: true }),
     button({ label: "Scale", act: () => put("scale", (held) => forces.timesSurface(held, ratio())) }),
     numberField({ label: "Force", unit: "cN", value: level_cN, set: level_cN.set, least: -400, most: 400, bare: true }),
     button({ label: "Flat", hint: "This force everywhere", act: () => put("flat", (held) => forces.flatSurface(held.name, level_cN())) }),

@@ -151,6 +151,7 @@ export class GraphPanel {
 
   private down(event: PointerEvent): void {
     if (event.button > 1) return;
+    if (this.view.pinching) return this.drop();
     const at = this.view.at(event);
     const target = (event.target as Element).closest<SVGElement>("[data-key]");
     const state = target?.dataset["state"];

@@ -11,6 +11,7 @@ const SMALLEST = 0.1;
 /** The window on a graph, kept in the `viewBox` of its root. */
 export class GraphView {
   private readonly size = signal({ width: 1, height: 1 });
+  private readonly fingers = new Map<number, PointerEvent>();
   private readonly held = signal<{ readonly origin: Point; readonly zoom: number } | null>(null);
 
   constructor(
@@ -21,6 +22,7 @@ export class GraphView {
     observer.observe(root);
     onCleanup(() => observer.disconnect());
     root.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    this.listenForPinch();
     effect(() => {
       const { width, height } = this.size();
       const { origin, zoom } = this.seen();
@@ -39,7 +41,7 @@ export class GraphView {
   }
 
   /** Where an event is, in the graph. */
-  at(event: MouseEvent): Point {
+  at(event: { readonly clientX: number; readonly clientY: number }): Point {
     const frame = this.root.getBoundingClientRect();
     const { origin, zoom } = this.seen();
     return { x: origin.x + (event.clientX - frame.left) / zoom, y: origin.y + (event.clientY - frame.top) / zoom };
@@ -86,6 +88,36 @@ export class GraphView {
   private wheel(event: WheelEvent): void {
     event.preventDefault();
     this.zoomBy(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), this.at(event));
+  }
+
+  /** Whether two fingers are on the graph. */
+  get pinching(): boolean {
+    return this.fingers.size > 1;
+  }
+
+  /** Two fingers zoom around the place between them, and take it along. */
+  private listenForPinch(): void {
+    const lift = (event: PointerEvent): void => void this.fingers.delete(event.pointerId);
+    this.root.addEventListener("pointerdown", (event) => event.pointerType === "touch" && this.fingers.set(event.pointerId, event));
+    this.root.addEventListener("pointerup", lift);
+    this.root.addEventListener("pointercancel", lift);
+    this.root.addEventListener("pointermove", (event) => {
+      if (!this.fingers.has(event.pointerId)) return;
+      const before = this.pinch();
+      this.fingers.set(event.pointerId, event);
+      const after = this.pinch();
+      if (!before || !after) return;
+      this.zoomBy(after.apart / before.apart, this.at(after.middle));
+      this.moveFrom(this.origin, after.middle.clientX - before.middle.clientX, after.middle.clientY - before.middle.clientY);
+    });
+  }
+
+  /** Where two fingers are; null if there are not two. */
+  private pinch(): { readonly middle: { clientX: number; clientY: number }; readonly apart: number } | null {
+    const [a, b] = [...this.fingers.values()];
+    if (!a || !b) return null;
+    const middle = { clientX: (a.clientX + b.clientX) / 2, clientY: (a.clientY + b.clientY) / 2 };
+    return { middle, apart: Math.max(1, Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY)) };
   }
 
   private measure(): void {

@@ -37,6 +37,8 @@ export interface Graph {
 
 const SAMPLES = 17;
 const MARGIN = 7;
+/** How near two curves are that run beside each other. */
+const BESIDE = 12;
 const COST = { node: 90, near: 3, label: 30, far: 70 } as const;
 
 /** Give the words on an arrow: its condition, its guard, and a note if it plays something. */
@@ -74,7 +76,7 @@ function nodesOf(document: ProgramDocument, moved: ReadonlyMap<string, Point>): 
 class Router {
   private readonly boxes: ReadonlyMap<string, Box>;
   private readonly labels: Box[] = [];
-  private readonly curves: { readonly pair: string; readonly samples: readonly Point[] }[] = [];
+  private readonly curves: { readonly bounds: Box; readonly samples: readonly Point[] }[] = [];
   private readonly lanes = new Set<string>();
 
   constructor(private readonly nodes: readonly GraphNode[]) {
@@ -95,7 +97,8 @@ class Router {
     const size = sizeOfText(linesOf(way));
     const best = this.best(this.offers(state, way.to, count), pair, size);
     this.lanes.add(`${pair}\n${best.route.lane}`);
-    this.curves.push({ pair, samples: samplesOf(best.route.curve, SAMPLES) });
+    const samples = samplesOf(best.route.curve, SAMPLES);
+    this.curves.push({ bounds: around(samples.map((at) => ({ ...at, width: 0, height: 0 }))), samples });
     const middle = onCubic(best.route.curve, 0.5);
     const label = best.label ?? labelNear(middle, size.width, size.height, this.taken());
     this.labels.push(label);
@@ -115,10 +118,16 @@ class Router {
     size: { readonly width: number; readonly height: number },
   ): { route: Route; label: Box | null } {
     let found = { route: offers[0]!, label: null as Box | null, cost: Infinity };
+    const taken = this.taken();
+    // what costs little to find out comes first: most routes are out of the question before it gets dear
     for (const route of offers) {
       if (this.lanes.has(`${pair}\n${route.lane}`) || route.detour >= found.cost) continue;
-      const label = labelOn(route.curve, size.width, size.height, this.taken());
-      const cost = route.detour + this.costOf(route.curve, pair) + (label ? this.covered(label) : COST.far);
+      const inner = samplesOf(route.curve, SAMPLES).slice(1, -1);
+      let cost = route.detour + this.crossed(inner, pair);
+      if (cost < found.cost) cost += COST.near * this.beside(inner);
+      if (cost >= found.cost) continue;
+      const label = labelOn(route.curve, size.width, size.height, taken);
+      cost += label ? this.covered(label) : COST.far;
       if (cost < found.cost) found = { route, label, cost };
     }
     return found;
@@ -128,24 +137,23 @@ class Router {
     return [...this.nodes.map((node) => node.box), ...this.labels];
   }
 
-  /** What a curve costs: nodes and words that it crosses, arrows that it runs beside. */
-  private costOf(curve: Cubic, pair: string): number {
-    const samples = samplesOf(curve, SAMPLES);
-    const inner = samples.slice(1, -1);
+  /** What it costs to cross nodes and words. */
+  private crossed(inner: readonly Point[], pair: string): number {
     const ends = pair.split("\n");
-    const crossed = this.nodes.filter(
+    const nodes = this.nodes.filter(
       (node) => !ends.includes(node.state) && inner.some((at) => holds(node.box, at, MARGIN)),
     ).length;
     const words = this.labels.filter((box) => inner.some((at) => holds(box, at))).length;
-    return COST.node * crossed + COST.label * words + COST.near * this.beside(inner);
+    return COST.node * nodes + COST.label * words;
   }
 
+  /** Count the places at which a curve runs beside another. */
   private beside(inner: readonly Point[]): number {
-    const near = (a: Point, b: Point): boolean => Math.abs(a.x - b.x) < 12 && Math.abs(a.y - b.y) < 12;
-    return this.curves.reduce(
-      (sum, held) => sum + inner.filter((at) => held.samples.some((other) => near(at, other))).length,
-      0,
-    );
+    const near = (a: Point, b: Point): boolean => Math.abs(a.x - b.x) < BESIDE && Math.abs(a.y - b.y) < BESIDE;
+    const own = around(inner.map((at) => ({ ...at, width: 0, height: 0 })));
+    return this.curves
+      .filter((held) => overlap(held.bounds, own, BESIDE))
+      .reduce((sum, held) => sum + inner.filter((at) => held.samples.some((other) => near(at, other))).length, 0);
   }
 
   /** What words cost that stand on another arrow. */

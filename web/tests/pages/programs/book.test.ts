@@ -95,7 +95,7 @@ describe("an open program", () => {
     expect(shelf.checks).toHaveLength(2);
     expect(readDocument(shelf.checks[1]!).start).toBe("high");
     expect(book.check()).toEqual(FINE);
-    book.close();
+    await book.close();
   });
 
   it("is written soon after an edit, and says how that went", async () => {
@@ -109,7 +109,7 @@ describe("an open program", () => {
     book.undo();
     await vi.advanceTimersByTimeAsync(SAVE_AFTER_ms);
     expect(readDocument(shelf.text)).toEqual(BUTTON);
-    book.close();
+    await book.close();
   });
 
   it("does not overwrite what another tab wrote", async () => {
@@ -158,7 +158,7 @@ describe("an open program", () => {
     book.release();
     await vi.advanceTimersByTimeAsync(SAVE_AFTER_ms);
     expect([shelf.checks.length, shelf.revision]).toEqual([2, 2]);
-    book.close();
+    await book.close();
   });
 
   it("tells at once what the page can tell, and lets go of what is no longer there", () => {

@@ -1,0 +1,63 @@
+"""The work of jobs, done in this process: what is told and what is left, held against the workflow's own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.studio.jobs import learning, tuning
+
+from fdvv.model import load_builtin, save_model
+from fdvv.studio._job_file import JobFolder, JobRecord, utc_now
+from fdvv.studio._job_process import ended
+from fdvv.studio._messages_events import CurveIntended, JobEvent, JobOutcome, PressTold
+from fdvv.studio._messages_orders import Order
+from fdvv.studio._work import Work
+
+
+def work_of(order: Order, path: Path, tell: Any) -> Work:
+    folder = JobFolder(path)
+    save_model(load_builtin("mx-clear"), folder.button)
+    folder.save(JobRecord("fdvv-job", 1, order, "a job", True, utc_now()))
+    return Work(folder, 1, tell, lambda _number: "first")
+
+
+def test_what_was_measured_is_told_with_its_curves(tmp_path: Path) -> None:
+    told: list[JobEvent] = []
+    work = work_of(learning(probe_presses=2), tmp_path, told.append)
+    assert ended(work).state == "done"
+    measured = json.loads(work.folder.result("measured").read_text())
+    assert (measured["button"], measured["simulated"], measured["presses"]) == ("builtin:mx-clear", True, 2)
+    outcome = next(e for e in told if isinstance(e, JobOutcome) and e.stage == "probe")
+    for curve, standing in zip(measured["curves"], outcome.curves, strict=True):
+        assert standing.mean_error_cN == pytest.approx(curve["mean_error_cN"], abs=1e-3)
+        low, high = curve["rendered_quartiles_cN"]
+        rows = zip(low, curve["rendered_cN"], high, strict=True)
+        assert all(a <= b <= c for a, b, c in rows)
+        assert len(curve["displacement_mm"]) == len(curve["target_cN"]) == len(low)
+    intended = next(e for e in told if isinstance(e, CurveIntended))
+    for press in (e for e in told if isinstance(e, PressTold)):
+        assert press.felt
+        assert len(press.felt.press_cN) == len(press.felt.release_cN) == len(intended.displacement_mm)
+
+
+def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) -> None:
+    def stop(event: JobEvent) -> None:
+        if isinstance(event, PressTold):
+            raise KeyboardInterrupt
+
+    end = ended(work_of(learning(probe_presses=0), tmp_path, stop))
+    assert (end.state, "kept" in end.line) == ("cancelled", True)
+    told: list[JobEvent] = []
+    assert ended(work_of(learning(probe_presses=0), tmp_path, told.append)).state == "done"
+    assert next(e.done for e in told if isinstance(e, PressTold)) == 2
+
+
+def test_one_mistake_is_one_line_without_a_path(tmp_path: Path) -> None:
+    work = work_of(tuning(), tmp_path, lambda _event: None)
+    work.folder.button.write_text("{}")
+    end = ended(work)
+    assert end.state == "failed"
+    assert str(tmp_path) not in end.line

@@ -1,0 +1,9 @@
+/** Lists and tables whose rows follow signals. */
+
+import { effect } from "../../ui";
+
+/** Keep an element's rows as they are told; unlike a slot this puts nothing between a list and its items. */
+export function filled<E extends HTMLElement>(element: E, rows: () => readonly Node[]): E {
+  effect(() => element.replaceChildren(...rows()));
+  return element;
+}
