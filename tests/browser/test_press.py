@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from numpy.lib.stride_tricks import sliding_window_view
 
 from fdvv.model import load_builtin
 from fdvv.vibration import vibration_samples
@@ -157,7 +158,7 @@ def test_clicks_are_scheduled_as_far_apart_as_the_cap_shook(page: Page) -> None:
     page.add_init_script(
         """window.asked = []; const start = AudioBufferSourceNode.prototype.start;
         AudioBufferSourceNode.prototype.start = function (when) {
-          window.asked.push([when, this.context.currentTime]); return start.call(this, when); };"""
+          window.asked.push(when); return start.call(this, when); };"""
     )
     heard = Wire(page)
     page.goto(f"{page.url.partition('#')[0]}#/press/builtin:mx-clear")
@@ -168,20 +169,17 @@ def test_clicks_are_scheduled_as_far_apart_as_the_cap_shook(page: Page) -> None:
     page.keyboard.up(" ")
     page.wait_for_selector(UP)
     page.click("text=Replay a key")
-    on_time = np.zeros(0)
-    for count in (9, 17, 25, 33):
+    apart_s = np.inf
+    for count in range(9, 90, 8):
         page.click("button:text-is('drumming')")
         presses(page, count)
         asked = np.array(page.evaluate("window.asked"))
-        off = asked[:, 0] - [event["t_s"] for event in heard.events("vibration")][-len(asked) :]
-        # the loudspeaker's clock is learned from frames: the press that woke it does not count; what came too
-        # late on a busy machine is played at once
-        on_time = off[2:][asked[2:, 0] > asked[2:, 1]]
-        if on_time.size >= 8:
+        off = asked - [event["t_s"] for event in heard.events("vibration")][-len(asked) :]
+        # a loudspeaker without hardware stops its clock on a busy machine: eight in a row without that
+        apart_s = float(np.ptp(sliding_window_view(off, 8), axis=1).min())
+        if apart_s < 1e-3:
             break
-    assert on_time.size >= 8
-    dropped_s = heard.told[-1].get("dropped_s", 0.0)
-    assert np.ptp(on_time) < 1e-3 + dropped_s
+    assert apart_s < 1e-3
 
 
 def test_a_trace_is_replayed(page: Page, wire: Wire, tmp_path: Path) -> None:

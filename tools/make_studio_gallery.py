@@ -1,0 +1,145 @@
+"""Photograph the studio for the documents: docs/images/studio/*.png. Run from the repository root.
+
+A fresh studio with built-in buttons only, driven in Chromium as a person does; what it renders is simulated.
+Pictures hold 128 colours, which such a page hardly exceeds.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Browser, Page, sync_playwright
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+TARGET = REPOSITORY / "docs" / "images" / "studio"
+WIDE, TABLET = (1280, 720), (820, 1180)
+LONG_ms = 120_000
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One picture: where, how light, how wide, and what is done before."""
+
+    name: str
+    address: str
+    scheme: str
+    size: tuple[int, int]
+    act: Callable[[Page], None]
+
+
+def compare(page: Page) -> None:
+    """Put four buttons over each other."""
+    for name in ("mx-clear", "mx-blue", "mx-red", "rubber-dome"):
+        page.locator(".lib-row:not([hidden])", has_text=name).locator(".lib-check").click()
+    page.locator(".lib-chip").nth(3).wait_for()
+
+
+def follow(page: Page) -> None:
+    """Choose a fast curve and wait for what the rig makes of it."""
+    page.get_by_role("button", name="press, 100 mm/s").or_(
+        page.get_by_role("radio", name="100")
+    ).first.click()
+    page.wait_for_selector(".edit-follows", timeout=LONG_ms)
+
+
+def tab(name: str) -> Callable[[Page], None]:
+    """Open a tab of the editor once the rig is known."""
+
+    def act(page: Page) -> None:
+        page.wait_for_selector(".edit-follows", timeout=LONG_ms)
+        page.get_by_role("tab", name=name).click()
+
+    return act
+
+
+def hold(page: Page) -> None:
+    """Press twice and hold the second press."""
+    page.wait_for_selector(".press-lamp[data-key='0']")
+    for _ in range(2):
+        page.keyboard.down(" ")
+        page.wait_for_selector(".press-lamp:not([data-key='0'])")
+        page.wait_for_timeout(300)
+        if page.locator("[data-value='presses']").inner_text() == "0":
+            page.keyboard.up(" ")
+            page.wait_for_selector("[data-value='presses'] >> text=/^1$/", state="attached")
+
+
+def learn(page: Page) -> None:
+    """Have the simulated rig learn a button."""
+    page.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
+    page.get_by_role("button", name="Start learning").click()
+    page.wait_for_selector(".job-head .job-state.done", timeout=LONG_ms)
+
+
+def still(page: Page) -> None:
+    """Wait until nothing is on its way."""
+    page.wait_for_load_state("networkidle")
+
+
+SHOTS = (
+    Shot("library", "library", "light", WIDE, compare),
+    Shot("library-tablet", "library", "dark", TABLET, compare),
+    Shot("editor", "edit/builtin:mx-clear", "light", WIDE, follow),
+    Shot("editor-surface", "edit/builtin:mx-clear", "dark", WIDE, tab("Surface")),
+    Shot("editor-vibration", "edit/builtin:mx-clear", "light", WIDE, tab("Vibration")),
+    Shot("editor-tablet", "edit/builtin:mx-blue", "light", TABLET, tab("Figures")),
+    Shot("press", "press/builtin:mx-clear", "dark", WIDE, hold),
+    Shot("programs", "programs/shipped:multi-level", "light", WIDE, still),
+    Shot("programs-dark", "programs/shipped:dwell-ticks", "dark", WIDE, still),
+    Shot("live-compensate", "live/compensate", "light", WIDE, learn),
+    Shot("live-device", "live/device", "dark", WIDE, still),
+)
+
+
+def take(page: Page, base: str, shot: Shot) -> None:
+    """Make one picture."""
+    page.emulate_media(color_scheme="dark" if shot.scheme == "dark" else "light", reduced_motion="reduce")
+    page.set_viewport_size({"width": shot.size[0], "height": shot.size[1]})
+    page.goto("about:blank")
+    page.goto(f"{base}/#/{shot.address}")
+    page.wait_for_selector(f"html[data-ready={shot.address.partition('/')[0]}]")
+    shot.act(page)
+    page.mouse.move(shot.size[0] - 2, shot.size[1] - 2)
+    page.wait_for_timeout(400)
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    picture.quantize(128, dither=Image.Dither.NONE).save(TARGET / f"{shot.name}.png", optimize=True)
+    print(TARGET / f"{shot.name}.png")
+
+
+def main() -> None:
+    """Start a studio of its own."""
+    TARGET.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        command = [sys.executable, "-m", "fdvv", "studio", "--port", "0", "--no-browser"]
+        studio = subprocess.Popen(
+            [*command, "--project", f"{folder}/my-buttons"], stdout=subprocess.PIPE, text=True
+        )
+        try:
+            photograph(studio, playwright.chromium.launch(executable_path=shutil.which("chromium")))
+        finally:
+            studio.terminate()
+            studio.wait()
+
+
+def photograph(studio: subprocess.Popen[str], browser: Browser) -> None:
+    """Go through the list, or the names given."""
+    assert studio.stdout is not None
+    address = studio.stdout.readline().split()[-1]
+    page = browser.new_page()
+    page.set_default_timeout(20_000)
+    page.goto(address)
+    for shot in SHOTS:
+        if shot.name in sys.argv[1:] or len(sys.argv) == 1:
+            take(page, address.partition("/?")[0], shot)
+
+
+if __name__ == "__main__":
+    main()
