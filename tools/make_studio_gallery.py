@@ -1,7 +1,6 @@
 """Photograph the studio for the documents: docs/images/studio/*.png. Run from the repository root.
 
 A fresh studio with built-in buttons only, driven in Chromium as a person does; what it renders is simulated.
-Pictures hold 128 colours, which such a page hardly exceeds.
 """
 
 from __future__ import annotations
@@ -79,6 +78,13 @@ def learn(page: Page) -> None:
     page.wait_for_selector(".job-head .job-state.done", timeout=LONG_ms)
 
 
+def connect(page: Page) -> None:
+    """Connect the simulated rig and press on it."""
+    page.get_by_role("button", name="Connect").click()
+    page.get_by_role("button", name="Press once").click()
+    page.wait_for_timeout(1500)
+
+
 def still(page: Page) -> None:
     """Wait until nothing is on its way."""
     page.wait_for_load_state("networkidle")
@@ -95,7 +101,7 @@ SHOTS = (
     Shot("programs", "programs/shipped:multi-level", "light", WIDE, still),
     Shot("programs-dark", "programs/shipped:dwell-ticks", "dark", WIDE, still),
     Shot("live-compensate", "live/compensate", "light", WIDE, learn),
-    Shot("live-device", "live/device", "dark", WIDE, still),
+    Shot("live-device", "live/device", "dark", WIDE, connect),
 )
 
 
@@ -110,7 +116,7 @@ def take(page: Page, base: str, shot: Shot) -> None:
     page.mouse.move(shot.size[0] - 2, shot.size[1] - 2)
     page.wait_for_timeout(400)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    picture.quantize(128, dither=Image.Dither.NONE).save(TARGET / f"{shot.name}.png", optimize=True)
+    picture.save(TARGET / f"{shot.name}.png", optimize=True)
     print(TARGET / f"{shot.name}.png")
 
 

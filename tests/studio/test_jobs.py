@@ -75,6 +75,15 @@ def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: St
     again.close()
 
 
+@pytest.fixture
+def _in_the_background() -> Iterator[None]:
+    """Ignore Ctrl-C, as what a shell starts in the background does."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("_in_the_background")
 def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     told = begin(jobs, long_learning())
     told.wait(pressed)

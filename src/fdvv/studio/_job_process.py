@@ -104,6 +104,8 @@ def _own_output() -> Iterator[IO[bytes]]:
 
 def main() -> None:
     """Do one start of the job in the folder that the command line names."""
+    # a shell lets what it starts in the background ignore Ctrl-C, and that is inherited
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with _own_output() as out:
 
         def tell(event: JobEvent) -> None:

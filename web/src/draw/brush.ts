@@ -46,6 +46,9 @@ export interface Brush {
 
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
 
+/** Wide enough that what lies behind a letter does not read as one. */
+const HALO_px = 5;
+
 export class CanvasBrush implements Brush {
   constructor(private readonly context: CanvasRenderingContext2D) {}
 
@@ -84,7 +87,7 @@ export class CanvasBrush implements Brush {
     if (style.upwards) c.rotate(-Math.PI / 2);
     if (style.halo) {
       c.strokeStyle = style.halo;
-      c.lineWidth = 3;
+      c.lineWidth = HALO_px;
       c.lineJoin = "round";
       c.strokeText(text, 0, 0);
     }
@@ -172,7 +175,7 @@ export class SvgBrush implements Brush {
     const turn = style.upwards ? ` transform="rotate(-90 ${rounded(at.x_px)} ${rounded(at.y_px)})"` : "";
     const anchor = { left: "start", center: "middle", right: "end" }[style.align ?? "left"];
     const base = { top: "text-before-edge", middle: "central", bottom: "text-after-edge" }[style.base ?? "middle"];
-    const halo = style.halo ? ` stroke="${style.halo}" stroke-width="3" paint-order="stroke"` : "";
+    const halo = style.halo ? ` stroke="${style.halo}" stroke-width="${HALO_px}" paint-order="stroke"` : "";
     const font = `font-family="${FONT}" font-size="${style.size_px ?? 12}" font-weight="${style.weight ?? 400}"`;
     this.parts.push(
       `<text ${place}${turn} fill="${style.colour}" text-anchor="${anchor}" dominant-baseline="${base}"${halo} ${font}>${escaped(text)}</text>`,

@@ -77,6 +77,9 @@ export function handlesOnCanvas(view: View, model: FDVVModel, curve: ForceCurve)
   return [...rows, ...bumps];
 }
 
+/** Travel, actuation, reset and vibration. */
+const PLACES = 4;
+
 function rowOf(view: View, row: number): number {
   return view.box.top + ROW_px * (row + 0.5);
 }
@@ -109,6 +112,8 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     brush.text(`${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`, at, { colour: text, size_px: 11, align: "center", halo: surface });
   }
   const end = forceNear_cN(sampled(curve), travel_mm);
-  const at = { x_px: view.x.px(travel_mm) - 12, y_px: view.y.px(end) - 14 };
+  const [y, rows] = [view.y.px(end), rowOf(view, PLACES)];
+  // the rows of the places come first: below the curve where both would be in one line
+  const at = { x_px: view.x.px(travel_mm) - 12, y_px: y - 14 < rows ? y + 18 : y - 14 };
   brush.text(`bottom-out ${end.toFixed(1)} cN`, at, { colour: text, size_px: 11, align: "right", halo: surface });
 }

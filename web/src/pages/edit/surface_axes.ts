@@ -14,9 +14,11 @@ const COUNT = 5;
 const OUT = 1.14;
 const FAR = 1.36;
 const BELOW_px = 20;
+/** A letter of a label is hardly wider. */
+const LETTER_px = 6.6;
 
 /** Paint floor, ticks and labels; `at` gives where a corner of the box is seen. */
-export function paintAxes(brush: Brush, at: (corner: Corner) => Seen, turn: Turn, ranges: Ranges): void {
+export function paintAxes(brush: Brush, at: (corner: Corner) => Seen, turn: Turn, ranges: Ranges, width_px: number): void {
   const { displacementAtBack: back, velocityAtRight: right } = frontEdges(turn);
   const axes = [
     { label: "displacement, mm", low: 0, high: ranges.travel_mm, place: (t: number, out: number): Corner => [t, back * out, -1], over: (t: number): Corner => [t, -back, -1] },
@@ -37,8 +39,14 @@ export function paintAxes(brush: Brush, at: (corner: Corner) => Seen, turn: Turn
     const { x, y } = at(place(0, FAR));
     const [first, last] = [at(place(-1, 1)).x, at(place(1, 1)).x];
     const align = up ? "center" : x < (first + last) / 2 + 1 ? "right" : "left";
-    brush.text(label, { x_px: up ? x - BELOW_px : x, y_px: up ? y : y + BELOW_px }, { colour: text, size_px: 12, align, upwards: up });
+    brush.text(label, { x_px: up ? x - BELOW_px : inside(x, align === "right", label, width_px), y_px: up ? y : y + BELOW_px }, { colour: text, size_px: 12, align, upwards: up });
   }
+}
+
+/** Move a label along its edge until all of it is seen. */
+function inside(x_px: number, endsHere: boolean, label: string, width_px: number): number {
+  const long_px = LETTER_px * label.length;
+  return endsHere ? Math.max(x_px, long_px) : Math.min(x_px, width_px - long_px);
 }
 
 function line(brush: Brush, a: Seen, b: Seen, colour: string): void {

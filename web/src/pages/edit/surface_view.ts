@@ -136,7 +136,7 @@ function paint(brush: Brush, { width_px, height_px }: Size, scene: Scene, turn: 
     const { x, y, behind } = seen(corner, turn);
     return { x: x0 + scale * x, y: y0 + scale * y, behind };
   };
-  paintAxes(brush, at, turn, scene);
+  paintAxes(brush, at, turn, scene, width_px);
   const faces = scene.grids.flatMap(({ stroke, corners }) => {
     const places = corners.map((row) => row.map(at));
     return facesFromBehind(places).map((face) => ({ ...face, places, corners, stroke }));
