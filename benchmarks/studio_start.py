@@ -18,7 +18,7 @@ from statistics import median
 from playwright.sync_api import Browser, sync_playwright
 from tests.studio.running import RunningStudio
 
-INTERACTIVE = "html[data-ready=library]"
+INTERACTIVE, FIRST_ROW = "html[data-ready=library]", ".lib-row:not([hidden]) .lib-name"
 
 
 def start(browser: Browser, folder: Path) -> tuple[float, float]:
@@ -29,7 +29,7 @@ def start(browser: Browser, folder: Path) -> tuple[float, float]:
     printed = time.perf_counter()
     page.goto(studio.address, wait_until="commit")
     page.wait_for_selector(INTERACTIVE)
-    page.wait_for_selector("[role=row] >> nth=1", state="visible")
+    page.wait_for_selector(FIRST_ROW)
     ready = time.perf_counter()
     page.close()
     studio.stop()

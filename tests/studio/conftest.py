@@ -8,11 +8,20 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
-from fdvv.studio import Studio, create_app, door_of
+from fdvv.studio import Call, ChannelKind, Studio, create_app, door_of
+from fdvv.studio._parts import PartLoader, Parts
 
 HOST, PORT, TOKEN = "127.0.0.1", 8377, "a-token-of-a-test"
 ORIGIN = f"http://{HOST}:{PORT}"
 LIVE = f"ws://{HOST}:{PORT}/live"
+
+
+class GivenParts(PartLoader):
+    """Parts that a test brings along."""
+
+    def __init__(self, calls: dict[str, Call], channels: dict[str, ChannelKind]) -> None:
+        super().__init__(())
+        self._parts = Parts(calls, channels)
 
 
 @pytest.fixture

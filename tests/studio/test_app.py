@@ -9,10 +9,11 @@ from importlib import resources
 import msgspec
 import pytest
 from starlette.testclient import TestClient
+from tests.studio.conftest import GivenParts
 
 from fdvv import __version__
 from fdvv.errors import InputError
-from fdvv.studio import Call, Studio, _parts
+from fdvv.studio import Call, Studio, load_parts
 
 FILES = sorted(f.name for f in resources.files("fdvv.studio").joinpath("static").iterdir())
 
@@ -39,9 +40,9 @@ def _twice(_studio: Studio, ask: Question) -> Answer:
 
 @pytest.fixture(autouse=True)
 def _own_calls(monkeypatch: pytest.MonkeyPatch) -> None:
-    parts = _parts.load_parts()
+    parts = load_parts()
     calls = {**parts.calls, "test.twice": Call("test.twice", Question, Answer, _twice)}
-    monkeypatch.setattr("fdvv.studio._app.load_parts", lambda: _parts.Parts(calls, parts.channels))
+    monkeypatch.setattr("fdvv.studio._app.PartLoader", lambda: GivenParts(calls, parts.channels))
 
 
 @pytest.mark.parametrize("name", FILES)

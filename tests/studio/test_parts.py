@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+import types
 
+import msgspec
 import pytest
+
+from fdvv.studio import Call
+from fdvv.studio._parts import PartLoader
 
 RACE = """
 import sys, threading
@@ -26,3 +32,49 @@ def test_threads_that_are_the_first_to_read_a_record_do_not_crash_the_process(at
     # without the preparation about every second attempt ends with a segmentation fault
     ended = subprocess.run([sys.executable, "-c", RACE], capture_output=True, check=False)
     assert ended.returncode == 0, ended.stderr
+
+
+class Nothing(msgspec.Struct):
+    """A message without content."""
+
+
+def call(name: str) -> Call:
+    return Call(name, Nothing, Nothing, lambda _studio, ask: ask)
+
+
+@pytest.fixture
+def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, *calls in (("first", call("a.a")), ("second", call("b.b")), ("third", call("a.a"))):
+        module = types.ModuleType(f"fdvv.studio.{name}")
+        module.__dict__.update(CALLS=tuple(calls), CHANNELS=())
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+
+
+@pytest.mark.usefixtures("_own_parts")
+def test_a_call_is_there_as_soon_as_its_own_part_is() -> None:
+    loader = PartLoader(("first", "second"))
+    waiting = threading.Thread(target=loader.load)
+    waiting.start()
+    found = loader.call("a.a")
+    assert found is not None
+    assert found.name == "a.a"
+    waiting.join()
+    assert loader.call("b.b") is not None
+    assert loader.call("c.c") is None
+    assert set(loader.all().calls) == {"a.a", "b.b"}
+
+
+@pytest.mark.usefixtures("_own_parts")
+@pytest.mark.parametrize(
+    ("names", "fault"), [(("first", "third"), ValueError), (("first", "not_there"), ModuleNotFoundError)]
+)
+def test_a_part_that_cannot_be_loaded_is_told_to_all_that_wait(
+    names: tuple[str, ...], fault: type[Exception]
+) -> None:
+    loader = PartLoader(names)
+    loader.load()
+    with pytest.raises(fault):
+        loader.all()
+    with pytest.raises(fault):
+        loader.call("c.c")
+    assert loader.call("a.a") is not None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from threading import Thread
 
 from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import Response
@@ -17,40 +18,36 @@ from fdvv.studio import _page
 from fdvv.studio._ask import answer, line
 from fdvv.studio._guard import Door, Guard
 from fdvv.studio._live import LiveConnection
-from fdvv.studio._parts import Parts, load_parts
+from fdvv.studio._parts import PartLoader
 from fdvv.studio._studio import Studio
 
 
 def create_app(studio: Studio, door: Door) -> Starlette:
     """Make the server's application. BuildError if the page is not built.
 
-    Parts are imported while the first page is on its way; a call waits for them.
+    Parts are imported while the first page is on its way; a call waits for its own.
     """
     files = _page.page_files()
-    parts: asyncio.Future[Parts] | None = None
-
-    async def loaded() -> Parts:
-        nonlocal parts
-        if parts is None:
-            parts = asyncio.get_running_loop().run_in_executor(None, load_parts)
-        return await asyncio.shield(parts)
+    loader = PartLoader()
 
     async def page(request: Request) -> Response:
         return _page.answer(files, request)
 
     async def api(request: Request) -> Response:
         name = request.path_params["name"]
-        call = (await loaded()).calls.get(name)
+        call = await run_in_threadpool(loader.call, name)
         return await answer(studio, call, request) if call else line("there is no such call", 404)
 
     async def live(socket: WebSocket) -> None:
-        await LiveConnection(studio, (await loaded()).channels, socket).serve()
+        parts = await run_in_threadpool(loader.all)
+        await LiveConnection(studio, parts.channels, socket).serve()
 
     @asynccontextmanager
     async def lifespan(_app: Starlette) -> AsyncIterator[None]:
-        waiting = asyncio.create_task(loaded())
+        loading = Thread(target=loader.load, name="parts of the studio")
+        loading.start()
         yield
-        await asyncio.gather(waiting, return_exceptions=True)
+        await run_in_threadpool(loading.join)
         studio.close()
 
     routes = [

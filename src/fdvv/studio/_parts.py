@@ -6,12 +6,15 @@ import importlib
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from threading import Condition
+from typing import TypeVar
 
 import msgspec
 
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_device_part", "_documents", "_editor", "_jobs_part", "_library", "_press", "_programs")
+PARTS = ("_about", "_library", "_documents", "_editor", "_press", "_programs", "_jobs_part", "_device_part")
+"""In the order in which a person may want them: the first page is the library's."""
 
 
 @dataclass(frozen=True)
@@ -22,27 +25,85 @@ class Parts:
     channels: dict[str, ChannelKind]
 
 
+class PartLoader:
+    """Imports the parts one after the other; what is asked for is there as soon as its own part is.
+
+    Names are unique, else this installation is wrong (ValueError, of all that waits).
+    """
+
+    def __init__(self, names: tuple[str, ...] = PARTS) -> None:
+        self._names = names
+        self._parts = Parts({}, {})
+        self._changed = Condition()
+        self._ended = False
+        self._fault: BaseException | None = None
+
+    def load(self) -> None:
+        """Import all parts, in one thread: see prepare_records."""
+        prepared: set[type[msgspec.Struct]] = set()
+        try:
+            for name in self._names:
+                module = importlib.import_module(f"fdvv.studio.{name}")
+                prepare_records(prepared)
+                self._take(module.CALLS, module.CHANNELS)
+        except BaseException as error:
+            self._fault = error
+        finally:
+            with self._changed:
+                self._ended = True
+                self._changed.notify_all()
+
+    def call(self, name: str) -> Call | None:
+        """Wait for a call; None if no part has it."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended or name in self._parts.calls)
+        return self._parts.calls.get(name) or self.all().calls.get(name)
+
+    def all(self) -> Parts:
+        """Wait for all parts."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended)
+        if self._fault:
+            raise self._fault
+        return self._parts
+
+    def _take(self, calls: tuple[Call, ...], channels: tuple[ChannelKind, ...]) -> None:
+        with self._changed:
+            for call in calls:
+                _add(self._parts.calls, call)
+            for channel in channels:
+                _add(self._parts.channels, channel)
+            self._changed.notify_all()
+
+
+N = TypeVar("N", Call, ChannelKind)
+
+
+def _add(there: dict[str, N], one: N) -> None:
+    if there.setdefault(one.name, one) is not one:
+        raise ValueError(f"two parts of the studio offer {one.name}")
+
+
 def load_parts() -> Parts:
-    """Import every part. Names are unique, else this installation is wrong (ValueError)."""
-    modules = [importlib.import_module(f"fdvv.studio.{name}") for name in PARTS]
-    calls = [call for module in modules for call in module.CALLS]
-    channels = [channel for module in modules for channel in module.CHANNELS]
-    parts = Parts({c.name: c for c in calls}, {c.name: c for c in channels})
-    if len(parts.calls) != len(calls) or len(parts.channels) != len(channels):
-        raise ValueError("two parts of the studio offer the same call or channel")
-    prepare_records()
-    return parts
+    """Import every part, here and now."""
+    loader = PartLoader()
+    loader.load()
+    return loader.all()
 
 
-def prepare_records() -> None:
-    """Let msgspec read the annotations of every record that is loaded, here in one thread.
+def prepare_records(prepared: set[type[msgspec.Struct]]) -> None:
+    """Let msgspec read the annotations of every record that is loaded and not yet prepared, in one thread.
 
     It does so when a kind is first decoded, and two threads that are first at once crash the process
     (msgspec 0.22.0, "Segmentation fault"); worker threads answer calls, so that would be a matter of chance.
     """
     for kind in _below(msgspec.Struct):
-        with suppress(TypeError):  # a record that is only ever written may hold what msgspec does not read
-            msgspec.json.Decoder(kind)
+        if kind not in prepared:
+            prepared.add(kind)
+            with suppress(
+                TypeError
+            ):  # a record that is only ever written may hold what msgspec does not read
+                msgspec.json.Decoder(kind)
 
 
 def _below(kind: type[msgspec.Struct]) -> Iterator[type[msgspec.Struct]]:
