@@ -45,11 +45,17 @@ from fdvv.workflow import (
     ShelfRow,
     ShelfSearch,
     ShelfStand,
+    builtin_rows,
     row_of_model,
     sample_strokes,
 )
 
 NO_STROKE = -32768
+
+
+def prepare() -> None:
+    """Read what a person sees first, before other parts are imported beside it."""
+    builtin_rows()
 
 
 class Library:

@@ -45,6 +45,7 @@ class PartLoader:
             for name in self._names:
                 module = importlib.import_module(f"fdvv.studio.{name}")
                 prepare_records(prepared)
+                getattr(module, "prepare", lambda: None)()
                 self._take(module.CALLS, module.CHANNELS)
         except BaseException as error:
             self._fault = error

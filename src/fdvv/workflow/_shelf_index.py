@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -70,7 +71,7 @@ class ShelfIndex:
         tell: Callable[[ShelfStand], None] = lambda _: None,
         workers: int | None = None,
     ) -> None:
-        self.stand = ShelfStand(epoch=0)
+        self.stand = ShelfStand(0, list(builtin_rows()))
         self._shelf, self._cache, self._tell = shelf, cache, tell
         self._workers = min(4, os.cpu_count() or 1) if workers is None else workers
         self._wanted, self._closing = Event(), Event()
@@ -107,7 +108,7 @@ class ShelfIndex:
             return
         cached = read_cache(self._cache)
         known = [line for file in files if (line := cached.get(file.place)) and line.stamp == file.stamp]
-        stand = ShelfStand(self.stand.epoch + 1, _builtin_rows(), total=len(files))
+        stand = ShelfStand(self.stand.epoch + 1, list(builtin_rows()), total=len(files))
         for line in known:
             _take(stand, line)
         self.stand = stand
@@ -185,5 +186,8 @@ def _take(stand: ShelfStand, line: CacheLine) -> None:
     stand.done += 1
 
 
-def _builtin_rows() -> list[ShelfRow]:
-    return [row_of_model(load_builtin(name), f"builtin:{name}", Origin.BUILTIN) for name in builtin_names()]
+@cache
+def builtin_rows() -> tuple[ShelfRow, ...]:
+    """Give the rows of the built-in buttons, which do not change."""
+    names = builtin_names()
+    return tuple(row_of_model(load_builtin(name), f"builtin:{name}", Origin.BUILTIN) for name in names)

@@ -123,6 +123,8 @@ export class LibraryStore {
     });
     watch();
     onCleanup(() => channel.close());
+    // what is known already need not wait for the live connection
+    void this.load();
     this.rescan();
   }
 
