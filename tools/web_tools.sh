@@ -13,7 +13,7 @@ if [ ${#missing[@]} -gt 0 ]; then
   [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || fail "please install: ${missing[*]}"
   apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
-node -e 'process.exit(Number(process.versions.node.split(".")[0]) < 20)' || fail "node is older than 20"
+node -e 'process.exit(Number(process.versions.node.split(".")[0]) < 20 ? 1 : 0)' || fail "node is older than 20"
 
 # npm ci only where the lock file is newer than what it made
 [ node_modules/.ready -nt package-lock.json ] || { npm ci --silent && touch node_modules/.ready; }
