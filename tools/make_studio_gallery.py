@@ -81,7 +81,10 @@ def learn(page: Page) -> None:
 def connect(page: Page) -> None:
     """Connect the simulated rig and press on it."""
     page.get_by_role("button", name="Connect").click()
+    page.get_by_role("button", name="Upload").click()
+    page.get_by_text("program: ").wait_for()
     page.get_by_role("button", name="Press once").click()
+    page.get_by_text("felt in true displacement, simulated").wait_for()
     page.wait_for_timeout(1500)
 
 

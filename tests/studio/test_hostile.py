@@ -134,6 +134,19 @@ def _raw(draw: random.Random, number: int, port: int) -> bytes:
     )[number % 5]
 
 
+def test_who_hangs_up_in_the_middle_of_a_question_leaves_no_trace(
+    person: httpx2.Client, target: RunningStudio
+) -> None:
+    port = int(target.base.rpartition(":")[2])
+    head = f"POST /api/studio.about HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Type: application/json\r\n"
+    for _ in range(20):
+        with socket.create_connection(("127.0.0.1", port), timeout=5) as raw:
+            raw.sendall(
+                f"{head}Authorization: Bearer {target.token}\r\nContent-Length: 100\r\n\r\n{{".encode()
+            )
+    # that the server says nothing of it on standard error is seen when it ends
+
+
 def test_a_message_beyond_the_limit_ends_the_connection(person: httpx2.Client, target: RunningStudio) -> None:
     with live(target) as line:
         line.send("x" * 3_000_000)

@@ -6,7 +6,7 @@ import logging
 
 import msgspec
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
 from fdvv.errors import FdvvError
@@ -47,6 +47,8 @@ async def answer(studio: Studio, call: Call, request: Request) -> Response:
         return line("the question must be application/json", 415)
     try:
         ask = msgspec.json.decode(await body_of(request), type=call.ask)
+    except ClientDisconnect:
+        return line("the page has gone", 400)
     except TooLargeError:
         return line(f"the question is larger than {LARGEST_bytes // 1_000_000} MB", 413)
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:

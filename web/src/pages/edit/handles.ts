@@ -79,6 +79,8 @@ export function handlesOnCanvas(view: View, model: FDVVModel, curve: ForceCurve)
 
 /** Travel, actuation, reset and vibration. */
 const PLACES = 4;
+/** About how wide a letter is in words of 11 px. */
+const LETTER_px = 5.8;
 
 function rowOf(view: View, row: number): number {
   return view.box.top + ROW_px * (row + 0.5);
@@ -108,8 +110,12 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     const y = view.y.px(forceNear_cN(sampled(curve), x_mm));
     const [tip, base] = [y + up * 10, y + up * 19];
     brush.area([x, x - 6, x + 6], [tip, base, base], { colour: accent });
-    const at = { x_px: x, y_px: y + up * 30 };
-    brush.text(`${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`, at, { colour: text, size_px: 11, align: "center", halo: surface });
+    // the rows of the places come first
+    const at = { x_px: x, y_px: Math.max(y + up * 30, rowOf(view, PLACES - 0.4)) };
+    const words = `${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`;
+    const half_px = 0.5 * LETTER_px * words.length;
+    brush.rect({ left: x - half_px, top: at.y_px - 7, width: 2 * half_px, height: 14 }, { colour: surface, opacity: 0.85 });
+    brush.text(words, at, { colour: text, size_px: 11, align: "center" });
   }
   const end = forceNear_cN(sampled(curve), travel_mm);
   const [y, rows] = [view.y.px(end), rowOf(view, PLACES)];

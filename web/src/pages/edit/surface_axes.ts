@@ -15,7 +15,7 @@ const OUT = 1.14;
 const FAR = 1.36;
 const BELOW_px = 20;
 /** A letter of a label is hardly wider. */
-const LETTER_px = 6.6;
+const LETTER_px = 7.4;
 
 /** Paint floor, ticks and labels; `at` gives where a corner of the box is seen. */
 export function paintAxes(brush: Brush, at: (corner: Corner) => Seen, turn: Turn, ranges: Ranges, width_px: number): void {
