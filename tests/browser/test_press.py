@@ -91,8 +91,9 @@ def test_the_finger_follows_the_mouse_down_and_up(page: Page, wire: Wire) -> Non
     page.mouse.move(*place(page, 0.1), steps=10)
     page.wait_for_selector(UP)
     page.mouse.up()
-    assert value(page, "actuations") == "1"
-    assert {e["kind"] for body in wire.told for e in body.get("events", [])} >= {"actuation", "reset"}
+    # a hand that lingers near the point closes the key more than once
+    assert int(value(page, "actuations")) == len(wire.events("actuation")) >= 1
+    assert len(wire.events("reset")) == len(wire.events("actuation"))
 
 
 def test_a_held_cap_is_pushed_harder_until_it_gives_way(page: Page, wire: Wire) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from playwright.sync_api import expect
 from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
 
@@ -194,8 +195,7 @@ def test_the_forces_of_another_button_are_taken(own: Page, tmp_path: Path) -> No
     own.get_by_role("button", name="Make its own").click()
     own.get_by_role("button", name="Take its forces").click()
     wanted = of_model(load_builtin("mx-clear"), "press")
-    first = f"document.querySelectorAll('.point-values input')[1].value === '{wanted.force_cN[0][0]:g}'"
-    own.wait_for_function(first)
+    expect(own.locator(".point-values input").nth(1)).to_have_value(f"{wanted.force_cN[0][0]:g}")
     edited(own)
     own.get_by_label("Map").check()
     own.get_by_role("img", name="over displacement and velocity").wait_for()
