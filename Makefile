@@ -39,7 +39,7 @@ test-slow: setup ## The long tests
 	$(BIN)/pytest -n 2 -m "slow and not browser"
 
 test-browser: setup web-tools ## Drive the studio in a real browser
-	$(BIN)/pytest -n 2 -m browser
+	$(BIN)/pytest --timeout 180 -m browser
 
 format: setup ## Format the code in place
 	$(BIN)/ruff format .

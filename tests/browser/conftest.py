@@ -64,7 +64,7 @@ def studio(start_studio: Callable[..., RunningStudio]) -> RunningStudio:
 def context(browser: Browser) -> Iterator[BrowserContext]:
     """A browser profile of its own; any request that would leave the machine fails the test."""
     context = browser.new_context(viewport={"width": 1280, "height": 720})
-    context.set_default_timeout(15_000)
+    context.set_default_timeout(45_000)
     left: list[str] = []
     context.on("request", lambda request: left.append(request.url) if not _local(request.url) else None)
     yield context

@@ -23,7 +23,7 @@ ROWS = ".lib-row:not([hidden])"
 NAMES = ("Kailh Pro Purple", "Gateron Yellow", "Silent Linear Red")
 
 
-expect.set_options(timeout=15_000)
+expect.set_options(timeout=45_000)
 
 
 @pytest.fixture(scope="module")
