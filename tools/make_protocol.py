@@ -1,4 +1,8 @@
-"""Turn protocol/fdvv.toml into firmware/core/protocol.h and src/fdvv/protocol/_tables.py."""
+"""Turn protocol/*.toml into C headers of firmware/core and tables of src/fdvv/protocol.
+
+fdvv.toml becomes protocol.h and _tables.py; strip.toml, whose `stem` is part of every name made from it,
+strip_protocol.h and _strip_tables.py.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,9 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
 HEADER = ROOT / "firmware" / "core" / "protocol.h"
 TABLES = ROOT / "src" / "fdvv" / "protocol" / "_tables.py"
+STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
+STRIP_HEADER = ROOT / "firmware" / "core" / "strip_protocol.h"
+STRIP_TABLES = ROOT / "src" / "fdvv" / "protocol" / "_strip_tables.py"
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
 C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES}
 FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
@@ -56,10 +63,10 @@ def fields_of(name: str, rows: list[list[Any]]) -> list[Field]:
     place = 0
     for field in fields:
         if place % SIZES[field.kind]:
-            raise SystemExit(f"{SOURCE.name}: {name}.{field.name} lies at {place}, no multiple of its size")
+            raise SystemExit(f"{name}.{field.name} lies at {place}, no multiple of its size")
         place += field.size
     if fields and place % max(SIZES[f.kind] for f in fields):
-        raise SystemExit(f"{SOURCE.name}: {name} has {place} bytes, no multiple of its widest field")
+        raise SystemExit(f"{name} has {place} bytes, no multiple of its widest field")
     return fields
 
 
@@ -71,6 +78,16 @@ def structures(source: dict[str, Any]) -> dict[str, list[Field]]:
             if isinstance(body.get(key), list) and body[key]:
                 found[f"{name}_{part}"] = fields_of(name, body[key])
     return found
+
+
+def stem_of(source: dict[str, Any]) -> str:
+    """Give what the names of a definition begin with: "" or such as "strip_"."""
+    return f"{source['stem']}_" if "stem" in source else ""
+
+
+def file_of(source: dict[str, Any]) -> str:
+    """Name the definition's file."""
+    return f"protocol/{source.get('stem', 'fdvv')}.toml"
 
 
 def about(source: dict[str, Any], name: str) -> str:
@@ -112,33 +129,37 @@ def _part(key: str) -> str:
 
 def header(source: dict[str, Any]) -> str:
     """Write the C header."""
-    structs = structures(source)
+    structs, stem = structures(source), _c_stem(source)
     lines = [
-        "/* Made by tools/make_protocol.py from protocol/fdvv.toml; do not edit. */",
-        "#ifndef FDVV_PROTOCOL_H",
-        "#define FDVV_PROTOCOL_H",
+        f"/* Made by tools/make_protocol.py from {file_of(source)}; do not edit. */",
+        f"#ifndef {stem}PROTOCOL_H",
+        f"#define {stem}PROTOCOL_H",
         "",
         "#include <stdint.h>",
         "",
-        f"#define FDVV_PROTOCOL_VERSION {source['version']}",
-        f"#define FDVV_PROTOCOL_HASH 0x{meaning_hash(source):08x}u",
+        f"#define {stem}PROTOCOL_VERSION {source['version']}",
+        f"#define {stem}PROTOCOL_HASH 0x{meaning_hash(source):08x}u",
         "",
     ]
     lines += [
-        f"#define FDVV_{k.upper()} {v['value']} /* {v['about']} */" for k, v in source["constants"].items()
+        f"#define {stem}{k.upper()} {v['value']} /* {v['about']} */" for k, v in source["constants"].items()
     ]
     for kind in ("enums", "flags"):
         for name, body in source[kind].items():
-            lines += ["", f"/* {body['about']} */", "enum {", *_c_members(kind, name, body), "};"]
+            lines += ["", f"/* {body['about']} */", "enum {", *_c_members(source, kind, name), "};"]
     for name, fields in structs.items():
         lines += ["", *_c_struct(source, name, fields)]
     lines += ["", *_c_messages(source, structs), *_c_defaults(source), "#endif", ""]
     return "\n".join(lines)
 
 
-def _c_members(kind: str, name: str, body: dict[str, Any]) -> list[str]:
-    values = {k: v for k, v in body.items() if k != "about"}
-    stem = f"FDVV_{name.upper()}"
+def _c_stem(source: dict[str, Any]) -> str:
+    return f"FDVV_{stem_of(source)}".upper()
+
+
+def _c_members(source: dict[str, Any], kind: str, name: str) -> list[str]:
+    values = {k: v for k, v in source[kind][name].items() if k != "about"}
+    stem = f"{_c_stem(source)}{name.upper()}"
     if kind == "flags":
         return [f"    {stem}_FLAG_{k.upper()} = 1 << {v}," for k, v in values.items()]
     return [*(f"    {stem}_{k.upper()} = {v}," for k, v in values.items()), f"    {stem}S = {len(values)},"]
@@ -150,16 +171,17 @@ def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[st
         array = f"[{field.count}]" if field.count else ""
         lines.append(f"    {C_TYPES[field.kind]} {field.name}{array}; /* {field.text} */")
     total = sum(field.size for field in fields)
+    known, macro = f"fdvv_{stem_of(source)}{name}", f"{_c_stem(source)}{name.upper()}"
     lines += [
-        f"}} fdvv_{name};",
-        f"typedef char fdvv_{name}_has_{total}_bytes[sizeof(fdvv_{name}) == {total} ? 1 : -1];",
+        f"}} {known};",
+        f"typedef char {known}_has_{total}_bytes[sizeof({known}) == {total} ? 1 : -1];",
     ]
     ranged = [f for f in fields if not f.count and not _full(f)]
-    lines.append(f"#define FDVV_{name.upper()}_RANGES(X) \\")
+    lines.append(f"#define {macro}_RANGES(X) \\")
     lines += [f"    X({f.name}, {f.low}, {f.high}) \\" for f in ranged]
     if name in source["defaults"]:  # a refusal names the field by its number
-        members = (f"    FDVV_{name.upper()}_FIELD_{f.name}," for f in fields)
-        lines += ["", "enum {", *members, f"    FDVV_{name.upper()}_FIELDS,", "};"]
+        members = (f"    {macro}_FIELD_{f.name}," for f in fields)
+        lines += ["", "enum {", *members, f"    {macro}_FIELDS,", "};"]
     return [*lines, ""]
 
 
@@ -171,13 +193,13 @@ def _full(field: Field) -> bool:
 
 def _c_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
     lines = ["/* name, id, bytes of the request (or of what is sent unasked), bytes of the reply */"]
-    lines.append("#define FDVV_MESSAGES(X) \\")
+    lines.append(f"#define {_c_stem(source)}MESSAGES(X) \\")
     for name, body in source["messages"].items():
         counts = (sizes(source, structs, name, key) for key in ("fields", "reply"))
         lines.append(f"    X({name.upper()}, 0x{body['id']:02x}, {', '.join(map(str, counts))}) \\")
     lines += ["", "enum {"]
     lines += [
-        f"    FDVV_MSG_{k.upper()} = 0x{v['id']:02x}, /* {v['about']} */"
+        f"    {_c_stem(source)}MSG_{k.upper()} = 0x{v['id']:02x}, /* {v['about']} */"
         for k, v in source["messages"].items()
     ]
     return [*lines, "};", ""]
@@ -187,7 +209,7 @@ def _c_defaults(source: dict[str, Any]) -> list[str]:
     lines = []
     for name, values in source["defaults"].items():
         order = [Field.of(row).name for row in source["structs"][name]["fields"]]
-        lines += [f"#define FDVV_{name.upper()}_DEFAULTS \\", "    { \\"]
+        lines += [f"#define {_c_stem(source)}{name.upper()}_DEFAULTS \\", "    { \\"]
         lines += [f"        {values[field]}, /* {field} */ \\" for field in order]
         lines += ["    }", ""]
     return lines
@@ -198,9 +220,9 @@ def _c_defaults(source: dict[str, Any]) -> list[str]:
 
 def tables(source: dict[str, Any]) -> str:
     """Write the Python module."""
-    structs = structures(source)
+    structs, stem = structures(source), stem_of(source).upper()
     lines = [
-        '"""Made by tools/make_protocol.py from protocol/fdvv.toml; do not edit."""',
+        f'"""Made by tools/make_protocol.py from {file_of(source)}; do not edit."""',
         "",
         "# ruff: noqa: E501",
         "# fmt: off",
@@ -212,15 +234,15 @@ def tables(source: dict[str, Any]) -> str:
         "",
         "from fdvv.protocol._record import Limits, Record",
         "",
-        f"VERSION = {source['version']}",
-        f"HASH = 0x{meaning_hash(source):08X}",
+        f"{stem}VERSION = {source['version']}",
+        f"{stem}HASH = 0x{meaning_hash(source):08X}",
         "",
     ]
     for name, body in source["constants"].items():
-        lines += [f"{name.upper()} = {body['value']}", f'"""{_sentence(body["about"])}"""']
+        lines += [f"{stem}{name.upper()} = {body['value']}", f'"""{_sentence(body["about"])}"""']
     for kind in ("enums", "flags"):
         for name, body in source[kind].items():
-            lines += _py_enum(kind, name, body)
+            lines += _py_enum(kind, f"{stem_of(source)}{name}", body)
     lines += _py_messages(source, structs)
     for name, fields in structs.items():
         lines += _py_record(source, name, fields)
@@ -250,20 +272,26 @@ def _py_enum(kind: str, name: str, body: dict[str, Any]) -> list[str]:
 
 
 def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
-    lines = ["", "", "class Message(IntEnum):", '    """Numbers of the messages."""', ""]
+    named = camel(f"{stem_of(source)}message")
+    lines = ["", "", f"class {named}(IntEnum):", '    """Numbers of the messages."""', ""]
     for name, body in source["messages"].items():
         lines += [f"    {name.upper()} = 0x{body['id']:02X}", f'    """{_sentence(body["about"])}"""']
     for key in ("fields", "reply"):
-        title = "REQUEST_BYTES" if key == "fields" else "REPLY_BYTES"
+        title = stem_of(source).upper() + ("REQUEST_BYTES" if key == "fields" else "REPLY_BYTES")
         lines += ["", f"{title} = {{"]
-        lines += [f"    Message.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
+        lines += [f"    {named}.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
         lines += ["}"]
     return lines
 
 
 def _py_record(source: dict[str, Any], name: str, fields: list[Field]) -> list[str]:
     form = "<" + "".join(f"{f.count}s" if f.count else FORMATS[f.kind] for f in fields)
-    lines = ["", "", "@dataclass(frozen=True, kw_only=True)", f"class {camel(name)}(Record):"]
+    lines = [
+        "",
+        "",
+        "@dataclass(frozen=True, kw_only=True)",
+        f"class {camel(stem_of(source) + name)}(Record):",
+    ]
     lines += [f'    """{_sentence(about(source, name))}', "", "    Attributes", "    ----------"]
     lines += [f"    {f.name} : {f.text or 'zero'}" for f in fields]
     lines += ['    """', "", f'    FORMAT: ClassVar[str] = "{form}"', "    LIMITS: ClassVar[Limits] = {"]
@@ -281,11 +309,12 @@ def _py_field(field: Field, defaults: dict[str, int]) -> str:
 
 
 def main() -> None:
-    """Write both files."""
-    source = tomllib.loads(SOURCE.read_text())
-    HEADER.write_text(header(source))
-    TABLES.write_text(tables(source))
-    sys.stdout.write(f"protocol {meaning_hash(source):08x}\n")
+    """Write the files of both definitions."""
+    for place, made, told in ((SOURCE, HEADER, TABLES), (STRIP_SOURCE, STRIP_HEADER, STRIP_TABLES)):
+        source = tomllib.loads(place.read_text())
+        made.write_text(header(source))
+        told.write_text(tables(source))
+        sys.stdout.write(f"{file_of(source)} {meaning_hash(source):08x}\n")
 
 
 if __name__ == "__main__":

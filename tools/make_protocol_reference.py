@@ -1,4 +1,4 @@
-"""Write docs/reference/protocol.md from protocol/fdvv.toml."""
+"""Write docs/reference/protocol.md from protocol/fdvv.toml, and strip-protocol.md from strip.toml."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
 PAGE = ROOT / "docs" / "reference" / "protocol.md"
+STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
+STRIP_PAGE = ROOT / "docs" / "reference" / "strip-protocol.md"
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
 
 INTRODUCTION = """# The wire
@@ -30,6 +32,13 @@ name: um16 is 1/16 µm, mm_s16 1/16 mm/s, cN64 1/64 cN, q8 to q16 a ratio times 
 
 A frame is stuffed (consistent overhead byte stuffing), so that it holds no zero, and ended by a zero. Empty
 frames mean nothing. One example of every message, bytes and meaning, is in `protocol/golden.json`.
+"""
+
+STRIP_INTRODUCTION = """# The wire of the LED strip's board
+
+Made from `protocol/strip.toml` by `tools/make_protocol_reference.py`; do not edit. The board and what it is
+for: [the LED strip](led-strip.md). Frames, stuffing and checksum are those of [the wire](protocol.md#frames),
+with a payload of 0 to 60 bytes; the serial line has 115,200 Bd, 8 bits, no parity.
 """
 
 
@@ -83,11 +92,21 @@ def numbers(name: str, body: dict[str, Any], bits: bool) -> list[str]:
 
 def reference() -> str:
     """Give the page's text."""
-    source = tomllib.loads(SOURCE.read_text())
-    lines = [INTRODUCTION, "## Messages", ""]
+    return page(INTRODUCTION, SOURCE)
+
+
+def strip_reference() -> str:
+    """Give the text of the page of the strip's board."""
+    return page(STRIP_INTRODUCTION, STRIP_SOURCE)
+
+
+def page(introduction: str, place: Path) -> str:
+    """Write a definition's page."""
+    source = tomllib.loads(place.read_text())
+    lines = [introduction, "## Messages", ""]
     for name, body in source["messages"].items():
         lines += message(name, body)
-    lines += ["## Structures", ""]
+    lines += ["## Structures", ""] if source["structs"] else []
     for name, body in source["structs"].items():
         lines += [f"### {name}", "", sentence(body["about"]), "", *fields(body["fields"])]
     lines += ["## Numbers", ""]
@@ -101,3 +120,4 @@ def reference() -> str:
 
 if __name__ == "__main__":
     PAGE.write_text(reference())
+    STRIP_PAGE.write_text(strip_reference())

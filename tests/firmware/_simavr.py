@@ -7,21 +7,23 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-BOARD = REPOSITORY / "firmware" / "boards" / "uno_vibration"
 HEADERS = Path("/usr/include/simavr")
 CLOCK_HZ = 16_000_000
 ROOM = 200_000
 BOOT_CYCLES = 20_000
 
-SIGNATURES = {
+Signature = tuple[Any, list[Any]]
+SIGNATURES: dict[str, Signature] = {
     "uno_open": (ctypes.c_void_p, [ctypes.c_char_p, ctypes.c_uint32]),
     "uno_close": (None, [ctypes.c_void_p]),
     "uno_cycle": (ctypes.c_uint64, [ctypes.c_void_p]),
@@ -56,21 +58,26 @@ def require_tools() -> None:
         pytest.skip(f"make firmware-tools installs {', '.join(missing)}")
 
 
-def build_board(folder: Path) -> Path:
-    """Build the board's firmware; give the ELF file."""
-    subprocess.run(["make", "-C", str(BOARD), f"BUILD={folder}"], check=True, capture_output=True)
-    return folder / "uno_vibration.elf"
+def build_board(folder: Path, name: str = "uno_vibration") -> Path:
+    """Build a board's firmware; give the ELF file."""
+    board = REPOSITORY / "firmware" / "boards" / name
+    subprocess.run(["make", "-C", str(board), f"BUILD={folder}"], check=True, capture_output=True)
+    return folder / f"{name}.elf"
 
 
 def build_emulator(folder: Path) -> ctypes.CDLL:
     """Compile the emulator's half in C and load it."""
-    library = folder / "libuno.so"
-    source = Path(__file__).with_name("_simavr.c")
+    return compile_emulator(Path(__file__).with_name("_simavr.c"), folder, SIGNATURES)
+
+
+def compile_emulator(source: Path, folder: Path, signatures: Mapping[str, Signature]) -> ctypes.CDLL:
+    """Compile a board around simavr and load it."""
+    library = folder / f"lib{source.stem}.so"
     # simavr's headers are not clean under -Wextra
     flags = ["-std=gnu99", "-O2", "-Wall", "-fPIC", "-shared", f"-I{HEADERS}"]
     subprocess.run(["cc", *flags, "-o", str(library), str(source), "-lsimavr"], check=True)
     emulator = ctypes.CDLL(str(library))
-    for name, (result, arguments) in SIGNATURES.items():
+    for name, (result, arguments) in signatures.items():
         function = getattr(emulator, name)
         function.restype, function.argtypes = result, arguments
     return emulator

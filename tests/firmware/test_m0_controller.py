@@ -8,10 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import EmulatedBoard, LibraryBoard, LinkedDevice, ScriptedPerson, surface_image
-from fdvv.device._m0 import TickInputs
-from fdvv.model import ForceSurface
-from fdvv.protocol import Settings
+from fdvv.device import (
+    EmulatedBoard,
+    LibraryBoard,
+    LinkedDevice,
+    ScriptedPerson,
+    ScriptedPlant,
+    surface_image,
+)
+from fdvv.device._emulated import SHARE_OF_TICK
+from fdvv.device._m0 import M0Emulator, TickInputs
+from fdvv.model import ForceSurface, load_builtin
+from fdvv.program import compile_button
+from fdvv.protocol import Settings, TickFlag
 from fdvv.testing import plain_surface
 
 from ._m0 import CONTROLLER, build, sizes_bytes
@@ -20,6 +29,7 @@ from ._simavr import say
 pytestmark = pytest.mark.firmware
 
 AHEAD = {"predictor_q16": 6000, "lead_us": 3000, "brake_lead_us": 2000, "drag_q13": 500, "friction_cN64": 100}
+BUTTON = compile_button(load_builtin("mx-brown")).image
 PLAIN = surface_image(plain_surface(20.0, 3.0), 3.0)
 FORCES = np.full((6, 255), 30.0)
 LONG = surface_image(ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 7.0), FORCES, FORCES - 5), 4.0)
@@ -104,6 +114,51 @@ def test_a_pulled_cable_ends_the_force_within_the_host_timeout(emulated: LinkedD
     board.emulator.run_us(Settings().host_timeout_ms * 1000 + 2000)
     off = next(c for c in board.emulator.pwm_log if c.written_us > pulled_us and not c.enable)
     assert off.written_us - pulled_us <= Settings().host_timeout_ms * 1000 + 500
+
+
+def held_down(device: LinkedDevice, key_mm: float = 3.5) -> M0Emulator:
+    """Arm on a button whose cap lies below its actuation point."""
+    device.upload_program(BUTTON)
+    random, settings = np.random.default_rng(0), device.settings()
+    device.port.connect(ScriptedPlant(np.full(10, key_mm), 100.0, settings, random))
+    device.client.arm()
+    device.client.listen(device.port.now_s() + 0.02)
+    emulator = board_of(device).emulator
+    assert emulator.outputs().key
+    return emulator
+
+
+def test_the_key_line_rises_and_falls_in_the_tick_that_decides(emulated: LinkedDevice) -> None:
+    emulated.upload_program(BUTTON)
+    emulated.press(100.0)
+    told, emulator = emulated.client.telemetry.columns(), board_of(emulated).emulator
+    tick_us, down, up = emulator.tick_us, *emulator.key_log
+    last_us = emulator.time_us - SHARE_OF_TICK * tick_us  # the board in lockstep stops there in each tick
+    late_us = [(edge.time_us - last_us) % tick_us for edge in (down, up)]
+    ticks = [emulator.tick + (edge.time_us - last_us) // tick_us for edge in (down, up)]
+    flagged = told.tick[np.flatnonzero(told.flags & TickFlag.KEY_DOWN)]
+    say(f"key line {max(late_us):.0f} us after the tick at most, duty {emulator.costs[-1].latency_us:.0f} us")
+    assert (down.is_down, up.is_down) == (True, False)
+    assert ticks == [flagged[0], flagged[-1] + 1]
+    assert max(late_us) < SHARE_OF_TICK * tick_us
+
+
+def test_a_key_that_is_down_comes_up_with_the_force_when_the_host_is_lost(emulated: LinkedDevice) -> None:
+    emulator = held_down(emulated)
+    board_of(emulated).unplug()
+    emulator.run_us(Settings().host_timeout_ms * 1000 + 2000)
+    off = next(change for change in emulator.pwm_log if not change.enable and change.written_us > 100_000)
+    assert not emulator.outputs().key
+    assert abs(emulator.key_log[-1].time_us - off.written_us) < 20
+
+
+def test_a_key_that_is_down_comes_up_when_the_controller_is_reset(emulated: LinkedDevice) -> None:
+    emulator = held_down(emulated)
+    emulator.stall(5000)
+    emulator.run_us(3000)
+    assert emulator.reset_cause == "watchdog"
+    assert not emulator.key_log[-1].is_down
+    assert not emulator.outputs().key
 
 
 def test_a_hanging_controller_is_reset_with_the_bridge_off_and_says_why(emulated: LinkedDevice) -> None:

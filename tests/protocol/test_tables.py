@@ -35,6 +35,14 @@ def test_the_generated_files_are_those_of_the_definition() -> None:
     assert make.tables(SOURCE) == make.TABLES.read_text()
 
 
+def test_the_strips_generated_files_are_those_of_its_definition() -> None:
+    make = generator()
+    strip = tomllib.loads(make.STRIP_SOURCE.read_text())
+    assert make.header(strip) == make.STRIP_HEADER.read_text()
+    assert make.tables(strip) == make.STRIP_TABLES.read_text()
+    assert make.meaning_hash(strip) == protocol.STRIP_HASH
+
+
 def test_prose_does_not_change_the_hash_and_a_range_does() -> None:
     make = generator()
     prose = tomllib.loads((ROOT / "protocol" / "fdvv.toml").read_text())
@@ -44,9 +52,12 @@ def test_prose_does_not_change_the_hash_and_a_range_does() -> None:
     assert make.meaning_hash(prose) != protocol.HASH
 
 
-def test_the_header_compiles_alone(tmp_path: Path) -> None:
+def test_the_headers_compile_alone_and_together(tmp_path: Path) -> None:
     probe = tmp_path / "probe.c"
-    probe.write_text('#include "protocol.h"\nint main(void) { return sizeof(fdvv_settings) != 96; }\n')
+    probe.write_text(
+        '#include "protocol.h"\n#include "strip_protocol.h"\n'
+        "int main(void) { return sizeof(fdvv_settings) != 96; }\n"
+    )
     program = tmp_path / "probe"
     flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'firmware' / 'core'}"]
     subprocess.run(["cc", *flags, "-o", program, probe], check=True)

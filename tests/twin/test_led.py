@@ -16,6 +16,7 @@ from fdvv.twin import (
     LedTicks,
     LIFTED_m,
     Rig,
+    draw_ticks,
     image_of,
     load_rig,
     plan,
@@ -145,3 +146,37 @@ def test_a_lead_that_is_no_number_is_refused(
 ) -> None:
     with pytest.raises(ModelError, match="finite"):
         led(tactile).lead(*numbers)
+
+
+def test_a_copy_goes_on_as_the_original_would_and_leaves_it_alone(tactile: ForceSurface) -> None:
+    rig, alone = led(tactile, seed=3), led(tactile, seed=3)
+    rig.lead(1.0)
+    alone.lead(1.0)
+    both = [one.advance(300) for one in (rig.copy(), alone)]
+    for field in fields(LedTicks):
+        assert np.array_equal(*(getattr(one, field.name) for one in both)), field.name
+    assert rig.time_s == 0.0
+
+
+def test_a_copy_may_be_given_noise_of_its_own(tactile: ForceSurface) -> None:
+    rig = led(tactile, seed=3)
+    noise = draw_ticks(rig.rig, rig.finger, 700, np.random.default_rng(5))
+    once, again = (rig.copy(noise).advance(700).sensed_mm for _ in range(2))
+    assert np.array_equal(once, again)
+    assert not np.array_equal(once, rig.copy().advance(700).sensed_mm)
+    with pytest.raises(ModelError, match="position_m"):
+        rig.copy(replace(noise, position_m=noise.position_m[:, :1]))
+
+
+def test_a_pressed_finger_goes_where_the_same_gesture_takes_it_in_a_press_of_its_own(
+    tactile: ForceSurface,
+) -> None:
+    """Oracle: simulate(), whose finger starts where the gesture does."""
+    finger = Finger(habit=replace(Finger().habit, lift_m=LIFTED_m))
+    gesture = plan(finger, 0.004, 0.08)
+    rig = LedRig(image_of(tactile, 4.0).image, finger=finger, seed=None)
+    rig.announce(50.0)
+    rig.press(gesture)
+    ticks = rig.advance(150)
+    trace = simulate(rig.rig, finger, gesture, tactile, 4.0, silence(rig.rig, gesture), 50.0)
+    assert ticks.displacement_mm == pytest.approx(trace.displacement_mm[trace.tick][:150], abs=0.02)

@@ -44,6 +44,9 @@ void board_drive(int16_t duty_q15, uint8_t enable);
 /* 1 if the bridge reports a fault, or its inputs are not low while it is off. */
 uint8_t board_drive_fault(void);
 
+/* The key line: high while the key is down. */
+void board_key(uint8_t is_down);
+
 /* The travel stop's servo pulse, held between 400 and 2600 us. */
 void board_stop(uint16_t pulse_us);
 

@@ -1,4 +1,4 @@
-/* The bridge and the servo. */
+/* The bridge, the servo and the key line. */
 #include "board.h"
 #include "pins.h"
 #include "samd21.h"
@@ -70,6 +70,14 @@ uint8_t board_drive_fault(void)
     uint32_t pins = PORT_IN;
     if (!is_enabled) return (pins & (PIN_BIT(PIN_IN1) | PIN_BIT(PIN_IN2))) != 0;
     return !(pins & PIN_BIT(PIN_FAULT));
+}
+
+void board_key(uint8_t is_down)
+{
+    if (is_down)
+        PORT_OUTSET = PIN_BIT(PIN_KEY);
+    else
+        PORT_OUTCLR = PIN_BIT(PIN_KEY);
 }
 
 void board_stop(uint16_t pulse_us)

@@ -98,6 +98,7 @@ static uint8_t serve_tick(void)
     if (!board_acquire(&readings)) return 0;
     take(&readings);
     fdvv_core_tick(&core, &inputs, &outputs);
+    board_key(outputs.key); /* 0 unless the core renders: in no fault is it down */
     board_drive(outputs.duty_q15, outputs.enable);
     board_watchdog_clear();
     count(&readings);

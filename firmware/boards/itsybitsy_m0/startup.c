@@ -1,4 +1,4 @@
-/* From reset to main: the bridge off first, then memory. */
+/* From reset to main: the bridge off and the key up first, then memory. */
 #include "pins.h"
 #include "samd21.h"
 
@@ -8,18 +8,19 @@ int main(void);
 void board_reset(void);
 void board_trap(void);
 
-static void bridge_off(void)
+static void outputs_off(void)
 {
+    const uint32_t off = PIN_BIT(PIN_IN1) | PIN_BIT(PIN_IN2) | PIN_BIT(PIN_ENABLE) | PIN_BIT(PIN_KEY);
     PORT_PINCFG(PIN_IN1) = PORT_PINCFG_INEN; /* the pin obeys OUT, not the timer */
     PORT_PINCFG(PIN_IN2) = PORT_PINCFG_INEN;
-    PORT_OUTCLR = PIN_BIT(PIN_IN1) | PIN_BIT(PIN_IN2) | PIN_BIT(PIN_ENABLE);
-    PORT_DIRSET = PIN_BIT(PIN_IN1) | PIN_BIT(PIN_IN2) | PIN_BIT(PIN_ENABLE);
+    PORT_OUTCLR = off;
+    PORT_DIRSET = off;
 }
 
 /* Any fault of the processor: nothing can be trusted, so off and anew. */
 void board_trap(void)
 {
-    bridge_off();
+    outputs_off();
     SCB_AIRCR = 0x05FA0004u;
     for (;;) {
     }
@@ -33,7 +34,7 @@ __attribute__((section(".vectors"), used)) static const void *const vectors[16] 
 
 void board_reset(void)
 {
-    bridge_off();
+    outputs_off();
     SCB_VTOR = (uint32_t)(uintptr_t)vectors;
     const uint32_t *from = &ld_data_from;
     for (uint32_t *to = &ld_data_start; to < &ld_data_end;) *to++ = *from++;

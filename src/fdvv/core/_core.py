@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from copy import copy
 from enum import IntEnum
 from functools import cache
 
@@ -76,6 +77,13 @@ class Core:
         fresh = None if image is None else self._checked_image(image)
         self._lib.fdvv_core_activate(self._core, None if fresh is None else address(fresh))
         self._image = fresh  # the core goes on reading it
+
+    def copy(self) -> Core:
+        """Copy the core as it stands, program and all; from then on the two go their own ways."""
+        other = copy(self)
+        other._memory = self._memory.copy()
+        other._core = address(other._memory)
+        return other
 
     def ask(self, ask: Ask, number: int = 0) -> Refusal:
         """Ask the supervisor for a change of mode; number is the fault to clear."""

@@ -13,7 +13,7 @@ from fdvv.device._image import surface_image
 from fdvv.device._linked import LinkedDevice
 from fdvv.device._lockstep import Board, LockstepPort
 from fdvv.device._monitor import watch
-from fdvv.device._open import BUILT_ELF, KINDS, open_device
+from fdvv.device._open import BUILT_ELF, KINDS, open_device, pressed_by_person
 from fdvv.device._plant import Inputs, Outputs, Person, Plant, PressedPlant, Truth
 from fdvv.device._port import Port
 from fdvv.device._pressed import PressedDevice
@@ -23,6 +23,9 @@ from fdvv.device._replay import ReplayDevice
 from fdvv.device._script import ScriptedPerson, ScriptedPlant
 from fdvv.device._serial import SerialPort, serial_ports
 from fdvv.device._simulated import SimulatedPerson
+from fdvv.device._strip import KeyLine, StripResult, StripRound, StripStart, StripTask
+from fdvv.device._strip_library import LibraryStrip
+from fdvv.device._strip_open import STRIPS, open_strip, strip_port
 from fdvv.device._telemetry import Telemetry, TickColumns
 from fdvv.device._twin import TwinDevice
 from fdvv.device._wire import RefusedError, Wire
@@ -31,6 +34,7 @@ __all__ = [
     "BENCHES",
     "BUILT_ELF",
     "KINDS",
+    "STRIPS",
     "BenchInfo",
     "Board",
     "CaptureDevice",
@@ -44,7 +48,9 @@ __all__ = [
     "FaultReport",
     "HostBoard",
     "Inputs",
+    "KeyLine",
     "LibraryBoard",
+    "LibraryStrip",
     "LinkedDevice",
     "LockstepPort",
     "Outputs",
@@ -64,6 +70,10 @@ __all__ = [
     "SerialBench",
     "SerialPort",
     "SimulatedPerson",
+    "StripResult",
+    "StripRound",
+    "StripStart",
+    "StripTask",
     "Telemetry",
     "TickColumns",
     "Truth",
@@ -72,11 +82,14 @@ __all__ = [
     "Wire",
     "open_bench",
     "open_device",
+    "open_strip",
     "pack_record",
+    "pressed_by_person",
     "read_session",
     "relate",
     "serial_ports",
     "show_nothing",
+    "strip_port",
     "surface_image",
     "unpack_press",
     "unpack_surface",

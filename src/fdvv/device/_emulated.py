@@ -19,8 +19,8 @@ class EmulatedBoard:
     """The program that is flashed onto the ItsyBitsy M0, run instruction by instruction.
 
     elf : build/firmware/itsybitsy_m0.elf of `make firmware`. Of the outputs, the pins show duty, enable,
-    stop pulse and slot; mode, key and command go over the link alone. Raises DeviceError if the port does
-    not open.
+    stop pulse, slot and whether the key is down; mode and command go over the link alone. Raises DeviceError
+    if the port does not open.
     """
 
     name = "emulated"
@@ -53,7 +53,7 @@ class EmulatedBoard:
         self.emulator.run_ticks(inputs.elapsed_ticks)
         self.emulator.run_us(SHARE_OF_TICK * self.emulator.tick_us)
         now = self.emulator.outputs()
-        return Outputs(now.duty_q15, int(now.enable), self._slot(told), round(now.stop_us))
+        return Outputs(now.duty_q15, int(now.enable), self._slot(told), round(now.stop_us), int(now.key))
 
     def _slot(self, told: int) -> int:
         for message in self.emulator.wire_log[told:]:

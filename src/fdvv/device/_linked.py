@@ -66,16 +66,35 @@ class LinkedDevice(Remote):
         self.client.stream(1)
         try:
             self.client.arm()
-            self._listen(self._person.settle_s)
-            plant = self._person.press(self.image, velocity_mm_s, self._settings)
-            self.port.connect(plant)
-            self._listen(plant.ticks * self._settings.tick_us * 1e-6)
-            ticks, truth = np.array(self.port.ticks), plant.record()
+            truth, ticks = self._pressed(velocity_mm_s)
         finally:
             self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
         return self._joined(truth, ticks, velocity_mm_s)
+
+    def press_armed(self, velocity_mm_s: float) -> Press:
+        """Have the simulated person press once while the device renders, which it goes on with.
+
+        It must be armed and stream its records. DeviceError if it faults meanwhile.
+        """
+        self._check_press(velocity_mm_s)
+        self.client.announce(velocity_mm_s)
+        self.client.telemetry.clear()
+        try:
+            truth, ticks = self._pressed(velocity_mm_s)
+        finally:
+            self.port.connect(self._person.rest(self._settings))
+        self._fail_on_fault()
+        return self._joined(truth, ticks, velocity_mm_s)
+
+    def _pressed(self, velocity_mm_s: float) -> tuple[Truth, IntArray]:
+        """Let the cap come up and the person press; give what happened and the board's ticks of it."""
+        self._listen(self._person.settle_s)
+        plant = self._person.press(self.image, velocity_mm_s, self._settings)
+        self.port.connect(plant)
+        self._listen(plant.ticks * self._settings.tick_us * 1e-6)
+        return plant.record(), np.array(self.port.ticks)
 
     def _listen(self, duration_s: float) -> None:
         self.client.listen(self.port.now_s() + duration_s)

@@ -29,6 +29,11 @@ KINDS = {
 }
 
 
+def pressed_by_person(spec: str) -> bool:
+    """Tell whether a person presses the device, or bench, that spec names; no other is pressed by one."""
+    return spec.startswith("serial:")
+
+
 def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> Device:
     """Open the device that spec names (KINDS).
 

@@ -1,4 +1,4 @@
-"""What host and firmware say to each other: messages, settings, images; defined in protocol/fdvv.toml."""
+"""What host and firmware say to each other: messages, settings, images; defined in protocol/*.toml."""
 
 from fdvv.protocol._frame import Frame, FrameDecoder, crc16, decode, encode, stuff, unstuff
 from fdvv.protocol._images import (
@@ -20,6 +20,29 @@ from fdvv.protocol._messages import (
     request_frame,
 )
 from fdvv.protocol._record import Record
+from fdvv.protocol._strip_tables import (
+    STRIP_HASH,
+    STRIP_HOST_TIMEOUT_MS,
+    STRIP_LIT_PIXELS,
+    STRIP_MOST_PIXELS,
+    STRIP_PRESSES,
+    STRIP_REPLY_BYTES,
+    STRIP_REQUEST_BYTES,
+    STRIP_VERSION,
+    StripBeginReply,
+    StripBeginRequest,
+    StripBoardFlag,
+    StripHelloReply,
+    StripHelloRequest,
+    StripLed,
+    StripMessage,
+    StripMode,
+    StripReadRoundReply,
+    StripRefusal,
+    StripRefusedReply,
+    StripShowRequest,
+    StripStatusReply,
+)
 from fdvv.protocol._tables import (
     DATA_BYTES,
     FRAME_BYTES,
@@ -96,6 +119,14 @@ __all__ = [
     "REQUEST_BYTES",
     "SLOTS",
     "STATES",
+    "STRIP_HASH",
+    "STRIP_HOST_TIMEOUT_MS",
+    "STRIP_LIT_PIXELS",
+    "STRIP_MOST_PIXELS",
+    "STRIP_PRESSES",
+    "STRIP_REPLY_BYTES",
+    "STRIP_REQUEST_BYTES",
+    "STRIP_VERSION",
     "SURFACES",
     "SURFACE_DISPLACEMENTS",
     "SURFACE_VELOCITIES",
@@ -137,6 +168,19 @@ __all__ = [
     "Settings",
     "Slot",
     "State",
+    "StripBeginReply",
+    "StripBeginRequest",
+    "StripBoardFlag",
+    "StripHelloReply",
+    "StripHelloRequest",
+    "StripLed",
+    "StripMessage",
+    "StripMode",
+    "StripReadRoundReply",
+    "StripRefusal",
+    "StripRefusedReply",
+    "StripShowRequest",
+    "StripStatusReply",
     "Stroke",
     "Surface",
     "TelemetryRequest",

@@ -16,7 +16,7 @@ from fdvv.twin._finger import Finger, Habit, Impedance, Pulp
 from fdvv.twin._gesture import Gesture, depth_m, plan, vary
 from fdvv.twin._image import TableImage, image_of
 from fdvv.twin._led import LedRig, LedTicks, LIFTED_m, NEAR_1_s
-from fdvv.twin._noise import Noise, draw_noise, silence
+from fdvv.twin._noise import Noise, draw_noise, draw_ticks, silence
 from fdvv.twin._pace import mean_speed_mm_s, solve_pace, solve_program_pace
 from fdvv.twin._pace_button import solve_button_pace
 from fdvv.twin._participant import PARTICIPANTS, WILD, Intent, Participant
@@ -94,6 +94,7 @@ __all__ = [
     "draw_finger",
     "draw_noise",
     "draw_rig",
+    "draw_ticks",
     "finger_to_toml",
     "identify",
     "image_of",

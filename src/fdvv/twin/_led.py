@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
+from copy import copy, deepcopy
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 
@@ -16,7 +17,7 @@ from fdvv.errors import ModelError
 from fdvv.protocol import CN64_PER_cN, Fault, MM_S16_PER_mm_s, Settings, TickFlag, UM16_PER_mm
 from fdvv.twin._finger import Finger
 from fdvv.twin._flatten import STEP_s, grid_of, plant_of
-from fdvv.twin._gesture import plan
+from fdvv.twin._gesture import Gesture, plan
 from fdvv.twin._kernel import (
     COLUMNS,
     TICK_COLUMNS,
@@ -172,6 +173,28 @@ class LedRig:
         """Take the finger off the cap."""
         self.lead(-float(mm_from_m(LIFTED_m)))
 
+    def press(self, gesture: Gesture) -> None:
+        """Let the finger follow a gesture whose time begins now; the referent jumps to its start."""
+        numbers = (gesture.stiffness_N_m, gesture.damping_N_s_m, 0.0)
+        parts = (ctypes.c_double(n) for n in numbers)
+        doors().fdvv_rig_press(address(self._memory), ctypes.byref(GestureTimes.of(gesture)), *parts)
+
+    def copy(self, noise: Noise | None = None) -> LedRig:
+        """Copy everything as it stands; from then on the two go their own ways.
+
+        noise : of the copy's next ticks, after which nothing is random; None: random as this one goes on.
+        ModelError if it is that of another rig.
+        """
+        other = copy(self)
+        other.core = self.core.copy()
+        other._memory, other._inputs = self._memory.copy(), self._inputs.copy()
+        if noise is None:
+            other._random, other._effort = deepcopy(self._random), deepcopy(self._effort)
+            return other
+        noise.check(self._grid.reads)
+        other._noise, other._used, other._random = noise, 0, None
+        return other
+
     def announce(self, velocity_mm_s: float) -> None:
         """Say how fast the next press is meant to be, until its own speed is known."""
         self.core.announce(min(65535, max(0, round(MM_S16_PER_mm_s * velocity_mm_s))))
@@ -185,9 +208,9 @@ class LedRig:
         rows = Rows(np.empty((ticks, COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS))
         done = 0
         while done < ticks:
-            if self._used == BLOCK_TICKS:
+            if self._used == self._noise.force_N.size:
                 self._noise, self._used = self._draw(), 0
-            count = min(ticks - done, BLOCK_TICKS - self._used)
+            count = min(ticks - done, self._noise.force_N.size - self._used)
             here = slice(done, done + count)
             self._run(count, Rows(rows.physics[here], rows.sensed[here], rows.outputs[here]))
             done += count
@@ -219,9 +242,7 @@ class LedRig:
             raise ModelError("the vibration board has no room for the waveforms of this program")
         habit = replace(self.finger.habit, lift_m=LIFTED_m)
         rest = plan(replace(self.finger, habit=habit), self.rig.stops.travel_limit_m, 1.0)
-        still = GestureTimes.of(replace(rest, end_m=rest.start_m))
-        numbers = (rest.stiffness_N_m, rest.damping_N_s_m, 0.0)
-        doors().fdvv_rig_press(held, ctypes.byref(still), *(ctypes.c_double(n) for n in numbers))
+        self.press(replace(rest, end_m=rest.start_m))
         self.advance(round(SETTLE_s / self.rig.controller.tick_s))
         self._ticks = 0
 

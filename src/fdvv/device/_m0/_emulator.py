@@ -9,11 +9,20 @@ from fdvv.device._m0._bus import FLASH_BYTES, NEVER, Bus
 from fdvv.device._m0._converter import Converter
 from fdvv.device._m0._elf import read_elf
 from fdvv.device._m0._processor import Processor
-from fdvv.device._m0._records import CPU_MHZ, PwmChange, TickCost, TickInputs, TickOutputs, WireMessage
+from fdvv.device._m0._records import (
+    CPU_MHZ,
+    KeyChange,
+    PwmChange,
+    TickCost,
+    TickInputs,
+    TickOutputs,
+    WireMessage,
+)
 from fdvv.device._m0._system import (
     AIRCR,
     AIRCR_RESET,
     BROWN_OUT,
+    PIN_KEY,
     POWER_ON,
     RCAUSE,
     SOFTWARE,
@@ -41,7 +50,8 @@ class M0Emulator:
     bootloader is left out: the program starts at once. Raises DeviceError if the emulator is not installed or
     the program does what the chip would not bear, InputError for an unusable elf.
 
-    duty, pulse and messages as logs: pwm_log, wire_log, costs; all times in us since power on, emulated.
+    duty, pulse, messages and key line as logs: pwm_log, wire_log, key_log, costs; all times in us since power
+    on, emulated.
     """
 
     def __init__(
@@ -65,6 +75,7 @@ class M0Emulator:
         self.resets = 0
         self.pwm_log: list[PwmChange] = []
         self.wire_log: list[WireMessage] = []
+        self.key_log: list[KeyChange] = []
         self.costs: list[TickCost] = []
         self._start("power on")
 
@@ -88,6 +99,9 @@ class M0Emulator:
         mark_plain(bus)
         self.clocks = Clocks(bus)
         self.port = Port(bus, lambda: self.pwm.changed())
+        self.port.key_log = self.key_log
+        if self.key_log and self.key_log[-1].is_down:  # the pin floats, and its resistor pulls it down
+            self.key_log.append(KeyChange(self.time_us, False))
         self.pwm = Pwm(bus, self.clocks, lambda: self.port)
         self.pwm.changes = self.pwm_log
         self.wire = Wire(bus, self.clocks)
@@ -211,6 +225,7 @@ class M0Emulator:
             drive.enable,
             self.pwm.stop_us(),
             tuple(self.wire_log[self._messages_told :]),
+            self.port.level(PIN_KEY),
         )
 
     def write(self, data: bytes) -> None:

@@ -24,7 +24,8 @@ class TickOutputs:
     """What the board's pins do at the instant of a tick.
 
     duty_q15 is the mean voltage across the coil in parts of the supply, 0 while the bridge is off.
-    stop_us is the servo's pulse, 0 while there is none. messages ended since the last tick.
+    stop_us is the servo's pulse, 0 while there is none. messages ended since the last tick. key:
+    whether the key line is high.
     """
 
     tick: int
@@ -33,6 +34,7 @@ class TickOutputs:
     enable: bool
     stop_us: float
     messages: tuple[WireMessage, ...]
+    key: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,14 @@ class PwmChange:
     effective_us: float
     duty_q15: int
     enable: bool
+
+
+@dataclass(frozen=True)
+class KeyChange:
+    """The key line rose or fell, and when."""
+
+    time_us: float
+    is_down: bool
 
 
 @dataclass(frozen=True)

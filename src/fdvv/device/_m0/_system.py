@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from fdvv.device._m0._bus import WRITE_ONE_CLEARS, Bus
-from fdvv.device._m0._records import CPU_MHZ
+from fdvv.device._m0._records import CPU_MHZ, KeyChange
 from fdvv.errors import DeviceError
 
 RCAUSE, APBCMASK = 0x40000438, 0x40000420
@@ -21,6 +21,7 @@ WDT_KEY, WDT_SYNC_CLOCKS, SYNCBUSY = 0xA5, 5, 1 << 7
 PORT = 0x41004400
 DIR, DIRCLR, DIRSET, OUT, OUTCLR, OUTSET, IN = (PORT + at for at in (0, 4, 8, 0x10, 0x14, 0x18, 0x20))
 PMUX, PINCFG = PORT + 0x30, PORT + 0x40
+PIN_KEY = 14
 AIRCR, AIRCR_RESET = 0xE000ED0C, 0x05FA0004
 
 
@@ -108,6 +109,7 @@ class Port:
 
     def __init__(self, bus: Bus, changed: Callable[[], None]) -> None:
         self._bus, self._changed = bus, changed
+        self.key_log: list[KeyChange] = []
         self.pulled = 1 << 21 | 1 << 22 | 1 << 23  # nFAULT, SDA and SCL rest high
         bus.on_write(DIRCLR, lambda size, value: self._set(DIR, 0, value))
         bus.on_write(DIRSET, lambda size, value: self._set(DIR, value, 0))
@@ -118,7 +120,10 @@ class Port:
             bus.on_write(PINCFG + pin, partial(self._configure, PINCFG + pin))
 
     def _set(self, register: int, ones: int, zeros: int) -> None:
+        was_down = self.level(PIN_KEY)
         self._bus.put(register, 4, self._bus.get(register, 4) & ~zeros | ones)
+        if (is_down := self.level(PIN_KEY)) != was_down:
+            self.key_log.append(KeyChange(self._bus.cycles / CPU_MHZ, is_down))
         self._changed()
 
     def _configure(self, register: int, _size: int, value: int) -> None:

@@ -1,0 +1,241 @@
+"""A bullet on an LED strip, and when a key went down while it ran: the Uno of the paper's pointing task."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Protocol, Self
+
+import numpy as np
+
+from fdvv.device._clocks import unwrap_us
+from fdvv.device._port import Port
+from fdvv.device._strip_wire import StripWire
+from fdvv.errors import DeviceError
+from fdvv.protocol import (
+    STRIP_PRESSES,
+    StripBeginReply,
+    StripBeginRequest,
+    StripBoardFlag,
+    StripLed,
+    StripMessage,
+    StripMode,
+    StripReadRoundReply,
+    StripShowRequest,
+    StripStatusReply,
+)
+
+GLANCE_s = 0.05
+"""Between two looks at a round; they also tell the board that the host is there."""
+DELAYS_s = 0.8, 1.6
+"""From asking for a round to its bullet, drawn evenly: nobody can press by rhythm alone (assumed)."""
+LONGEST_DELAY_s, PATIENCE_s = 10.0, 1.0
+PLAYING = StripMode.WAITING, StripMode.MOVING
+
+
+class KeyLine(Protocol):
+    """The key line of a board without hardware."""
+
+    def press_at(self, time_s: float) -> None:
+        """Let the key go down at a time of the board's clock that is still to come, after all others."""
+        ...
+
+
+@dataclass(frozen=True)
+class StripRound:
+    """What one round shows; checked by the board, which refuses what it cannot show (DeviceError).
+
+    Attributes
+    ----------
+    speed_px_s : of the bullet, 20 to 200; the paper's 100 (easy) or 150 (hard).
+    delay_s : from asking to the bullet's start, 0.05 to 10.
+    pixels : length of the strip, 8 to 240.
+    zone_px : pixel in the middle of the zone, from 0; the bullet comes to it at the target's time.
+    zone_half_px : pixels of the zone on either side of that, 0 to 7.
+    after_s : from the target to the end of the round, 0.05 to 5.
+    brightness : of what is lit, 1 to 31.
+    led : EACH (APA102, a pixel shows what it is sent at once) or TOGETHER (SK9822, all after the frame).
+    """
+
+    speed_px_s: int = 100
+    delay_s: float = 1.0
+    pixels: int = 144
+    zone_px: int = 100
+    zone_half_px: int = 5
+    after_s: float = 0.6
+    brightness: int = 8
+    led: StripLed = StripLed.EACH
+
+    def drawn(self, seed: int, number: int) -> StripRound:
+        """Give this round with the start delay that a seed draws for a round's number: the same each time."""
+        delay_s = float(np.random.default_rng((seed, number)).uniform(*DELAYS_s))
+        return replace(self, delay_s=delay_s)
+
+    def request(self, number: int) -> StripBeginRequest:
+        """Give the request for it. ModelError for a number beyond the wire's range."""
+        return StripBeginRequest(
+            round=number,
+            speed_px_s=self.speed_px_s,
+            delay_ms=round(1e3 * self.delay_s),
+            after_ms=round(1e3 * self.after_s),
+            pixels=self.pixels,
+            zone_px=self.zone_px,
+            zone_half_px=self.zone_half_px,
+            brightness=self.brightness,
+            led=self.led,
+        )
+
+
+@dataclass(frozen=True)
+class StripStart:
+    """When a round's bullet starts and is at the zone's middle, and when it ends, on the board's clock."""
+
+    start_s: float
+    target_s: float
+    end_s: float
+
+
+@dataclass(frozen=True)
+class StripResult:
+    """How a round went.
+
+    Attributes
+    ----------
+    start_s, target_s : when the bullet started and was at the zone's middle, on the board's clock.
+    activations_s : when the key went down, rising, on that clock, to 1 us; the first eight of `presses`.
+    presses : how often it did between asking for the round and its end.
+    frames : sent for steps of the bullet.
+    late_s : the latest of them was begun so long after its time, as the board's clock told it.
+    is_whole : false: the board went dark in the round since it heard nothing of the host.
+    """
+
+    start_s: float
+    target_s: float
+    activations_s: tuple[float, ...]
+    presses: int
+    frames: int
+    late_s: float
+    is_whole: bool
+
+
+class StripTask:
+    """The board with the LED strip.
+
+    Parameters
+    ----------
+    port : an open line, closed if the board cannot be used.
+
+    Raises DeviceError if the board is silent, another one, of another version, or at another's round.
+    """
+
+    def __init__(self, port: Port) -> None:
+        self.port = port
+        try:
+            self._wire = StripWire(port)
+            status = self.status()
+            if status.mode in PLAYING:
+                raise DeviceError(
+                    f"{port.name}: the strip is at a round of another program; wait for its end, or stop it"
+                )
+        except BaseException:
+            port.close()
+            raise
+        self._near_us, self._near_at_s = float(status.time_us), port.now_s()
+        # another than that of a program before this one, whose request might still be told again
+        self._number = status.time_us % 2**16
+
+    def status(self) -> StripStatusReply:
+        """Ask how the board is: its clock, edges of the key line since boot, level of that line."""
+        return self._wire.ask(StripMessage.STATUS, StripStatusReply)
+
+    def begin(self, order: StripRound) -> StripStart:
+        """Start a round. DeviceError if one goes on, or the strip cannot show this one."""
+        self._number = (self._number + 1) % 2**16
+        reply = self._wire.ask(StripMessage.BEGIN, StripBeginReply, order.request(self._number))
+        start_s, target_s, end_s = (self._s(us) for us in (reply.start_us, reply.target_us, reply.end_us))
+        return StripStart(start_s, target_s, end_s)
+
+    def result(self) -> StripResult | None:
+        """Ask how the round that was begun last went; None while it goes on."""
+        reply = self._wire.ask(StripMessage.READ_ROUND, StripReadRoundReply)
+        if reply.round != self._number:
+            raise DeviceError(f"{self.port.name}: another program used the strip; play the round again")
+        return None if reply.mode in PLAYING else self._read(reply)
+
+    def _read(self, reply: StripReadRoundReply) -> StripResult:
+        target_s = self._s(reply.target_us)
+        errors_us = struct.unpack(f"<{STRIP_PRESSES}i", reply.asynchronies_us)
+        activations_s = tuple(target_s + 1e-6 * us for us in errors_us[: min(reply.presses, STRIP_PRESSES)])
+        whole, late_s = reply.mode == StripMode.OVER, 1e-6 * reply.late_us
+        return StripResult(
+            self._s(reply.start_us), target_s, activations_s, reply.presses, reply.frames, late_s, whole
+        )
+
+    def play(self, order: StripRound) -> StripResult:
+        """Start a round and wait for its end."""
+        return self.wait(self.begin(order))
+
+    def wait(self, start: StripStart, meanwhile: Callable[[], None] | None = None) -> StripResult:
+        """Wait for the end of a round, calling `meanwhile` every GLANCE_s or so.
+
+        DeviceError if the board does not end it in its time.
+        """
+        until_s = self.port.now_s() + LONGEST_DELAY_s + (start.end_s - start.start_s) + PATIENCE_s
+        while self.port.now_s() < until_s:
+            if (found := self.result()) is not None:
+                return found
+            if meanwhile:
+                meanwhile()
+            self.port.read(self.port.now_s() + GLANCE_s)
+        raise DeviceError(f"{self.port.name}: the strip does not end its round; reset the board")
+
+    def show(self, first: int, count: int, colour: tuple[int, int, int], brightness: int = 8) -> None:
+        """Light at most 16 pixels in red, green, blue of 0 to 255 until told otherwise, to check the strip.
+
+        It goes dark by itself where `status` is not asked for half a second.
+        """
+        red, green, blue = colour
+        order = StripShowRequest(
+            first=first, count=count, red=red, green=green, blue=blue, brightness=brightness
+        )
+        self._wire.tell(StripMessage.SHOW, order)
+
+    def stop(self) -> None:
+        """End the round or what is shown; the strip goes dark."""
+        self._wire.tell(StripMessage.STOP)
+
+    @property
+    def firmware(self) -> str:
+        """Get the version of the board's firmware."""
+        return ".".join(str(self._wire.hello.firmware >> shift & 255) for shift in (16, 8, 0))
+
+    @property
+    def was_reset(self) -> bool:
+        """Tell whether its watchdog had reset the board before it was opened."""
+        return bool(self._wire.hello.flags & StripBoardFlag.WATCHDOG)
+
+    def _s(self, time_us: int) -> float:
+        """Give a time without the turns of the board's counter, which the line's clock bridges."""
+        now_s = self.port.now_s()
+        self._near_us = unwrap_us(time_us, self._near_us + 1e6 * (now_s - self._near_at_s))
+        self._near_at_s = now_s
+        return 1e-6 * self._near_us
+
+    def close(self) -> None:
+        """Go dark and let the line go; a second time does nothing."""
+        try:
+            self.stop()
+        except DeviceError:
+            pass  # it is gone, and dark by itself
+        finally:
+            self.port.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,71 @@
+"""The whole pointing task: a simulated person, the emulated controller of the rig, the emulated strip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.device import EmulatedBoard, LinkedDevice, SimulatedPerson, StripStart, StripTask
+from fdvv.model import load_builtin
+from fdvv.optimize import SimulatedUser, TemporalPointing
+from fdvv.program import compile_button
+from fdvv.workflow import play, play_on_strip, played_presser
+
+from ._m0 import CONTROLLER
+from ._m0 import build as build_controller
+from ._simavr import build_board, require_tools, say
+from ._uno_strip import UnoStrip, build_strip_emulator
+
+pytestmark = pytest.mark.firmware
+
+HARD = TemporalPointing("hard", rounds=4, quantised=False)
+BROWN = load_builtin("mx-brown")
+
+
+@pytest.fixture
+def uno(tmp_path: Path) -> Iterator[UnoStrip]:
+    require_tools()
+    board = UnoStrip(build_strip_emulator(tmp_path), build_board(tmp_path, "uno_strip"))
+    yield board
+    board.free()
+
+
+def test_what_a_simulated_person_does_comes_back_from_the_strip_and_is_scored(uno: UnoStrip) -> None:
+    presses = play(HARD, BROWN, SimulatedUser(), 5)
+    told = play_on_strip(StripTask(uno), HARD, 5, presser=played_presser(uno, presses))
+    there, here = ([HARD.asynchrony_ms(press) for press in found] for found in (told, presses))
+    assert None not in there
+    apart_us = 1e3 * np.abs(np.array(there, float) - np.array(here, float))
+    score, wanted = (HARD.scores(found)["asynchrony_ms"] for found in (told, presses))
+    say(f"{HARD.rounds} rounds: {score.value:.3f} ms, of {wanted.value:.3f}; {apart_us.max():.2f} us apart")
+    assert apart_us.max() < 2.0
+    assert score.value == pytest.approx(wanted.value, abs=2e-3)
+
+
+def test_the_controllers_own_key_line_ends_as_an_asynchrony(uno: UnoStrip) -> None:
+    board, person = EmulatedBoard(build_controller(CONTROLLER)), SimulatedPerson(seed=2)
+    emulator, device = board.emulator, LinkedDevice(board, person)
+    device.upload_program(compile_button(BROWN).image)
+    wanted_ms: list[float] = []
+
+    def press(number: int, start: StripStart) -> None:
+        """Begin a press 150 ms before the target; both boards' clocks run side by side."""
+        settle_us = 1e6 * person.settle_s  # in which the cap comes up, and the key with it
+        onset_us = emulator.time_us + settle_us
+        device.press(100.0)
+        for change in emulator.key_log:
+            at_s = start.target_s - 0.15 + 1e-6 * (change.time_us - onset_us)
+            if change.is_down and change.time_us > onset_us:
+                wanted_ms.append(1e3 * (at_s - start.target_s))
+                uno.press_at(at_s)
+
+    told = play_on_strip(StripTask(uno), replace(HARD, rounds=2), 1, presser=press)
+    late_ms = [late for late in map(HARD.asynchrony_ms, told) if late is not None]
+    say(f"the controller's key line {wanted_ms[0]:.4f}, {wanted_ms[1]:.4f} ms after the target")
+    say(f"told by the strip's board {late_ms[0]:.4f}, {late_ms[1]:.4f} ms")
+    assert late_ms == pytest.approx(wanted_ms, abs=2e-3)
+    assert all(-150 < at_ms < 300 for at_ms in wanted_ms)
