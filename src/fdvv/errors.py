@@ -5,6 +5,7 @@ FdvvError
 ├── ModelError    numbers that do not make a curve or a model
 ├── FitError      a curve cannot be fitted as asked
 ├── DeviceError   a device refused, failed or went away
+├── WorkerError   work in another process failed
 └── BuildError    this installation lacks a part (compiled library, optional extra)
 """
 
@@ -41,6 +42,10 @@ class FitError(FdvvError, ValueError):
 
 class DeviceError(FdvvError):
     """A device refused, failed or went away; says which and why."""
+
+
+class WorkerError(FdvvError):
+    """Work in another process failed, or lost its process again and again; says which part and why."""
 
 
 class BuildError(FdvvError):

@@ -131,5 +131,9 @@ def _locked(path: Path, busy: InputError) -> int:
     except BlockingIOError:
         os.close(file)
         raise busy from None
-    sync_folder(path.parent)
+    try:
+        sync_folder(path.parent)
+    except BaseException:
+        os.close(file)
+        raise
     return file

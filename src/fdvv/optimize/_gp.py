@@ -1,0 +1,249 @@
+"""A Gaussian process over the unit cube that knows how noisy each score is.
+
+Notation: X (n, d) places, y (n,) standardised scores, R diag of the squared standard errors, H (n, b) basis
+functions with weights w ~ N(w0, S), K the covariance of f. y = H w + f(X) + noise; the posterior is that of
+universal kriging (Rasmussen & Williams, Gaussian Processes for Machine Learning, 2.7), the kernel's numbers
+are the most probable ones under the priors below, found by scikit-learn's regressor.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.optimize._places import missing
+from fdvv.units import FloatArray
+
+LENGTH = (0.15, 0.5)
+"""Prior of a log length: mean is log of this times the root of d, SD the second; ranges are 1 wide."""
+SIGNAL, SIGNAL_BESIDE = (0.1, 0.5), (-1.2, 0.7)
+KNOWN_NOISE, UNKNOWN_NOISE = (-4.0, 1.0), (-2.0, 1.0)
+"""Priors of log variances, parts of the scores' own: of f, alone or beside what others' trials explain, and
+of noise beyond, or without, known errors."""
+BOUNDS = (1e-2, 1e2)
+NOISE_BOUNDS = (1e-4, 4.0)
+ITERATIONS = 60
+ROUNDS = 2
+"""How often weights and kernel are fitted in turn."""
+TREND = 1.0
+"""SD of what a person gains or loses over a run, in standardised scores, before the first."""
+
+Prior = tuple[float, float]
+"""Mean and SD of a log variance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Functions that may explain a part of the scores: a trend over time, what others did.
+
+    Attributes
+    ----------
+    of : (n, b) in the scores' unit, from places (n, d). weight, spread : (b,) mean and SD of the weights
+        before any score.
+    """
+
+    of: Callable[[FloatArray], FloatArray]
+    weight: FloatArray
+    spread: FloatArray
+
+    def about(self, places: FloatArray) -> Basis:
+        """Take off the means at some places: what is alike at all of them explains no difference."""
+        middle = self.of(places).mean(axis=0)
+        return replace(self, of=lambda others: self.of(others) - middle)
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """Scores to learn from, smaller is better.
+
+    Attributes
+    ----------
+    places : (n, d). values, errors : (n,) score and its standard error; errors nan where unknown.
+    trend : (n,) how far ahead of now a score lies on a person's way, 0 now; None where nobody changes.
+    faded : (n,) by what the noise of a score has grown since; None where none has.
+    """
+
+    places: FloatArray
+    values: FloatArray
+    errors: FloatArray
+    trend: FloatArray | None = None
+    faded: FloatArray | None = None
+
+    def more(self, place: FloatArray, value: float) -> Observed:
+        """Add one of now, its error unknown."""
+        return Observed(
+            np.vstack([self.places, place]),
+            np.append(self.values, value),
+            np.append(self.errors, np.nan),
+            None if self.trend is None else np.append(self.trend, 0.0),
+            None if self.faded is None else np.append(self.faded, 1.0),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """What is believed of f after some scores.
+
+    Attributes
+    ----------
+    observed : the scores. kernel : of scikit-learn, fitted. centre, scale : that standardised the scores.
+    """
+
+    observed: Observed
+    kernel: Any
+    noise: FloatArray
+    centre: float
+    scale: float
+    basis: Basis | None = None
+    _solved: dict[str, FloatArray] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        from scipy.linalg import cho_factor, cho_solve
+
+        y = (self.observed.values - self.centre) / self.scale
+        X = self.observed.places
+        factor = cho_factor(self.kernel(X) + np.diag(self.noise), lower=True)
+        H = _functions(self.basis, X, self.observed.trend, self.scale)
+        w0, spread = _weights(self.basis, self.observed.trend)
+        precision = np.diag(spread**-2.0)
+        KH = cho_solve(factor, H)
+        cov = np.linalg.inv(H.T @ KH + precision)
+        w = w0 + cov @ (KH.T @ (y - H @ w0))
+        solved = {"L": factor[0], "KH": KH, "cov": cov, "w": w, "a": cho_solve(factor, y - H @ w)}
+        object.__setattr__(self, "_solved", solved)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Get the weights of the basis functions, (b,), of standardised scores."""
+        return self._solved["w"]
+
+    def predict(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give mean and SD of f, (n,) each, in the scores' unit; noise is not in it."""
+        mean, root = self._moments(places)
+        prior = self.kernel.diag(places)
+        variance = prior - (root[0] ** 2).sum(axis=0) + (root[1] @ self._solved["cov"] * root[1]).sum(axis=1)
+        return mean, self.scale * np.sqrt(np.maximum(variance, 1e-12))
+
+    def _moments(self, places: FloatArray) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+        from scipy.linalg import solve_triangular
+
+        cross = self.kernel(self.observed.places, places)
+        now = None if self.observed.trend is None else np.zeros(len(places))
+        H = _functions(self.basis, places, now, self.scale)
+        mean = self.centre + self.scale * (H @ self.weights + cross.T @ self._solved["a"])
+        root = solve_triangular(self._solved["L"], cross, lower=True)
+        return mean, (root, H - cross.T @ self._solved["KH"])
+
+    def with_fantasy(self, place: FloatArray) -> Belief:
+        """Believe that a trial under way comes out as expected: its mean stays, its spread goes."""
+        value = float(self.predict(place[None])[0][0])
+        quiet = np.append(self.noise, np.median(self.noise))
+        return Belief(
+            self.observed.more(place, value), self.kernel, quiet, self.centre, self.scale, self.basis
+        )
+
+
+def believe(
+    observed: Observed, basis: Basis | None = None, starts: int = 2, few: npt.NDArray[np.int64] | None = None
+) -> Belief:
+    """Learn from at least one score. BuildError without scikit-learn.
+
+    few : scores that the kernel's numbers are fitted to, by place; all, unless there are very many.
+    """
+    values, basis = observed.values, basis and basis.about(observed.places)
+    centre = float(np.mean(values))
+    scale = float(np.std(values)) or max(abs(centre), 1.0)
+    ratio = pooled(observed.errors) / scale
+    known = np.isfinite(ratio)
+    faded = 1.0 if observed.faded is None else observed.faded
+    fixed = np.where(known, ratio, 0.0) ** 2 * faded
+    H = _functions(basis, observed.places, observed.trend, scale)
+    weights, belief = _weights(basis, observed.trend)[0], None
+    for _ in range(ROUNDS if H.shape[1] else 1):
+        rest = (values - centre) / scale - H @ weights
+        some = slice(None) if few is None else few
+        priors = SIGNAL if basis is None else SIGNAL_BESIDE, KNOWN_NOISE if known.all() else UNKNOWN_NOISE
+        kernel, white = _fitted(observed.places[some], rest[some], fixed[some], priors, starts)
+        belief = Belief(observed, kernel, fixed + white * faded, centre, scale, basis)
+        weights = belief.weights
+    assert belief is not None
+    return belief
+
+
+def _functions(basis: Basis | None, places: FloatArray, trend: FloatArray | None, scale: float) -> FloatArray:
+    """Give the values, (n, b), of all that may explain standardised scores beside f."""
+    columns = [] if basis is None else [basis.of(places) / scale]
+    return np.hstack([np.zeros((len(places), 0)), *columns, *([] if trend is None else [trend[:, None]])])
+
+
+def _weights(basis: Basis | None, trend: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+    """Give mean and SD, (b,), of the weights of these functions before any score."""
+    weight, spread = (np.zeros(0), np.zeros(0)) if basis is None else (basis.weight, basis.spread)
+    return (weight, spread) if trend is None else (np.append(weight, 0.0), np.append(spread, TREND))
+
+
+def pooled(errors: FloatArray) -> FloatArray:
+    """Draw standard errors half-way to their common size: each is itself a guess from few presses."""
+    known = np.isfinite(errors)
+    if not known.any():
+        return errors
+    return np.asarray(np.sqrt(0.5 * (errors**2 + np.mean(errors[known] ** 2))))
+
+
+def _fitted(
+    X: FloatArray, y: FloatArray, fixed: FloatArray, priors: tuple[Prior, Prior], starts: int
+) -> tuple[Any, float]:
+    """Fit lengths, signal and what is left as noise; give the kernel without the noise, and the noise."""
+    try:
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+    except ImportError as error:
+        raise missing("gp", "optimize", error) from error
+    d = X.shape[1]
+    signal, noise = priors
+    mean = np.array([signal[0], *[np.log(LENGTH[0] * np.sqrt(d))] * d, noise[0]])
+    spread = np.array([signal[1], *[LENGTH[1]] * d, noise[1]])
+    kernel = ConstantKernel(1.0, BOUNDS) * Matern(np.exp(mean[1:-1]), BOUNDS, nu=2.5)
+    kernel += WhiteKernel(np.exp(noise[0]), NOISE_BOUNDS)
+    regressor = GaussianProcessRegressor(kernel, alpha=fixed + 1e-8, optimizer=_search(mean, spread, starts))
+    with warnings.catch_warnings():
+        # a length at its bound is a parameter that does not matter, which is no fault
+        warnings.simplefilter("ignore")
+        regressor.fit(X, y)
+    return regressor.kernel_.k1, float(regressor.kernel_.k2.noise_level)
+
+
+def _search(mean: FloatArray, spread: FloatArray, starts: int) -> Callable[..., tuple[FloatArray, float]]:
+    """Make scikit-learn's optimiser search the most probable kernel, from the prior's middle and beside."""
+
+    def search(nll: Any, _: FloatArray, bounds: FloatArray) -> tuple[FloatArray, float]:
+        from scipy.optimize import Bounds, minimize
+
+        def cost(theta: FloatArray) -> tuple[float, FloatArray]:
+            value, slope = nll(theta, eval_gradient=True)
+            off = (theta - mean) / spread
+            return float(value + 0.5 * off @ off), slope + off / spread
+
+        shifts = np.random.default_rng(0).normal(0.0, 1.0, (starts - 1, mean.size))
+        begins: Sequence[FloatArray] = [mean, *(mean + spread * shifts)]
+        limits = Bounds(bounds[:, 0], bounds[:, 1])
+        ends = [
+            minimize(
+                cost,
+                np.clip(begin, bounds[:, 0], bounds[:, 1]),
+                jac=True,
+                method="L-BFGS-B",
+                bounds=limits,
+                options={"maxiter": ITERATIONS},
+            )
+            for begin in begins
+        ]
+        best = min(ends, key=lambda end: float(end.fun))
+        return best.x, float(best.fun)
+
+    return search

@@ -1,0 +1,246 @@
+"""Optuna's samplers as engines: a study is built anew from the trials for every suggestion."""
+
+from __future__ import annotations
+
+import importlib
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.optimize._belief import believed_best, finished
+from fdvv.optimize._engine import Problem
+from fdvv.optimize._places import (
+    OPEN,
+    draw_feasible,
+    fresh,
+    generator,
+    missed_by,
+    missing,
+    tried_places,
+)
+from fdvv.optimize._plain import sobol_places
+from fdvv.optimize._trial import Trial, TrialState
+from fdvv.units import FloatArray
+
+if TYPE_CHECKING:
+    from optuna.distributions import BaseDistribution
+    from optuna.samplers import BaseSampler
+    from optuna.study import Study
+    from optuna.trial import FrozenTrial
+
+STARTUP = 10
+"""Designs of an even net before a sampler may learn."""
+ASKS = 40
+"""How often a sampler is asked for a design that holds the constraints before one is drawn instead."""
+PRIOR = 30
+"""Trials of others that a sampler is given at most; each own one takes the place of one of them."""
+BROKEN = "held"
+
+
+@dataclass(frozen=True)
+class TPEEngine:
+    """Tree-structured Parzen estimators over all parameters at once, the light default.
+
+    Trials under way count as bad ones (the constant liar), so that a batch spreads; failed ones and what
+    breaks a constraint are told to the sampler as infeasible.
+    """
+
+    name: str = field(default="tpe", init=False)
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        """Suggest, see Engine."""
+        prior = _weighed_prior(problem, trials)
+        if len(finished(problem, trials)) + len(prior) < STARTUP:
+            return problem.space.of_unit(sobol_places(problem, tried_places(problem.space, trials), count))
+        with _quiet():
+            import optuna
+
+            seed = _seed(problem, trials)
+            study = _study(problem, optuna.samplers.TPESampler(seed=seed, n_startup_trials=0))
+            for trial in (*prior, *trials):
+                _tell(study, problem, trial)
+            return _asked(study, problem, trials, count)
+
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        """Recommend, see Engine."""
+        return believed_best(problem, trials)
+
+
+@dataclass(frozen=True)
+class CMAESEngine:
+    """Covariance matrix adaptation: for budgets of hundreds, as simulated users have them.
+
+    Its state is made by going through the trials again, those that a person edited as injected ones. Of
+    trials of others it takes their best as its first.
+    """
+
+    name: str = field(default="cmaes", init=False)
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        """Suggest, see Engine. ModelError on several objectives."""
+        if len(problem.objectives) != 1:
+            raise ModelError("cmaes takes one objective; use nsga2, tpe, gp or botorch")
+        others = finished(problem, problem.prior)
+        if others and not trials and count == 1:
+            first = believed_best(problem, others)
+            if not problem.space.broken(first):
+                return [first]
+        with _quiet("cmaes"):
+            import optuna
+
+            seed = problem.seed & 0x7FFFFFFF
+            independent = optuna.samplers.RandomSampler(seed=seed)
+            sampler = optuna.samplers.CmaEsSampler(seed=seed, independent_sampler=independent)
+            return _asked(_replayed(problem, trials, sampler), problem, trials, count)
+
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        """Recommend, see Engine."""
+        return believed_best(problem, trials)
+
+
+@dataclass(frozen=True)
+class NSGA2Engine:
+    """Non-dominated sorting: generations that spread along a front, for budgets of hundreds.
+
+    Parameters
+    ----------
+    population : of a generation; the trials before that many are drawn at random.
+    """
+
+    population: int = 20
+    name: str = field(default="nsga2", init=False)
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        """Suggest, see Engine."""
+        with _quiet():
+            import optuna
+
+            sampler = optuna.samplers.NSGAIISampler(
+                seed=problem.seed & 0x7FFFFFFF, population_size=self.population
+            )
+            return _asked(_replayed(problem, trials, sampler), problem, trials, count)
+
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        """Recommend, see Engine."""
+        return believed_best(problem, trials)
+
+
+def _replayed(problem: Problem, trials: Sequence[Trial], sampler: BaseSampler) -> Study:
+    """Go through the trials with a sampler that keeps a state of its own."""
+    import optuna
+
+    study = _study(problem, sampler)
+    for trial in trials:
+        study.enqueue_trial(_params(problem, trial))
+        asked = study.ask(_ranges(problem))
+        if finished(problem, [trial]):
+            study.tell(asked, [trial.scores[one.name].value for one in problem.objectives])
+        elif trial.state not in OPEN:
+            study.tell(asked, state=optuna.trial.TrialState.FAIL)
+    return study
+
+
+def _weighed_prior(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
+    """Choose trials of others, evenly, fewer the more there are of one's own."""
+    done = finished(problem, problem.prior)
+    room = min(len(done), max(0, PRIOR - len(finished(problem, trials))))
+    return [done[i] for i in np.linspace(0, len(done) - 1, room).astype(int)] if room else []
+
+
+@contextmanager
+def _quiet(*parts: str) -> Iterator[None]:
+    """Keep Optuna from telling of every study. BuildError without it, or without parts that it needs."""
+    try:
+        import optuna
+
+        for part in parts:
+            importlib.import_module(part)
+    except ImportError as error:
+        raise missing("of Optuna", "optimize", error) from error
+    before = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(logging.WARNING)
+    try:
+        yield
+    finally:
+        optuna.logging.set_verbosity(before)
+
+
+def _seed(problem: Problem, trials: Sequence[Trial]) -> int:
+    return int(generator(problem, trials, 2).integers(2**31))
+
+
+def _study(problem: Problem, sampler: BaseSampler) -> Study:
+    import optuna
+
+    Way = optuna.study.StudyDirection
+    ways = [Way.MAXIMIZE if one.larger_is_better else Way.MINIMIZE for one in problem.objectives]
+    return optuna.create_study(directions=ways, sampler=sampler)
+
+
+def _ranges(problem: Problem) -> dict[str, BaseDistribution]:
+    """Give every parameter the range of the unit cube."""
+    import optuna
+
+    return {name: optuna.distributions.FloatDistribution(0.0, 1.0) for name in problem.space.names}
+
+
+def _params(problem: Problem, trial: Trial) -> dict[str, Any]:
+    (place,) = problem.space.to_unit([trial.design])
+    return dict(zip(problem.space.names, np.clip(place, 0.0, 1.0).tolist(), strict=True))
+
+
+def _tell(study: Study, problem: Problem, trial: Trial) -> None:
+    """Add a trial to a study: done, under way, or failed as one that no constraint allows."""
+    import optuna
+
+    common: dict[str, Any] = {"params": _params(problem, trial), "distributions": _ranges(problem)}
+    state = optuna.trial.TrialState
+    if trial.state is TrialState.DONE and finished(problem, [trial]):
+        values = [trial.scores[one.name].value for one in problem.objectives]
+        held = {BROKEN: 0.0}
+        study.add_trial(optuna.trial.create_trial(values=values, constraints=held, **common))
+    elif trial.state in OPEN:
+        study.add_trial(optuna.trial.create_trial(state=state.RUNNING, **common))
+    elif trial.state is TrialState.FAILED:
+        study.add_trial(_infeasible(problem, common))
+
+
+def _infeasible(problem: Problem, common: dict[str, Any], missed: float = 1.0) -> FrozenTrial:
+    import optuna
+
+    worst = [-1e9 if one.larger_is_better else 1e9 for one in problem.objectives]
+    return optuna.trial.create_trial(values=worst, constraints={BROKEN: min(missed, 1e9) or 1.0}, **common)
+
+
+def _asked(study: Study, problem: Problem, trials: Sequence[Trial], count: int) -> list[dict[str, float]]:
+    """Ask until count designs hold the constraints and are new; one at random where asking finds none."""
+    tried = tried_places(problem.space, trials)
+    rng, d = generator(problem, trials, 3), len(problem.space.names)
+    found = np.empty((0, d))
+    for _ in range(count):
+        asked = (_one(study, problem, np.vstack([tried, found])) for _ in range(ASKS))
+        place = next((place for place in asked if place is not None), None)
+        if place is None:
+            place = draw_feasible(problem, lambda n: rng.random((n, d)), np.vstack([tried, found]), 1)[0]
+        found = np.vstack([found, place])
+    return problem.space.of_unit(found)
+
+
+def _one(study: Study, problem: Problem, tried: FloatArray) -> FloatArray | None:
+    """Ask for one place; None, and the study is told, where it breaks a constraint or was tried."""
+    import optuna
+
+    ranges = _ranges(problem)
+    trial = study.ask(ranges)
+    place = np.array([trial.params[name] for name in problem.space.names])
+    missed = float(missed_by(problem.space, place[None])[0])
+    if missed <= 0 and len(fresh(place[None], tried)):
+        return place
+    study.tell(trial, state=optuna.trial.TrialState.FAIL)
+    study.add_trial(_infeasible(problem, {"params": dict(trial.params), "distributions": ranges}, missed))
+    return None

@@ -1,0 +1,73 @@
+"""The designs of the paper: three points of a force curve, where it activates and where it vibrates.
+
+Liao, Kim, Lee, Oulasvirta, "Button Simulation and Design via FDVV Models" (CHI 2020), human-in-the-loop
+button optimisation: x1 in [0, 1), x2 in [1, 3), x3 in [3, 6.2) mm, y1 to y3 in [20, 180] of an actuation
+signal, activation and vibration in [0.5, 5.5] mm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fdvv.model import FDVVModel, ForceCurve, Mode, Provenance, Stroke, Vibration
+from fdvv.optimize._space import Constraint, Design, DesignSpace, Parameter
+from fdvv.units import FloatArray
+
+PAPER_TRAVEL_mm = 6.2
+LARGEST_cN, LARGEST_signal = 440.0, 255.0
+"""What the paper's linear motor gives at full signal; force is taken as proportional to it."""
+SIGNALS = (20.0, 180.0)
+APART_mm = 0.01
+"""The ranges of x are open above; two neighbours keep this distance."""
+TEMPLATE = Mode(frequency_Hz=239.0, amplitude_m_s2=4.6, decay_1_s=130.7)
+TEMPLATE_s = 0.016
+"""The paper's vibration, as the shipped MX Clear has it."""
+
+
+def paper_space(constraints: tuple[Constraint, ...] = ()) -> DesignSpace:
+    """Give the paper's eight parameters with their ranges; any constraints on top, as of a rig."""
+    low_cN, high_cN = (LARGEST_cN * signal / LARGEST_signal for signal in SIGNALS)
+    edges = (0.0, 1.0, 3.0, PAPER_TRAVEL_mm)
+    along = (Parameter(f"x{i + 1}_mm", edges[i], edges[i + 1] - APART_mm) for i in range(3))
+    force = (Parameter(f"y{i + 1}_cN", low_cN, high_cN) for i in range(3))
+    points = (Parameter(f"{what}_mm", 0.5, 5.5) for what in ("actuation", "vibration"))
+    return DesignSpace("paper", (*along, *force, *points), constraints)
+
+
+def paper_model(design: Design, name: str = "design") -> FDVVModel:
+    """Make the button of a paper design: one curve for press and release at any velocity.
+
+    Between its three points the force is a monotone cubic, so no bump appears that no point asks for;
+    before the first and after the last it holds. Activation and reset are one point.
+    """
+    x = np.array([design[f"x{i}_mm"] for i in (1, 2, 3)])
+    y = np.array([design[f"y{i}_cN"] for i in (1, 2, 3)])
+    knots, coefficients = _monotone(x, y)
+    onset_mm = design["vibration_mm"]
+    return FDVVModel(
+        name=name,
+        travel_mm=PAPER_TRAVEL_mm,
+        curves=tuple(ForceCurve(stroke, None, 3, knots, coefficients) for stroke in Stroke),
+        actuation_mm=design["actuation_mm"],
+        reset_mm=design["actuation_mm"],
+        vibrations=tuple(Vibration(stroke, None, onset_mm, TEMPLATE_s, (TEMPLATE,)) for stroke in Stroke),
+        provenance=Provenance(
+            method="eight parameters of the paper's optimisation",
+            assumptions=(
+                "Force is proportional to the paper's actuation signal, 4.4 N at 255.",
+                "The paper does not tell how force runs between its points; here a monotone cubic.",
+                "The release takes the press's curve and the contact opens where it closes.",
+            ),
+        ),
+    )
+
+
+def _monotone(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Write the monotone cubic (PCHIP) through three points as a B-spline with a double inner knot."""
+    from scipy.interpolate import PchipInterpolator
+
+    slope = PchipInterpolator(x, y)(x, nu=1)
+    third = np.diff(x) / 3
+    after, before = y[:2] + slope[:2] * third, y[1:] - slope[1:] * third
+    knots = np.concatenate([np.full(4, x[0]), np.full(2, x[1]), np.full(4, x[2])])
+    return knots, np.array([y[0], after[0], before[0], after[1], before[1], y[2]])

@@ -1,0 +1,99 @@
+"""Several objectives: which designs no other beats, and how to choose one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.errors import InputError
+from fdvv.optimize._belief import finished
+from fdvv.optimize._engine import Problem
+from fdvv.optimize._trial import Trial
+from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True)
+class ParetoFront:
+    """The finished trials that no other beats in every objective.
+
+    Attributes
+    ----------
+    problem : what was optimised. trials : of the front, best in the first objective first.
+    """
+
+    problem: Problem
+    trials: tuple[Trial, ...]
+
+    def values(self) -> FloatArray:
+        """Give the scores, (n, m), in the order of the problem's objectives."""
+        names = [one.name for one in self.problem.objectives]
+        rows = [[trial.scores[name].value for name in names] for trial in self.trials]
+        return np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
+
+    def knee(self) -> Trial:
+        """Choose where giving up a little of one objective gains least of the others.
+
+        The trial nearest to the best of every objective at once, each in parts of its range over the front.
+        """
+        return self.trials[int(np.argmin(np.linalg.norm(self._normal(), axis=1)))]
+
+    def weighted(self, weights: Mapping[str, float]) -> Trial:
+        """Choose by weights, at least 0, of objectives in parts of their ranges; 0 for one not named.
+
+        InputError on an alien objective or weights that are none.
+        """
+        row = np.array([weights.get(one.name, 0.0) for one in self.problem.objectives])
+        self._known(weights)
+        if not (np.all(np.isfinite(row)) and np.all(row >= 0) and row.sum() > 0):
+            raise InputError("weights", "all", f"are {dict(weights)}", "give some above 0 and none below")
+        return self.trials[int(np.argmin(self._normal() @ row))]
+
+    def within(self, limits: Mapping[str, float]) -> Trial:
+        """Choose the best in the first objective that has no limit, among those within limits.
+
+        limits : the worst value allowed of an objective. InputError if no trial of the front is within.
+        """
+        self._known(limits)
+        names = [one.name for one in self.problem.objectives]
+        signs = self._signs()
+        values = self.values() * signs
+        inside = np.ones(len(values), dtype=np.bool_)
+        for name, limit in limits.items():
+            i = names.index(name)
+            inside &= values[:, i] <= limit * signs[i]
+        if not inside.any():
+            raise InputError("limits", "all", "no trial of the front is within", "loosen one of them")
+        free = next((i for i, name in enumerate(names) if name not in limits), 0)
+        return self.trials[int(np.argmin(np.where(inside, values[:, free], np.inf)))]
+
+    def _known(self, named: Mapping[str, float]) -> None:
+        names = [one.name for one in self.problem.objectives]
+        for name in named:
+            if name not in names:
+                raise InputError("objective", name, "is none of this run", f"use {', '.join(names)}")
+
+    def _signs(self) -> FloatArray:
+        return np.array([-1.0 if one.larger_is_better else 1.0 for one in self.problem.objectives])
+
+    def _normal(self) -> FloatArray:
+        """Give scores from 0, best of the front, to 1, worst of it."""
+        values = self.values() * self._signs()
+        span = np.ptp(values, axis=0)
+        return np.asarray((values - values.min(axis=0)) / np.where(span > 0, span, 1.0))
+
+
+def pareto_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
+    """Find the front among finished trials by the scores as measured; empty if none is finished.
+
+    Equal ones all stay. Noise makes a front look better than it is: measure a chosen design again.
+    """
+    done = finished(problem, trials)
+    signs = np.array([-1.0 if one.larger_is_better else 1.0 for one in problem.objectives])
+    rows = [[trial.scores[one.name].value for one in problem.objectives] for trial in done]
+    values = np.array(rows, dtype=np.float64).reshape(len(done), len(signs)) * signs
+    beaten = [bool(np.any(np.all(values <= row, axis=1) & np.any(values < row, axis=1))) for row in values]
+    kept = [(tuple(row), trial) for row, trial, out in zip(values, done, beaten, strict=True) if not out]
+    kept.sort(key=lambda pair: (pair[0], pair[1].number))
+    return ParetoFront(problem, tuple(trial for _, trial in kept))

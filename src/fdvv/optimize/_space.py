@@ -1,0 +1,117 @@
+"""What may be varied, between which bounds, and what is known to be impossible before anybody tries it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import InputError, ModelError
+from fdvv.units import FloatArray
+
+Design = Mapping[str, float]
+"""A value for every parameter of a space, by its name; the unit is the last part of the name."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that is varied.
+
+    Attributes
+    ----------
+    name : with its unit, as ``actuation_mm``.
+    low, high : bounds, both allowed; low < high.
+
+    Raises ModelError on anything else.
+    """
+
+    name: str
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not self.name.isidentifier():
+            raise ModelError(f"a parameter's name must be an identifier, got {self.name!r}")
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise ModelError(
+                f"{self.name} needs finite bounds, low below high, got {self.low} and {self.high}"
+            )
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """What a design must hold, known without trying it.
+
+    Attributes
+    ----------
+    name : short. told : what it asks, one sentence for a person.
+    slack : of a design: at least 0 where it holds, the more below 0 the worse it is missed. Continuous in the
+        design where it can be, so that engines may follow it.
+    """
+
+    name: str
+    told: str
+    slack: Callable[[Design], float]
+
+
+@dataclass(frozen=True)
+class DesignSpace:
+    """All designs there are.
+
+    Attributes
+    ----------
+    name : of the space. parameters : at least one, names differ. constraints : any number.
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    constraints: tuple[Constraint, ...] = ()
+
+    def __post_init__(self) -> None:
+        names = [one.name for one in self.parameters]
+        if not names or len(set(names)) != len(names):
+            raise ModelError(f"a space needs parameters of different names, got {names}")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Get the names of the parameters, in order."""
+        return tuple(one.name for one in self.parameters)
+
+    def checked(self, design: Design, source: object = "design") -> dict[str, float]:
+        """Give a design in the order of parameters. InputError if a value is missing, alien or outside."""
+        for name in design:
+            if name not in self.names:
+                raise InputError(
+                    source, name, "is no parameter of this space", f"use {', '.join(self.names)}"
+                )
+        return {one.name: self._value(one, design, source) for one in self.parameters}
+
+    @staticmethod
+    def _value(one: Parameter, design: Design, source: object) -> float:
+        value = design.get(one.name)
+        if value is None or not one.low <= value <= one.high:
+            raise InputError(source, one.name, f"is {value}", f"give {one.low:g} to {one.high:g}")
+        return float(value)
+
+    def broken(self, design: Design) -> tuple[Constraint, ...]:
+        """List the constraints that a design does not hold."""
+        return tuple(one for one in self.constraints if not one.slack(design) >= 0)
+
+    def to_unit(self, designs: Sequence[Design]) -> FloatArray:
+        """Map designs to the unit cube, (n, d)."""
+        rows = [[design[name] for name in self.names] for design in designs]
+        low, high = self._bounds()
+        return (np.array(rows, dtype=np.float64).reshape(-1, low.size) - low) / (high - low)
+
+    def of_unit(self, places: npt.ArrayLike) -> list[dict[str, float]]:
+        """Map places (n, d) of the unit cube to designs; what lies outside is brought to a bound."""
+        low, high = self._bounds()
+        rows = np.clip(low + np.atleast_2d(np.asarray(places)) * (high - low), low, high)
+        return [dict(zip(self.names, row.tolist(), strict=True)) for row in rows]
+
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        rows = np.array([(one.low, one.high) for one in self.parameters])
+        return rows[:, 0], rows[:, 1]

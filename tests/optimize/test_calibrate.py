@@ -1,0 +1,102 @@
+"""Timing of tapping people: fitted on some, judged on others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv.errors import FitError, InputError
+from fdvv.optimize import (
+    BAATH,
+    Taps,
+    fit_timing,
+    person_spreads_ms,
+    pooled_log_likelihood,
+    read_taps,
+    spread_error_ratio,
+    timing_log_likelihood,
+)
+
+PERIODS_ms = (600.0, 1200.0, 2400.0)
+
+
+def drawn(people: int, seed: int, clock: float = 0.06, carried: float = 0.4, count: int = 200) -> Taps:
+    """Draw people whose clocks differ by 20 % and whose errors live on by a share."""
+    random = np.random.default_rng(seed)
+    rows = []
+    for person in range(people):
+        ratio, bias = clock * np.exp(0.2 * random.standard_normal()), 15 * random.standard_normal()
+        for period in PERIODS_ms:
+            late = 0.0
+            for _ in range(count):
+                fresh = random.standard_normal() * np.sqrt(1 - carried**2)
+                late = carried * late + ratio * period * fresh
+                rows.append((person, 1, period, late + bias - 0.03 * period))
+    return Taps(*np.array(rows, dtype=float).T)
+
+
+def test_a_fit_finds_what_taps_were_drawn_with() -> None:
+    fit = fit_timing(drawn(24, 0))
+    assert fit.clock_ratio == pytest.approx(0.06, rel=0.12)
+    assert fit.clock_spread == pytest.approx(0.2, abs=0.08)
+    assert fit.bias_ratio == pytest.approx(-0.03, abs=0.006)
+    assert fit.gain == pytest.approx(0.6, abs=0.06)
+
+
+def test_a_clock_that_scales_tells_unknown_people_better_than_one_normal_for_all() -> None:
+    known, unknown = drawn(12, 1), drawn(12, 2)
+    fit = fit_timing(known)
+    assert timing_log_likelihood(fit, unknown) > pooled_log_likelihood(known, unknown) + 0.1
+    guess = fit.clock_ratio * np.array(PERIODS_ms)
+    assert spread_error_ratio(guess, unknown) < 0.35
+    assert spread_error_ratio(np.full(3, known.late_ms.std()), unknown) > 0.5
+
+
+def test_people_can_be_split_and_spreads_are_told_person_by_person() -> None:
+    taps = drawn(4, 3)
+    assert taps.of([1, 3]).people == (1, 3)
+    assert np.array_equal(person_spreads_ms(taps)[[1, 3]], person_spreads_ms(taps.of([1, 3])))
+
+
+def test_too_few_taps_are_refused() -> None:
+    with pytest.raises(FitError, match="two people"):
+        fit_timing(drawn(3, 0, count=5))
+
+
+def test_a_table_of_taps_is_read_and_taps_of_no_beat_are_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "taps.csv"
+    path.write_text("subject,trial,isi,asynch\n1,1,600,-30\n1,1,600,400\n2,1,600,10\n")
+    taps = read_taps(path)
+    assert taps.late_ms.tolist() == [-30.0, 10.0]
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match="line 1"):
+        read_taps(path)
+    path.write_text("subject,trial,isi,asynch\n1,1,600\n")
+    with pytest.raises(InputError, match="four numbers"):
+        read_taps(path)
+
+
+@pytest.mark.shared
+def test_the_shipped_timing_is_that_of_baath_and_madisons_people(shared_data: Path) -> None:
+    fit = fit_timing(_real(shared_data))
+    for name, shipped in vars(BAATH).items():
+        assert getattr(fit, name) == pytest.approx(shipped, rel=0.002), name
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("fold", range(3))
+def test_ten_real_people_tell_five_others_better_than_a_single_normal(shared_data: Path, fold: int) -> None:
+    taps = _real(shared_data)
+    held_out = taps.people[fold::3]
+    known = taps.of([one for one in taps.people if one not in held_out])
+    unknown, fit = taps.of(held_out), fit_timing(known)
+    assert timing_log_likelihood(fit, unknown) > pooled_log_likelihood(known, unknown)
+    guess = fit.clock_ratio * np.array(taps.periods_ms)
+    pooled = np.full(len(taps.periods_ms), known.late_ms.std())
+    assert spread_error_ratio(guess, unknown) < spread_error_ratio(pooled, unknown)
+
+
+def _real(shared_data: Path) -> Taps:
+    return read_taps(next((shared_data / "baath-sync-tapping").glob("*.csv")))

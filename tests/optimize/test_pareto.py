@@ -1,0 +1,82 @@
+"""Fronts of several objectives, and how one of them is chosen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.optimize.problems import BOWL
+
+from fdvv.errors import InputError
+from fdvv.optimize import Objective, Problem, Score, Trial, TrialState, engine_of, pareto_front, torch_there
+
+TWO = Problem(BOWL, (Objective("asynchrony_ms"), Objective("hits", larger_is_better=True)), 1)
+DESIGN = dict.fromkeys(BOWL.names, 0.0)
+
+
+def trial(number: int, asynchrony_ms: float, hits: float) -> Trial:
+    scores = {"asynchrony_ms": Score(asynchrony_ms, 1.0), "hits": Score(hits)}
+    return Trial(number, DESIGN, TrialState.DONE, scores)
+
+
+@given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=12))
+def test_a_front_is_what_no_other_beats(rows: list[tuple[int, int]]) -> None:
+    trials = [trial(i, a, b) for i, (a, b) in enumerate(rows)]
+    wanted = {
+        i for i, (a, b) in enumerate(rows) if not any(c <= a and d >= b and (c, d) != (a, b) for c, d in rows)
+    }
+    assert {one.number for one in pareto_front(TWO, trials).trials} == wanted
+
+
+FRONT = pareto_front(TWO, [trial(0, 60, 10), trial(1, 62, 18), trial(2, 80, 20), trial(3, 81, 9)])
+
+
+def test_pickers_choose_as_they_say() -> None:
+    assert [one.number for one in FRONT.trials] == [0, 1, 2]
+    assert FRONT.values().tolist() == [[60, 10], [62, 18], [80, 20]]
+    assert FRONT.knee().number == 1
+    assert FRONT.weighted({"asynchrony_ms": 1.0}).number == 0
+    assert FRONT.weighted({"hits": 1.0}).number == 2
+    assert FRONT.within({"hits": 15}).number == 1
+    assert FRONT.within({"asynchrony_ms": 70}).number == 1
+
+
+def test_what_cannot_be_chosen_is_said() -> None:
+    with pytest.raises(InputError, match="loosen"):
+        FRONT.within({"hits": 21})
+    with pytest.raises(InputError, match="colour"):
+        FRONT.weighted({"colour": 1.0})
+    with pytest.raises(InputError, match="above 0"):
+        FRONT.weighted({"hits": 0.0})
+
+
+def test_trials_without_every_score_are_no_part_of_a_front() -> None:
+    half = Trial(9, DESIGN, TrialState.DONE, {"hits": Score(99.0)})
+    assert pareto_front(TWO, [half, Trial(1, DESIGN)]).trials == ()
+
+
+def front_of(name: str, count: int) -> tuple[int, float]:
+    """Give how many trials a front has after count, and the part of a box that it covers."""
+    two = Problem(BOWL, (Objective("near_mm2"), Objective("far_mm2")), 2)
+    trials: list[Trial] = []
+    for i in range(count):
+        (design,) = engine_of(name).suggest(two, trials)
+        near, far = (sum((value - ideal) ** 2 for value in design.values()) for ideal in (0.0, 2.0))
+        scores = {"near_mm2": Score(near), "far_mm2": Score(far)}
+        trials.append(Trial(i, design, TrialState.DONE, scores))
+    values = pareto_front(two, trials).values()
+    box = np.random.default_rng(0).random((4000, 2)) * 12.0
+    return len(values), float(np.any(np.all(values[None] <= box[:, None], axis=2), axis=1).mean())
+
+
+@pytest.mark.parametrize("name", ["gp", "botorch"])
+def test_an_engine_of_several_objectives_covers_more_than_chance(name: str) -> None:
+    if name == "botorch" and not torch_there():
+        pytest.skip("botorch is not installed")
+    assert front_of(name, 25)[1] > front_of("random", 25)[1]
+
+
+@pytest.mark.parametrize("name", ["tpe", "nsga2"])
+def test_samplers_take_several_objectives(name: str) -> None:
+    assert front_of(name, 25)[0] > 2
