@@ -1,0 +1,191 @@
+"""What a finger could feel of a button, in units of just noticeable differences: the proxy's senses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model import FDVVModel, Stroke, Vibration
+from fdvv.units import FloatArray
+
+BINS = 80
+"""Places along the travel at which force is felt."""
+PACES = 5
+"""Speeds that stand for all: the middles of fifths of the presses."""
+HEARD_s = 0.2
+"""Over which vibration adds up in the skin: some 3 dB per doubling up to there (Verrillo 1965)."""
+LOWEST_Hz, HIGHEST_Hz = 40.0, 1000.0
+"""Beyond which the threshold of vibration is held: other receptors take over, or none."""
+
+
+@dataclass(frozen=True)
+class Senses:
+    """Constants of feeling, of nobody in particular; docs/explanation/simulated-participants.md sweeps them.
+
+    Attributes
+    ----------
+    weber_ratio : of force. 0.07: 2.5 to 10 N at 25 to 160 mm/s (Pang, Tan and Durlach 1991).
+    floor_cN : force added before the ratio is taken, so that 60 cN are told from 66: below a newton the ratio
+        grows to 0.10 to 0.15. Assumed, within that range.
+    threshold_um : faintest vibration at 250 Hz under a flat fingertip, amplitude; 0.1 to 0.3 are reported.
+    best_Hz : where the threshold is lowest; twelve dB per octave away from it (Verrillo 1963).
+    vibration_ratio : just noticeable part of an amplitude well above threshold, 1 to 2 dB.
+    pace_mm_s, pace_spread_ratio : middle speed of presses, and its spread, of the logarithm. Assumed: paces
+        of 50 to 150 mm/s are what people were seen to choose.
+    speed_weight : of how force changes with speed, beside how it is on average; 1: felt as well as that.
+    release_weight : of the release beside the press.
+    pooling : exponent by which places add up; 2: root of the mean square, large: the largest alone.
+    """
+
+    weber_ratio: float = 0.07
+    floor_cN: float = 30.0
+    threshold_um: float = 0.2
+    best_Hz: float = 250.0
+    vibration_ratio: float = 0.17
+    pace_mm_s: float = 80.0
+    pace_spread_ratio: float = 0.45
+    speed_weight: float = 1.0
+    release_weight: float = 1.0
+    pooling: float = 2.0
+
+    def __post_init__(self) -> None:
+        weights = (self.speed_weight, self.release_weight, self.pace_spread_ratio)
+        sizes = (self.weber_ratio, self.floor_cN, self.threshold_um, self.best_Hz, self.vibration_ratio)
+        fine = all(0 <= one < math.inf for one in weights) and self.pooling >= 1
+        if not fine or not all(0 < one < math.inf for one in (*sizes, self.pace_mm_s)):
+            raise ModelError(f"no finger feels like that: {self}")
+
+    @property
+    def paces_mm_s(self) -> FloatArray:
+        """Get the speeds at which a button is felt, (PACES,), rising."""
+        middles = [NormalDist().inv_cdf((one + 0.5) / PACES) for one in range(PACES)]
+        return np.asarray(self.pace_mm_s * np.exp(self.pace_spread_ratio * np.asarray(middles)))
+
+
+@dataclass(frozen=True, eq=False)
+class FeltFeatures:
+    """A button as the senses have it.
+
+    Attributes
+    ----------
+    force_JND : (strokes, paces, BINS) steps of just noticeable force above none, press then release.
+    vibration : (strokes,) amplitude above the faintest that is felt, 1 at threshold, 0 without vibration.
+    """
+
+    force_JND: FloatArray
+    vibration: FloatArray
+
+
+@dataclass(frozen=True)
+class FeltDifference:
+    """How far two buttons are apart for the middle person, in just noticeable differences.
+
+    Attributes
+    ----------
+    force_JND : of force on average over speeds. speed_JND : of how force changes with speed.
+    vibration : amplitudes of both above threshold, by stroke: ((press, press), (release, release)).
+    vibration_JND : between these.
+    """
+
+    force_JND: float
+    speed_JND: float
+    vibration: tuple[tuple[float, float], ...]
+    vibration_JND: float
+
+    @property
+    def total_JND(self) -> float:
+        """Get the whole difference: the parts are taken to add up by their squares."""
+        return math.sqrt(self.force_JND**2 + self.speed_JND**2 + self.vibration_JND**2)
+
+
+def felt_features(model: FDVVModel, senses: Senses | None = None, force_ratio: float = 1.0) -> FeltFeatures:
+    """Give what could be felt of a model that is rendered ideally, all its forces multiplied by a ratio.
+
+    A force F becomes ln(1 + F / floor) / ratio: steps of the generalised Weber law dF = ratio (F + floor).
+    The place is the part of the travel. A model that tells nothing of a stroke has the press stand for it.
+    """
+    senses = senses or Senses()
+    place_mm = (np.arange(BINS) + 0.5) / BINS * model.travel_mm
+    rows = [
+        model.force_cN(place_mm[None, :], senses.paces_mm_s[:, None], _served(model, stroke))
+        for stroke in Stroke
+    ]
+    force_cN = force_ratio * np.clip(np.stack(rows), 0.0, None)
+    return FeltFeatures(
+        np.log1p(force_cN / senses.floor_cN) / senses.weber_ratio,
+        np.asarray([felt_vibration(model.vibration(stroke, senses.pace_mm_s), senses) for stroke in Stroke]),
+    )
+
+
+def felt_difference(
+    first: FeltFeatures, second: FeltFeatures, senses: Senses | None = None
+) -> FeltDifference:
+    """Give how far two buttons are apart, place by place along their travels."""
+    senses = senses or Senses()
+    apart = first.force_JND - second.force_JND  # (strokes, paces, BINS)
+    mean = apart.mean(axis=1)
+    changing = np.sqrt(np.mean((apart - mean[:, None, :]) ** 2, axis=1))
+    pairs = tuple(zip(first.vibration.tolist(), second.vibration.tolist(), strict=True))
+    steps = vibration_steps(first.vibration, senses) - vibration_steps(second.vibration, senses)
+    return FeltDifference(
+        _pooled(mean, senses),
+        senses.speed_weight * _pooled(changing, senses),
+        pairs,
+        _both_strokes(np.abs(steps), senses),
+    )
+
+
+def felt_vibration(vibration: Vibration | None, senses: Senses) -> float:
+    """Give the amplitude of a vibration above the faintest of its frequencies, 0 for none.
+
+    The displacement of each mode is divided by the threshold at its frequency; energy adds up over 0.2 s.
+    """
+    if vibration is None:
+        return 0.0
+    energy = 0.0
+    for mode in vibration.modes:
+        amplitude_um = 1e6 * mode.amplitude_m_s2 / (2 * math.pi * mode.frequency_Hz) ** 2
+        above = amplitude_um / threshold_um(mode.frequency_Hz, senses)
+        energy += above**2 * _lasting_s(mode.decay_1_s, vibration.duration_s) / HEARD_s
+    return math.sqrt(energy)
+
+
+def threshold_um(frequency_Hz: float, senses: Senses) -> float:
+    """Give the faintest amplitude that is felt: lowest at best_Hz, 12 dB per octave away from it."""
+    ratio = min(max(frequency_Hz, LOWEST_Hz), HIGHEST_Hz) / senses.best_Hz
+    return senses.threshold_um * 0.5 * (ratio**2 + ratio**-2)
+
+
+def vibration_steps(above: FloatArray, senses: Senses) -> FloatArray:
+    """Give just noticeable steps of vibration: one at threshold, one per 1.5 dB far above it."""
+    return np.asarray(np.log1p(senses.vibration_ratio * above) / senses.vibration_ratio)
+
+
+def _lasting_s(decay_1_s: float, duration_s: float) -> float:
+    """Give how long a vibration of constant amplitude would have to last for the same energy."""
+    if decay_1_s == 0.0:
+        return duration_s
+    return -math.expm1(-2 * decay_1_s * duration_s) / (2 * decay_1_s)
+
+
+def _served(model: FDVVModel, stroke: Stroke) -> Stroke:
+    other = Stroke.RELEASE if stroke is Stroke.PRESS else Stroke.PRESS
+    return stroke if model.of(stroke) else other
+
+
+def _pooled(apart: FloatArray, senses: Senses) -> float:
+    """Pool differences, (strokes, BINS), over places and then both strokes."""
+    largest = np.abs(apart).max(axis=1, keepdims=True)
+    scaled = np.divide(np.abs(apart), largest, out=np.zeros_like(apart), where=largest > 0)
+    by_stroke = largest[:, 0] * np.mean(scaled**senses.pooling, axis=1) ** (1 / senses.pooling)
+    return _both_strokes(by_stroke, senses)
+
+
+def _both_strokes(by_stroke: FloatArray, senses: Senses) -> float:
+    """Give the root of the weighted mean square of press and release."""
+    weights = np.asarray([1.0, senses.release_weight])
+    return float(np.sqrt(np.average(by_stroke**2, weights=weights)))

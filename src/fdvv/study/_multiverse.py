@@ -1,0 +1,198 @@
+"""The main claim under every reasonable way to analyse it (Steegen et al. 2016; Simonsohn et al. 2020)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from fdvv.study._answers import Answers
+from fdvv.study._claim_values import (
+    CHOICE,
+    CORRECT,
+    claim_values,
+    groups_by,
+    is_answered,
+    means_by,
+    measure_of,
+    measured_by,
+)
+from fdvv.study._effect_size import CONFIDENCE
+from fdvv.study._plan import Claim
+from fdvv.study._screening import unscreened
+from fdvv.study._share import sign_test, wilson
+from fdvv.study._signed_rank import signed_ranks
+from fdvv.units import FloatArray
+
+PLANNED, EVERYONE, COMPLETE = "by the rules", "nobody left out", "complete people only"
+PERSON, CELL, TRIAL = "person", "person and button", "trial"
+SPLIT, DROPPED = "split", "dropped"
+RANKS, PRATT, SIGNS, T = "signed rank, zeros left out", "signed rank, zeros ranked", "sign", "t"
+EXACT_UP_TO = 100
+"""Numbers up to which the signed-rank test is exact; beyond, its normal approximation is as good."""
+
+
+@dataclass(frozen=True)
+class Specification:
+    """One way to analyse the claim.
+
+    Attributes
+    ----------
+    exclusions, measure, unit, ties, test : the choices made. registered : the way that was fixed beforehand,
+        or, where nothing was, the one that fdvv reports.
+    share : part that speaks for the claim, ties as halves or dropped; 0.5 is no difference. low, high : its
+        95 % interval. n : numbers that were tested. p : two-sided.
+    """
+
+    exclusions: str
+    measure: str
+    unit: str
+    ties: str
+    test: str
+    share: float
+    low: float
+    high: float
+    n: int
+    p: float
+    registered: bool = False
+
+
+@dataclass(frozen=True)
+class Multiverse:
+    """All ways, by rising share. alpha : level that they are held against."""
+
+    specifications: tuple[Specification, ...]
+    alpha: float
+
+    @property
+    def registered(self) -> Specification:
+        """Get the way fixed beforehand."""
+        return next(one for one in self.specifications if one.registered)
+
+    @property
+    def agreeing(self) -> int:
+        """Count the ways whose share lies on the same side of one half as the registered one's."""
+        side = np.sign(self.registered.share - 0.5)
+        return sum(bool(np.sign(one.share - 0.5) == side) for one in self.specifications)
+
+    @property
+    def significant(self) -> int:
+        """Count the ways that agree and are significant."""
+        side = np.sign(self.registered.share - 0.5)
+        agree = [one for one in self.specifications if np.sign(one.share - 0.5) == side]
+        return sum(one.p < self.alpha for one in agree)
+
+
+def multiverse(answers: Answers, claim: Claim) -> Multiverse:
+    """Test a claim in every reasonable way.
+
+    answers : screened; what the rules left out is told in `excluded`. Ways that come to the same are counted
+    once. ModelError on a claim that the answers do not hold.
+    """
+    first = measure_of(answers, claim)
+    found: list[Specification] = []
+    for exclusions, rows in _exclusions(answers).items():
+        for measure in _measures(answers, first, claim):
+            values = claim_values(rows, measured_by(claim, measure))[rows.counts]
+            keys = rows.person[rows.counts], rows.item[rows.counts]
+            for unit, ties in product((PERSON, CELL, TRIAL), (SPLIT, DROPPED)):
+                found += _ways(exclusions, measure, unit, ties, values, keys)
+    chosen = (PLANNED, first, PERSON, SPLIT, RANKS)
+    marked = [replace(one, registered=_key(one) == chosen) for one in found]
+    return Multiverse(tuple(sorted(marked, key=lambda one: one.share)), claim.alpha)
+
+
+def _key(one: Specification) -> tuple[str, ...]:
+    return one.exclusions, one.measure, one.unit, one.ties, one.test
+
+
+def _exclusions(answers: Answers) -> dict[str, Answers]:
+    """Give the answers that count under each reasonable rule; rules that leave the same count once."""
+    everyone = unscreened(answers)
+    whole = [
+        person
+        for person in dict.fromkeys(answers.person.tolist())
+        if (answers.counts & is_answered(answers))[answers.person == person].all()
+    ]
+    excluded = np.where(answers.counts & np.isin(answers.person, whole), "", "incomplete")
+    complete = replace(answers, excluded=excluded)
+    found, met = {}, set()
+    for name, rows in ((PLANNED, answers), (EVERYONE, everyone), (COMPLETE, complete)):
+        key = (rows.counts & is_answered(rows)).tobytes()
+        if key not in met and (rows.counts & is_answered(rows)).any():
+            found[name] = rows
+        met.add(key)
+    return found
+
+
+def _measures(answers: Answers, first: str, claim: Claim) -> list[str]:
+    """Give every measure that speaks of the claim, the claim's own first."""
+    if first == CORRECT:
+        return [CORRECT]
+    chosen = [CHOICE] if np.isin(answers.choice, (claim.more, claim.less)).any() else []
+    rated = [name for name, columns in answers.ratings.items() if np.isfinite(columns).any()]
+    return list(dict.fromkeys([first, *chosen, *rated]))
+
+
+def _ways(
+    exclusions: str, measure: str, unit: str, ties: str, values: FloatArray, keys: tuple[np.ndarray, ...]
+) -> list[Specification]:
+    """Test one set of values in every way that differs."""
+    if ties == DROPPED:
+        if not np.any(values == 0):
+            return []
+        values = np.where(values == 0, np.nan, values)
+    tested, shares = _units(values, unit, keys)
+    if not tested.size:
+        return []
+    share, low, high = _interval(shares, unit)
+    tests: tuple[str, ...] = (RANKS, PRATT, SIGNS, T) if np.any(tested == 0) else (RANKS, SIGNS, T)
+    # of right and wrong, or of choices, one by one: ranks say what signs say
+    # where all are alike there is nothing to hold a mean against
+    tests = tuple(one for one in tests if one != T or (tested.size > 1 and tested.std() > 0))
+    tests = (SIGNS,) if unit == TRIAL and np.unique(np.abs(tested[tested != 0])).size <= 1 else tests
+    return [
+        Specification(exclusions, measure, unit, ties, test, share, low, high, tested.size, _p(tested, test))
+        for test in tests
+    ]
+
+
+def _units(values: FloatArray, unit: str, keys: tuple[np.ndarray, ...]) -> tuple[FloatArray, FloatArray]:
+    """Average values and shares over what is counted as one."""
+    signs = np.where(np.isfinite(values), (np.sign(values) + 1.0) / 2.0, np.nan)
+    if unit == TRIAL or not values.size:
+        there = np.isfinite(values)
+        return values[there], signs[there]
+    by = keys[:1] if unit == PERSON else keys
+    if unit == CELL and len(np.unique(groups_by(*keys))) == len(np.unique(keys[0])):
+        return np.empty(0), np.empty(0)
+    means, shares = means_by(values, *by), means_by(signs, *by)
+    return means[np.isfinite(means)], shares[np.isfinite(means)]
+
+
+def _interval(shares: FloatArray, unit: str) -> tuple[float, float, float]:
+    """Give the mean share with its interval: Wilson's of trials, else Student's between what is counted."""
+    from scipy.stats import t as student
+
+    n, share = shares.size, float(shares.mean())
+    if unit == TRIAL:
+        low, high = wilson(share * n, n)
+        return share, float(low), float(high)
+    if n < 2:
+        return share, 0.0, 1.0
+    half = float(student.ppf(0.5 + CONFIDENCE / 2, n - 1)) * float(shares.std(ddof=1)) / float(np.sqrt(n))
+    return share, max(0.0, share - half), min(1.0, share + half)
+
+
+def _p(values: FloatArray, test: str) -> float:
+    """Test that values lie to neither side of 0, two-sided."""
+    from scipy.stats import ttest_1samp
+
+    if test == SIGNS:
+        return sign_test(values).p
+    if test == T:
+        return float(ttest_1samp(values, 0.0).pvalue)
+    exact = values.size <= EXACT_UP_TO
+    found = signed_ranks(values[np.newaxis], "pratt" if test == PRATT else "wilcoxon", exact)
+    return float((found.p_exact if exact else found.p_asymptotic)[0])

@@ -1,0 +1,186 @@
+"""What is wrong with a plan that reads well: what could not be run, or not be analysed, as it says."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import PurePosixPath
+
+import msgspec
+
+from fdvv.model import SUFFIX, builtin_names
+from fdvv.study._plan import Item, Page, Question, Stimulus, StudyPlan
+from fdvv.study._plan_rules import kind_problems
+from fdvv.study._plan_texts import language_problems
+from fdvv.study._schedule import LABELS
+from fdvv.study._trial import EQUAL
+
+ACTUATION_SUFFIX = ".actuation.json"
+COLUMN = re.compile(r"[^\W\d]\w{0,39}")
+TAKEN = {"choice", "correct", "excluded", "item", "kind", "number", "person", "ratio", "round", "time_s"}
+"""Columns that every file of answers has."""
+MOST_TRIALS = 2000
+
+
+def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
+    """List what is wrong, each as "place: reason"; empty where the plan can be run and analysed.
+
+    Looks at the plan alone: whether the files it names are there and what they hold is for who has them.
+    """
+    return (
+        *_numbers(plan, ""),
+        *_names(plan),
+        *language_problems(plan),
+        *(told for item in plan.items for told in _item(plan, item)),
+        *_pages(plan.pages),
+        *_kept(plan),
+        *_columns(plan),
+        *kind_problems(plan),
+        *_claim(plan),
+        *_extent(plan),
+    )
+
+
+def is_file(button: str) -> bool:
+    """Tell whether a button's name is that of a file beside the study."""
+    return button.endswith(SUFFIX) or "/" in button or "\\" in button
+
+
+def _numbers(part: object, place: str) -> Iterator[str]:
+    """Refuse inf and nan, which TOML knows and no bound stops."""
+    if isinstance(part, float) and not math.isfinite(part):
+        yield f"{place}: {part} is not a finite number"
+    if isinstance(part, msgspec.Struct):
+        for field in part.__struct_fields__:
+            yield from _numbers(getattr(part, field), f"{place}.{field}".lstrip("."))
+    if isinstance(part, tuple):
+        for i, one in enumerate(part, start=1):
+            yield from _numbers(one, f"{place}[{i}]")
+
+
+def _names(plan: StudyPlan) -> Iterator[str]:
+    """Refuse names that occur twice, cannot be printed, or mean something else."""
+    if not plan.items:
+        yield "items: there is none; write [[items]]"
+    groups: dict[str, Iterable[str]] = {
+        "items": [item.name for item in plan.items],
+        "ratings": [rating.name for rating in plan.ratings],
+        "pages": [page.name for page in plan.pages],
+        "languages": plan.languages,
+    }
+    groups |= {f"items ({i.name!r}), stimuli": [s.name for s in i.stimuli] for i in plan.items}
+    yield from _plain("name", plan.name)
+    for place, names in groups.items():
+        for name in names:
+            yield from _plain(place, name)
+        yield from _twice(place, names)
+
+
+def _plain(place: str, name: str) -> Iterator[str]:
+    if not name.isprintable() or name != name.strip() or not name:
+        yield f"{place}: {name!r:.70} must be printable, without spaces at its ends"
+
+
+def _twice(place: str, names: Iterable[str]) -> Iterator[str]:
+    """Names that differ only in case would be mistaken for each other."""
+    seen: dict[str, str] = {}
+    for name in names:
+        if name.casefold() in seen:
+            yield f"{place}: {name!r} and {seen[name.casefold()]!r} are the same name"
+        seen[name.casefold()] = name
+
+
+def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
+    """Refuse stimuli that cannot be told apart by their name, or are one and the same rendering."""
+    place = f"items ({item.name!r})"
+    if [s.name for s in item.stimuli] != [s.name for s in plan.items[0].stimuli]:
+        yield f"{place}: its stimuli must have the names and the order of the first item's"
+    for stimulus in (*item.stimuli, *([item.reference] if item.reference else [])):
+        yield from _stimulus(f"{place}, {stimulus.name!r}", stimulus)
+    seen: dict[Stimulus, str] = {}
+    for stimulus in item.stimuli if plan.kind != "staircase" else ():
+        same = msgspec.structs.replace(stimulus, name="same")
+        if same in seen:
+            yield f"{place}: {seen[same]!r} and {stimulus.name!r} are one and the same rendering"
+        seen[same] = stimulus.name
+
+
+def _stimulus(place: str, stimulus: Stimulus) -> Iterator[str]:
+    if stimulus.name.casefold() == EQUAL or stimulus.name.upper() in [*LABELS, "X"]:
+        yield f"{place}: a stimulus may not be called {stimulus.name!r}, which is an answer or a label"
+    if not is_file(stimulus.button) and stimulus.button not in builtin_names():
+        known = ", ".join(builtin_names())
+        yield f"{place}: {stimulus.button!r} is neither built in ({known}) nor a *{SUFFIX} file"
+    files = [(stimulus.button, SUFFIX)] if is_file(stimulus.button) else []
+    files += [(stimulus.actuation, ACTUATION_SUFFIX)] if stimulus.actuation else []
+    for name, suffix in files:
+        path = PurePosixPath(name)
+        if path.is_absolute() or ".." in path.parts or "\\" in name or ":" in name or not name.isprintable():
+            yield f"{place}: {name!r:.70} must lie beside the study or in a folder there, written with /"
+        if not name.endswith(suffix):
+            yield f"{place}: {name!r:.70} does not end in {suffix}"
+
+
+def _kept(plan: StudyPlan) -> Iterator[str]:
+    """Refuse two files that a study's folder, which keeps all in buttons/, could not hold side by side."""
+    stimuli = [s for item in plan.items for s in (*item.stimuli, item.reference) if s]
+    names = {n for s in stimuli for n in (s.button if is_file(s.button) else "", s.actuation) if n}
+    for bare in sorted(names):
+        if f"buttons/{bare}" in names:
+            yield f"items: {bare!r} and 'buttons/{bare}' would be kept under one name; rename one"
+
+
+def _pages(pages: tuple[Page, ...]) -> Iterator[str]:
+    for page in pages:
+        for question in page.questions:
+            yield from _question(f"pages ({page.name!r}), questions ({question.name!r})", question)
+
+
+def _question(place: str, question: Question) -> Iterator[str]:
+    low, high = question.low, question.high
+    if question.choices and (low is not None or high is not None):
+        yield f"{place}: it has choices and a range; leave out one"
+    if low is not None and high is not None and low >= high:
+        yield f"{place}: low {low:g} is not below high {high:g}"
+    lengths = {len(choices) for choices in question.choices.values()}
+    if lengths and (len(lengths) > 1 or min(lengths) < 2):
+        yield f"{place}: choices must be at least two, and as many in every language"
+    for choices in question.choices.values():
+        yield from _twice(f"{place}, choices", choices)
+
+
+def _columns(plan: StudyPlan) -> Iterator[str]:
+    """Refuse names that could not head a column of a table of answers."""
+    asked = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
+    asked += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
+    for place, name in asked:
+        if not COLUMN.fullmatch(name):
+            yield f"{place}: {name!r:.50} names a column: at most 40 letters, digits and _"
+        if name.casefold() in TAKEN:
+            yield f"{place}: {name!r} is a column that every file of answers has"
+    yield from _twice("ratings and questions", [name for _, name in asked])
+
+
+def _claim(plan: StudyPlan) -> Iterator[str]:
+    if not plan.claim or not plan.items:
+        return
+    names = [stimulus.name for stimulus in plan.items[0].stimuli]
+    for name in (plan.claim.more, plan.claim.less):
+        if name not in names:
+            yield f"claim: {name!r} is not one of the stimuli ({', '.join(names)})"
+    if plan.claim.more == plan.claim.less:
+        yield "claim: more and less are the same stimulus"
+    measures = [*([] if plan.kind == "mushra" else ["choice"]), *(rating.name for rating in plan.ratings)]
+    if plan.claim.measure not in measures:
+        yield f"claim: measure {plan.claim.measure!r} is not asked (asked is {', '.join(measures)})"
+
+
+def _extent(plan: StudyPlan) -> Iterator[str]:
+    """Refuse what nobody could sit through, and breaks that are none."""
+    size = plan.staircase.trials if plan.kind == "staircase" and plan.staircase else 1
+    count = len(plan.items) * plan.rounds * size + plan.practice
+    if count > MOST_TRIALS:
+        yield f"rounds: {count} trials of one person are more than {MOST_TRIALS}"
+    if plan.break_every_min > 0 and plan.break_min == 0:
+        yield "break_min: a break of no length; for no breaks write break_every_min = 0"

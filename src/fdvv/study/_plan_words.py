@@ -1,0 +1,132 @@
+"""A plan in sentences, for people who decide whether it is what they mean. In English."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fdvv.study._plan import Item, Question, Rating, Stimulus, StudyPlan
+from fdvv.study._schedule import LABELS
+from fdvv.study._staircase import target_share
+from fdvv.study._words import asks_choice, equal_text, question_text
+
+TASKS = {
+    "realism": "X is {x}. A and B hide {names}; which is closer to X?",
+    "abx": "X, A and B hide {names}; X is the same as A or as B, and must be named.",
+    "2afc": "A and B hide {names}; one must be named, and {last} is right.",
+    "2ac": "A and B hide {names}; {last} is right, and no difference may be answered.",
+    "preference": "A and B hide {names}; neither is right.",
+    "mushra": "X is {first}, openly. {labels} hide {names}, and each is rated.",
+    "staircase": "A and B hide {names}; {last} has more force, and must be named.",
+}
+
+
+def task_text(plan: StudyPlan) -> str:
+    """Tell what a trial is."""
+    names = [stimulus.name for stimulus in plan.items[0].stimuli]
+    rendered = [item.reference is not None for item in plan.items]
+    x = "rendered too" if all(rendered) else "rendered for some buttons" if any(rendered) else "a real button"
+    return TASKS[plan.kind].format(
+        x=x,
+        names=", ".join(names[:-1]) + f" and {names[-1]}",
+        first=names[0],
+        last=names[-1],
+        labels=f"A to {LABELS[len(names) - 1]}",
+    )
+
+
+def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
+    """Tell what is asked in a trial, in a language of the study."""
+    answers = " / ".join(filter(None, ("A", "B", equal_text(plan, language))))
+    asked = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
+    return (*asked, *(rating_text(rating, language) for rating in plan.ratings))
+
+
+def rating_text(rating: Rating, language: str) -> str:
+    """Tell how each hidden rendering is rated."""
+    low, high = ("0", "100") if rating.points == 101 else ("1", str(rating.points))
+    ends = [rating.low.get(language), rating.high.get(language)]
+    told = [f"{end} ({words})" if words else end for end, words in zip((low, high), ends, strict=True)]
+    return f"{rating.question[language]} {told[0]} to {told[1]}"
+
+
+def question_line(question: Question, language: str) -> str:
+    """Tell what a question of a page asks and which answers it takes."""
+    if question.choices:
+        answers = " / ".join(question.choices[language])
+    elif question.low is not None or question.high is not None:
+        low = "" if question.low is None else f" from {question.low:g}"
+        high = "" if question.high is None else f" to {question.high:g}"
+        answers = f"a number{low}{high}"
+    else:
+        answers = "free text"
+    return f"{question.question[language]} {answers}{'' if question.required else ', may be left out'}"
+
+
+def stimulus_text(stimulus: Stimulus) -> str:
+    """Tell what a stimulus renders."""
+    told = f"{stimulus.button}, {stimulus.rendered}"
+    if stimulus.force_ratio != 1.0:
+        told += f", {stimulus.force_ratio:g} times the force"
+    return told + (f", compensated by {stimulus.actuation}" if stimulus.actuation else "")
+
+
+def reference_text(plan: StudyPlan, item: Item) -> str:
+    """Tell what X is for an item; "" where there is none."""
+    if item.reference:
+        return stimulus_text(item.reference)
+    real = {"realism": "the real button", "abx": "one of the two", "mushra": item.stimuli[0].name}
+    return real.get(plan.kind, "")
+
+
+def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
+    """Tell what will not count."""
+    rules, told = plan.exclusion, []
+    told.append(f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms")
+    if rules.presses:
+        told.append(f"a trial in which a rendering was pressed less than {_times(rules.presses)}")
+    if rules.fault:
+        told.append("a trial in which the device fell into a fault")
+    told.append(f"a person who then lacks more than {100 * rules.share_missing:g} % of the trials")
+    if asks_choice(plan):
+        told.append(f"a person who gave one label in more than {100 * rules.same_choice:g} % of the trials")
+    else:
+        told.append(
+            "a person who rated the hidden reference below "
+            f"{rules.reference_points:g} in more than 15 % of the trials"
+        )
+    return tuple(told)
+
+
+def claim_text(plan: StudyPlan) -> str:
+    """Tell what is tested."""
+    claim = plan.claim
+    if claim is None:
+        rule = plan.staircase
+        found = f"; thresholds are found at {100 * target_share(rule):.1f} % correct" if rule else ""
+        return f"None{found}."
+    if claim.measure != "choice":
+        told = f"{claim.more} is rated above {claim.less} in {claim.measure}"
+    elif plan.kind == "abx":
+        told = f"{claim.more} and {claim.less} are told apart"
+    else:
+        told = f"{claim.more} is chosen above {claim.less}"
+    return f"{told}; two-sided, at a level of {claim.alpha:g}."
+
+
+def staircase_texts(plan: StudyPlan) -> Iterator[str]:
+    """Tell how a staircase goes."""
+    rule = plan.staircase
+    if rule:
+        steps = ", then ".join(f"{step:g}" for step in rule.steps_ratio)
+        yield (
+            f"From {100 * rule.start_ratio:g} % more force; divided by the step after {rule.down} correct in "
+            f"a row, multiplied by it after a mistake; steps {steps} after the turns."
+        )
+        yield (
+            f"Ends at {rule.reversals} turns or {rule.trials} trials; "
+            f"the first {rule.dropped} turns do not count."
+        )
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"

@@ -1,0 +1,157 @@
+"""A person's whole schedule: items in balanced orders, and behind each label something drawn anew."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+
+from fdvv.study._orders import williams_orders
+from fdvv.study._plan import Item, Staircase, StudyPlan
+from fdvv.study._trial import StudyTrial
+
+LABELS = "ABCDEFGHIJKLMNOPQRSTUVW"
+"""Of hidden renderings; X is always the reference."""
+
+
+def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generator) -> tuple[StudyTrial, ...]:
+    """Draw all trials of one person, practice first. **Secret.**
+
+    person_index : 0, 1, ... in the order of enrolment; it gives the orders of items, which are no secret.
+    random : gives the labels. It must be made anew for every person from what the operating system holds
+        random (``numpy.random.default_rng()``): drawn on from one person to the next, whoever learns one
+        schedule could work out the next.
+
+    A staircase has ``staircase.trials`` trials for every item and round, of which those behind its end are
+    not shown; their ratio is filled in when their turn comes.
+
+    Notes
+    -----
+    *What labels tell.* Of two stimuli each hides behind A in half of a person's rounds of an item, or in one
+    more or less, by lot, where the rounds are odd. All sequences so balanced are equally likely, and that is
+    all there is to know: people, items and practice are drawn independently of each other. (A staircase's
+    labels are balanced over all its trials of a person and item, shown or not.)
+
+    An operator who watches can therefore learn in one way only, within one person's rounds of one item: where
+    an assignment was seen through, the opposite one is likelier later. With six rounds, who was told the
+    truth after every trial would guess 68 % of the assignments beforehand, the last for certain
+    (Blackwell and Hodges 1957). Nobody is told. From answers that name one rendering in 77 % of the trials,
+    as in the paper, 57 % are guessed beforehand and 63 % of the last ones, where chance is 50 %
+    (tests/study/test_schedule.py computes all four); with two rounds it is 64 and 77 %. A person's answer
+    tells as much of its own trial, 77 %, and no draw helps against that; but it comes when nothing can be
+    spoiled any more. Labels drawn independently would leave 50 % beforehand. The price: one person and item
+    in 32 would have felt the same rendering behind A six times of six, and whoever likes A better would then
+    count as preferring what it hid.
+
+    In ABX, what X is and which label is right are two such sequences, independent of each other. Three and
+    more stimuli (MUSHRA) are permuted independently in every trial: to see the hidden reference rated at the
+    top tells nothing of the next trial.
+    """
+    names = [item.name for item in plan.items]
+    # orders are seen by all, and must not tell the state that labels are drawn from
+    orders = item_orders(plan, person_index, random.spawn(1)[0])
+    drawn = {item.name: _assignments(plan, item, random) for item in plan.items}
+    trials = _practice(plan, random)
+    for round_, order in enumerate(orders):
+        for item in order:
+            block = drawn[names[item]][round_]
+            trials += [StudyTrial(0, names[item], round_, labels, False, right) for labels, right in block]
+    return tuple(msgspec.structs.replace(trial, number=i) for i, trial in enumerate(trials))
+
+
+def public_trial(trial: StudyTrial) -> StudyTrial:
+    """Give a trial without what is secret: its labels hide nothing, none is right, there is no ratio."""
+    hidden = dict.fromkeys(sorted(trial.labels), "")
+    return StudyTrial(trial.number, trial.item, trial.round, hidden, trial.practice)
+
+
+def item_orders(
+    plan: StudyPlan, person_index: int, random: np.random.Generator | None = None
+) -> tuple[tuple[int, ...], ...]:
+    """Give the order of items in each round of a person, as indices into plan.items.
+
+    The rows of Williams' design are dealt so that everything is balanced as early as can be: over any number
+    of people, no row was used more than once more often than another; a person meets all of them where there
+    are rounds enough; and once there were as many people as rows, each round had each row. random : only
+    for plans whose order is "random".
+    """
+    count = len(plan.items)
+    if count == 1:
+        return ((0,),) * plan.rounds
+    if plan.order == "random":
+        random = np.random.default_rng() if random is None else random
+        return tuple(tuple(int(i) for i in random.permutation(count)) for _ in range(plan.rounds))
+    rows = williams_orders(count)
+    return tuple(rows[i] for i in _rows(len(rows), plan.rounds, person_index))
+
+
+def _rows(count: int, rounds: int, person: int) -> list[int]:
+    """Deal rows: on and on over people, begun one later whenever the people would repeat."""
+    repeat = count // math.gcd(rounds, count)
+    begin = person * rounds + person // repeat
+    return [(begin + i) % count for i in range(rounds)]
+
+
+Assignment = tuple[dict[str, str], str]
+"""What each label hides, and the label that is right."""
+
+
+def _assignments(plan: StudyPlan, item: Item, random: np.random.Generator) -> list[list[Assignment]]:
+    """Draw the labels of an item: for each round the trials of its block, which is one but for staircases."""
+    size = (plan.staircase or Staircase()).trials if plan.kind == "staircase" else 1
+    count = size * plan.rounds
+    names = [stimulus.name for stimulus in item.stimuli]
+    if len(names) != 2:
+        flat = [_permuted(names, random) for _ in range(count)]
+    else:
+        flat = _pairs(plan, names, count, random)
+    return [flat[i : i + size] for i in range(0, count, size)]
+
+
+def _permuted(names: Sequence[str], random: np.random.Generator) -> Assignment:
+    order = random.permutation(len(names))
+    return {label: names[i] for label, i in zip(LABELS, order, strict=False)}, ""
+
+
+def _pairs(
+    plan: StudyPlan, names: Sequence[str], count: int, random: np.random.Generator
+) -> list[Assignment]:
+    """Draw the labels of two stimuli for so many trials."""
+    second = balanced(count, random)
+    if plan.kind != "abx":
+        return [_pair(plan, names, "AB"[side]) for side in second]
+    hidden = balanced(count, random)
+    return [_abx(names, names[x], "AB"[side]) for x, side in zip(hidden, second, strict=True)]
+
+
+def _pair(plan: StudyPlan, names: Sequence[str], label: str) -> Assignment:
+    """Put the second stimulus behind a label; it is what is asked for where one of them is right."""
+    first, second = names
+    labels = {"A": second, "B": first} if label == "A" else {"A": first, "B": second}
+    return labels, label if plan.kind in ("2afc", "2ac", "staircase") else ""
+
+
+def _abx(names: Sequence[str], x: str, right: str) -> Assignment:
+    """Put X's stimulus behind X and behind the label that is right."""
+    other = names[1] if x == names[0] else names[0]
+    return {"A": x if right == "A" else other, "B": other if right == "A" else x, "X": x}, right
+
+
+def balanced(count: int, random: np.random.Generator) -> list[int]:
+    """Draw zeros and ones, equally many but for one by lot if count is odd; all such sequences as likely."""
+    odd = [int(random.integers(2))] if count % 2 else []
+    return [int(side) for side in random.permutation([0, 1] * (count // 2) + odd)]
+
+
+def _practice(plan: StudyPlan, random: np.random.Generator) -> list[StudyTrial]:
+    """Draw practice on the first items; independent, so that it takes nothing from the balance."""
+    found = []
+    for i in range(plan.practice):
+        item = plan.items[i % len(plan.items)]
+        names = [stimulus.name for stimulus in item.stimuli]
+        labels, right = _pairs(plan, names, 1, random)[0] if len(names) == 2 else _permuted(names, random)
+        ratio = (plan.staircase or Staircase()).start_ratio if plan.kind == "staircase" else 0.0
+        found.append(StudyTrial(i, item.name, 0, labels, True, right, ratio))
+    return found
