@@ -7,18 +7,24 @@ import pytest
 
 from fdvv.model import CurveFit, FDVVModel, MeasuredCurve, Provenance, Stroke, fit_curve, load_builtin
 from fdvv.plot import (
+    DesignPanel,
     ErrorHistory,
     RenderedBand,
     RenderedCurve,
+    ScoreBars,
+    TrainingScores,
     figure_of,
     figure_svg,
     plot_comparison,
     plot_convergence,
+    plot_designs,
     plot_fit,
     plot_model,
     plot_rendering,
     plot_scan,
+    plot_score_bars,
     plot_surface,
+    plot_training,
     plot_vibration,
 )
 
@@ -48,6 +54,22 @@ def _histories(simulated: bool = False) -> list[ErrorHistory]:
     ]
 
 
+def _study_scores(shape: tuple[int, int]) -> Any:
+    return np.random.default_rng(5).normal(90.0, 8.0, shape)
+
+
+def _bars() -> list[ScoreBars]:
+    names, marks = ("optimal", "clear", "random"), ("", "*", "***")
+    return [
+        ScoreBars(level, names, _study_scores((10, 3)), np.array([6.0, 7, 8]), marks)
+        for level in ("easy", "hard")
+    ]
+
+
+def _trainings() -> list[TrainingScores]:
+    return [TrainingScores(level, _study_scores((4, 9))) for level in ("easy", "hard")]
+
+
 FIGURES: dict[str, Draw] = {
     "model": lambda model, measured, fits, said: plot_model(model, simulated=said),
     "surface": lambda model, measured, fits, said: plot_surface(model, "release", simulated=said),
@@ -58,6 +80,11 @@ FIGURES: dict[str, Draw] = {
     "fit": lambda model, measured, fits, said: plot_fit(measured, fits, simulated=said),
     "scan": lambda model, measured, fits, said: plot_scan(_SCORES, simulated=said),
     "rendering": lambda model, measured, fits, said: plot_rendering(_rendered(model)[::2], simulated=said),
+    "score bars": lambda model, measured, fits, said: plot_score_bars(_bars(), "score (ms)", simulated=said),
+    "training": lambda model, measured, fits, said: plot_training(_trainings(), "score (ms)", simulated=said),
+    "designs": lambda model, measured, fits, said: plot_designs(
+        [DesignPanel(f"person {i}", model) for i in range(3)], simulated=said
+    ),
     "convergence": lambda model, measured, fits, said: plot_convergence(_histories(), simulated=said),
 }
 

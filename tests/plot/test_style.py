@@ -13,7 +13,7 @@ from fdvv.model import FDVVModel
 from fdvv.plot import _style as style
 from fdvv.plot import figure_svg, plot_comparison
 
-UNITS = ("(mm)", "(cN)", "(mm/s)", "(s)", "(m/s²)", "(count)", "(no unit, lower is better)")
+UNITS = ("(mm)", "(cN)", "(mm/s)", "(s)", "(ms)", "(m/s²)", "(count)", "(no unit, lower is better)")
 
 
 def test_every_axis_of_every_figure_names_its_unit(gallery: Any, name: str) -> None:

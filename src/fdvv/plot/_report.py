@@ -12,8 +12,10 @@ from fdvv.errors import ModelError
 from fdvv.files import write_atomic
 from fdvv.plot._svg import prefix_ids
 
-_NUMBER = re.compile(r"[+\-−]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?\s?(%|[A-Za-zµ/²]{1,6})?")
-"""A cell that reads as a number, with a unit or not, is set to the right."""
+_NUMBER = re.compile(
+    r"(< ?)?[+\-−]?(\d+(\.\d*)?|\.\d+|∞)(e[+-]?\d+)?\s?(%|[A-Za-zµ/²]{1,6})?(\s?\[[^\[\]]+\])?"
+)
+"""A cell that reads as a number, with a unit and an interval or not, is set to the right, in one line."""
 
 _NOTHING = {"", "-", "–", "—"}
 """What a cell says where there is no number."""
@@ -180,10 +182,10 @@ table { border-collapse: collapse; font-size: 0.92rem; font-variant-numeric: tab
 caption { text-align: left; color: var(--quiet); padding-bottom: 0.4rem; }
 th, td { padding: 0.3rem 0.8rem 0.3rem 0.4rem; text-align: left; vertical-align: top; min-width: 4rem;
   border-bottom: 1px solid var(--line); }
-thead th { border-bottom: 2px solid var(--quiet); }
+thead th { border-bottom: 2px solid var(--quiet); overflow-wrap: break-word; }
 tbody th { font-weight: 500; min-width: 8rem; }
 tbody tr:nth-child(even) { background: var(--stripe); }
-.number { text-align: right; }
+.number { text-align: right; white-space: nowrap; }
 footer { margin-top: 3rem; border-top: 1px solid var(--line); color: var(--quiet); font-size: 0.85rem; }
 @media print {
   :root { color-scheme: light; --ink: #000000; --quiet: #444444; --page: #ffffff; --line: #bbbbbb;

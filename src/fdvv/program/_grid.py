@@ -57,7 +57,7 @@ def counts_cN64(force_cN: float) -> int:
 
 
 class Candidates:
-    """The even grids a surface may be given, and what each costs; measured once."""
+    """The even grids a surface may be given, and what each costs; measured once, when it is asked for."""
 
     def __init__(self, surface: Surface) -> None:
         self.surface = surface
@@ -69,15 +69,18 @@ class Candidates:
         fewest = max(2, -(-self.span_um16 // COARSEST_um16) + 1)
         most = min(SURFACE_DISPLACEMENTS, self.span_um16 // FINEST_um16 + 1)
         self.columns = np.arange(fewest, max(fewest, most) + 1)
-        self.errors_cN = np.array([self._error_cN(int(n)) for n in self.columns])
+        self._known_cN: dict[int, float] = {}
 
     def _step_um16(self, columns: int) -> int:
         return -(-self.span_um16 // (columns - 1))
 
+    def _places_mm(self, columns: int) -> FloatArray:
+        step_mm = self._step_um16(columns) / UM16_PER_mm
+        return np.asarray(self.start_um16 / UM16_PER_mm + step_mm * np.arange(columns))
+
     def _table_cN(self, columns: int) -> FloatArray:
         """Evaluate every row at the columns."""
-        step_mm = self._step_um16(columns) / UM16_PER_mm
-        places = self.start_um16 / UM16_PER_mm + step_mm * np.arange(columns)
+        places = self._places_mm(columns)
         after = np.clip(np.searchsorted(self._points_mm, places), 1, self._points_mm.size - 1)
         before_mm, after_mm = self._points_mm[after - 1], self._points_mm[after]
         part = np.clip((places - before_mm) / (after_mm - before_mm), 0.0, 1.0)
@@ -86,17 +89,20 @@ class Candidates:
 
     def _error_cN(self, columns: int) -> float:
         """Compare at the surface's own points: between straight lines nothing can be worse."""
-        table = self._table_cN(columns)
-        along = (self._points_mm * UM16_PER_mm - self.start_um16) / self._step_um16(columns)
-        before = np.clip(along.astype(int), 0, columns - 2)
-        part = np.clip(along - before, 0.0, 1.0)
-        found = (1 - part) * table[:, before] + part * table[:, before + 1]
-        return float(np.max(np.abs(found - self._source_cN)))
+        if columns not in self._known_cN:
+            self._known_cN[columns] = self._measured_cN(columns)
+        return self._known_cN[columns]
+
+    def _measured_cN(self, columns: int) -> float:
+        places, points = self._places_mm(columns), self._points_mm
+        held = [np.interp(points, places, np.interp(places, points, row)) for row in self._source_cN]
+        return float(np.max(np.abs(np.array(held) - self._source_cN)))
 
     def coarsest(self, bound_cN: float) -> int:
         """Give the fewest columns within the bound; where none is, the best there are."""
-        within = np.flatnonzero(self.errors_cN <= bound_cN)
-        return int(self.columns[within[0] if within.size else np.argmin(self.errors_cN)])
+        within = (n for n in self.columns.tolist() if self._error_cN(n) <= bound_cN)
+        found = next(within, None)
+        return min(self.columns.tolist(), key=self._error_cN) if found is None else found
 
     def grid(self, columns: int) -> Grid:
         """Sample the surface on that many columns."""
@@ -107,6 +113,6 @@ class Candidates:
             self._step_um16(columns),
             tuple(speed_mm_s16(v) for v in self.surface.velocity_mm_s),
             tuple(tuple(int(f) for f in row) for row in rounded),
-            float(self.errors_cN[columns - self.columns[0]]),
+            self._error_cN(columns),
             float(np.max(np.abs(rounded - exact))) / CN64_PER_cN,
         )

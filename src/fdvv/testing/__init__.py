@@ -9,6 +9,7 @@ from fdvv.testing._captured import (
     top_mm,
     true_stroke_cN,
 )
+from fdvv.testing._chunk_work import SeededSum, refuse_three, wait_for_ever
 from fdvv.testing._closed_forms import coil_error_ratio, mean_response, ripple_N
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
 from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
@@ -41,6 +42,7 @@ __all__ = [
     "SNAP_DURATION_s",
     "SNAP_Hz",
     "ScriptedDevice",
+    "SeededSum",
     "bare_loop",
     "captured_session",
     "coil_error_ratio",
@@ -58,11 +60,13 @@ __all__ = [
     "random_image",
     "random_inputs",
     "random_settings",
+    "refuse_three",
     "rig_truth",
     "ripple_N",
     "snap",
     "swings_held",
     "top_mm",
     "true_stroke_cN",
+    "wait_for_ever",
     "ways",
 ]

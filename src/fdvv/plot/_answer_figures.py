@@ -1,0 +1,234 @@
+"""Figures of what people answered: ratings by button, choices, differences with intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.plot import _style as style
+from fdvv.units import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+PALE = "#cbd2d9"
+COLOURS = (PALE, style.PALETTE[0], style.PALETTE[2], style.PALETTE[5], style.PALETTE[3], style.PALETTE[4])
+"""Of stimuli in order: the first is what the others are held against."""
+ROW_in = 0.42
+LEAST_TOLD = 0.07
+"""Part of a bar below which its number has no room in it."""
+
+
+def say_proxy(ax: Axes, simulated: bool) -> None:
+    """Write over the whole figure, for answers that no person gave, that they are no evidence."""
+    if simulated:
+        look: Any = {"x": 0.99, "ha": "right", "fontsize": 9.5, "fontstyle": "italic", "color": "#b42318"}
+        ax.figure.figure.suptitle("simulated participants: a proxy, no evidence", **look)
+
+
+@dataclass(frozen=True, eq=False)
+class RatingBars:
+    """Mean ratings of several renderings, by button.
+
+    Attributes
+    ----------
+    buttons, stimuli : names. people : (people, buttons, stimuli) means of each person, the dots; nan missing.
+    low, high : (buttons, stimuli) interval of each mean; nan where none. scale : ends of the axis.
+    marks : one per button, written above it; empty: nothing is told.
+    """
+
+    buttons: tuple[str, ...]
+    stimuli: tuple[str, ...]
+    people: FloatArray
+    low: FloatArray
+    high: FloatArray
+    scale: tuple[float, float]
+    marks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        shape = (len(self.buttons), len(self.stimuli))
+        if self.people.ndim != 3 or self.people.shape[1:] != shape or self.low.shape != shape:
+            raise ModelError(f"{shape} buttons and stimuli need columns of as many, got {self.people.shape}")
+        if self.marks and len(self.marks) != shape[0]:
+            raise ModelError(f"{shape[0]} buttons need as many marks, got {len(self.marks)}")
+
+
+@dataclass(frozen=True)
+class ChoiceRow:
+    """Choices about one button: counts, and the share that is told with its interval."""
+
+    name: str
+    less: int
+    equal: int
+    more: int
+    share: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class ForestRow:
+    """One value with its interval; main : drawn as a diamond. A bound may be infinite or nan."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    main: bool = False
+
+
+@style.in_house_style
+def plot_rating_bars(bars: RatingBars, rating: str, simulated: bool = False) -> Any:
+    """Draw mean ratings by button: thin bars are 1 SD between people, thick ones the interval of the mean.
+
+    A dot is a person. Gives the axes.
+    """
+    count = len(bars.stimuli)
+    ax = style.new_figure(max(6.4, 1.0 + (0.55 + 0.36 * count) * len(bars.buttons)), 4.4).add_subplot()
+    width = 0.8 / count
+    places = np.arange(float(len(bars.buttons)))
+    for number in range(count):
+        _draw_stimulus(ax, bars, number, places + (number - (count - 1) / 2) * width, width)
+    low, high = bars.scale
+    step = 0.08 * (high - low)
+    ax.set_ylim(low, high + step * (1.3 if bars.marks else 0.4))
+    ax.set_yticks(_ticks(low, high))
+    for place, mark in zip(places, bars.marks, strict=False):
+        ax.annotate(mark, (float(place), high + 0.5 * step), ha="center", va="bottom", fontsize=9)
+    ax.set_xticks(places, [style.wrapped(style.name_text(name), 14) for name in bars.buttons])
+    ax.grid(axis="x", visible=False)
+    ax.set_ylabel(rating)
+    style.set_titles(ax, f"mean {style.name_text(rating)}", False)
+    say_proxy(ax, simulated)
+    beside: Any = {"loc": "outside lower center", "ncols": min(count, 4)}
+    ax.figure.legend(**beside)
+    return ax
+
+
+def _draw_stimulus(ax: Axes, bars: RatingBars, number: int, places: FloatArray, width: float) -> None:
+    """Draw one rendering at every button."""
+    people = bars.people[:, :, number]
+    there = np.isfinite(people).sum(axis=0)
+    some = there > 0
+    means = np.full(places.size, np.nan)
+    means[some] = np.nanmean(people[:, some], axis=0)
+    spread = np.full(places.size, np.nan)
+    spread[there > 1] = np.nanstd(people[:, there > 1], axis=0, ddof=1)
+    colour = COLOURS[number % len(COLOURS)]
+    label = style.name_text(bars.stimuli[number])
+    base = bars.scale[0]
+    ax.bar(places, means - base, 0.92 * width, base, color=colour, alpha=0.85, zorder=1.0, label=label)
+    aside = np.linspace(-0.26, 0.26, len(people)) * width if len(people) > 1 else np.zeros(1)
+    for place, column in zip(places, people.T, strict=True):
+        ax.plot(place + aside, column, ".", color=style.QUIET, markersize=3.5, alpha=0.8, zorder=2.0)
+    ax.errorbar(places, means, spread, fmt="none", ecolor=style.INK, capsize=3.0, elinewidth=0.9, zorder=3.0)
+    low, high = (np.clip(ends[:, number], *bars.scale) for ends in (bars.low, bars.high))
+    ax.vlines(places, low, high, color=style.INK, linewidth=3.0, zorder=3.0)
+
+
+def _ticks(low: float, high: float) -> FloatArray:
+    """Give whole numbers of a short scale, steps of 20 of a long one."""
+    return np.arange(low, high + 0.5, 1.0 if high - low <= 12 else (high - low) / 5)
+
+
+@style.in_house_style
+def plot_choices(
+    rows: Sequence[ChoiceRow], less: str, more: str, chance: float = 0.5, simulated: bool = False
+) -> Any:
+    """Draw what was chosen as one bar a button, and below it the share of ``more`` with its interval.
+
+    less, more : names of what was chosen. Gives the axes. ModelError without a row.
+    """
+    if not rows:
+        raise ModelError("a figure of choices needs at least one row")
+    ax = style.new_figure(7.4, 1.5 + 1.35 * ROW_in * len(rows)).add_subplot()
+    places = np.arange(float(len(rows)))[::-1]
+    counts = np.array([(one.more, one.equal, one.less) for one in rows], dtype=np.float64)
+    shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
+    left = np.zeros(len(rows))
+    drawn = [(more, style.PALETTE[0]), ("equal", "#eef1f4"), (less, PALE)]
+    for column, (name, colour) in enumerate(drawn):
+        if column == 1 and not counts[:, 1].any():
+            continue
+        ax.barh(places, shares[:, column], 0.56, left, color=colour, label=style.name_text(name), zorder=1.0)
+        _write_counts(ax, places, left, shares[:, column], counts[:, column], column == 0)
+        left = left + shares[:, column]
+    _draw_shares(ax, rows, places - 0.42, more)
+    ax.axvline(chance, color=style.QUIET, linestyle=":", linewidth=1.2, zorder=2.0)
+    ax.set_yticks(places, [style.name_text(one.name) for one in rows])
+    ax.set_xlim(0.0, 1.0)
+    ax.set_ylim(-0.75, len(rows) - 0.6)
+    ticks = np.linspace(0.0, 1.0, 5)
+    ax.set_xticks(ticks, [f"{100 * one:.0f}" for one in ticks])
+    ax.set_xlabel("answers (%)")
+    ax.grid(visible=False)
+    style.set_titles(ax, "what was answered", False)
+    say_proxy(ax, simulated)
+    ax.figure.legend(loc="outside lower center", ncols=4)
+    return ax
+
+
+def _write_counts(
+    ax: Axes, places: FloatArray, left: FloatArray, shares: FloatArray, counts: FloatArray, dark: bool
+) -> None:
+    """Write the counts into the bars that have room for them."""
+    for place, start, share, count in zip(places, left, shares, counts, strict=True):
+        if share >= LEAST_TOLD:
+            colour = "white" if dark else style.INK
+            at = (float(start + share / 2), float(place))
+            ax.annotate(f"{count:.0f}", at, ha="center", va="center", fontsize=8.5, color=colour)
+
+
+def _draw_shares(ax: Axes, rows: Sequence[ChoiceRow], places: FloatArray, more: str) -> None:
+    """Draw the share that is told, with its interval."""
+    label = f"share of {style.name_text(more)}, 95 % interval"
+    for place, one in zip(places, rows, strict=True):
+        if np.isfinite(one.share):
+            ax.plot([one.low, one.high], [place, place], color=style.PALETTE[1], linewidth=2.0)
+            ax.plot([one.share], [place], "D", color=style.PALETTE[1], markersize=4.5, label=label)
+            label = "_"
+
+
+@style.in_house_style
+def plot_forest(
+    rows: Sequence[ForestRow], axis: str, title: str, none: float | None = 0.0, simulated: bool = False
+) -> Any:
+    """Draw values with their intervals, one below the other. none : where there is no difference.
+
+    A bound that is infinite is an arrow. Gives the axes. ModelError without a row.
+    """
+    if not rows:
+        raise ModelError("a figure of values needs at least one row")
+    ax = style.new_figure(7.0, 1.3 + 0.75 * ROW_in * len(rows)).add_subplot()
+    finite = [v for one in rows for v in (one.value, one.low, one.high) if np.isfinite(v)]
+    left, right = style.limits_around([*finite, *([] if none is None else [none])], margin=0.08)
+    for place, one in zip(range(len(rows) - 1, -1, -1), rows, strict=True):
+        _draw_row(ax, one, float(place), left, right)
+    if none is not None:
+        ax.axvline(none, color=style.QUIET, linestyle=":", linewidth=1.2)
+    ax.set_xlim(left, right)
+    ax.set_ylim(-0.6, len(rows) - 0.4)
+    ax.set_yticks(np.arange(float(len(rows)))[::-1], [style.name_text(one.name) for one in rows])
+    ax.grid(axis="y", visible=False)
+    ax.set_xlabel(axis)
+    style.set_titles(ax, title, False)
+    say_proxy(ax, simulated)
+    return ax
+
+
+def _draw_row(ax: Axes, one: ForestRow, place: float, left: float, right: float) -> None:
+    colour = style.PALETTE[1] if one.main else style.PALETTE[0]
+    if np.isnan(one.value):
+        ax.annotate("no value", (left, place), (6, 0), textcoords="offset points", va="center", fontsize=8.5)
+        return
+    low, high = np.clip([one.low, one.high], left, right)
+    if not np.isnan(low):
+        ax.plot([low, high], [place, place], color=colour, linewidth=2.0, zorder=2.0)
+    if one.high > right:
+        ax.plot([right], [place], ">", color=colour, markersize=6.0, clip_on=False)
+    if np.isfinite(one.value):
+        ax.plot([one.value], [place], "D" if one.main else "o", color=colour, markersize=6.5, zorder=3.0)

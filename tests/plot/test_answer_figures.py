@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.container import ErrorbarContainer
+from numpy.testing import assert_allclose
+
+from fdvv.errors import ModelError
+from fdvv.plot import (
+    ChoiceRow,
+    ForestRow,
+    RatingBars,
+    SpecificationCurve,
+    StaircaseTrack,
+    figure_of,
+    plot_choices,
+    plot_forest,
+    plot_rating_bars,
+    plot_specifications,
+    plot_tracks,
+)
+
+PROXY = "simulated participants: a proxy, no evidence"
+
+
+def bars(people: int = 5, marks: tuple[str, ...] = ("***", "n.s.")) -> RatingBars:
+    values = np.random.default_rng(1).uniform(2, 6, (people, 2, 2))
+    means = values.mean(axis=0)
+    return RatingBars(("Clear", "Red"), ("FD", "FDVV"), values, means - 0.3, means + 0.3, (1.0, 7.0), marks)
+
+
+def above(drawn: Any) -> str:
+    """Give what is written over a whole figure."""
+    return str(figure_of(drawn).get_suptitle())
+
+
+def curve(ways: int = 6) -> SpecificationCurve:
+    share = np.linspace(60, 80, ways)
+    choices = {"ties": ("split", "dropped") * (ways // 2), "test": ("t",) * ways}
+    return SpecificationCurve(share, share - 5, share + 5, share > 65, 2, choices)
+
+
+def test_rating_bars_reach_the_means_from_the_low_end_of_the_scale() -> None:
+    given = bars()
+    ax = plot_rating_bars(given, "realism")
+    tops = [bar.get_y() + bar.get_height() for bar in ax.patches]
+    assert_allclose(sorted(tops), np.sort(given.people.mean(axis=0).ravel()))
+    assert {bar.get_y() for bar in ax.patches} == {1.0}
+    assert [text.get_text() for text in ax.texts] == ["***", "n.s."]
+
+
+def test_one_person_has_a_bar_and_no_spread() -> None:
+    given = bars(1, ())
+    ax = plot_rating_bars(given, "realism")
+    assert len(ax.patches) == 4
+    spreads = [one for one in ax.containers if isinstance(one, ErrorbarContainer)]
+    drawn = [segment for one in spreads for segment in one[2][0].get_segments() if len(segment)]
+    assert not any(np.isfinite(segment).all() for segment in drawn)
+
+
+def test_choices_are_parts_of_a_whole_and_the_share_lies_where_its_bar_ends() -> None:
+    rows = [ChoiceRow("all", 20, 20, 60, 0.6, 0.5, 0.7), ChoiceRow("Red", 0, 0, 5, 1.0, 0.5, 1.0)]
+    ax = plot_choices(rows, "FD", "FDVV")
+    widths = np.array([bar.get_width() for bar in ax.patches]).reshape(3, 2)
+    assert_allclose(widths.sum(axis=0), 1.0)
+    assert_allclose(widths[0], [0.6, 1.0])
+    marks = [line.get_xdata()[0] for line in ax.get_lines() if line.get_marker() == "D"]
+    assert_allclose(marks, [0.6, 1.0])
+
+
+def test_without_ties_nothing_is_called_equal() -> None:
+    ax = plot_choices([ChoiceRow("all", 4, 0, 6, 0.6, 0.3, 0.8)], "wrong", "right")
+    told = [text.get_text() for text in figure_of(ax).legends[0].get_texts()]
+    assert "equal" not in told
+    assert {"right", "wrong"} <= set(told)
+
+
+def test_a_bound_without_end_is_an_arrow_and_a_value_that_is_none_says_so() -> None:
+    rows = [
+        ForestRow("P1", 1.0, 0.2, np.inf),
+        ForestRow("P2", np.nan, np.nan, np.nan),
+        ForestRow("P3", np.inf, 1.0, np.inf),
+    ]
+    ax = plot_forest(rows, "d′", "distance")
+    assert sum(line.get_marker() == ">" for line in ax.get_lines()) == 2
+    assert [text.get_text() for text in ax.texts] == ["no value"]
+
+
+def test_staircases_have_a_panel_each_and_a_line_where_a_threshold_is() -> None:
+    ratios, correct = np.array([0.3, 0.3, 0.19]), np.array([1.0, 1.0, 0.0])
+    tracks = [StaircaseTrack("P1", ratios, correct, 0.2), StaircaseTrack("P2", ratios, correct, np.nan)]
+    axes = plot_tracks(tracks).ravel()
+    dashed = [sum(line.get_linestyle() == "--" for line in ax.get_lines()) for ax in axes]
+    assert dashed == [1, 0]
+
+
+def test_a_specification_curve_marks_the_registered_way_in_both_panels() -> None:
+    top, below = plot_specifications(curve(), "share (%)", "as registered", 50.0)
+    diamond = next(line for line in top.get_lines() if line.get_marker() == "D")
+    assert_allclose([diamond.get_xdata()[0], diamond.get_ydata()[0]], [3, 68.0])
+    told = [label.get_text() for label in below.get_yticklabels()]
+    assert told == ["ties", "split", "dropped", "test", "t"]
+
+
+def test_every_figure_of_simulated_answers_says_that_they_are_no_evidence() -> None:
+    ratios = np.array([0.3, 0.2])
+    drawn = [
+        plot_rating_bars(bars(), "realism", True),
+        plot_choices([ChoiceRow("all", 4, 1, 5, 0.5, 0.2, 0.8)], "FD", "FDVV", simulated=True),
+        plot_forest([ForestRow("P1", 1.0, 0.2, 2.0)], "d′", "distance", simulated=True),
+        plot_tracks([StaircaseTrack("P1", ratios, np.ones(2), 0.2)], True),
+        plot_specifications(curve(), "share (%)", "as registered", 50.0, True),
+    ]
+    assert [above(one) for one in drawn] == [PROXY] * 5
+    assert above(plot_rating_bars(bars(), "realism")) == ""
+
+
+def test_what_does_not_fit_together_is_refused() -> None:
+    with pytest.raises(ModelError, match="as many marks"):
+        bars(5, ("*",))
+    with pytest.raises(ModelError, match="at least one way"):
+        SpecificationCurve(np.ones(2), np.ones(2), np.ones(1), np.ones(2, bool), 0, {})
+    with pytest.raises(ModelError, match="at least one row"):
+        plot_choices([], "FD", "FDVV")
+    with pytest.raises(ModelError, match="at least one row"):
+        plot_forest([], "d′", "distance")
+    with pytest.raises(ModelError, match="at least one"):
+        plot_tracks([])
