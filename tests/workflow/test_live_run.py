@@ -75,6 +75,30 @@ def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
     assert np.diff(t) == pytest.approx(np.full(t.size - 1, 1e-4)), "no tick is missing between frames"
 
 
+def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> None:
+    seen, asked = Seen(), [0.0]
+
+    def late(press: LivePress) -> None:
+        asked[0] = press.time_s
+        time.sleep(0.3)  # three times what is made up for: 0.2 s are dropped
+        press.lead(8.0)
+
+    run = begun(seen)
+    seen.wait_for(lambda: seen.frames)
+    began_s = time.monotonic()
+    run.ask(late)
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    ended_s = time.monotonic()
+    run.close()
+    first = seen.frames[0]
+    assert began_s - 0.05 < first.columns.t_s[-1] + first.zero_s < began_s
+    last = next(f for f in seen.frames if LiveEventKind.ACTUATION in [e.kind for e in f.events])
+    pressed_s = next(e.t_s for e in last.events if e.kind is LiveEventKind.ACTUATION) + last.zero_s
+    # what is made up for, 0.1 s, counts as the last before the clock was read
+    assert began_s + 0.2 < pressed_s < ended_s
+    assert last.zero_s - first.zero_s == pytest.approx(last.dropped_s - first.dropped_s, abs=1e-9)
+
+
 def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted() -> None:
     seen = Seen()
     run = begun(seen, silent_s=0.2)

@@ -57,6 +57,27 @@ if TYPE_CHECKING:
     from fdvv.workflow._draft_template import ModelTemplate, new_model
     from fdvv.workflow._drafts import DraftFile, Drafts
     from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
+    from fdvv.workflow._executor import Executor, chunks_of, open_executor
+    from fdvv.workflow._experiment import ExperimentResult, Stage, run_experiment
+    from fdvv.workflow._experiment_html import experiment_html, experiment_report, write_experiment
+    from fdvv.workflow._experiment_people import Block, a_week_later, blocks_of, random_design
+    from fdvv.workflow._experiment_setup import (
+        ExperimentSetup,
+        WeekGap,
+        begin_experiment,
+        read_experiment_setup,
+    )
+    from fdvv.workflow._experiment_train import Observation, Train, Training, Validate
+    from fdvv.workflow._experiment_verdict import ButtonMean, ExperimentVerdict, judge_experiment
+    from fdvv.workflow._experiment_winner import (
+        RenderedWinner,
+        Winner,
+        open_winner_devices,
+        recording_of,
+        render_best,
+        render_winner,
+        winners_of,
+    )
     from fdvv.workflow._feasibility import (
         CurveFeasibility,
         FeasibilityReport,
@@ -80,13 +101,45 @@ if TYPE_CHECKING:
         summarise,
     )
     from fdvv.workflow._join_logs import join_logs
+    from fdvv.workflow._key_hand import KeyHand
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
     from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
     from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
     from fdvv.workflow._open_program import make_program, open_program
+    from fdvv.workflow._operator_view import OperatorView, PersonView, operator_view
+    from fdvv.workflow._optimize_begin import RunAsked, begin_run
+    from fdvv.workflow._optimize_player import (
+        POINTING,
+        SimulatedPlayer,
+        about_player,
+        play_seed,
+        player_of,
+        task_named,
+    )
+    from fdvv.workflow._optimize_report import best_of, optimize_html, optimize_report, trial_report
+    from fdvv.workflow._optimize_rig import rig_constraints
+    from fdvv.workflow._optimize_session import OptimizeSession, replay_differences
+    from fdvv.workflow._optimize_setup import (
+        ObjectiveSetup,
+        OptimizeSetup,
+        SpaceSetup,
+        model_space_setup,
+        read_setup,
+    )
+    from fdvv.workflow._paper_like import paper_design_like
+    from fdvv.workflow._paper_means import PaperFit, PaperModel, PaperPresses, PaperStudy, fit_paper
+    from fdvv.workflow._participant import Participant
+    from fdvv.workflow._participant_log import read_session
     from fdvv.workflow._parts import merge_parts, one_curve, open_part
+    from fdvv.workflow._play import play, score_design
+    from fdvv.workflow._play_bench import PLAY_RIGS, PlayBench, finger_of, refusal_of
+    from fdvv.workflow._played_rounds import ClockSource, PlayedRound, PlayedRounds, RoundTiming
+    from fdvv.workflow._population import run_population
+    from fdvv.workflow._population_plan import PopulationPlan
+    from fdvv.workflow._population_result import PopulationResult, read_population
+    from fdvv.workflow._population_work import optimise
     from fdvv.workflow._press import ButtonPress, Presses, press_button
     from fdvv.workflow._press_choice import (
         PressChoice,
@@ -103,6 +156,8 @@ if TYPE_CHECKING:
         program_subject,
         rig_memory,
     )
+    from fdvv.workflow._press_table import PressTable, adapted_ms, expected_ms, press_table
+    from fdvv.workflow._press_times import PressTimes
     from fdvv.workflow._press_trace import PressTrace, drawn_traces, read_press_trace
     from fdvv.workflow._probe import ProbeResult, fd_only, probe
     from fdvv.workflow._program_shelf import KeptProgram, ProgramEntry, ProgramShelf, read_program
@@ -116,17 +171,74 @@ if TYPE_CHECKING:
     from fdvv.workflow._programs import program_image
     from fdvv.workflow._real_pace import RealPace
     from fdvv.workflow._receipt import Receipt
-    from fdvv.workflow._rig_shelf import RigEntry, RigOnShelf, RigShelf
+    from fdvv.workflow._rig_shelf import SHIPPED_RIGS, RigEntry, RigOnShelf, RigShelf
     from fdvv.workflow._session import Session
     from fdvv.workflow._session_events import Ask, Guide, PressDone, Standing
     from fdvv.workflow._shelf import Shelf
-    from fdvv.workflow._shelf_curves import sample_strokes
+    from fdvv.workflow._shelf_curves import SampledStroke, sample_strokes
     from fdvv.workflow._shelf_index import ShelfIndex, ShelfStand, builtin_rows
     from fdvv.workflow._shelf_read import row_of_model
     from fdvv.workflow._shelf_row import NUMBERS as SHELF_NUMBERS
     from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow
     from fdvv.workflow._shelf_search import ShelfFound, ShelfQuery, ShelfSearch
     from fdvv.workflow._spread_report import spread_reports
+    from fdvv.workflow._strip import (
+        light_strip,
+        play_on_strip,
+        played_presser,
+        press_of,
+        rendering,
+        strip_round,
+        try_on_strip,
+    )
+    from fdvv.workflow._strip_check import StripCheck, check_strip
+    from fdvv.workflow._strip_run import run_on_any_strip, run_on_strip
+    from fdvv.workflow._study import Study
+    from fdvv.workflow._study_analyse import analyse
+    from fdvv.workflow._study_chain import ChainRead, read_chained
+    from fdvv.workflow._study_code_book import CodeBook, CodedColumn, code_book, read_code_book
+    from fdvv.workflow._study_columns import ColumnMap
+    from fdvv.workflow._study_csv import read_answers
+    from fdvv.workflow._study_dict import analysis_dict
+    from fdvv.workflow._study_effects import power_design, reference_of
+    from fdvv.workflow._study_export import answers_csv, write_answers
+    from fdvv.workflow._study_export_people import people_csv, write_analysis
+    from fdvv.workflow._study_files import Frozen
+    from fdvv.workflow._study_log import ChainedLog
+    from fdvv.workflow._study_look import StudyLook, look_at_study
+    from fdvv.workflow._study_people import Person, Schedule, SealedTrial
+    from fdvv.workflow._study_person_frame import PersonClick, PersonFrame
+    from fdvv.workflow._study_power import StudyPower, open_plan, study_power
+    from fdvv.workflow._study_preview import (
+        preview_dict,
+        preview_html,
+        preview_sections,
+        preview_summary,
+        preview_title,
+    )
+    from fdvv.workflow._study_program import TrialProgram, trial_program
+    from fdvv.workflow._study_records import StudyAnalysis
+    from fdvv.workflow._study_renderable import device_problems, twin_problems
+    from fdvv.workflow._study_report import study_html, study_summary, write_study_report
+    from fdvv.workflow._study_seal import (
+        Cost,
+        Keeper,
+        Seal,
+        lock_with_code,
+        new_code,
+        new_keeper,
+        unlock_with_code,
+    )
+    from fdvv.workflow._study_simulated import SimulatedSession, SimulatedStudy, simulate_study
+    from fdvv.workflow._study_simulated_person import SimulatedParticipant, UnpressedStage
+    from fdvv.workflow._study_stage import EvenSwitch, StudyStage, stimulus_model
+    from fdvv.workflow._study_stage_device import DeviceStage
+    from fdvv.workflow._study_stage_evidence import StageEvidence
+    from fdvv.workflow._study_stage_finger import SimulatedFingerStage
+    from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
+    from fdvv.workflow._study_stage_person import PersonStage
+    from fdvv.workflow._study_standing import PersonStanding, people_standing
+    from fdvv.workflow._tap_forces import force_spread_ratio, tap_peaks
     from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
     from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
     from fdvv.workflow._tune_observer import simulated_observer
@@ -143,21 +255,34 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "PLAY_RIGS",
+    "POINTING",
     "PRESS_RIGS",
     "SHELF_NUMBERS",
+    "SHIPPED_RIGS",
     "AchievableCurve",
     "Ask",
+    "Block",
+    "ButtonMean",
     "ButtonPress",
     "ButtonType",
     "Candidates",
     "CaptureGuide",
     "CapturePlan",
     "CaptureResult",
+    "ChainRead",
+    "ChainedLog",
+    "ClockSource",
+    "CodeBook",
+    "CodedColumn",
+    "ColumnMap",
     "Comparison",
     "CompensationResult",
+    "Cost",
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
+    "DeviceStage",
     "Difference",
     "DraftChange",
     "DraftFile",
@@ -169,6 +294,11 @@ __all__ = [
     "DraftStep",
     "Drafts",
     "EditMade",
+    "EvenSwitch",
+    "Executor",
+    "ExperimentResult",
+    "ExperimentSetup",
+    "ExperimentVerdict",
     "FORCE_JND_ratio",
     "FeasibilityReport",
     "FeltPress",
@@ -177,9 +307,12 @@ __all__ = [
     "FolderButton",
     "FolderFit",
     "FolderSummary",
+    "Frozen",
     "Guide",
     "HeardStroke",
+    "Keeper",
     "KeptProgram",
+    "KeyHand",
     "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
@@ -190,16 +323,39 @@ __all__ = [
     "MeasuredButton",
     "ModelFit",
     "ModelTemplate",
+    "ObjectiveSetup",
+    "Observation",
+    "OperatorView",
+    "OptimizeSession",
+    "OptimizeSetup",
     "Origin",
     "PaceStanding",
+    "PaperFit",
+    "PaperModel",
+    "PaperPresses",
+    "PaperStudy",
+    "Participant",
     "Patch",
+    "Person",
+    "PersonClick",
+    "PersonFrame",
+    "PersonStage",
+    "PersonStanding",
+    "PersonView",
     "PinMade",
     "PlacedFinding",
+    "PlayBench",
+    "PlayedRound",
+    "PlayedRounds",
+    "PopulationPlan",
+    "PopulationResult",
     "PressChoice",
     "PressDone",
     "PressMark",
     "PressMode",
     "PressSubject",
+    "PressTable",
+    "PressTimes",
     "PressTrace",
     "Presses",
     "ProbeResult",
@@ -212,10 +368,18 @@ __all__ = [
     "RecordedVibrations",
     "RedoMade",
     "RenderedVibration",
+    "RenderedWinner",
     "Rendering",
     "RigEntry",
     "RigOnShelf",
     "RigShelf",
+    "RoundTiming",
+    "RunAsked",
+    "SampledStroke",
+    "Schedule",
+    "ScreenStage",
+    "Seal",
+    "SealedTrial",
     "Session",
     "Shelf",
     "ShelfFound",
@@ -224,9 +388,23 @@ __all__ = [
     "ShelfRow",
     "ShelfSearch",
     "ShelfStand",
+    "SimulatedFingerStage",
+    "SimulatedParticipant",
+    "SimulatedPlayer",
+    "SimulatedSession",
+    "SimulatedStudy",
     "Size",
+    "SpaceSetup",
+    "Stage",
+    "StageEvidence",
     "Standing",
     "Step",
+    "StripCheck",
+    "Study",
+    "StudyAnalysis",
+    "StudyLook",
+    "StudyPower",
+    "StudyStage",
     "SurfaceSize",
     "SwitchFit",
     "TakeAsk",
@@ -234,18 +412,35 @@ __all__ = [
     "TickBinner",
     "TickBins",
     "TickPiece",
+    "Train",
+    "Training",
+    "TrialProgram",
     "TuneResult",
     "TuneSetup",
     "TuneTold",
     "TunedVibration",
     "UndoMade",
     "UnpinMade",
+    "UnpressedStage",
+    "Validate",
     "Verdict",
     "VibrationChange",
     "Way",
+    "WeekGap",
+    "Winner",
+    "a_week_later",
+    "about_player",
     "acceleration_per_volt",
     "achievable",
+    "adapted_ms",
+    "analyse",
+    "analysis_dict",
+    "answers_csv",
     "apply_patch",
+    "begin_experiment",
+    "begin_run",
+    "best_of",
+    "blocks_of",
     "builtin_rows",
     "button_choices",
     "button_files",
@@ -254,6 +449,9 @@ __all__ = [
     "capture_report",
     "capture_session",
     "check_file",
+    "check_strip",
+    "chunks_of",
+    "code_book",
     "compare",
     "compensate",
     "converter",
@@ -261,41 +459,79 @@ __all__ = [
     "cue_length_s",
     "demo",
     "demo_report",
+    "device_problems",
     "drawn_trace",
     "drawn_traces",
+    "expected_ms",
+    "experiment_html",
+    "experiment_report",
     "fd_only",
     "feasibility",
     "feasible_curves",
     "felt_press",
+    "finger_of",
     "fit_file",
     "fit_files",
     "fit_folder",
     "fit_force_file",
+    "fit_paper",
+    "force_spread_ratio",
     "identify_exciter",
     "intended_press",
     "inverse_patch",
     "join_logs",
+    "judge_experiment",
+    "light_strip",
     "load_actuation",
+    "lock_with_code",
+    "look_at_study",
     "make_program",
     "measured_button",
     "measured_files",
     "merge_parts",
     "model_of",
     "model_of_recording",
+    "model_space_setup",
     "model_subject",
+    "new_code",
+    "new_keeper",
     "new_model",
     "noticeable_cN",
     "one_curve",
     "open_device",
+    "open_executor",
     "open_files",
     "open_model",
     "open_models",
     "open_part",
+    "open_plan",
     "open_program",
     "open_receipt",
+    "open_screen_stage",
+    "open_winner_devices",
+    "operator_view",
+    "optimise",
+    "optimize_html",
+    "optimize_report",
+    "paper_design_like",
     "patch_between",
+    "people_csv",
+    "people_standing",
+    "play",
+    "play_on_strip",
+    "play_seed",
+    "played_presser",
+    "player_of",
+    "power_design",
     "prepare_exciter",
     "press_button",
+    "press_of",
+    "press_table",
+    "preview_dict",
+    "preview_html",
+    "preview_sections",
+    "preview_summary",
+    "preview_title",
     "probe",
     "process_recording",
     "program_choices",
@@ -303,26 +539,65 @@ __all__ = [
     "program_standing",
     "program_subject",
     "quick_look",
+    "random_design",
+    "read_answers",
+    "read_chained",
+    "read_code_book",
+    "read_experiment_setup",
+    "read_population",
     "read_press_trace",
     "read_program",
+    "read_session",
+    "read_setup",
     "record_of",
     "recorded_vibrations",
+    "recording_of",
+    "reference_of",
+    "refusal_of",
+    "render_best",
     "render_vibration",
+    "render_winner",
+    "rendering",
+    "replay_differences",
+    "rig_constraints",
     "rig_memory",
     "row_of_model",
+    "run_experiment",
+    "run_on_any_strip",
+    "run_on_strip",
+    "run_population",
     "sample_strokes",
     "save_actuation",
+    "score_design",
     "settings_with",
+    "simulate_study",
     "simulated_observer",
     "slot_volts",
     "spread_reports",
+    "stimulus_model",
+    "strip_round",
+    "study_html",
+    "study_power",
+    "study_summary",
     "summarise",
+    "tap_peaks",
+    "task_named",
     "tone_image",
+    "trial_program",
+    "trial_report",
+    "try_on_strip",
     "tune_vibration",
     "tuned_model",
+    "twin_problems",
     "uncompensated",
+    "unlock_with_code",
     "vibration_wav",
+    "winners_of",
     "with_lead",
+    "write_analysis",
+    "write_answers",
+    "write_experiment",
+    "write_study_report",
 ]
 
 

@@ -48,6 +48,11 @@ class LivePress:
         return self.rig.time_s
 
     @property
+    def due_s(self) -> float:
+        """Time that was let pass since the beginning; less than a tick of it is not simulated yet."""
+        return self._due_s
+
+    @property
     def replaying(self) -> bool:
         """Whether a trace leads the finger."""
         return self._path is not None

@@ -30,6 +30,8 @@ class LiveFrame:
     sequence : number of the last lead that had taken effect before its last tick.
     dropped_s : real time that was not simulated since the run began, for this machine was too slow.
     busy_ratio : part of real time that simulating took, lately.
+    zero_s : the clock when simulated time was 0, as of the last tick; time that is dropped moves it on. A
+        simulated time and this make a time of the run's clock.
     """
 
     columns: LedTicks
@@ -37,6 +39,7 @@ class LiveFrame:
     sequence: int
     dropped_s: float
     busy_ratio: float
+    zero_s: float
 
 
 class LiveRun:
@@ -128,6 +131,7 @@ class LiveRun:
             gathered.led |= self._do_asked()
             began_s = self._clock()
             gathered.take(*self._press.advance(due_s), self._clock() - began_s)
+            gathered.zero_s = pace.last_s - self._press.due_s
             if gathered.due(self._clock()):
                 gathered = self._frame(gathered)
         if not gathered.empty:
@@ -164,7 +168,7 @@ class _Gathered:
     """What is gathered for the next frame."""
 
     def __init__(self, now_s: float) -> None:
-        self.since_s, self.led = now_s, False
+        self.since_s, self.led, self.zero_s = now_s, False, 0.0
         self._columns: list[LedTicks] = []
         self._events: list[LiveEvent] = []
         self._busy_s = 0.0
@@ -185,4 +189,6 @@ class _Gathered:
 
     def frame(self, sequence: int, dropped_s: float, now_s: float) -> LiveFrame:
         ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
-        return LiveFrame(LedTicks.joined(self._columns), tuple(self._events), sequence, dropped_s, ratio)
+        return LiveFrame(
+            LedTicks.joined(self._columns), tuple(self._events), sequence, dropped_s, ratio, self.zero_s
+        )

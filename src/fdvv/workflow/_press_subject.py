@@ -107,15 +107,32 @@ def model_subject(
     rig_name : one of PRESS_RIGS; what is intended is felt on the ideal rig whatever is named.
     """
     name, rig = _rig(mode, rig_name)
+    learned = known_rendering(_pressable(model), name) if mode is PressMode.COMPENSATED else None
+    return _of_model(model, mode, name, rig, learned)
+
+
+def learned_subject(model: FDVVModel, learned: CompensationResult, rig_name: str) -> PressSubject:
+    """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does."""
+    mode = PressMode.COMPENSATED
+    subject = _of_model(model, mode, *_rig(mode, rig_name), learned)
+    return replace(subject, told=f"on the simulated rig {rig_name!r}, by an actuation learned before")
+
+
+def _pressable(model: FDVVModel) -> FDVVModel:
     if not model.of(Stroke.PRESS):
         raise InputError(model.name, "curves", "it has no press to feel", "merge one into it")
-    learned = known_rendering(model, name) if mode is PressMode.COMPENSATED else None
-    program = button_program(model, learned.surface if learned else None)
-    limits = _limits(rig, learned is not None)
+    return model
+
+
+def _of_model(
+    model: FDVVModel, mode: PressMode, rig_name: str, rig: Rig, learned: CompensationResult | None
+) -> PressSubject:
+    program = button_program(_pressable(model), learned.surface if learned else None)
+    limits = rig_limits(rig, learned is not None)
     tuning = learned.outcome.tuning if learned else Tuning()
     meant = button_program(model)
     down, up = (state.transitions[0].when.value for state in meant.states)
-    subject = _subject(program, mode, name, rig, limits, tuning, _told(mode, name))
+    subject = _subject(program, mode, rig_name, rig, limits, tuning, _told(mode, rig_name))
     marks = (PressMark("actuation", down), PressMark("reset", up))
     press, release = _surfaces(meant)
     return replace(subject, actuation_mm=down, reset_mm=up, marks=marks, press=press, release=release)
@@ -136,7 +153,7 @@ def program_subject(
         known = rig_memory(name).known
         tuning = tuning_of(known, program.travel_mm, law.bandwidth_Hz, law.friction_mm_s)
     told = _told(mode, name, program=True)
-    return _subject(program, mode, name, rig, _limits(rig), tuning, told)
+    return _subject(program, mode, name, rig, rig_limits(rig), tuning, told)
 
 
 @cache
@@ -162,7 +179,7 @@ def _rig(mode: PressMode, rig_name: str) -> tuple[str, Rig]:
     return name, load_rig(name)
 
 
-def _limits(rig: Rig, learned: bool = False) -> Limits:
+def rig_limits(rig: Rig, learned: bool = False) -> Limits:
     """Give what a program is compiled with for this rig; learned forces carry the weight already."""
     mover = rig.mover
     weight_cN = 0.0 if learned else float(cN_from_N(mover.mass_kg * mover.gravity_m_s2))

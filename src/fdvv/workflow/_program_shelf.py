@@ -73,15 +73,12 @@ class ProgramShelf:
 
     def open(self, program_id: str) -> KeptProgram:
         """Give the canonical text of a program."""
-        kind, _, name = program_id.partition(":")
-        if kind == "shipped":
-            return KeptProgram(program_id, program_to_json(load_shipped(name)), "")
-        data = self._read(program_id)
-        return KeptProgram(program_id, program_to_json(program_from_json(data, program_id)), _revision(data))
+        program, revision = self._opened(program_id)
+        return KeptProgram(program_id, program_to_json(program), revision)
 
     def program(self, program_id: str) -> Program:
         """Give a program by its id."""
-        return program_from_json(self.open(program_id).text, program_id)
+        return self._opened(program_id)[0]
 
     def save(self, program_id: str, text: str, revision: str = "") -> KeptProgram:
         """Write a program of the person's, whole or not at all.
@@ -151,6 +148,14 @@ class ProgramShelf:
     def _own(self) -> dict[str, Path]:
         found = sorted(self.folder.glob(f"*{SUFFIX}")) if self.folder.is_dir() else []
         return {p.name.removesuffix(SUFFIX): p for p in found if not p.name.startswith(".")}
+
+    def _opened(self, program_id: str) -> tuple[Program, str]:
+        """Read a program, and which text of its file it is."""
+        kind, _, name = program_id.partition(":")
+        if kind == "shipped":
+            return load_shipped(name), ""
+        data = self._read(program_id)
+        return program_from_json(data, program_id), _revision(data)
 
     def _own_entry(self, name: str) -> ProgramEntry:
         program_id = f"own:{name}"

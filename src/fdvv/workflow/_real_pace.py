@@ -21,6 +21,11 @@ class RealPace:
         self._clock, self._longest_s = clock, longest_s
         self._last_s: float | None = None
 
+    @property
+    def last_s(self) -> float:
+        """Get the clock as due() read it last; 0 before."""
+        return self._last_s or 0.0
+
     def due(self) -> tuple[float, float]:
         """Give what is due since the last call, and what is dropped of it; nothing after pause()."""
         now = self._clock()

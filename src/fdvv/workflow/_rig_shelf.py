@@ -9,6 +9,7 @@ from threading import Lock
 from fdvv.compensate import KnownRig, RigAware, load_rig, save_rig
 from fdvv.device import DeviceInfo, TwinDevice
 from fdvv.errors import InputError
+from fdvv.files import write_atomic
 from fdvv.model import load_builtin
 from fdvv.protocol import Settings
 from fdvv.twin import load_rig as load_plant
@@ -94,6 +95,13 @@ class RigShelf:
             if rig_id not in self._found:
                 self._found[rig_id] = self._load(entry)
             return self._found[rig_id]
+
+    def lend(self, rig_id: str, project: Path) -> None:
+        """Copy what is known of a rig to another project. InputError on an unknown id, OSError."""
+        self.rig(rig_id)
+        kind, _, name = rig_id.partition(":")
+        file = f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}"
+        write_atomic(project / "rigs" / file, self._files()[file].read_bytes())
 
     def _load(self, entry: RigEntry) -> RigOnShelf:
         kind, _, name = entry.rig_id.partition(":")

@@ -91,6 +91,7 @@ class ShelfSearch:
         self._text, self._like = TextTable(), LikeTable()
         self._numbers: FloatArray = np.empty((0, len(NUMBERS)))
         self._ends: FloatArray = np.empty((2, 0))
+        self._bins: npt.NDArray[np.intp] = np.empty((0, len(NUMBERS)), dtype=np.intp)
         self._kinds = self._origins = np.empty(0, dtype=np.str_)
 
     def extend(self, rows: Sequence[ShelfRow]) -> None:
@@ -104,6 +105,7 @@ class ShelfSearch:
         table = [[getattr(row, name) for name in NUMBERS] for row in rows]
         self._numbers = np.vstack([self._numbers, np.array(table, dtype=np.float64)])
         self._ends = _ends(self._numbers)
+        self._bins = _bins(self._numbers, self._ends)
         self._kinds = np.append(self._kinds, [str(row.kind) for row in rows])
         self._origins = np.append(self._origins, [str(row.origin) for row in rows])
 
@@ -175,11 +177,9 @@ class ShelfSearch:
     def _histograms(self, masks: dict[str, Mask]) -> dict[str, Histogram]:
         found = {}
         for i, name in enumerate(NUMBERS):
-            values = self._numbers[masks[name], i]
             low, high = self._ends[:, i] if self._ends.size else (np.nan, np.nan)
             if high > low:
-                inside = np.clip(values[np.isfinite(values)], low, high)
-                counts = np.histogram(inside, BINS, (low, high))[0]
+                counts = np.bincount(self._bins[masks[name], i], minlength=BINS + 1)[:BINS]
                 found[name] = Histogram(float(low), float(high), counts)
         return found
 
@@ -192,6 +192,16 @@ def _ends(numbers: FloatArray) -> FloatArray:
         if known.size:
             ends[:, i] = np.percentile(known, (1, 99))
     return ends
+
+
+def _bins(numbers: FloatArray, ends: FloatArray) -> npt.NDArray[np.intp]:
+    """Give the bin of every figure, (n, k): the outermost beyond the ends, BINS where it is not known."""
+    found = np.full(numbers.shape, BINS, dtype=np.intp)
+    for i, (low, high) in enumerate(ends.T):
+        known = np.isfinite(numbers[:, i])
+        inner = np.linspace(low, high, BINS + 1)[1:-1]
+        found[known, i] = np.searchsorted(inner, numbers[known, i], side="right")
+    return found
 
 
 def _all_but(masks: dict[str, Mask], name: str) -> Mask:
@@ -207,7 +217,8 @@ def _among(labels: npt.NDArray[np.str_], wanted: Sequence[str]) -> Mask:
 
 def _counts(labels: npt.NDArray[np.str_], mask: Mask) -> dict[str, int]:
     """Count every label there is among those that the mask leaves."""
-    return {str(label): int(np.count_nonzero(mask & (labels == label))) for label in np.unique(labels)}
+    there = set(labels.tolist())
+    return {label: int(np.count_nonzero(mask & (labels == label))) for label in sorted(there)}
 
 
 def _active(query: ShelfQuery) -> list[str]:

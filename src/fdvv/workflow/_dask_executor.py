@@ -1,0 +1,117 @@
+"""Chunks on dask.distributed: workers started here, or a cluster that runs already."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import logging
+import uuid
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypeVar
+
+from fdvv import __version__
+from fdvv.errors import BuildError, InputError
+from fdvv.workflow._executor import TRIES, answered, found_or_raised, lost
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster
+
+Chunk = TypeVar("Chunk")
+Found = TypeVar("Found")
+
+HERE = "127.0.0.1:0"
+"""Without an address dask's status service listens to every network; it cannot be left out."""
+LOCAL = {
+    # no worker takes a second chunk in advance: it would share the blame if the first one kills
+    "distributed.scheduler.worker-saturation": 1.0,
+    "distributed.scheduler.allowed-failures": TRIES - 1,
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+}
+ANSWER_s = 10.0
+"""A scheduler that does not answer for so long is not there."""
+
+
+class DaskExecutor:
+    """Works on chunks on the workers of a dask cluster; see Executor."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+
+    @property
+    def processes(self) -> int:
+        """Get how many work at once."""
+        return sum(self._client.nthreads().values())
+
+    def run(
+        self, work: Callable[[Chunk], Found], chunks: Sequence[Chunk]
+    ) -> Generator[tuple[int, Found], None, None]:
+        """Work on every chunk; see Executor."""
+        from distributed import KilledWorker, as_completed
+
+        run = uuid.uuid4().hex  # keys of their own: a result is never one of an earlier run
+        places = {
+            self._client.submit(answered, work, chunk, key=f"{run}-{number}", priority=-number): number
+            for number, chunk in enumerate(chunks)
+        }
+        try:
+            for future in as_completed(list(places)):
+                number = places[future]
+                try:
+                    found = future.result()
+                except KilledWorker as error:
+                    raise lost(number) from error
+                yield number, found_or_raised(number, found)
+                future.release()
+        finally:
+            self._client.cancel(list(places), force=True)
+
+
+@contextmanager
+def open_dask(workers: int | None, cluster: str | None) -> Iterator[DaskExecutor]:
+    """Start workers, or find a cluster by its address; see open_executor."""
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise BuildError("dask workers need an extra: pip install 'fdvv[sweep]'") from error
+    if cluster is not None:
+        with _found(cluster) as client:
+            _check_workers(client, cluster)
+            yield DaskExecutor(client)
+        return
+    with started_workers(workers) as local, Client(local) as client:
+        yield DaskExecutor(client)
+
+
+@contextmanager
+def started_workers(workers: int | None) -> Iterator[LocalCluster]:
+    """Start workers that only this machine can reach, without any page."""
+    import dask
+    from distributed import LocalCluster
+
+    # a worker that is lost is told of in many lines, but it is no error: its chunk is done again
+    with dask.config.set(LOCAL), LocalCluster(
+        n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+        host="127.0.0.1", dashboard_address=HERE, worker_dashboard_address=HERE,
+        scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
+    ) as local:  # fmt: skip
+        yield local
+
+
+def _found(address: str) -> Client:
+    from distributed import Client
+
+    try:
+        return Client(address, timeout=ANSWER_s)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            "--cluster", address, f"no scheduler answers ({error})", "start one with: dask scheduler"
+        ) from error
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """Refuse workers that do not know the work: handed it, they would break off, again and again."""
+    versions = client.run(importlib.metadata.version, "fdvv", on_error="return").values()
+    if not versions or set(versions) != {__version__}:
+        reason = "it has no workers" if not versions else f"not all of its workers have fdvv {__version__}"
+        raise InputError("--cluster", address, reason, "install the same fdvv there")

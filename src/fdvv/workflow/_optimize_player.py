@@ -1,0 +1,117 @@
+"""A simulated person who tries the designs of an optimisation, one after the other. Simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fdvv.errors import InputError, ModelError
+from fdvv.optimize import (
+    Accuracy,
+    LEVELS_px_s,
+    RapidTapping,
+    SimulatedUser,
+    Task,
+    TemporalPointing,
+    Trial,
+    TrialState,
+    draw_user,
+)
+from fdvv.workflow._optimize_session import OptimizeSession
+from fdvv.workflow._optimize_setup import OptimizeSetup
+from fdvv.workflow._play import score_design
+from fdvv.workflow._play_bench import PLAY_RIGS, refusal_of
+
+POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
+PLAYED_TASKS = (POINTING, TAPPING, ACCURACY)
+"""Tasks that simulated people can play."""
+
+Told = Callable[[Trial], None]
+"""Called with every trial when it is done or has failed."""
+
+
+@dataclass(frozen=True)
+class SimulatedPlayer:
+    """Somebody simulated who plays a task with the designs of a run.
+
+    Attributes
+    ----------
+    user : the person. task : what is played. rig : what renders the designs.
+    seed : of the presses; those of a trial depend on it and on the trial's number alone.
+    presses_before : made before the first trial, for users who learn or tire.
+    """
+
+    user: SimulatedUser
+    task: Task
+    rig: str = "ideal"
+    seed: int = 0
+    presses_before: int = 0
+
+    def try_next(self, session: OptimizeSession) -> Trial | None:
+        """Try the next trial of a run; None when its budget is spent.
+
+        What the rig's firmware cannot hold fails with its reason; nobody presses it.
+        """
+        asked = session.ask()
+        if not asked:
+            return None
+        # a run killed in the middle of a trial has shown it already
+        (trial,) = asked
+        shown = trial if trial.state is TrialState.SHOWN else session.show(trial.number)
+        model = session.model(shown.design)
+        if refusal := refusal_of(model, self.rig):
+            return session.fail(shown.number, refusal)
+        seed = play_seed(self.seed, shown.number)
+        before = self.presses_before + shown.number * self.task.rounds
+        scores = score_design(self.task, model, self.user, seed, rig=self.rig, presses_before=before)
+        return session.done(shown.number, scores)
+
+    def play(self, session: OptimizeSession, told: Told = lambda _trial: None) -> None:
+        """Try trials until the budget is spent. A run killed in between goes on with the same trials."""
+        while (trial := self.try_next(session)) is not None:
+            told(trial)
+
+
+def play_seed(*path: int) -> int:
+    """Make a seed of its own for a place in a study, as (seed, phase, number)."""
+    return int(np.random.SeedSequence(path).generate_state(1, np.uint64)[0] >> 1)
+
+
+def task_named(name: str, level: str | None, presses: int = 20) -> Task:
+    """Give a task by its name; level only where the task has levels, presses: of a trial.
+
+    InputError on one that no simulated person plays, an unknown level, and presses too few for the task.
+    """
+    if name not in PLAYED_TASKS:
+        known = ", ".join(PLAYED_TASKS)
+        raise InputError("task", name, "no simulated person plays it", f"use one of {known}")
+    if name == POINTING and level not in LEVELS_px_s:
+        raise InputError("level", str(level), "is unknown", f"use one of {', '.join(LEVELS_px_s)}")
+    try:
+        if name == POINTING:
+            return TemporalPointing(str(level), presses)
+        return RapidTapping(presses) if name == TAPPING else Accuracy(presses)
+    except ModelError as error:
+        raise InputError("presses", str(presses), str(error), "give more") from error
+
+
+def about_player(person: int, rig: str, presses: int) -> dict[str, Any]:
+    """Give what a setup keeps of who plays (``about``). InputError on an unknown rig."""
+    if rig not in PLAY_RIGS:
+        raise InputError("rig", rig, "none is called so", f"use one of {', '.join(PLAY_RIGS)}")
+    return {"player": {"person": person, "rig": rig, "presses": presses}}
+
+
+def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
+    """Give the simulated person that a setup names. InputError where it names none: a human plays it."""
+    told = setup.about.get("player")
+    if not isinstance(told, dict) or not isinstance(told.get("person"), int):
+        remedy = "resume it in the studio, or begin a run with --person"
+        raise InputError("run", "$.about.player", "no simulated person plays this run", remedy)
+    presses, rig = int(told.get("presses", 20)), str(told.get("rig", "ideal"))
+    return SimulatedPlayer(
+        draw_user(0, told["person"]), task_named(setup.task, setup.level, presses), rig, setup.seed
+    )

@@ -1,0 +1,232 @@
+"""An optimisation in a folder: what is asked, shown and answered, each on the disk before it counts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+
+from fdvv.errors import InputError
+from fdvv.files import write_atomic
+from fdvv.model import FDVVModel
+from fdvv.optimize import (
+    Answer,
+    Comparison,
+    Design,
+    Engine,
+    Known,
+    Ledger,
+    ParetoFront,
+    Score,
+    Trial,
+    TrialState,
+    engine_of,
+    pair_engine_of,
+    pareto_front,
+    steps_before,
+)
+from fdvv.workflow._optimize_setup import (
+    SETUP_FILE,
+    OptimizeSetup,
+    designer_of,
+    problem_of,
+    read_setup,
+    setup_text,
+    space_of,
+)
+from fdvv.workflow._rig_shelf import RigShelf
+
+LEDGER_FILE = "trials.jsonl"
+START, PERSON = "start", "person"
+OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
+
+
+class OptimizeSession:
+    """A run that can be killed at any moment and goes on as if nothing had happened.
+
+    Made by `create` or `open`, for one process at a time; a context manager.
+
+    Attributes
+    ----------
+    folder : of the run. setup : what it is about. space, problem : what its engine is asked.
+    engine, pair_engine : the one of scores, or the one of comparisons where the task is preference.
+    warnings : what a person should know of the folder.
+    """
+
+    def __init__(self, folder: Path, setup: OptimizeSetup, ledger: Ledger) -> None:
+        self.folder, self.setup = folder, setup
+        self.space = space_of(setup.space, RigShelf(folder))
+        self._designer = designer_of(setup.space)
+        self.problem = problem_of(setup, self.space)
+        self.engine = None if setup.preference else engine_of(setup.engine, setup.options)
+        self.pair_engine = pair_engine_of(setup.engine, setup.options) if setup.preference else None
+        self.warnings = ledger.warnings
+        self._ledger = ledger
+        self._given: set[int] = set()
+
+    @classmethod
+    def create(cls, folder: Path, setup: OptimizeSetup, project: Path | None = None) -> OptimizeSession:
+        """Begin a run in a folder that is new or empty. InputError, BuildError, OSError.
+
+        project : where the rig that the setup names is known; it is copied into the run's folder.
+        """
+        folder = Path(folder)
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise InputError(folder, "folder", "is not empty", "name a new one, or resume the run in it")
+        checked = cls(project or folder, setup, Ledger())
+        if setup.space.rig and project:
+            RigShelf(project).lend(setup.space.rig, folder)
+        write_atomic(folder / SETUP_FILE, setup_text(checked.setup))
+        return cls.open(folder)
+
+    @classmethod
+    def open(cls, folder: Path) -> OptimizeSession:
+        """Go on with a run. InputError where there is none, where it is damaged or at work elsewhere."""
+        folder = Path(folder)
+        setup = read_setup(folder / SETUP_FILE)
+        ledger = Ledger(folder / LEDGER_FILE)
+        try:
+            return cls(folder, setup, ledger)
+        except BaseException:
+            ledger.close()
+            raise
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """Get all trials, by number."""
+        return self._ledger.trials
+
+    @property
+    def comparisons(self) -> tuple[Comparison, ...]:
+        """Get all comparisons, by number."""
+        return self._ledger.comparisons
+
+    @property
+    def left(self) -> int:
+        """Get how many more trials, or comparisons, may be suggested."""
+        spent = sum(trial.state is not TrialState.ABANDONED for trial in self.trials)
+        return max(0, self.setup.budget - (len(self.comparisons) if self.pair_engine else spent))
+
+    @property
+    def finished(self) -> bool:
+        """Tell whether the budget is spent and nothing is open."""
+        unanswered = any(one.answer is None for one in self.comparisons)
+        return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
+
+    def ask(self, count: int = 1) -> tuple[Trial, ...]:
+        """Give the next trials, at most count: first those left open when the run was closed, then new ones.
+
+        New ones are on the disk when this returns, and each is suggested knowing those before it. Empty once
+        the budget is spent. InputError where designs are compared, not scored.
+        """
+        self._scored()
+        left = [t for t in self.trials if t.state in OPEN and t.number not in self._given]
+        asked = left[:count]
+        while len(asked) < count and self.left:
+            asked.append(self._suggested())
+        self._given |= {trial.number for trial in asked}
+        return tuple(asked)
+
+    def _suggested(self) -> Trial:
+        if self.setup.start is not None and not self.trials:
+            return self._ledger.suggest(self.space.checked(self.setup.start), START)
+        engine = self._scored()
+        (design,) = engine.suggest(self.problem, self.trials)
+        return self._ledger.suggest(design, engine.name)
+
+    def _scored(self) -> Engine:
+        if self.engine is None:
+            raise InputError("run", "task", "designs of this run are compared", "ask for comparisons instead")
+        return self.engine
+
+    def edit(self, number: int, design: Design) -> Trial:
+        """Put a person's own design in the place of a suggestion that was not shown yet.
+
+        InputError where it leaves the space or breaks a constraint.
+        """
+        checked = self.space.checked(design)
+        for one in self.space.broken(checked):
+            raise InputError("design", one.name, f"it does not hold: {one.told}", "change the design")
+        return self._ledger.edit(number, checked)
+
+    def show(self, number: int) -> Trial:
+        """Note that somebody tries a trial now."""
+        return self._ledger.become(number, TrialState.SHOWN)
+
+    def done(self, number: int, scores: dict[str, Score]) -> Trial:
+        """Keep the scores of a trial. InputError where one of the run's objectives is missing."""
+        for one in self.problem.objectives:
+            if one.name not in scores:
+                raise InputError("scores", one.name, "is missing", f"score trial {number} in every objective")
+        return self._ledger.become(number, TrialState.DONE, scores)
+
+    def fail(self, number: int, reason: str) -> Trial:
+        """Keep that a trial could not be tried or scored; designs near it are avoided."""
+        return self._ledger.become(number, TrialState.FAILED, reason=reason)
+
+    def abandon(self, number: int, reason: str = "") -> Trial:
+        """Keep that a trial was stopped; it teaches nothing and does not count."""
+        return self._ledger.become(number, TrialState.ABANDONED, reason=reason)
+
+    def best(self) -> dict[str, float]:
+        """Recommend a design by what the engine believes, not by luck. ModelError if none is done."""
+        if self.pair_engine:
+            return self.pair_engine.best(self.problem, self.comparisons)
+        return self._scored().best(self.problem, self.trials)
+
+    def front(self) -> ParetoFront:
+        """Give the compromises that no other trial beats, where there are several objectives."""
+        return pareto_front(self.problem, self.trials)
+
+    def compare(self) -> Comparison | None:
+        """Give the next two designs to be compared: the unanswered ones first; None once the budget is spent.
+
+        They are on the disk when this returns. InputError where the run's task is not preference.
+        """
+        if self.pair_engine is None:
+            raise InputError("run", "task", "designs of this run are scored", "ask for trials instead")
+        unanswered = next((one for one in self.comparisons if one.answer is None), None)
+        if unanswered is not None or not self.left:
+            return unanswered
+        return self._ledger.pair(*self.pair_engine.pair(self.problem, self.comparisons))
+
+    def answer(self, number: int, answer: Answer | str) -> Comparison:
+        """Keep which of two designs was preferred. InputError where it was answered before."""
+        if answer not in tuple(Answer):
+            raise InputError("answer", str(number), f"is {answer!r}", f"say {', '.join(Answer)}")
+        return self._ledger.answer(number, answer)
+
+    def model(self, design: Design, name: str = "design") -> FDVVModel:
+        """Make the button of a design."""
+        return self._designer(design).renamed(name)
+
+    def close(self) -> None:
+        """Let go of the folder; a second time does nothing."""
+        self._ledger.close()
+
+    def __enter__(self) -> OptimizeSession:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def replay_differences(folder: Path) -> tuple[Trial | Comparison, ...]:
+    """Suggest every trial and comparison of a run anew, from what was known then; give those that differ.
+
+    None on the machine and the versions that a run was made with. InputError, OSError.
+    """
+    path = Path(folder) / LEDGER_FILE
+    replayed = OptimizeSession(Path(folder), read_setup(Path(folder) / SETUP_FILE), Ledger())
+    return tuple(found for known, found in steps_before(path) if not _agrees(replayed, known, found))
+
+
+def _agrees(run: OptimizeSession, known: Known, found: Trial | Comparison) -> bool:
+    """Tell whether an engine would suggest the same again; what a person brought in always agrees."""
+    if isinstance(found, Comparison):
+        pair = run.pair_engine and run.pair_engine.pair(run.problem, known.comparisons)
+        return pair == (found.first, found.second)
+    if run.engine is None or found.origin != run.engine.name:
+        return True
+    return run.engine.suggest(run.problem, known.trials) == [found.design]

@@ -1,0 +1,161 @@
+"""The presses of a person in a task, each on the disk before the next: people cannot repeat them.
+
+``rounds.jsonl`` in an optimisation's folder is a journal (see `fdvv.journal`) with the records
+``{"begun": {…}}`` each time a trial is begun and ``{"round": {…}}`` for every round. A trial that was broken
+off and begun again keeps its rounds, but only those of its last beginning count.
+"""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import InputError
+from fdvv.journal import Journal, JournalKind, read_records
+from fdvv.optimize import TaskPress
+
+ROUNDS = "rounds.jsonl"
+KIND = JournalKind(frozenset({"begun", "round"}), "move the file away; finished trials are in the ledger")
+
+
+class ClockSource(StrEnum):
+    """Whose clock target and activations are on.
+
+    page : the browser's; what its screen shows and its keys tell is late by delays, measured or stated.
+    device : a device's own, which shows the target and feels the button.
+    """
+
+    PAGE = "page"
+    DEVICE = "device"
+
+
+class RoundTiming(Struct, frozen=True, forbid_unknown_fields=True):
+    """How times of a round were told, ms.
+
+    Attributes
+    ----------
+    source : whose clock.
+    display_ms, input_ms : from drawing to light, from finger to the browser's event; taken into account.
+    display_error_ms, input_error_ms : how far they may be off, alike in all rounds.
+    clock_ms, clock_error_ms : the server's clock less the source's, and its bound; None where not known.
+    transport_ms : from the browser's event to the simulated finger; taken out.
+    frame_ms : between two pictures of the screen.
+    hand : what the person pressed: "key", "mouse", "touch", "pen".
+    """
+
+    source: ClockSource
+    display_ms: float
+    display_error_ms: float
+    input_ms: float
+    input_error_ms: float
+    clock_ms: float | None
+    clock_error_ms: float | None
+    transport_ms: float | None
+    frame_ms: float | None
+    hand: str
+
+
+class PlayedRound(Struct, frozen=True, forbid_unknown_fields=True):
+    """One round: what counts, how it was timed, when it was (UTC).
+
+    Attributes
+    ----------
+    trial, attempt : which trial, and how often it had been begun; number : of the round, from 1.
+    target_s : when the target was seen. activations_s : when the key went down. On timing.source's clock.
+    """
+
+    trial: int
+    attempt: int
+    number: int
+    target_s: float
+    activations_s: tuple[float, ...]
+    timing: RoundTiming
+    made: str
+
+    @property
+    def press(self) -> TaskPress:
+        """Give it as tasks score it."""
+        return TaskPress(self.target_s, self.activations_s)
+
+
+class PlayedRounds:
+    """The rounds of an optimisation, in memory and on file, for one process at a time.
+
+    Parameters
+    ----------
+    folder : of the optimisation.
+
+    Raises InputError on a journal that is damaged or at work elsewhere, OSError.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / ROUNDS
+        busy = InputError(
+            self.path.name, "whole file", "another fdvv works on it", "close the other one first"
+        )
+        self._journal = Journal(self.path, busy)
+        self._attempts: dict[int, int] = {}
+        self._rounds: list[PlayedRound] = []
+        try:
+            self._journal.cut(self._read())
+        except BaseException:
+            self._journal.close()
+            raise
+
+    def begin(self, trial: int) -> int:
+        """Begin a trial, or begin it again; give how often it was."""
+        attempt = self._attempts.get(trial, 0) + 1
+        self._journal.write({"begun": {"trial": trial, "attempt": attempt, "made": _now()}})
+        self._attempts[trial] = attempt
+        return attempt
+
+    def add(
+        self, trial: int, target_s: float, activations_s: tuple[float, ...], timing: RoundTiming
+    ) -> PlayedRound:
+        """Keep the next round of a trial that was begun; it is on the disk when this is back."""
+        number = len(self.counting(trial)) + 1
+        attempt = self._attempts[trial]
+        found = PlayedRound(trial, attempt, number, target_s, activations_s, timing, _now())
+        self._journal.write({"round": msgspec.to_builtins(found)})
+        self._rounds.append(found)
+        return found
+
+    def counting(self, trial: int) -> tuple[PlayedRound, ...]:
+        """Give the rounds of a trial since it was begun last."""
+        attempt = self._attempts.get(trial, 0)
+        return tuple(one for one in self._rounds if one.trial == trial and one.attempt == attempt)
+
+    @property
+    def all(self) -> tuple[PlayedRound, ...]:
+        """Give every round there ever was, those that do not count among them."""
+        return tuple(self._rounds)
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._journal.close()
+
+    def _read(self) -> int:
+        last = 0
+        for record, end in read_records(self.path, KIND):
+            self._take(record)
+            last = end
+        return last
+
+    def _take(self, record: dict[str, Any]) -> None:
+        try:
+            if "begun" in record:
+                begun = record["begun"]
+                self._attempts[int(begun["trial"])] = int(begun["attempt"])
+            else:
+                self._rounds.append(msgspec.convert(record["round"], PlayedRound))
+        except (KeyError, TypeError, ValueError) as error:
+            raise InputError(self.path, "whole file", f"a record is none: {error}", KIND.remedy) from error
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")

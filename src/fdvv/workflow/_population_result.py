@@ -1,0 +1,125 @@
+"""What a population run found: columns, figures for people, trials for others to begin from. Simulated."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from fdvv.documents import pretty
+from fdvv.errors import InputError, ModelError
+from fdvv.files import write_atomic
+from fdvv.optimize import Score, TemporalPointing, Trial, TrialState, paper_space
+from fdvv.units import FloatArray
+from fdvv.workflow._population_plan import PLAN_FILE, PopulationPlan, read_plan
+from fdvv.workflow._population_work import grid_designs
+
+RESULT_FILE, SUMMARY_FILE = "population.npz", "summary.json"
+
+
+@dataclass(frozen=True, eq=False)
+class PopulationResult:
+    """What a whole population did.
+
+    Attributes
+    ----------
+    plan : what was asked. columns : by name, one row per person, or per cell of a grid:
+        "optimize": designs (people, budget, d), values (people, budget), best (people, d), judged and
+        against (people,); "grid": values and errors (designs * people,), see PopulationPlan.cells.
+        Designs are in the unit cube of the space, all else in the objective's unit.
+    """
+
+    plan: PopulationPlan
+    columns: Mapping[str, FloatArray]
+
+    @classmethod
+    def of(cls, plan: PopulationPlan, chunks: Mapping[int, Mapping[str, FloatArray]]) -> PopulationResult:
+        """Join chunks by number. ModelError unless all are there."""
+        if sorted(chunks) != list(range(plan.chunks)):
+            raise ModelError(f"{len(chunks)} of {plan.chunks} chunks are done")
+        names = chunks[0].keys()
+        joined = {name: np.concatenate([chunks[n][name] for n in range(plan.chunks)]) for name in names}
+        return cls(plan, joined)
+
+    def table(self) -> tuple[FloatArray, FloatArray]:
+        """Give scores and errors of a grid, (designs, people) each."""
+        self._must_be("grid")
+        shape = self.plan.designs, self.plan.people
+        return self.columns["values"].reshape(shape), self.columns["errors"].reshape(shape)
+
+    def prior(self) -> tuple[Trial, ...]:
+        """Give what others may begin from: every design of a grid with its mean over the people.
+
+        The error of a mean is that between people, each taken without their own mean over all designs: how
+        well somebody does altogether says nothing of which design is better.
+        """
+        values, _ = self.table()
+        people = values.shape[1]
+        apart = values - values.mean(axis=0)
+        errors = apart.std(axis=1, ddof=1) / np.sqrt(people) if people > 1 else np.zeros(len(values))
+        name = TemporalPointing(self.plan.level).objectives[0].name
+        scores = [Score(float(m), float(s) or None) for m, s in zip(values.mean(axis=1), errors, strict=True)]
+        return tuple(
+            Trial(i, dict(design), TrialState.DONE, {name: score}, origin="population")
+            for i, (design, score) in enumerate(zip(self.designs, scores, strict=True))
+        )
+
+    @property
+    def designs(self) -> tuple[dict[str, float], ...]:
+        """Get the designs of a grid."""
+        return grid_designs(paper_space(), self.plan.designs)
+
+    def summary(self) -> dict[str, Any]:
+        """Give figures for people and for programs; everything is simulated."""
+        head = {"simulated": True, "plan": msgspec.to_builtins(self.plan)}
+        return {**head, **(self._of_grid() if self.plan.kind == "grid" else self._of_people())}
+
+    def _of_grid(self) -> dict[str, Any]:
+        means = self.table()[0].mean(axis=1)
+        best = int(np.argmin(means))
+        found = {"parameters": self.designs[best], "mean_ms": float(means[best])}
+        return {"mean_ms": spread_of(means), "best": found}
+
+    def _of_people(self) -> dict[str, Any]:
+        judged, against = self.columns["judged"], self.columns["against"]
+        return {
+            "judged_ms": spread_of(judged),
+            "against_ms": spread_of(against),
+            "gain_percent": spread_of(100 * (1 - judged / against)),
+            "better_ratio": float(np.mean(judged < against)),
+        }
+
+    def _must_be(self, kind: str) -> None:
+        if self.plan.kind != kind:
+            raise ModelError(f"a run of kind {kind!r} is needed, this one is {self.plan.kind!r}")
+
+
+def spread_of(values: FloatArray) -> dict[str, float]:
+    """Give median and 5 to 95 % over people or designs."""
+    low, middle, high = np.percentile(values, [5, 50, 95])
+    return {"median": float(middle), "low": float(low), "high": float(high)}
+
+
+def write_result(folder: Path, result: PopulationResult) -> None:
+    """Write columns and summary, each whole or not at all."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **result.columns)
+    write_atomic(folder / RESULT_FILE, buffer.getvalue())
+    write_atomic(folder / SUMMARY_FILE, pretty(result.summary()) + "\n")
+
+
+def read_population(folder: Path) -> PopulationResult:
+    """Read the result of a finished run. InputError."""
+    folder = Path(folder)
+    plan, path = read_plan(folder / PLAN_FILE), folder / RESULT_FILE
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return PopulationResult(plan, {name: file[name] for name in file.files})
+    except (OSError, ValueError) as error:
+        remedy = "finish the run: give its command again"
+        raise InputError(path, "whole file", f"cannot be read ({error})", remedy) from error

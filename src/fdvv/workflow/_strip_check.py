@@ -1,0 +1,79 @@
+"""Whether an LED strip lights, shows and hears the key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fdvv.device import LibraryStrip, StripTask, strip_port
+from fdvv.optimize import TaskPress, TemporalPointing
+from fdvv.protocol import StripLed
+from fdvv.workflow._strip import Heard, light_strip, play_on_strip, played_presser, strip_round
+
+SCRIPTED_LATE_s = 0.08
+"""How late the key of a strip without hardware goes down: nobody is there to press it."""
+
+
+@dataclass(frozen=True)
+class StripCheck:
+    """What a check found.
+
+    Attributes
+    ----------
+    name : of the line. simulated : there is no strip, and a script pressed.
+    firmware : version. was_reset : the board's watchdog had reset it.
+    edges : of the key line since the check began. bad_frames : requests that arrived damaged.
+    presses : by round. asynchrony_ms : mean of their first presses' distances from the target, None without.
+    """
+
+    name: str
+    simulated: bool
+    firmware: str
+    was_reset: bool
+    edges: int
+    bad_frames: int
+    presses: tuple[TaskPress, ...]
+    asynchrony_ms: float | None
+
+
+def check_strip(
+    spec: str,
+    level: str = "easy",
+    rounds: int = 3,
+    seed: int = 0,
+    led: str = "each",
+    brightness: int = 8,
+    heard: Heard | None = None,
+    meanwhile: Callable[[], None] | None = None,
+) -> StripCheck:
+    """Light a strip's ends and middle, then play rounds at a level; told of each as it ends.
+
+    spec : of the strip (fdvv.device.STRIPS). led : "each" or "together". meanwhile : called some times a
+        second. Raises InputError, DeviceError.
+    """
+    task, port = TemporalPointing(level, rounds, quantised=False), strip_port(spec)
+    order = strip_round(task, StripLed[led.upper()], brightness)
+    scripted = [TaskPress(0.0, (SCRIPTED_LATE_s,))] * rounds
+    presser = played_presser(port, scripted) if isinstance(port, LibraryStrip) else None
+    with StripTask(port) as strip:
+        before = strip.status()
+        light_strip(strip, order.pixels, brightness, meanwhile)
+        presses = play_on_strip(
+            strip, task, seed, order=order, presser=presser, meanwhile=meanwhile, heard=heard
+        )
+        after = strip.status()
+        return StripCheck(
+            port.name,
+            presser is not None,
+            strip.firmware,
+            strip.was_reset,
+            after.edges - before.edges,
+            after.bad_frames - before.bad_frames,
+            presses,
+            _mean_ms(task, presses),
+        )
+
+
+def _mean_ms(task: TemporalPointing, presses: tuple[TaskPress, ...]) -> float | None:
+    pressed = [press for press in presses if press.activations_s]
+    return task.scores(pressed)["asynchrony_ms"].value if pressed else None

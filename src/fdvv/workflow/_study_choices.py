@@ -1,0 +1,115 @@
+"""Choices of answers: shares with intervals that count people, ties split and dropped, distances felt."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fdvv.study import (
+    Answers,
+    Claim,
+    DPrime,
+    Share,
+    SignedRank,
+    choice_claim,
+    claim_values,
+    clustered_share,
+    d_prime_2afc,
+    d_prime_abx,
+    d_prime_of_people,
+    holm,
+    means_by,
+    share,
+    sign_test,
+    signed_rank,
+    two_ac,
+    two_ac_people,
+)
+from fdvv.units import FloatArray
+from fdvv.workflow._study_ratings import names_of
+from fdvv.workflow._study_records import ALL_BUTTONS, ChoiceResult
+
+RIGHT, WRONG = "right", "wrong"
+
+
+def choice_results(answers: Answers, claim: Claim) -> tuple[ChoiceResult, ...]:
+    """Count choices over all buttons, then at each, with Holm's correction; nothing where nobody chose."""
+    values = claim_values(answers, choice_claim(answers, claim))
+    whole = _result(answers, claim, ALL_BUTTONS, answers.counts, values)
+    if whole is None:
+        return ()
+    found = [
+        _result(answers, claim, button, answers.counts & (answers.item == button), values)
+        for button in names_of(answers.item)
+    ]
+    buttons = [one for one in found if one is not None]
+    tested = [one for one in buttons if one.test is not None]
+    corrected = dict(
+        zip(
+            [one.button for one in tested],
+            holm([one.test.p_exact for one in tested if one.test]),
+            strict=True,
+        )
+    )
+    return (whole, *(replace(one, p_holm=corrected.get(one.button)) for one in buttons))
+
+
+def _result(
+    answers: Answers, claim: Claim, button: str, rows: np.ndarray, values: FloatArray
+) -> ChoiceResult | None:
+    """Count the choices of some rows."""
+    found, person = values[rows], answers.person[rows]
+    more, equal, less = (int(np.sum(found == one)) for one in (1.0, 0.0, -1.0))
+    n = more + equal + less
+    if not n:
+        return None
+    right = choice_claim(answers, claim).measure == "correct"
+    halves = means_by(found, person)
+    tested = halves[np.isfinite(halves)]
+    several = tested.size > 1
+    people_share = _people_share(found, person) if several else None
+    test: SignedRank | None = signed_rank(tested / 2) if several else None
+    return ChoiceResult(
+        button=button,
+        more=RIGHT if right else claim.more,
+        less=WRONG if right else claim.less,
+        more_count=more,
+        equal_count=equal,
+        less_count=less,
+        missing=int(np.sum(rows)) - n,
+        share=share(more, n),
+        people_share=people_share,
+        split=(more + equal / 2) / n,
+        dropped=share(more, more + less) if equal and more + less else None,
+        test=test,
+        sign=sign_test(tested),
+        p_holm=None,
+        d=_distances(answers.kind, right, _people_counts(found, person), people_share),
+    )
+
+
+def _people_share(values: FloatArray, person: np.ndarray) -> Share:
+    """Give the share of more with an interval over people."""
+    there = np.isfinite(values)
+    _, places = np.unique(person[there], return_inverse=True)
+    return clustered_share(np.bincount(places, values[there] == 1.0), np.bincount(places))
+
+
+def _people_counts(values: FloatArray, person: np.ndarray) -> FloatArray:
+    """Count less, equal and more of every person, (people, 3)."""
+    _, places = np.unique(person, return_inverse=True)
+    return np.column_stack([np.bincount(places, values == one) for one in (-1.0, 0.0, 1.0)])
+
+
+def _distances(kind: str, right: bool, counts: FloatArray, people: Share | None) -> tuple[DPrime, ...]:
+    """Give d' by every rule that fits the task, people counted as people first. counts : (people, 3)."""
+    less, equal, more = (int(one) for one in counts.sum(axis=0))
+    n = less + equal + more
+    if right and kind == "abx":
+        rules = tuple(d_prime_abx(more, n, rule) for rule in ("differencing", "independent"))
+        return (*((d_prime_of_people(people, "abx"),) if people else ()), *rules)
+    if equal:
+        each = (two_ac_people(counts).all,) if people and n > equal else ()
+        return (*each, two_ac(less, equal, more))
+    return (*((d_prime_of_people(people, "2afc"),) if people else ()), d_prime_2afc(more, n))

@@ -1,0 +1,136 @@
+"""Which column of a table of answers is what: by the code book, by name, or as a person says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import get_args
+
+from fdvv.errors import InputError
+from fdvv.study import EQUAL, StudyKind
+from fdvv.workflow._study_code_book import CodeBook, rating_column
+
+TIMING = "timing"
+"""A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""
+KINDS = (*get_args(StudyKind), TIMING)
+TEXTS = ("person", "item", "choice", "excluded", "stimulus")
+NUMBERS = ("round", "correct", "ratio", "time_s", "simulated")
+ROLES = (*TEXTS, *NUMBERS)
+MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
+"""Words for a missing value, in any case of letters."""
+
+
+@dataclass(frozen=True)
+class ColumnMap:
+    """How a foreign table is read.
+
+    Attributes
+    ----------
+    kind : of the study; "": as the code book says, else told by the columns.
+    stimuli : names, in order; of two, a preference counts for the second. (): as found.
+    columns : the file's heading by role. A role is one of `ROLES`, or RATING:STIMULUS where every rendering
+        has its own column, or RATING where a row is one rating (then "stimulus" is a column too).
+    codes : what a word in the columns choice and stimulus means: a stimulus or "equal", by the file's word.
+    missing : further words for a missing value, as "-99".
+    simulated : the answers are those of simulated participants.
+    """
+
+    kind: str = ""
+    stimuli: tuple[str, ...] = ()
+    columns: Mapping[str, str] = field(default_factory=dict)
+    codes: Mapping[str, str] = field(default_factory=dict)
+    missing: frozenset[str] = frozenset()
+    simulated: bool = False
+
+    def __post_init__(self) -> None:
+        if self.kind and self.kind not in KINDS:
+            raise InputError(
+                "kind", repr(self.kind), "no such kind of study", f"use one of {', '.join(KINDS)}"
+            )
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where everything stands in one table.
+
+    Attributes
+    ----------
+    roles : place of the column by role, without ratings. ratings : places by rating, then by stimulus; the
+        stimulus is "" where a column of its own names it.
+    """
+
+    roles: Mapping[str, int]
+    ratings: Mapping[str, Mapping[str, int]]
+
+    @property
+    def long(self) -> bool:
+        """Tell whether a row is one rating of one rendering, rather than a trial."""
+        return "stimulus" in self.roles
+
+
+def layout_of(heads: Sequence[str], asked: ColumnMap, book: CodeBook | None, source: object) -> Layout:
+    """Find every column. InputError on one that is asked for and is not there, or that is there twice."""
+    for name in heads:
+        if name and list(heads).count(name) > 1:
+            raise InputError(source, "line 1", f"two columns are called {name!r}", "give each its own name")
+    roles = {role: heads.index(role) for role in ROLES if role in heads}
+    ratings = _by_name(heads, asked.stimuli)
+    if book is not None:
+        ratings = {}
+        for name, (rating, stimulus) in book.rating_columns().items():
+            ratings.setdefault(rating, {})[stimulus] = _place(name, heads, source)
+    for role, name in asked.columns.items():
+        rating, colon, stimulus = role.partition(":")
+        if not colon and role in ROLES:
+            roles[role] = _place(name, heads, source)
+        else:
+            ratings.setdefault(rating, {})[stimulus] = _place(name, heads, source)
+    return _checked(Layout(roles, ratings), heads, source)
+
+
+def _by_name(heads: Sequence[str], stimuli: Sequence[str]) -> dict[str, dict[str, int]]:
+    """Find ratings by the names that fdvv writes: rating_stimulus, for every stimulus."""
+    found: dict[str, dict[str, int]] = {}
+    for head in heads:
+        rating = head.removesuffix(f"_{stimuli[0]}") if stimuli else head
+        wanted = [rating_column(rating, one) for one in stimuli]
+        if rating and rating != head and all(one in heads for one in wanted):
+            found[rating] = {one: heads.index(rating_column(rating, one)) for one in stimuli}
+    return found
+
+
+def _place(name: str, heads: Sequence[str], source: object) -> int:
+    if name not in heads:
+        there = ", ".join(repr(one) for one in heads)
+        raise InputError(source, "line 1", f"there is no column {name!r} among {there}", "map another column")
+    return heads.index(name)
+
+
+def _checked(layout: Layout, heads: Sequence[str], source: object) -> Layout:
+    """Refuse a table that lacks what every analysis needs."""
+    there = ", ".join(repr(one) for one in heads)
+    if "person" not in layout.roles:
+        remedy = f"say which one it is: --map person=COLUMN; there are {there}"
+        raise InputError(source, "line 1", "no column says who answered", remedy)
+    stimuli = {stimulus for places in layout.ratings.values() for stimulus in places}
+    if layout.long != (stimuli == {""}) and stimuli:
+        remedy = "map RATING:STIMULUS=COLUMN for each rendering, or stimulus=COLUMN and RATING=COLUMN"
+        raise InputError(source, "line 1", "ratings are mapped half by column, half by row", remedy)
+    if not layout.ratings and not {"choice", "correct"} & set(layout.roles):
+        remedy = "map choice=COLUMN, correct=COLUMN or RATING:STIMULUS=COLUMN; there are " + there
+        raise InputError(source, "line 1", "no column holds an answer", remedy)
+    return layout
+
+
+def coded(word: str, asked: ColumnMap) -> str:
+    """Give what a word of the columns choice and stimulus means; "" where it says that there is nothing."""
+    if word in asked.codes:
+        return asked.codes[word]
+    if is_missing(word, asked):
+        return ""
+    return EQUAL if word.lower() == EQUAL else word
+
+
+def is_missing(word: str, asked: ColumnMap) -> bool:
+    """Tell whether a cell says that there is nothing."""
+    return word in asked.missing or word.lower() in MISSING

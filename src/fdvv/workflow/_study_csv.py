@@ -1,0 +1,222 @@
+"""Answers read from a CSV: fdvv's own with its code book, or a foreign one with its columns mapped."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.errors import InputError
+from fdvv.files import read_limited
+from fdvv.study import EQUAL, Answers
+from fdvv.text import decode_lines, sniff_separator
+from fdvv.units import FloatArray
+from fdvv.workflow._study_cells import NO, YES, Cells
+from fdvv.workflow._study_code_book import CODE_BOOK_FILE, CodeBook, read_code_book
+from fdvv.workflow._study_columns import TIMING, ColumnMap, Layout, layout_of
+from fdvv.workflow._study_export import ANSWERS_FILE
+
+LARGEST_bytes = 200_000_000
+REMEDY = "save the table as CSV with one line of headings"
+ONE_ITEM = "all"
+"""Name of the button where no column tells one."""
+UNSEALED = "unsealed"
+"""Folder below a study's where unsealing puts answers."""
+
+
+@dataclass
+class _Trial:
+    """One row of answers while it is read."""
+
+    person: str
+    item: str
+    round: int
+    choice: str = ""
+    correct: float = np.nan
+    ratio: float = np.nan
+    time_s: float = np.nan
+    excluded: str = ""
+    ratings: dict[tuple[str, str], float] = field(default_factory=dict)
+
+
+def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
+    """Read answers from answers.csv, the folder that holds it, or a foreign CSV.
+
+    A code book of fdvv beside answers.csv tells what it is; a foreign table needs its kind, and columns whose
+    headings are not fdvv's mapped. Raises InputError that names line and column.
+    """
+    path, asked = _table(Path(path)), columns or ColumnMap()
+    book = _book_beside(path)
+    if book is not None:
+        stimuli = asked.stimuli or book.stimuli
+        simulated = asked.simulated or book.simulated
+        asked = replace(asked, kind=asked.kind or book.kind, stimuli=stimuli, simulated=simulated)
+    lines, _ = decode_lines(path, read_limited(path, LARGEST_bytes, "split the file"), REMEDY)
+    # a name that fdvv wrote may hold a semicolon
+    mark = "," if book else sniff_separator(next(line for line in lines if line.strip()))
+    mark = "," if mark == " " else mark
+    reader = csv.reader(io.StringIO("\n".join(lines), newline=""), delimiter=mark)
+    return _read(path, reader, asked, book, decimal_comma=mark != ",")
+
+
+def _read(
+    path: Path, reader: Iterator[list[str]], asked: ColumnMap, book: CodeBook | None, decimal_comma: bool
+) -> Answers:
+    rows = _filled(path, reader)
+    _, heads = next(rows)
+    layout = layout_of(heads, asked, book, path)
+    cells = Cells(path, heads, asked, decimal_comma)
+    trials: dict[tuple[str, str, int, int], _Trial] = {}
+    met: dict[tuple[str, ...], int] = {}
+    simulated = asked.simulated
+    for line, row in rows:
+        if len(row) != len(heads):
+            reason = f"{len(row)} cells under {len(heads)} headings"
+            raise InputError(path, f"line {line}", reason, "check separators and quotes")
+        _take(cells, layout, line, row, trials, met)
+        simulated |= cells.number(line, row, layout.roles.get("simulated")) == 1.0
+    if not trials:
+        raise InputError(path, "whole file", "it holds headings and no answer", REMEDY)
+    found = list(trials.values())
+    stimuli = _stimuli(path, asked, layout, found)
+    return _answers(found, replace(asked, simulated=simulated), stimuli, layout, path)
+
+
+def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list[str]]]:
+    """Give line and stripped cells of every row that says anything."""
+    try:
+        for line, row in enumerate(reader, start=1):
+            if any(cell.strip() for cell in row):
+                yield line, [cell.strip() for cell in row]
+    except csv.Error as error:
+        raise InputError(path, "whole file", f"not a CSV ({error})", REMEDY) from error
+
+
+def _take(
+    cells: Cells,
+    layout: Layout,
+    line: int,
+    row: list[str],
+    trials: dict[tuple[str, str, int, int], _Trial],
+    met: dict[tuple[str, ...], int],
+) -> None:
+    """Read one row into its trial."""
+    roles = layout.roles
+    person = row[roles["person"]]
+    if not person:
+        raise cells.wrong(line, roles["person"], "nobody is named", "fill it in, or delete the line")
+    item = row[roles["item"]] if "item" in roles else ONE_ITEM
+    stimulus = cells.word(row, roles.get("stimulus"))
+    seen = met[person, item, stimulus] = met.get((person, item, stimulus), -1) + 1
+    told = cells.number(line, row, roles.get("round"))
+    # a round of a staircase has many trials, as many as it takes
+    step = not np.isnan(cells.number(line, row, roles.get("ratio")))
+    key = (person, item, seen if np.isnan(told) else int(told), line if step else 0)
+    if key in trials and not layout.long:
+        reason = f"{person} has a second row of {item}, round {key[2]}"
+        raise InputError(cells.path, f"line {line}", reason, "give every trial of a person its own round")
+    trial = trials.setdefault(key, _Trial(*key[:3]))
+    _fill(cells, layout, line, row, trial, stimulus)
+
+
+def _fill(
+    cells: Cells, layout: Layout, line: int, row: list[str], trial: _Trial, stimulus: str
+) -> None:  # fmt: skip
+    roles = layout.roles
+    trial.choice = cells.word(row, roles.get("choice")) or trial.choice
+    for name in ("correct", "ratio", "time_s"):
+        if name in roles:
+            setattr(trial, name, cells.number(line, row, roles[name]))
+    if "correct" in roles and trial.correct not in (0.0, 1.0) and not np.isnan(trial.correct):
+        raise cells.wrong(line, roles["correct"], f"{trial.correct:g} is neither 1 nor 0", "code it so")
+    trial.excluded = _reason(row[roles["excluded"]]) if "excluded" in roles else trial.excluded
+    for rating, places in layout.ratings.items():
+        for named, place in places.items():
+            key = (rating, named or stimulus)
+            if key in trial.ratings:
+                raise cells.wrong(
+                    line, place, f"{key[1]} is rated twice in one trial", "tell the rounds apart"
+                )
+            trial.ratings[key] = cells.number(line, row, place)
+
+
+def _reason(word: str) -> str:
+    """Read why a row does not count; a bare yes says only that it does not."""
+    if not word or word.lower() in NO:
+        return ""
+    return "excluded in the file" if word.lower() in YES else word
+
+
+def _stimuli(path: Path, asked: ColumnMap, layout: Layout, trials: Sequence[_Trial]) -> tuple[str, ...]:
+    """Give the names of what is compared, and refuse words that are none of them."""
+    rated = dict.fromkeys(key[1] for trial in trials for key in trial.ratings)
+    chosen = sorted({trial.choice for trial in trials} - {"", EQUAL})
+    found = tuple(sorted(rated) if layout.long else rated) or tuple(chosen)
+    stimuli = asked.stimuli or found
+    strange = [one for one in (*chosen, *rated) if one not in stimuli]
+    if strange:
+        remedy = f"name it: --stimuli, or say what it means: --code {strange[0] or 'WORD'}=STIMULUS"
+        told = f"{strange[0]!r} is none of {', '.join(stimuli)}"
+        raise InputError(path, "whole file", told, remedy)
+    return stimuli
+
+
+def _answers(
+    trials: Sequence[_Trial], asked: ColumnMap, stimuli: tuple[str, ...], layout: Layout, path: Path
+) -> Answers:
+    names = np.array([(one.person, one.item, one.choice, one.excluded) for one in trials], dtype=str)
+    ratings = {
+        rating: np.array([[t.ratings.get((rating, s), np.nan) for s in stimuli] for t in trials])
+        for rating in layout.ratings
+    }
+    ratio, time_s = (_numbers(trials, name) for name in ("ratio", "time_s"))
+    kind = asked.kind or _kind(ratings, ratio, path)
+    return Answers(
+        kind,
+        stimuli,
+        person=names[:, 0],
+        item=names[:, 1],
+        round=np.array([one.round for one in trials]),
+        choice=names[:, 2],
+        correct=_numbers(trials, "correct"),
+        ratings=ratings,
+        ratio=None if np.isnan(ratio).all() else ratio,
+        time_s=None if np.isnan(time_s).all() else time_s,
+        excluded=names[:, 3],
+        simulated=asked.simulated,
+    )
+
+
+def _numbers(trials: Sequence[_Trial], name: str) -> FloatArray:
+    return np.array([getattr(one, name) for one in trials], dtype=np.float64)
+
+
+def _kind(ratings: Mapping[str, FloatArray], ratio: FloatArray, path: Path) -> str:
+    """Tell the kind where the columns leave no doubt."""
+    if np.isfinite(ratio).any():
+        return "staircase"
+    if ratings and next(iter(ratings.values())).shape[1] == 2:
+        return "realism"
+    remedy = f"say it: --kind realism, abx, 2afc, 2ac, preference, mushra or {TIMING}"
+    raise InputError(path, "whole file", "nothing tells what kind of study this was", remedy)
+
+
+def _table(path: Path) -> Path:
+    """Find the CSV that a path means."""
+    if not path.is_dir():
+        return path
+    for place in (path / ANSWERS_FILE, path / UNSEALED / ANSWERS_FILE):
+        if place.is_file():
+            return place
+    remedy = "unseal the study first: fdvv study unseal, or name a CSV"
+    raise InputError(path, "folder", f"it holds no {ANSWERS_FILE}", remedy)
+
+
+def _book_beside(path: Path) -> CodeBook | None:
+    """Read the code book of answers.csv; a foreign table has none."""
+    book = path.with_name(CODE_BOOK_FILE)
+    return read_code_book(book) if path.name == ANSWERS_FILE and book.is_file() else None

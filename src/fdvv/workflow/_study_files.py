@@ -1,0 +1,132 @@
+"""The folder of a study: which files it has, and what is frozen of them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.documents import Kind, pretty, read_document
+from fdvv.errors import InputError
+from fdvv.files import read_limited, write_atomic
+from fdvv.model import builtin_names, load_builtin, model_to_json
+from fdvv.study import Stimulus, StudyPlan
+
+PLAN_FILE, FROZEN_FILE, KEEPER_FILE, LOG_FILE = "study.toml", "frozen.json", "keeper.json", "study.jsonl"
+BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
+SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
+LARGEST_bytes = 64_000_000
+REMEDY = "take the study's folder from a backup, or declare a new study"
+FROZEN = Kind("fdvv-frozen", 1, "what is frozen of a study", REMEDY)
+
+
+class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What was fixed before the first person.
+
+    Attributes
+    ----------
+    files : SHA-256 of the plan, of every file that it names and of the keeper's file, by path in the folder.
+    builtins : SHA-256 of every built-in button that it names, for a new fdvv may ship others.
+    seal : the public half of the keys. fdvv : version. when : UTC.
+    """
+
+    format: Literal["fdvv-frozen"] = "fdvv-frozen"
+    version: Literal[1] = 1
+    files: dict[str, str]
+    builtins: dict[str, str]
+    seal: str
+    fdvv: str
+    when: str
+
+    @property
+    def text(self) -> str:
+        """Get it as its file holds it."""
+        return pretty(msgspec.to_builtins(self)) + "\n"
+
+
+def read_frozen(folder: Path) -> tuple[Frozen, str] | None:
+    """Read what is frozen, and the SHA-256 of the file; None of a study that is not. InputError."""
+    path = folder / FROZEN_FILE
+    if not path.exists():
+        return None
+    data = read_limited(path, LARGEST_bytes, REMEDY)
+    decode = msgspec.json.Decoder(Frozen).decode
+    return read_document(data, path, FROZEN, decode, lambda _: None), digest(data)
+
+
+def fingerprint_of(sha256: str) -> str:
+    """Give what people write down: the first 16 digits, in groups of four."""
+    return "-".join(sha256[i : i + 4] for i in range(0, 16, 4))
+
+
+def digest(data: bytes | str) -> str:
+    """Give the SHA-256 of a file's content."""
+    return hashlib.sha256(data.encode() if isinstance(data, str) else data).hexdigest()
+
+
+def builtin_digest(name: str) -> str:
+    """Give the SHA-256 of a built-in button; empty if there is none of that name."""
+    return digest(model_to_json(load_builtin(name))) if name in builtin_names() else ""
+
+
+def stimuli_of(plan: StudyPlan) -> Iterator[Stimulus]:
+    """Give everything that a plan renders."""
+    for item in plan.items:
+        yield from item.stimuli
+        if item.reference:
+            yield item.reference
+
+
+def named_builtins(plan: StudyPlan) -> tuple[str, ...]:
+    """List the built-in buttons that a plan names."""
+    return tuple(sorted({one.button for one in stimuli_of(plan)} & set(builtin_names())))
+
+
+def named_files(plan: StudyPlan) -> tuple[str, ...]:
+    """List the files that a plan names, as it names them. InputError on one outside its folder."""
+    names = {name for one in stimuli_of(plan) for name in (one.button, one.actuation) if name}
+    found = tuple(sorted(names - set(builtin_names())))
+    for name in found:
+        _require_inside(name)
+    return found
+
+
+def _require_inside(name: str) -> None:
+    if Path(name).is_absolute() or ".." in Path(name).parts:
+        remedy = "copy it beside the study and name it as it lies there"
+        raise InputError(name, "name", "lies outside the folder of the study", remedy)
+
+
+def kept_path(folder: Path, name: str) -> Path:
+    """Give where a study's folder keeps a file that its plan names: as named, or in buttons/."""
+    return folder / name if Path(name).parts[0] == BUTTONS else folder / BUTTONS / name
+
+
+def study_file(folder: Path, name: str) -> Path:
+    """Find a file that a plan names: what the study's folder keeps, and is frozen, before what lies beside it.
+
+    InputError on one that is not there, or outside the folder.
+    """
+    _require_inside(name)
+    for path in (kept_path(folder, name), folder / name):
+        if path.is_file():
+            return path
+    known = ", ".join(builtin_names())
+    remedy = f"copy it beside the study and name it as it lies there, or use one of {known}"
+    raise InputError(name, "name", "no such file in the study's folder", remedy)
+
+
+def copy_files(plan: StudyPlan, beside: Path, folder: Path) -> None:
+    """Copy the files that a plan names from beside it into a study's folder. InputError, OSError."""
+    for name in named_files(plan):
+        sources = (beside / name, kept_path(beside, name))
+        source = next((path for path in sources if path.is_file()), None)
+        if source is None:
+            known = ", ".join(builtin_names())
+            reason = f"no such file beside the plan in {beside}, and no built-in button"
+            raise InputError(name, "name", reason, f"copy it there, or name one of {known}")
+        write_atomic(kept_path(folder, name), read_limited(source, LARGEST_bytes, "name a smaller file"))

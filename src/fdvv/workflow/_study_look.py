@@ -1,0 +1,118 @@
+"""Look at a study before it is frozen: its file, and what the files it names hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.errors import FdvvError, InputError
+from fdvv.files import read_limited
+from fdvv.model import FDVVModel, Stroke
+from fdvv.study import STUDY_FILE, Item, Stimulus, StudyPlan, plan_problems, read_plan_text
+from fdvv.workflow._study_stage import stimulus_model
+from fdvv.workflow._study_stage_subject import stimulus_actuation
+
+SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
+"""Of presses at which renderings are compared: the paper's."""
+STEP_mm = 0.05
+ALIKE_cN = 1.0
+"""Below this, rms, nobody is expected to feel a difference of force: 2 % of a light key."""
+
+
+@dataclass(frozen=True)
+class StudyLook:
+    """What was found of a study.
+
+    Attributes
+    ----------
+    plan, folder : of the study.
+    problems : for which it cannot be run as it says. notes : what may not be meant.
+    differences_cN : by item, how far apart its renderings are: rms of press and release over the paper's
+        speeds, of the two that are nearest; none where they cannot be opened, or for staircases.
+    """
+
+    plan: StudyPlan
+    folder: Path
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+    differences_cN: dict[str, float]
+
+
+def look_at_study(path: Path) -> StudyLook:
+    """Read a study's file, or that in a folder, and open everything that it names.
+
+    InputError where the file itself cannot be read; what is wrong inside is among the problems.
+    """
+    path = path / STUDY_FILE if path.is_dir() else path
+    data = read_limited(path, 1_000_000, "name the file of a study")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(path, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
+    plan = read_plan_text(text, path)
+    problems, notes, differences = list(plan_problems(plan)), list[str](), dict[str, float]()
+    told = tuple(problems)
+    for item in plan.items:
+        if any(problem.startswith(f"items ({item.name!r})") for problem in told):
+            continue
+        try:
+            models = {s: _opened(s, path.parent) for s in _rendered(item)}
+        except FdvvError as error:
+            problems.append(f"items ({item.name!r}): {error}")
+            continue
+        if plan.kind != "staircase":
+            problems += _alike(item, models)
+            differences[item.name] = least_difference_cN([models[s] for s in item.stimuli])
+        notes += _doubts(item, differences.get(item.name))
+    return StudyLook(plan, path.parent, tuple(dict.fromkeys(problems)), tuple(notes), differences)
+
+
+def least_difference_cN(models: list[FDVVModel]) -> float:
+    """Give the rms difference of force of the two models that are nearest to each other."""
+    return min((_difference_cN(*pair) for pair in combinations(models, 2)), default=0.0)
+
+
+def _rendered(item: Item) -> tuple[Stimulus, ...]:
+    return (*item.stimuli, *([item.reference] if item.reference else []))
+
+
+def _opened(stimulus: Stimulus, folder: Path) -> FDVVModel:
+    """Open a stimulus as it will be rendered, its actuation too. InputError."""
+    model = stimulus_model(stimulus, folder)
+    if stimulus.actuation:
+        stimulus_actuation(stimulus, folder, model)
+    return model
+
+
+def _alike(item: Item, models: dict[Stimulus, FDVVModel]) -> Iterator[str]:
+    """Refuse renderings that differ in name only: nobody could tell them apart."""
+    for one, other in combinations(item.stimuli, 2):
+        if models[one].renamed("same") == models[other].renamed("same") and one.actuation == other.actuation:
+            why = "its model has one speed and no vibration" if one.button == other.button else "same models"
+            yield f"items ({item.name!r}): {one.name!r} and {other.name!r} feel the same: {why}"
+
+
+def _doubts(item: Item, difference_cN: float | None) -> Iterator[str]:
+    if difference_cN is not None and difference_cN < ALIKE_cN:
+        yield (
+            f"items ({item.name!r}): forces of two renderings differ by {difference_cN:.2f} cN only, rms; "
+            "if vibration does not tell them apart, nothing does"
+        )
+    if len({bool(stimulus.actuation) for stimulus in _rendered(item)}) > 1:
+        yield f"items ({item.name!r}): some renderings have an actuation and others none; on a rig that tells"
+
+
+def _difference_cN(one: FDVVModel, other: FDVVModel) -> float:
+    """Give the rms difference of force over both strokes, the paper's speeds and the longer travel."""
+    x = np.arange(0.0, max(one.travel_mm, other.travel_mm), STEP_mm)
+    v = np.array(SPEEDS_mm_s)[:, np.newaxis]
+    found = [_force_cN(one, x, v, stroke) - _force_cN(other, x, v, stroke) for stroke in Stroke]
+    return float(np.sqrt(np.mean(np.square(found))))
+
+
+def _force_cN(model: FDVVModel, x: np.ndarray, v: np.ndarray, stroke: Stroke) -> np.ndarray:
+    return np.asarray(model.force_cN(x, v, stroke if model.of(stroke) else Stroke.PRESS))

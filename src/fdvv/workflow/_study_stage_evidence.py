@@ -1,0 +1,158 @@
+"""What was physically rendered under one label: presses found in telemetry and judged one by one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fdvv.compensate import FROM_mm, STOP_GUARD_mm, mean_speed_mm_s, split_strokes
+from fdvv.model import FDVVModel, Press
+from fdvv.protocol import Fault
+from fdvv.study import Rendered
+from fdvv.units import FloatArray
+from fdvv.workflow._felt import felt_press, intended_press
+from fdvv.workflow._live_event import DEEP_mm, TOP_mm
+
+REACHED_ratio = 0.5
+"""Part of the judged places that a press must reach on its way down; of a lesser one no error is told."""
+LEAD_s, SETTLE_s = 0.25, 0.1
+"""Kept of what was before a press; a cap that stays above 0.3 mm for so long came back no further."""
+STILL_mm, STILL_ROWS = 0.005, 20
+"""A stretch in which the cap moved by less is kept in every 20th row: a held button tells nothing new."""
+MOST_ROWS = 100_000
+"""Of a longer press every second row is kept: what is told of it gets coarser, or is not told."""
+
+
+class StageEvidence:
+    """Gathers what a label's rendering did, as telemetry comes.
+
+    Parameters
+    ----------
+    label, stimulus : names that `Rendered` keeps. model : what was intended.
+
+    A press is what went deeper than 0.3 mm, as everywhere in live presses, and came back above it; one that
+    had begun before the label was shown does not count.
+    """
+
+    def __init__(self, label: str, stimulus: str, model: FDVVModel) -> None:
+        self._label, self._stimulus, self._model = label, stimulus, model
+        self._errors: list[float | None] = []
+        self._speeds: list[float | None] = []
+        self._vibrations = 0
+        self._faults: dict[str, None] = {}  # in their order, each once
+        self._kept: list[FloatArray] = []
+        self._down = False
+
+    @property
+    def presses(self) -> int:
+        """Count the presses that are over."""
+        return len(self._errors)
+
+    def take(self, t_s: FloatArray, displacement_mm: FloatArray, force_cN: FloatArray) -> None:
+        """Go on with a stretch, (n,) each: time, true displacement, force on the finger (nan: not known)."""
+        if not t_s.size:
+            return
+        rows = np.stack([t_s, displacement_mm, force_cN])
+        self._kept.append(_thinned(rows))
+        if self._down and rows[1].min() > DEEP_mm:
+            self._kept = _halved(self._kept)
+            return
+        kept = np.hstack(self._kept)
+        while (found := _next_press(kept)) is not None:
+            end, after, whole = found
+            if whole:
+                self._over(kept[:, :end])
+            kept = kept[:, after:]
+        self._down = bool((kept[1] > DEEP_mm).any())
+        self._kept = [kept if self._down else kept[:, kept[0] >= kept[0, -1] - LEAD_s]]
+
+    def played(self, vibrations: int) -> None:
+        """Count vibrations that were played."""
+        self._vibrations += vibrations
+
+    def failed(self, fault: Fault | str) -> None:
+        """Note a fault by its name; of a board that does not answer no vibration can be vouched for."""
+        if fault is Fault.VIBRATION_BOARD:
+            self._vibrations = 0
+        self._faults[fault_name(fault)] = None
+
+    def cut(self) -> None:
+        """End here, at a gap in telemetry or a change of labels: a press that is not back does not count."""
+        kept = np.hstack([np.empty((3, 0)), *self._kept])
+        found = _next_press(kept, 0.0)
+        if found is not None and found[2]:
+            self._over(kept)
+        self._kept, self._down = [], False
+
+    def rendered(self) -> Rendered:
+        """Tell it as a study keeps it."""
+        return Rendered(
+            self._label,
+            self._stimulus,
+            self.presses,
+            tuple(self._errors),
+            tuple(self._speeds),
+            self._vibrations,
+            tuple(self._faults),
+        )
+
+    def _over(self, rows: FloatArray) -> None:
+        error_cN, speed_mm_s = judged(self._model, rows)
+        self._errors.append(error_cN)
+        self._speeds.append(speed_mm_s)
+
+
+def fault_name(fault: Fault | str) -> str:
+    """Give a fault's name as it is kept and told."""
+    return fault.name.lower() if isinstance(fault, Fault) else fault
+
+
+def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int, bool] | None:
+    """Find the first press that is over: its end, where the next may begin, whether it began within rows."""
+    deep = rows[1] > DEEP_mm
+    if not deep.any():
+        return None
+    begun = int(deep.argmax())
+    back = begun + int((~deep[begun:]).argmax())
+    if deep[back]:
+        return None
+    t_s, x_mm = rows[0, back:], rows[1, back:]
+    over = np.flatnonzero((x_mm <= TOP_mm) | deep[back:] | (t_s >= t_s[0] + settle_s))
+    if not over.size:
+        return None
+    end = back + int(over[0]) + 1
+    return end, back + int(rows[1, back:end].argmin()), begun > 0
+
+
+def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | None]:
+    """Give rms of felt against intended force (cN) over both strokes, and the speed of the way down (mm/s).
+
+    rows : (3, n) time, true displacement and force of one press. Both strokes are binned as a probe bins
+    them, and each is held against the model at its own mean speed. None where that cannot be told.
+    """
+    t_s, x_mm, force_cN = rows
+    press = Press(t_s, x_mm, force_cN, 0.0)
+    felt = felt_press(press, model.travel_mm)
+    down, up = (mean_speed_mm_s(t_s, x_mm, span) for span in split_strokes(x_mm, model.travel_mm))
+    counts = (felt.displacement_mm >= FROM_mm) & (felt.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
+    if not math.isfinite(down):
+        return None, None
+    speed_mm_s = round(down, 3)
+    if np.isfinite(felt.press_cN[counts]).mean() < REACHED_ratio:
+        return None, speed_mm_s
+    off = [felt.press_cN - intended_press(model, down).press_cN]
+    if math.isfinite(up):
+        off.append(felt.release_cN - intended_press(model, up).release_cN)
+    error_cN = float(np.sqrt(np.nanmean(np.stack([one[counts] for one in off]) ** 2)))
+    return round(error_cN, 4), speed_mm_s
+
+
+def _halved(kept: list[FloatArray]) -> list[FloatArray]:
+    if sum(rows.shape[1] for rows in kept) <= MOST_ROWS:
+        return kept
+    return [np.hstack(kept)[:, ::2]]
+
+
+def _thinned(rows: FloatArray) -> FloatArray:
+    return rows[:, ::STILL_ROWS] if np.ptp(rows[1]) < STILL_mm else rows

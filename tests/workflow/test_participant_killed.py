@@ -1,0 +1,289 @@
+"""A session whose process or device is killed at any moment: no answer is lost, no trial is met again."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from tests.workflow.study_people import (
+    CHEAP,
+    CONSENT,
+    PASSPHRASE,
+    StillStage,
+    answer_of,
+    do_all,
+    do_step,
+    enrolled,
+    frozen_study,
+)
+
+from fdvv.errors import DeviceError
+from fdvv.study import ENDS, Step, Stimulus, TrialAnswer
+from fdvv.workflow import Participant, Study, read_session
+from fdvv.workflow._study_verify import study_problems
+
+HATCHERY = """
+from tests.workflow.test_participant_killed import hatch
+hatch()
+"""
+ROOT = Path(__file__).resolve().parents[2]
+FASTER = 60.0
+"""The clock of these sessions: a break of three seconds takes a twentieth of one."""
+
+
+def quick_clock() -> float:
+    return FASTER * time.time()
+
+
+def hatch() -> None:
+    """Fork a process for every line, kill it, and tell what it had acknowledged.
+
+    It is killed so long after it acknowledged so many things. All imports are done before. Nothing is forced
+    to the disk: a process that is killed takes nothing with it that the system has, only a power cut does.
+    """
+    os.fsync = lambda fd: None
+    warm_up()
+    tell("ready")
+    for line in sys.stdin:
+        folder, person, code, after, after_s = line.rstrip("\n").split("\t")
+        output, into = os.pipe()
+        child = os.fork()
+        if child == 0:
+            live(Study.open(Path(folder)), person, code, into)
+        os.close(into)
+        with os.fdopen(output) as stream:
+            said = "".join(stream.readline() for _ in range(int(after)))
+            time.sleep(float(after_s))
+            os.kill(child, signal.SIGKILL)
+            _, status = os.waitpid(child, 0)
+            assert os.WTERMSIG(status) == signal.SIGKILL
+            tell("\t".join((said + stream.read()).split("\n")[:-1]))
+
+
+def warm_up() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        one, _ = enrolled(frozen_study(Path(folder) / "study"), StillStage())
+        do_all(one)
+        one.close()
+
+
+def tell(line: str) -> None:
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+def live(study: Study, person: str, code: str, into: int) -> None:
+    """Go on with a session, then with further ones, and acknowledge each thing, until somebody kills it."""
+
+    def say(*words: object) -> None:
+        os.write(into, (" ".join(map(str, words)) + "\n").encode())
+
+    def told(labels: Mapping[str, Stimulus]) -> None:
+        say("prepared", one.person, one.state.open, *(f"{k}={v.name}" for k, v in labels.items()))
+
+    while True:
+        if not code:
+            person, code = study.enrol(cost=CHEAP)
+            say("enrolled", person, code)
+        one = Participant.resume(study, person, code, StillStage(told=told), clock=quick_clock)
+        while (step := one.step()).kind not in ENDS:
+            say("met", person, *met(step))
+            if step.left_s:
+                time.sleep(0.01)
+                continue
+            do_step(one, step)
+            if step.number >= 0:
+                say("answered", person, step.number, one.state.answers[step.number].answer.choice)
+        one.close()
+        say("done", person)
+        code = ""
+
+
+def met(step: Step) -> tuple[str, str]:
+    return step.kind, step.page or str(step.number)
+
+
+class Hatchery:
+    """A process that starts sessions and kills them."""
+
+    def __init__(self) -> None:
+        command = [sys.executable, "-c", HATCHERY]
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
+        )
+        assert self._line() == "ready"
+
+    def _line(self) -> str:
+        assert self.process.stdout is not None
+        return self.process.stdout.readline().rstrip("\n")
+
+    def killed(self, folder: Path, person: str, code: str, after: int, after_s: float) -> list[list[str]]:
+        """Kill a session so long after so many acknowledgements; give all of them."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{folder}\t{person}\t{code}\t{after}\t{after_s!r}\n")
+        self.process.stdin.flush()
+        return [words.split() for words in self._line().split("\t") if words]
+
+    def close(self) -> None:
+        self.process.communicate(timeout=30)
+        assert self.process.returncode == 0
+
+
+class Witness:
+    """What was acknowledged in all lives, held against what is kept."""
+
+    def __init__(self, study: Study) -> None:
+        self.study, self.person, self.code = study, "", ""
+        self.answers: dict[tuple[str, str], str] = {}
+        self.labels: dict[tuple[str, str], list[str]] = {}
+        self.done: set[str] = set()
+
+    def hear(self, words: list[str]) -> None:
+        kind, person, *rest = words
+        if kind == "enrolled":
+            self.person, self.code = person, rest[0]
+        elif kind == "met":
+            assert (person, rest[1]) not in self.answers, f"{words} was answered before"
+            assert person not in self.done
+        elif kind == "prepared":
+            assert self.labels.setdefault((person, rest[0]), rest[1:]) == rest[1:]
+        elif kind == "answered":
+            assert (person, rest[0]) not in self.answers
+            self.answers[person, rest[0]] = rest[1]
+        elif kind == "done":
+            self.done.add(person)
+            self.code = ""
+
+    def check(self) -> None:
+        """See that everything acknowledged of the person who is there now is kept as it was."""
+        assert study_problems(self.study.folder, people=(self.person,)) == ()
+        if self.code:
+            state = read_session(self.study.person_folder(self.person) / "session.jsonl", self.study.plan)
+            kept = {} if state is None else {str(n): one.answer.choice for n, one in state.answers.items()}
+            said = {n: choice for (person, n), choice in self.answers.items() if person == self.person}
+            assert said.items() <= kept.items()
+            # what was written, but not acknowledged: at most the answer that was on its way
+            assert len(kept) <= len(said) + 1
+            self.answers |= {(self.person, n): choice for n, choice in kept.items()}
+
+
+def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
+    """Kill sessions again and again, and hold what they acknowledged against what is kept."""
+    study = frozen_study(folder, tables=CONSENT, rounds=rounds, break_every_min=0.2, break_min=0.05)
+    rng, witness, hatchery = random.Random(seed), Witness(study), Hatchery()
+    for _ in range(kills):
+        moment = (rng.randint(0, 20), rng.uniform(0.0, 0.03))
+        told = hatchery.killed(folder, witness.person, witness.code, *moment)
+        for words in told:
+            witness.hear(words)
+        if witness.person:
+            witness.check()
+    hatchery.close()
+    assert study.verify(passphrase=PASSPHRASE) == ()
+    check_labels(study, witness)
+    return witness
+
+
+def check_labels(study: Study, witness: Witness) -> None:
+    """See that what was prepared in any life is what was drawn, and that the answers are unsealed by it."""
+    keeper = study.keeper(PASSPHRASE)
+    drawn = {
+        (one.name, str(trial.number)): trial
+        for one in study.people()
+        for trial in study.schedule_by_keeper(one.name, keeper).trials
+    }
+    for key, labels in witness.labels.items():
+        assert labels == [f"{label}={name}" for label, name in sorted(drawn[key].labels.items())]
+    wanted = [
+        (key[0], drawn[key].item, drawn[key].labels.get(choice, choice))
+        for key, choice in witness.answers.items()
+        if not drawn[key].practice
+    ]
+    found = study.unseal(PASSPHRASE, "a test", "to see whether all is there")
+    rows = zip(found.person.tolist(), found.item.tolist(), found.choice.tolist(), strict=True)
+    assert sorted(row for row in rows if row[2]) == sorted(wanted)
+
+
+def test_a_killed_session_loses_no_answer_and_meets_no_trial_again(tmp_path: Path) -> None:
+    witness = check_kills(tmp_path / "study", kills=4, seed=1, rounds=3)
+    assert witness.person
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("seed", range(5))
+def test_no_answer_is_lost_at_five_hundred_random_moments(
+    tmp_path: Path, seed: int, record_property: Callable[[str, object], None]
+) -> None:
+    witness = check_kills(tmp_path / "study", kills=100, seed=seed, rounds=12)
+    record_property("answers", len(witness.answers))
+    assert len(witness.answers) > 100
+    assert witness.done
+
+
+def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Participant, int]:
+    """Run a session whose device goes away now and then; give it, and how often it went."""
+    rng = random.Random(seed)
+    lost = 0
+
+    def dies() -> bool:
+        nonlocal lost
+        gone = rng.random() < share
+        lost += gone
+        return gone
+
+    labels: dict[int, dict[str, Stimulus]] = {}
+    answered: list[tuple[int, TrialAnswer]] = []
+
+    def told(found: Mapping[str, Stimulus]) -> None:
+        number = one.step().number
+        assert labels.setdefault(number, dict(found)) == dict(found)
+        assert number not in [done for done, _ in answered]
+
+    one, _ = enrolled(study, StillStage(dies, told))
+    while (step := one.step()).kind != "done":
+        try:
+            one.shown(step.number)
+            for label in step.labels:
+                one.go_to(label)
+            answer = answer_of(one.state.began.trials[step.number], one.state.attempts[step.number])
+            one.answer(step.number, answer)
+            answered.append((step.number, answer))
+        except DeviceError:
+            one.take_stage(StillStage(dies, told))
+    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.began.trials)
+    kept = [(number, event.answer.choice) for number, event in one.state.answers.items()]
+    assert kept == [(number, answer.choice) for number, answer in answered]
+    one.close()
+    return one, lost
+
+
+def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None:
+    study = frozen_study(tmp_path / "study", rounds=3)
+    one, lost = run_with_a_failing_device(study, 1, 0.2)
+    assert lost >= one.state.interruptions > 0
+    assert study.verify(passphrase=PASSPHRASE) == ()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_no_answer_is_lost_when_the_device_goes_away_five_hundred_times(
+    tmp_path: Path, record_property: Callable[[str, object], None]
+) -> None:
+    study = frozen_study(tmp_path / "study", rounds=25)
+    lost = answers = skipped = seed = 0
+    while lost < 500:
+        one, more = run_with_a_failing_device(study, seed, 0.2)
+        lost, seed = lost + more, seed + 1
+        answers, skipped = answers + len(one.state.answers), skipped + len(one.state.skipped)
+    for name, count in (("lost", lost), ("answers", answers), ("skipped", skipped)):
+        record_property(name, count)
+    assert study.verify(passphrase=PASSPHRASE) == ()
