@@ -21,7 +21,7 @@ class GivenParts(PartLoader):
 
     def __init__(self, calls: dict[str, Call], channels: dict[str, ChannelKind]) -> None:
         super().__init__(())
-        self._parts = Parts(dict(calls), dict(channels))
+        self._parts = Parts(calls, channels)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from fdvv.studio._messages_orders import CompensateOrder, TuneOrder
 
 DEVICES = ("twin", "host")
 PATIENCE_s = 40.0
-PRESSES = 24
+PRESSES = 60
 """Of long_learning."""
 
 

@@ -10,18 +10,18 @@ from pathlib import Path
 
 
 class RunningStudio:
-    """``fdvv studio`` on a free port.
+    """``fdvv studio`` on a port, a free one unless it is named.
 
     Attributes
     ----------
     address : to open, token included. base : without it. token : the secret of this run.
     """
 
-    def __init__(self, project: Path, sources: tuple[Path, ...] = ()) -> None:
+    def __init__(self, project: Path, sources: tuple[Path, ...] = (), port: int = 0) -> None:
         command = [sys.executable, "-m", "fdvv", "studio", *map(str, sources)]
         self.project = project
         self.process = subprocess.Popen(
-            [*command, "--project", str(project), "--port", "0", "--no-browser"],
+            [*command, "--project", str(project), "--port", str(port), "--no-browser"],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

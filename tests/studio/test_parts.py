@@ -51,9 +51,16 @@ def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("_own_parts")
-def test_whoever_asks_waits_until_all_parts_are_there() -> None:
+def test_a_call_is_there_as_soon_as_its_own_part_is() -> None:
     loader = PartLoader(("first", "second"))
-    threading.Timer(0.1, loader.load).start()
+    waiting = threading.Thread(target=loader.load)
+    waiting.start()
+    found = loader.call("a.a")
+    assert found is not None
+    assert found.name == "a.a"
+    waiting.join()
+    assert loader.call("b.b") is not None
+    assert loader.call("c.c") is None
     assert set(loader.all().calls) == {"a.a", "b.b"}
 
 
@@ -68,3 +75,6 @@ def test_a_part_that_cannot_be_loaded_is_told_to_all_that_wait(
     loader.load()
     with pytest.raises(fault):
         loader.all()
+    with pytest.raises(fault):
+        loader.call("c.c")
+    assert loader.call("a.a") is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import socket
 import subprocess
@@ -11,6 +12,8 @@ from pathlib import Path
 import httpx2
 import pytest
 from tests.studio.running import RunningStudio
+
+from fdvv.studio._serve import listen
 
 
 @pytest.mark.parametrize(
@@ -67,3 +70,21 @@ def test_what_it_cannot_do_is_told_in_one_line(arguments: list[str], word: str) 
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1
     assert word in ended.stderr
+
+
+def test_what_is_answered_is_sent_at_once() -> None:
+    async def delays() -> int:
+        found = asyncio.get_running_loop().create_future()
+
+        async def met(_reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            found.set_result(
+                writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+            )
+            writer.close()
+
+        taken = listen("127.0.0.1", 0)
+        async with await asyncio.start_server(met, sock=taken):
+            with socket.create_connection(taken.getsockname()):
+                return int(await found)
+
+    assert asyncio.run(delays()) != 0

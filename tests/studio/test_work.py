@@ -12,31 +12,37 @@ from tests.studio.jobs import learning, tuning
 from fdvv.model import load_builtin, save_model
 from fdvv.studio._job_file import JobFolder, JobRecord, utc_now
 from fdvv.studio._job_process import ended
+from fdvv.studio._job_results import publish
 from fdvv.studio._messages_events import CurveIntended, JobEvent, JobOutcome, PressTold
 from fdvv.studio._messages_orders import Order
 from fdvv.studio._work import Work
+from fdvv.workflow import measured_button
 
 
 def work_of(order: Order, path: Path, tell: Any) -> Work:
     folder = JobFolder(path)
+    path.mkdir(exist_ok=True)
     save_model(load_builtin("mx-clear"), folder.button)
     folder.save(JobRecord("fdvv-job", 1, order, "a job", True, utc_now()))
     return Work(folder, 1, tell, lambda _number: "first")
 
 
-def test_what_was_measured_is_told_with_its_curves(tmp_path: Path) -> None:
+def test_what_was_measured_is_told_and_kept_as_the_editor_reads_it(tmp_path: Path) -> None:
     told: list[JobEvent] = []
-    work = work_of(learning(probe_presses=2), tmp_path, told.append)
+    order = learning(probe_presses=2)
+    work = work_of(order, tmp_path / "job", told.append)
     assert ended(work).state == "done"
+    publish(tmp_path, work.folder, order)
+    found = measured_button(tmp_path, order.name)
+    assert found is not None
+    assert (found.presses, found.simulated) == (2, True)
     measured = json.loads(work.folder.result("measured").read_text())
     assert (measured["button"], measured["simulated"], measured["presses"]) == ("builtin:mx-clear", True, 2)
     outcome = next(e for e in told if isinstance(e, JobOutcome) and e.stage == "probe")
-    for curve, standing in zip(measured["curves"], outcome.curves, strict=True):
-        assert standing.mean_error_cN == pytest.approx(curve["mean_error_cN"], abs=1e-3)
-        low, high = curve["rendered_quartiles_cN"]
-        rows = zip(low, curve["rendered_cN"], high, strict=True)
+    for band, standing in zip(found.bands, outcome.curves, strict=True):
+        assert standing.mean_error_cN == pytest.approx(band.mean_error_cN, abs=1e-3)
+        rows = zip(band.low_cN, band.median_cN, band.high_cN, strict=True)
         assert all(a <= b <= c for a, b, c in rows)
-        assert len(curve["displacement_mm"]) == len(curve["target_cN"]) == len(low)
     intended = next(e for e in told if isinstance(e, CurveIntended))
     for press in (e for e in told if isinstance(e, PressTold)):
         assert press.felt

@@ -1,4 +1,4 @@
-"""fdvv device: list, info, selftest and monitor; upload, press and exciter are beside."""
+"""fdvv device: list, info, selftest and monitor; upload, press, exciter and strip are beside."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from fdvv.cli._device_exciter import exciter
 from fdvv.cli._device_options import device_option, opened, remote
 from fdvv.cli._device_press import press, upload
+from fdvv.cli._device_strip import strip
 from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table, print_warnings
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 @click.group()
 def device() -> None:
-    """Work with a device: list, info, selftest, monitor, upload, press, exciter.
+    """Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.
 
     --device is 'host' (the firmware as a program of this machine), 'emulated' (the program of the board in an
     emulator), 'twin', 'serial:PORT' or 'replay:FILE'.
@@ -29,6 +30,7 @@ def device() -> None:
 device.add_command(upload)
 device.add_command(press)
 device.add_command(exciter)
+device.add_command(strip)
 
 
 @device.command("list")

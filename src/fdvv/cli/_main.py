@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 import click
 
 from fdvv import __version__
-from fdvv.errors import BuildError, DeviceError, FdvvError
+from fdvv.errors import BuildError, DeviceError, FdvvError, WorkerError
 
 COMMANDS = {
     "assign": ("fdvv.cli._models", "Give a curve, or a segment of one, to press or release of a model."),
@@ -22,7 +22,7 @@ COMMANDS = {
     "demo": ("fdvv.cli._demo", "Run the whole chain on the simulated rig and write a report."),
     "device": (
         "fdvv.cli._device",
-        "Work with a device: list, info, selftest, monitor, upload, press, exciter.",
+        "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
     ),
     "feasible": (
         "fdvv.cli._feasible",
@@ -32,12 +32,14 @@ COMMANDS = {
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
+    "optimize": ("fdvv.cli._optimize", "Find the button that makes a person perform best."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),
     "probe": ("fdvv.cli._compensate", "Measure on fresh presses how well a rig renders a model."),
     "process": ("fdvv.cli._process", "Turn recorded presses into a model, with its spread over presses."),
     "program": ("fdvv.cli._program", "Work with programs: list, show, make, check, compile."),
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
     "studio": ("fdvv.cli._studio", "See, edit, press and tune buttons in the browser."),
+    "study": ("fdvv.cli._study", "Compare buttons blind, with people, and analyse what they said."),
     "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
     "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }
@@ -102,7 +104,7 @@ def main() -> NoReturn:
     except click.ClickException as error:
         _stop(2, error.format_message())
     except FdvvError as error:
-        _stop(1 if isinstance(error, BuildError | DeviceError) else 2, str(error))
+        _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error))
     except OSError as error:
         _stop(2, _system(error))
     except (Interrupted, KeyboardInterrupt, click.Abort) as stop:

@@ -26,21 +26,15 @@ json_option = click.option(
 
 def print_json(document: dict[str, Any]) -> None:
     """Print one JSON document; numbers that are not finite become null."""
-    text = json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False)
+    from fdvv.documents import finite
+
+    text = json.dumps(finite(document), indent=2, ensure_ascii=False, allow_nan=False)
     try:
         text.encode(sys.stdout.encoding)
     except UnicodeEncodeError:
         # a file's name may hold what the terminal's encoding, or even UTF-8, cannot
-        text = json.dumps(_finite(document), indent=2, allow_nan=False)
+        text = json.dumps(finite(document), indent=2, allow_nan=False)
     click.echo(text)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(v) for v in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def number(value: float | None, digits: int = 2) -> str:

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from fdvv.workflow import Guide, Session
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-PERSON = "serial:"
-"""Devices whose names begin so are pressed by a person."""
 
 
 def session_options(command: Command) -> Command:
@@ -56,9 +54,10 @@ def open_session(
     parts : seed, rig and finger of a simulated device; default : the folder for a person's presses.
     """
     from fdvv.compensate import Acceptance
+    from fdvv.device import pressed_by_person
     from fdvv.workflow import Session
 
-    if folder is None and device.startswith(PERSON):
+    if folder is None and pressed_by_person(device):
         folder = default
     if folder:
         check_folder(folder)
@@ -69,11 +68,12 @@ def open_session(
 @contextmanager
 def guided(session: Session, device: str, as_json: bool) -> Iterator[tuple[Device, View, Guide]]:
     """Open the device, show the session, and let the device go at the end, whatever happens."""
+    from fdvv.device import pressed_by_person
     from fdvv.workflow import Guide
 
     found = session.open_device(device)
     try:
-        with session_view(device.startswith(PERSON), as_json) as view:
+        with session_view(pressed_by_person(device), as_json) as view:
             yield found, view, Guide(view.ask, view.notice)
     finally:
         if hasattr(found, "close"):

@@ -9,7 +9,7 @@ import click
 
 from fdvv.cli._exciter_options import exciter_option, opened_exciter
 from fdvv.cli._output import Finite, check_output, counted, json_option, number, print_json, print_table
-from fdvv.cli._session_options import PERSON, beside, open_session, session_options
+from fdvv.cli._session_options import beside, open_session, session_options
 from fdvv.cli._tune_view import TuneView
 
 if TYPE_CHECKING:
@@ -105,12 +105,13 @@ def tune(
 
 def _check_observer(device: str, simulated: bool) -> None:
     """Refuse an observer who cannot feel the device, or one who is not needed."""
+    from fdvv.device import pressed_by_person
     from fdvv.errors import InputError
 
-    if simulated and device.startswith(PERSON):
+    if simulated and pressed_by_person(device):
         reason = "a person presses it, and nobody's answers would be kept"
         raise InputError("--simulated-observer", device, reason, "leave the option out")
-    if not simulated and not device.startswith(PERSON):
+    if not simulated and not pressed_by_person(device):
         reason = "nobody can feel a simulated device"
         raise InputError("--device", device, reason, "use serial:PORT, or add --simulated-observer")
 

@@ -25,7 +25,7 @@ from fdvv.studio._studio import Studio
 def create_app(studio: Studio, door: Door) -> Starlette:
     """Make the server's application. BuildError if the page is not built.
 
-    Parts are imported while the first page is on its way; a call waits for them.
+    Parts are imported while the first page is on its way; a call waits for its own.
     """
     files = _page.page_files()
     loader = PartLoader()
@@ -35,7 +35,7 @@ def create_app(studio: Studio, door: Door) -> Starlette:
 
     async def api(request: Request) -> Response:
         name = request.path_params["name"]
-        call = (await run_in_threadpool(loader.all)).calls.get(name)
+        call = await run_in_threadpool(loader.call, name)
         return await answer(studio, call, request) if call else line("there is no such call", 404)
 
     async def live(socket: WebSocket) -> None:

@@ -59,7 +59,7 @@ async def answer(studio: Studio, call: Call, request: Request) -> Response:
         return line(told(error), 422)
     except OSError as error:
         log.exception("%s failed", call.name)
-        return line(f"{call.name}: {error.strerror or error}", 500)
+        return line(f"{call.name}: {told(error)}", 500)
     except Exception:
         log.exception("%s failed", call.name)
         return line(f"{call.name} failed; the studio's terminal tells why", 500)

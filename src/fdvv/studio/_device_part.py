@@ -6,13 +6,12 @@ import dataclasses
 import struct
 from collections.abc import Callable
 
-import numpy as np
-
 from fdvv.device import Remote
 from fdvv.errors import InputError
 from fdvv.protocol import Part, Verdict
 from fdvv.studio._contract import Call, ChannelKind, Tell
 from fdvv.studio._devices import Devices, Look
+from fdvv.studio._drawn import partly, rounded
 from fdvv.studio._job_results import kept_file
 from fdvv.studio._messages_device import (
     DeviceAsk,
@@ -30,7 +29,6 @@ from fdvv.studio._messages_device import (
 )
 from fdvv.studio._studio import Studio
 from fdvv.studio._work_choices import device_names
-from fdvv.units import FloatArray
 from fdvv.workflow import TickBinner, TickBins, TickPiece, load_actuation
 
 LEAST_bin_s, MOST_bin_s = 0.0005, 1.0
@@ -67,24 +65,20 @@ class ScopeChannel:
 
 def scope_told(found: TickBins, bin_s: float) -> ScopeTold:
     """Give the message of some bins."""
-    low, high = found.low.round(3), found.high.round(3)
+    low, high = found.low, found.high
     return ScopeTold(
         bin_s,
         tuple(found.number.tolist()),
-        tuple(low[0].tolist()),
-        tuple(high[0].tolist()),
-        _known(low[1]),
-        _known(high[1]),
-        tuple(low[2].tolist()),
-        tuple(high[2].tolist()),
+        rounded(low[0]),
+        rounded(high[0]),
+        partly(low[1]),
+        partly(high[1]),
+        rounded(low[2]),
+        rounded(high[2]),
         tuple(found.state.tolist()),
         tuple(found.cut.tolist()),
         tuple(found.ticks.tolist()),
     )
-
-
-def _known(row: FloatArray) -> tuple[float | None, ...]:
-    return tuple(v if np.isfinite(v) else None for v in row.tolist())
 
 
 def connect(studio: Studio, ask: DeviceConnect) -> DeviceStanding:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import msgspec
-import numpy as np
 
 from fdvv.device import FaultReport, Remote
 from fdvv.errors import InputError
 from fdvv.model import FDVVModel, ForceSurface, Press
 from fdvv.program import button_program, compile_program
 from fdvv.protocol import Fault
+from fdvv.studio._drawn import partly, rounded
 from fdvv.studio._held_device import HeldDevice, mode_of
 from fdvv.studio._messages_device import DeviceStanding, PressSeen
-from fdvv.units import FloatArray
 from fdvv.workflow import CompensationResult, felt_press, intended_press, settings_with
 
 STEP_mm = 0.05
@@ -59,17 +58,9 @@ def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSee
     return PressSeen(
         velocity_mm_s,
         press.simulated,
-        _plain(felt.displacement_mm),
-        _known(felt.press_cN),
-        _known(felt.release_cN),
-        _plain(wanted.press_cN),
-        _plain(wanted.release_cN),
+        rounded(felt.displacement_mm),
+        partly(felt.press_cN),
+        partly(felt.release_cN),
+        rounded(wanted.press_cN),
+        rounded(wanted.release_cN),
     )
-
-
-def _plain(row: FloatArray) -> tuple[float, ...]:
-    return tuple(row.round(3).tolist())
-
-
-def _known(row: FloatArray) -> tuple[float | None, ...]:
-    return tuple(v if np.isfinite(v) else None for v in row.round(3).tolist())

@@ -6,7 +6,7 @@ import contextlib
 import threading
 from collections.abc import Callable
 
-from fdvv.device import Remote
+from fdvv.device import Remote, open_device
 from fdvv.errors import DeviceError, FdvvError, InputError
 from fdvv.model import FDVVModel
 from fdvv.studio._device_told import press_seen, put_button, with_faults
@@ -51,8 +51,6 @@ class Devices:
 
     def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStanding:
         """Open a device of the list. InputError, DeviceError."""
-        from fdvv.device import open_device
-
         if ask.device not in devices:
             raise InputError("device", "device", f"there is no {ask.device[:80]!r}", "choose one of the list")
         if ask.rig not in RIGS:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from threading import Lock
-
 from msgspec import Struct
 
 from fdvv.errors import InputError
@@ -27,6 +25,7 @@ from fdvv.studio._messages_documents import (
     DocumentsWatching,
 )
 from fdvv.studio._studio import Studio
+from fdvv.studio._watchers import Watchers
 from fdvv.workflow import DraftKept, Drafts, DraftState, ModelTemplate, model_of, new_model, record_of
 
 OWN = "own:"
@@ -37,25 +36,7 @@ class Documents:
 
     def __init__(self, studio: Studio) -> None:
         self.drafts = Drafts(studio.project)
-        self._watching: set[Tell] = set()
-        self._lock = Lock()
-
-    def watch(self, tell: Tell) -> None:
-        """Tell a page of every change."""
-        with self._lock:
-            self._watching.add(tell)
-
-    def forget(self, tell: Tell) -> None:
-        """Tell a page nothing more."""
-        with self._lock:
-            self._watching.discard(tell)
-
-    def announce(self, news: Struct) -> None:
-        """Tell all pages."""
-        with self._lock:
-            watching = list(self._watching)
-        for tell in watching:
-            tell(news)
+        self.watchers = Watchers[Struct]()
 
     def close(self) -> None:
         """Let go of the project."""
@@ -70,12 +51,12 @@ class DocumentsChannel:
 
     def receive(self, _ask: DocumentsWatch) -> None:
         """Begin."""
-        self._documents.watch(self._tell)
+        self._documents.watchers.watch(self._tell)
         self._tell(DocumentsWatching())
 
     def close(self) -> None:
         """End."""
-        self._documents.forget(self._tell)
+        self._documents.watchers.forget(self._tell)
 
 
 def _own_name(button: str) -> str:
@@ -103,7 +84,7 @@ def change_document(studio: Studio, ask: DocumentChange) -> DocumentAnswer:
     documents = studio.part(Documents)
     found = documents.drafts.change(_own_name(ask.button), ask.revision, ask.change)
     if isinstance(found, DraftKept):
-        documents.announce(DocumentChanged(ask.button, found.revision))
+        documents.watchers.tell(DocumentChanged(ask.button, found.revision))
         return DocumentAnswer(found.revision, None)
     return DocumentAnswer(found.head.revision, _document(found.head))
 
@@ -131,7 +112,7 @@ def create_document(studio: Studio, ask: DocumentCreate) -> DocumentNamed:
 
 
 def _new(studio: Studio, name: str) -> DocumentNamed:
-    studio.part(Documents).announce(DocumentChanged(OWN + name, 0))
+    studio.part(Documents).watchers.tell(DocumentChanged(OWN + name, 0))
     return DocumentNamed(OWN + name)
 
 
@@ -140,7 +121,7 @@ def rename_document(studio: Studio, ask: DocumentRename) -> DocumentNamed:
     documents = studio.part(Documents)
     button = OWN + documents.drafts.rename(_own_name(ask.button), ask.name)
     if button != ask.button:
-        documents.announce(DocumentGone(ask.button, button))
+        documents.watchers.tell(DocumentGone(ask.button, button))
     return DocumentNamed(button)
 
 
@@ -148,7 +129,7 @@ def delete_document(studio: Studio, ask: DocumentDelete) -> DocumentNamed:
     """Move one's own button to the trash."""
     documents = studio.part(Documents)
     documents.drafts.delete(_own_name(ask.button))
-    documents.announce(DocumentGone(ask.button, None))
+    documents.watchers.tell(DocumentGone(ask.button, None))
     return DocumentNamed(ask.button)
 
 

@@ -28,12 +28,6 @@ from fdvv.studio._messages_takes import TakeAsked, TakeTold
 Heard = Callable[[int, Sequence[JobEvent]], None]
 """Is given the number of the first event, and events."""
 
-KINDS = {
-    "CompensateOrder": "compensate",
-    "ProbeOrder": "probe",
-    "CaptureOrder": "capture",
-    "TuneOrder": "tune",
-}
 UNFINISHED = ("waiting", "running", "needs you")
 BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
 

@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from fdvv.device import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.model import FDVVModel, model_to_json
 from fdvv.studio._job_file import JobFolder
 from fdvv.studio._job_results import check_name, kept_file
 from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
 from fdvv.twin import PARTICIPANTS, button_names, load_rig, rig_to_toml
-from fdvv.workflow import Shelf
+from fdvv.workflow import SHIPPED_RIGS, Shelf
 
-RIGS = ("default", "light", "paper")
+RIGS = tuple(sorted(SHIPPED_RIGS))
 SLOWEST_mm_s, FASTEST_mm_s, MOST_SPEEDS = 5.0, 500.0, 12
 MOST = {
     "rounds": (0, 20),
@@ -63,7 +64,7 @@ def inputs_of(order: Order, shelf: Shelf, project: Path, devices: Sequence[str])
     if isinstance(order, CompensateOrder):
         _check_learning(order)
     words = {CompensateOrder: "Compensate", ProbeOrder: "Probe", TuneOrder: "Tune"}
-    simulated = not order.device.startswith("serial:")
+    simulated = not pressed_by_person(order.device)
     return Inputs(f"{words[type(order)]} {model.name} on {order.device}", order.device, simulated, files)
 
 
@@ -84,7 +85,7 @@ def _capture(order: CaptureOrder) -> Inputs:
     if simulated and order.participant not in PARTICIPANTS:
         reason = f"there is no {order.participant[:80]!r}"
         raise InputError("participant", "participant", reason, f"use one of {', '.join(PARTICIPANTS)}")
-    if not simulated and not order.device.startswith("serial:"):
+    if not simulated and not pressed_by_person(order.device):
         reason = f"{order.device} is no capture bench"
         raise InputError("device", "device", reason, "use the simulated bench, or one on a serial port")
     on = BENCH + order.device if simulated else order.device
@@ -134,7 +135,7 @@ def _check_tuning(order: TuneOrder, model: FDVVModel) -> None:
             _check_ratio(name, ratio, least, most)
     if order.asking == "rate" and order.repeats < 2:
         raise InputError("repeats", "repeats", f"cannot be {order.repeats}", "rate each at least twice")
-    if order.observer != "person" and order.device.startswith("serial:"):
+    if order.observer != "person" and pressed_by_person(order.device):
         reason = "a person presses this device, and nobody's answers would be kept"
         raise InputError("observer", "observer", reason, "answer yourself")
     if not any(v.stroke == "press" for v in model.vibrations):

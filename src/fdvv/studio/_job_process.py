@@ -86,11 +86,8 @@ def ended(work: Work) -> JobEnded:
         # the workflow adds how to go on at the command line; here the job itself goes on
         told = error.__cause__ if isinstance(error.__cause__, DeviceError) else error
         return JobEnded("failed", f"{told}; what was made is kept, go on once that is mended")
-    except FdvvError as error:
+    except (FdvvError, OSError) as error:
         return JobEnded("failed", line_of(error))
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        return JobEnded("failed", f"{where}{error.strerror or error}")
     return JobEnded("done", "")
 
 

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from fdvv.device import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.files import write_atomic
 from fdvv.studio._job_file import JobFolder
@@ -77,7 +78,7 @@ def rig_name(order: Order) -> str:
     """Name the rig that an order works on, as what it has taught is kept."""
     if isinstance(order, CaptureOrder):
         return order.device
-    simulated = isinstance(order, CompensateOrder) and not order.device.startswith("serial:")
+    simulated = isinstance(order, CompensateOrder) and not pressed_by_person(order.device)
     where = order.device.rpartition("/")[2] if "/" in order.device else order.device.replace(":", "-")
     return f"{where}-{order.rig}" if simulated else where
 

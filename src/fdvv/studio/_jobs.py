@@ -14,14 +14,16 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.files import write_atomic
 from fdvv.studio._job import BROKEN_OFF, UNFINISHED, Heard, LiveJob
 from fdvv.studio._job_file import JOB, JobFolder, JobRecord, utc_now
-from fdvv.studio._job_order import Inputs, inputs_of
+from fdvv.studio._job_order import BENCH, Inputs, inputs_of
 from fdvv.studio._job_results import publish
 from fdvv.studio._job_start import JobStart
 from fdvv.studio._leases import Leases
 from fdvv.studio._messages_events import JobEnded, JobEvent
 from fdvv.studio._messages_jobs import JobRow
-from fdvv.studio._messages_orders import Order
+from fdvv.studio._messages_orders import CaptureOrder, Order
 from fdvv.studio._studio import Studio
+from fdvv.studio._told import told as line_of
+from fdvv.studio._watchers import Watchers
 
 JOBS = "jobs"
 MOST_JOBS = 10_000
@@ -38,7 +40,7 @@ class Jobs:
         self._studio = studio
         self._folder = studio.project / JOBS
         self._lock = threading.RLock()
-        self._watchers: list[Callable[[JobRow], None]] = []
+        self._watchers = Watchers[JobRow]()
         self._jobs = {job.name: job for job in _found(self._folder)}
 
     @property
@@ -109,15 +111,8 @@ class Jobs:
 
     def watch(self, told: Callable[[JobRow], None]) -> Callable[[], None]:
         """Tell a job's row whenever it changes; what is given back ends it."""
-        with self._lock:
-            self._watchers.append(told)
-
-        def end() -> None:
-            with self._lock:
-                if told in self._watchers:
-                    self._watchers.remove(told)
-
-        return end
+        self._watchers.watch(told)
+        return lambda: self._watchers.forget(told)
 
     def listen(self, name: str, from_event: int, heard: Heard) -> Callable[[], None]:
         """Tell a job's events from a number on; what is given back ends it. InputError."""
@@ -170,7 +165,7 @@ class Jobs:
             try:
                 results = publish(self._studio.project, job.folder, job.record.order)
             except (OSError, FdvvError) as error:
-                end = JobEnded("failed", f"what was made could not be kept in the project: {error}")
+                end = JobEnded("failed", f"what was made could not be kept in the project: {line_of(error)}")
         job.heard(end)
         record = msgspec.structs.replace(
             job.record, state=end.state, line=end.line, ended=utc_now(), results=results
@@ -182,11 +177,7 @@ class Jobs:
         self._changed(job)
 
     def _changed(self, job: LiveJob) -> None:
-        with self._lock:
-            watchers = tuple(self._watchers)
-        row = job.row
-        for told in watchers:
-            told(row)
+        self._watchers.tell(job.row)
 
 
 class SharedLeases(Leases):
@@ -227,8 +218,5 @@ def _known(path: Path) -> LiveJob:
 
 def _device_of(record: JobRecord) -> str:
     """Name the device of a job as leases know it."""
-    from fdvv.studio._job_order import BENCH
-    from fdvv.studio._messages_orders import CaptureOrder
-
     bench = isinstance(record.order, CaptureOrder) and record.simulated
     return BENCH + record.order.device if bench else record.order.device

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from threading import Lock
 
 import numpy as np
+from msgspec import Struct
 
 from fdvv.errors import FdvvError
 from fdvv.studio._contract import Call, Channel, ChannelKind, Tell
+from fdvv.studio._library_told import button_told, found_told, row_told, rows_told
 from fdvv.studio._messages_library import (
     LibraryAlike,
     LibraryAlikes,
@@ -18,7 +19,6 @@ from fdvv.studio._messages_library import (
     LibraryCurvesAsk,
     LibraryFind,
     LibraryFound,
-    LibraryHistogram,
     LibraryIndex,
     LibraryIndexAsk,
     LibraryLikeAsk,
@@ -28,16 +28,14 @@ from fdvv.studio._messages_library import (
     LibraryRefused,
     LibraryRefusedAsk,
     LibraryRescanAsk,
-    LibraryRow,
     LibraryRows,
     LibraryStanding,
-    LibraryStroke,
     LibraryWatch,
 )
 from fdvv.studio._studio import Studio
 from fdvv.studio._told import told
+from fdvv.studio._watchers import Watchers
 from fdvv.workflow import (
-    SHELF_NUMBERS,
     Origin,
     ShelfFound,
     ShelfIndex,
@@ -50,8 +48,6 @@ from fdvv.workflow import (
     sample_strokes,
 )
 
-NO_STROKE = -32768
-
 
 def prepare() -> None:
     """Read what a person sees first, before other parts are imported beside it."""
@@ -63,7 +59,7 @@ class Library:
 
     def __init__(self, studio: Studio) -> None:
         self._sources = len(studio.sources)
-        self._watchers: list[Tell] = []
+        self._watchers = Watchers[Struct]()
         self._lock = Lock()
         self._search, self._epoch = ShelfSearch(), 0
         cache = studio.project / "cache" / "shelf.jsonl"
@@ -100,20 +96,15 @@ class Library:
 
     def watch(self, tell: Tell) -> None:
         """Tell a page how far the index is, now and whenever that changes."""
-        with self._lock:
-            self._watchers.append(tell)
+        self._watchers.watch(tell)
         tell(self.standing())
 
     def forget(self, tell: Tell) -> None:
         """Stop telling a page."""
-        with self._lock:
-            self._watchers = [other for other in self._watchers if other is not tell]
+        self._watchers.forget(tell)
 
     def _told(self, _stand: ShelfStand) -> None:
-        with self._lock:
-            watchers = tuple(self._watchers)
-        for tell in watchers:
-            tell(self.standing())
+        self._watchers.tell(self.standing())
 
 
 class Watcher:
@@ -137,28 +128,7 @@ def index(studio: Studio, ask: LibraryIndexAsk) -> LibraryIndex:
     library = studio.part(Library)
     standing, stand = library.standing(), library.index.stand
     first = ask.first if ask.epoch == stand.epoch else 0
-    rows = stand.rows[first:]
-    return LibraryIndex(
-        standing=standing,
-        first=first,
-        ids=[row.id for row in rows],
-        names=[row.name for row in rows],
-        collections=[row.collection for row in rows],
-        origins=[row.origin for row in rows],
-        kinds=[row.kind for row in rows],
-        stated=[list(row.stated) for row in rows],
-        speeds_mm_s=[list(row.speeds_mm_s) for row in rows],
-        dates=[row.date for row in rows],
-        simulated=[row.simulated for row in rows],
-        numbers={name: [getattr(row, name) for row in rows] for name in SHELF_NUMBERS},
-        sketches=_packed(rows),
-    )
-
-
-def _packed(rows: Sequence[ShelfRow]) -> str:
-    none = (NO_STROKE,) * 64
-    sketches = [(row.sketch.press_dcN or none) + (row.sketch.release_dcN or none) for row in rows]
-    return base64.b64encode(np.array(sketches, dtype="<i2").tobytes()).decode()
+    return rows_told(standing, first, stand.rows[first:])
 
 
 def find(studio: Studio, ask: LibraryFind) -> LibraryFound:
@@ -174,26 +144,14 @@ def find(studio: Studio, ask: LibraryFind) -> LibraryFound:
             descending=ask.descending,
         )
     )
-    return LibraryFound(
-        epoch=stand.epoch,
-        positions=found.positions.tolist(),
-        distances_jnd=np.round(found.distances, 3).tolist(),
-        histograms={
-            name: LibraryHistogram(h.lowest, h.highest, h.counts.tolist())
-            for name, h in found.histograms.items()
-        },
-        kinds=found.kinds,
-        origins=found.origins,
-        without=found.without,
-        mended=list(found.mended),
-    )
+    return found_told(found, stand.epoch)
 
 
 def search(studio: Studio, ask: LibraryQuery) -> LibraryRows:
     """Give the best matches as rows, for pickers."""
     query = ShelfQuery(text=ask.text, kinds=tuple(ask.kinds), origins=tuple(ask.origins))
     found, rows, stand = studio.part(Library).find(query)
-    best = [_row(rows[at]) for at in found.positions[: ask.limit]]
+    best = [row_told(rows[at]) for at in found.positions[: ask.limit]]
     return LibraryRows(best, len(found.positions), stand.ended)
 
 
@@ -201,7 +159,7 @@ def like(studio: Studio, ask: LibraryLikeAsk) -> LibraryAlikes:
     """Give the buttons that feel most like one."""
     found, rows, _ = studio.part(Library).find(ShelfQuery(like=ask.id))
     alike = [
-        LibraryAlike(_row(rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist())
+        LibraryAlike(row_told(rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist())
         for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
         if np.isfinite(distance)
     ]
@@ -214,55 +172,17 @@ def curves(studio: Studio, ask: LibraryCurvesAsk) -> LibraryCurves:
     buttons, missing = [], []
     for button_id in ask.ids:
         try:
-            buttons.append(_button(studio, library, button_id))
+            buttons.append(button_of(studio, library, button_id))
         except FdvvError as error:
             missing.append(LibraryMissing(button_id, told(error)))
     return LibraryCurves(buttons, missing)
 
 
-def _button(studio: Studio, library: Library, button_id: str) -> LibraryButton:
+def button_of(studio: Studio, library: Library, button_id: str) -> LibraryButton:
+    """Give a button with its curves; one that the index has not come to is read for it. InputError."""
     model = studio.shelf.curves(button_id)
-    row = library.row(button_id)
-    if row is None:
-        row = row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
-    return LibraryButton(
-        id=row.id,
-        name=row.name,
-        origin=row.origin,
-        kind=row.kind,
-        kind_reason=row.kind_reason,
-        collection=row.collection,
-        stated=list(row.stated),
-        numbers={name: getattr(row, name) for name in SHELF_NUMBERS},
-        why=list(row.why),
-        cycles=row.cycles,
-        used=row.used,
-        date=row.date,
-        source=row.source,
-        licence=row.licence,
-        simulated=row.simulated,
-        strokes=[
-            LibraryStroke(s.stroke, s.velocity_mm_s, s.start_mm, s.step_mm, np.round(s.force_cN, 3).tolist())
-            for s in sample_strokes(model)
-        ],
-    )
-
-
-def _row(row: ShelfRow) -> LibraryRow:
-    return LibraryRow(
-        id=row.id,
-        name=row.name,
-        origin=row.origin,
-        kind=row.kind,
-        collection=row.collection,
-        stated=list(row.stated),
-        peak_cN=row.peak_cN,
-        drop_cN=row.drop_cN,
-        actuation_mm=row.actuation_mm,
-        bottom_out_cN=row.bottom_out_cN,
-        travel_mm=row.travel_mm,
-        simulated=row.simulated,
-    )
+    row = library.row(button_id) or row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
+    return button_told(row, sample_strokes(model))
 
 
 def refused(studio: Studio, _ask: LibraryRefusedAsk) -> LibraryRefused:

@@ -6,15 +6,18 @@ import importlib
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from threading import Event
+from threading import Condition
 from typing import TypeVar
 
 import msgspec
 
-import fdvv.workflow
 from fdvv.studio._contract import Call, ChannelKind
 
-PARTS = ("_about", "_library", "_documents", "_editor", "_press", "_programs", "_jobs_part", "_device_part")
+PARTS = (
+    *("_about", "_library", "_documents", "_editor", "_press", "_programs", "_jobs_part", "_device_part"),
+    *("_optimize", "_studies_part"),
+)
+"""In the order in which a person may want them: the first page is the library's."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ class Parts:
 
 
 class PartLoader:
-    """Imports all parts in one thread; whoever asks waits until all are there.
+    """Imports the parts one after the other; what is asked for is there as soon as its own part is.
 
     Names are unique, else this installation is wrong (ValueError, of all that waits).
     """
@@ -34,36 +37,47 @@ class PartLoader:
     def __init__(self, names: tuple[str, ...] = PARTS) -> None:
         self._names = names
         self._parts = Parts({}, {})
-        self._ended = Event()
+        self._changed = Condition()
+        self._ended = False
         self._fault: BaseException | None = None
 
     def load(self) -> None:
-        """Import everything that calls may use: two threads that import at once may meet half a module."""
+        """Import all parts, in one thread: see prepare_records."""
+        prepared: set[type[msgspec.Struct]] = set()
         try:
-            modules = [importlib.import_module(f"fdvv.studio.{name}") for name in self._names]
-            for name in fdvv.workflow.__all__:
-                getattr(fdvv.workflow, name)
-            prepare_records()
-            for module in modules:
-                self._take(module.CALLS, module.CHANNELS)
+            for name in self._names:
+                module = importlib.import_module(f"fdvv.studio.{name}")
+                prepare_records(prepared)
                 getattr(module, "prepare", lambda: None)()
+                self._take(module.CALLS, module.CHANNELS)
         except BaseException as error:
             self._fault = error
         finally:
-            self._ended.set()
+            with self._changed:
+                self._ended = True
+                self._changed.notify_all()
+
+    def call(self, name: str) -> Call | None:
+        """Wait for a call; None if no part has it."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended or name in self._parts.calls)
+        return self._parts.calls.get(name) or self.all().calls.get(name)
 
     def all(self) -> Parts:
         """Wait for all parts."""
-        self._ended.wait()
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended)
         if self._fault:
             raise self._fault
         return self._parts
 
     def _take(self, calls: tuple[Call, ...], channels: tuple[ChannelKind, ...]) -> None:
-        for call in calls:
-            _add(self._parts.calls, call)
-        for channel in channels:
-            _add(self._parts.channels, channel)
+        with self._changed:
+            for call in calls:
+                _add(self._parts.calls, call)
+            for channel in channels:
+                _add(self._parts.channels, channel)
+            self._changed.notify_all()
 
 
 N = TypeVar("N", Call, ChannelKind)
@@ -81,16 +95,18 @@ def load_parts() -> Parts:
     return loader.all()
 
 
-def prepare_records() -> None:
-    """Let msgspec read the annotations of every record that is loaded, here in one thread.
+def prepare_records(prepared: set[type[msgspec.Struct]]) -> None:
+    """Let msgspec read the annotations of every record that is loaded and not yet prepared, in one thread.
 
     It does so when a kind is first decoded, and two threads that are first at once crash the process
     (msgspec 0.22.0, "Segmentation fault"); worker threads answer calls, so that would be a matter of chance.
     """
     for kind in _below(msgspec.Struct):
-        # a record that is only ever written may hold what msgspec does not read
-        with suppress(TypeError):
-            msgspec.json.Decoder(kind)
+        if kind not in prepared:
+            prepared.add(kind)
+            # a record that is only ever written may hold what msgspec does not read
+            with suppress(TypeError):
+                msgspec.json.Decoder(kind)
 
 
 def _below(kind: type[msgspec.Struct]) -> Iterator[type[msgspec.Struct]]:

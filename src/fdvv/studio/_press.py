@@ -15,6 +15,7 @@ from fdvv.protocol import Fault
 from fdvv.studio import _messages_press as m
 from fdvv.studio._contract import Call, ChannelKind, Tell
 from fdvv.studio._press_tell import choices, frame, meant, ready
+from fdvv.studio._programs import Programs
 from fdvv.studio._studio import Studio
 from fdvv.workflow import (
     LiveEventKind,
@@ -23,7 +24,6 @@ from fdvv.workflow import (
     LiveRun,
     PressSubject,
     PressTrace,
-    ProgramShelf,
     drawn_trace,
     model_subject,
     program_subject,
@@ -33,7 +33,7 @@ from fdvv.workflow import (
 
 def list_choices(studio: Studio, _ask: m.PressListAsk) -> m.PressList:
     """Tell what can be pressed."""
-    return choices(studio.shelf, ProgramShelf(studio.project))
+    return choices(studio.shelf, studio.part(Programs).shelf)
 
 
 def read_trace(_studio: Studio, ask: m.TraceReadAsk) -> m.TraceRead:
@@ -52,7 +52,7 @@ def subject_of(studio: Studio, ask: m.PressStart) -> PressSubject:
     if ask.model is not None:
         return model_subject(model_from_json(msgspec.json.encode(ask.model), "model"), ask.mode, ask.rig)
     if ask.program is not None:
-        return program_subject(ProgramShelf(studio.project).program(ask.program), ask.mode, ask.rig)
+        return program_subject(studio.part(Programs).shelf.program(ask.program), ask.mode, ask.rig)
     return program_subject(program_from_json(msgspec.json.encode(ask.code), "program"), ask.mode, ask.rig)
 
 

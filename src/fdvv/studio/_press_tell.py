@@ -49,7 +49,7 @@ def ready(subject: PressSubject) -> m.PressReady:
         subject.reset_mm,
         [m.PressPlace(mark.label, mark.place_mm) for mark in subject.marks],
         list(subject.states),
-        [_signal(signal) for signal in subject.signals],
+        [shake_signal(signal) for signal in subject.signals],
         meant(subject, 0.0),
     )
 
@@ -104,7 +104,7 @@ def _last(values: Any) -> float:
     return round(float(values[-1]), DIGITS) if len(values) else 0.0
 
 
-def _signal(signal: Signal) -> m.ShakeSignal:
+def shake_signal(signal: Signal) -> m.ShakeSignal:
     modes = [m.ShakeMode(o.frequency_Hz, o.amplitude_m_s2, o.decay_1_s, o.phase_rad) for o in signal.modes]
     return m.ShakeSignal(signal.name, signal.duration_s, modes)
 

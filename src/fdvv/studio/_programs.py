@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from fdvv.errors import InputError
+from fdvv.program import Recipe, make, of_model, program_to_json, programs, ranges
 from fdvv.studio import _messages_programs as m
 from fdvv.studio._contract import Call, ChannelKind
 from fdvv.studio._studio import Studio
-
-if TYPE_CHECKING:
-    from fdvv.program import Recipe
-    from fdvv.workflow import KeptProgram, ProgramShelf
+from fdvv.workflow import KeptProgram, ProgramShelf, button_choices, program_standing, read_program
 
 PLAINEST = "builtin:mx-red"
 """The button that recipes stand on by default: linear, so that nothing distracts."""
@@ -21,9 +17,7 @@ class Programs:
     """The programs of a studio's project."""
 
     def __init__(self, studio: Studio) -> None:
-        from fdvv.workflow import ProgramShelf  # here, for the page need not wait for it
-
-        self.shelf: ProgramShelf = ProgramShelf(studio.project)
+        self.shelf = ProgramShelf(studio.project)
 
 
 def _shelf(studio: Studio) -> ProgramShelf:
@@ -32,9 +26,6 @@ def _shelf(studio: Studio) -> ProgramShelf:
 
 def list_programs(studio: Studio, _ask: m.ProgramsAsk) -> m.ProgramRows:
     """List what there is to begin with."""
-    from fdvv.program import programs
-    from fdvv.workflow import button_choices
-
     rows = [
         m.ProgramRow(e.id, e.name, e.summary, e.states, e.transitions, e.problem)
         for e in _shelf(studio).entries()
@@ -46,8 +37,6 @@ def list_programs(studio: Studio, _ask: m.ProgramsAsk) -> m.ProgramRows:
 
 
 def _parameters(studio: Studio, recipe: Recipe, base: str, levels: int = 1) -> list[m.ProgramParameter]:
-    from fdvv.program import ranges
-
     allowed = ranges(recipe.name, studio.shelf.model(base), levels=levels)
     return [
         m.ProgramParameter(p.name, float(p.default), isinstance(p.default, int), *allowed[p.name])
@@ -71,8 +60,6 @@ def save_program(studio: Studio, ask: m.SaveProgram) -> m.ProgramText:
 
 def keep_program(studio: Studio, ask: m.KeepProgram) -> m.ProgramText:
     """Keep a new program: one that was made, or a file that a person brought."""
-    from fdvv.workflow import read_program
-
     shelf = _shelf(studio)
     name = shelf.free_name(read_program(ask.text, "file").name)
     return _kept(shelf.save(f"own:{name}", ask.text))
@@ -95,8 +82,6 @@ def restore_program(studio: Studio, ask: m.ThrownProgram) -> m.ProgramText:
 
 def check_program(_studio: Studio, ask: m.CheckProgram) -> m.ProgramCheck:
     """Check a text as far as it goes; what is wrong with it is the answer, not an error."""
-    from fdvv.workflow import program_standing
-
     found = program_standing(ask.text)
     return m.ProgramCheck(
         found.accepted,
@@ -114,15 +99,11 @@ def check_program(_studio: Studio, ask: m.CheckProgram) -> m.ProgramCheck:
 
 def make_program(studio: Studio, ask: m.MakeProgram) -> m.MadeProgram:
     """Make a program by a recipe; it is not kept."""
-    from fdvv.program import make, program_to_json
-
     return m.MadeProgram(program_to_json(make(ask.recipe, studio.shelf.model(ask.base), **ask.parameters)))
 
 
 def parameter_ranges(studio: Studio, ask: m.RangesAsk) -> m.ProgramRanges:
     """Tell between what the parameters may be over another base."""
-    from fdvv.program import programs
-
     recipe = next((r for r in programs() if r.name == ask.recipe), None)
     if recipe is None:
         raise InputError("studio", "recipe", f"none is called {ask.recipe!r}", "choose one from the list")
@@ -131,8 +112,6 @@ def parameter_ranges(studio: Studio, ask: m.RangesAsk) -> m.ProgramRanges:
 
 def button_surface(studio: Studio, ask: m.SurfaceAsk) -> m.ProgramSurface:
     """Sample one stroke of a button as a surface."""
-    from fdvv.program import of_model
-
     found = of_model(studio.shelf.model(ask.button), ask.stroke)
     rows = [list(row) for row in found.force_cN]
     return m.ProgramSurface(list(found.displacement_mm), list(found.velocity_mm_s), rows)

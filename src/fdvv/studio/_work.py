@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from fdvv.compensate import CurveOutcome
-from fdvv.device import Device
+from fdvv.device import Device, pressed_by_person
 from fdvv.model import FDVVModel
+from fdvv.studio._drawn import DIGITS, known, partly, rounded
 from fdvv.studio._job_file import JobFolder
 from fdvv.studio._messages_events import (
     CurveIntended,
@@ -20,13 +20,7 @@ from fdvv.studio._messages_events import (
     PressAsked,
     PressTold,
 )
-from fdvv.units import FloatArray
 from fdvv.workflow import Ask, Guide, PressDone, felt_press, intended_press, noticeable_cN
-
-PERSON = "serial:"
-"""Devices whose names begin so are pressed by a person."""
-DIGITS = 3
-"""Of what is drawn: a thousandth of a cN is beyond any line's width."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +44,13 @@ class Work:
 
     def guide(self, device: str) -> Guide:
         """Give what leads a session; only a person is asked for every press."""
-        return Guide(self._asked if device.startswith(PERSON) else lambda _ask: None, self.notice)
+        return Guide(self._asked if pressed_by_person(device) else lambda _ask: None, self.notice)
 
     def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
         """Tell what the model asks for at each speed."""
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
-            x_mm, down_cN, up_cN = map(_rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
+            x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
             self.tell(CurveIntended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
 
     def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
@@ -77,12 +71,12 @@ def press_told(done: PressDone, travel_mm: float) -> PressTold:
         done.presses_done,
         done.presses_total,
         done.skipped,
-        _known(done.achieved_mm_s),
+        known(done.achieved_mm_s),
         done.told,
         standing.made if standing else 0,
         standing.wanted if standing else None,
         tuple(curve_standing(curve) for curve in standing.curves) if standing else (),
-        FeltCurve(_partly(felt.press_cN), _partly(felt.release_cN)) if felt else None,
+        FeltCurve(partly(felt.press_cN), partly(felt.release_cN)) if felt else None,
     )
 
 
@@ -92,8 +86,8 @@ def curve_standing(curve: CurveOutcome) -> CurveStanding:
         "press" if str(curve.stroke) == "press" else "release",
         curve.velocity_mm_s,
         tuple(round(error, DIGITS) for error in curve.error_cN),
-        _known(curve.mean_error_cN),
-        _known(curve.max_error_cN),
+        known(curve.mean_error_cN),
+        known(curve.max_error_cN),
     )
 
 
@@ -102,15 +96,3 @@ def let_close(device: Device) -> None:
     found: Any = device
     if hasattr(found, "close"):
         found.close()
-
-
-def _known(value: float) -> float | None:
-    return round(value, DIGITS) if math.isfinite(value) else None
-
-
-def _rounded(row: FloatArray) -> tuple[float, ...]:
-    return tuple(row.round(DIGITS).tolist())
-
-
-def _partly(row: FloatArray) -> tuple[float | None, ...]:
-    return tuple(_known(value) for value in row.tolist())

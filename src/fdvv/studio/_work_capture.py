@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
@@ -10,10 +9,11 @@ from typing import Literal
 from fdvv.device import open_bench
 from fdvv.model import save_model
 from fdvv.recording import Stage
+from fdvv.studio._drawn import DIGITS, known
 from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
 from fdvv.studio._messages_orders import CaptureOrder
 from fdvv.studio._messages_takes import CueBegun, PaceTold, TakeAsked, TakeTold
-from fdvv.studio._work import DIGITS, Work
+from fdvv.studio._work import Work
 from fdvv.workflow import (
     CaptureGuide,
     CapturePlan,
@@ -111,8 +111,8 @@ def _take(done: TakeDone) -> TakeTold:
         take.velocity_mm_s,
         verdict.ok,
         verdict.reason,
-        _known(verdict.achieved_mm_s),
-        _known(verdict.travel_mm),
+        known(verdict.achieved_mm_s),
+        known(verdict.travel_mm),
         done.done,
         done.total,
         done.missed,
@@ -127,7 +127,3 @@ def _pace(pace: PaceStanding) -> PaceTold:
 
 def _counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
-
-
-def _known(value: float) -> float | None:
-    return round(value, DIGITS) if math.isfinite(value) else None

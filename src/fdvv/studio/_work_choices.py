@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fdvv.device import BUILT_ELF, KINDS, serial_ports
+from fdvv.device import BUILT_ELF, KINDS, pressed_by_person, serial_ports
 from fdvv.errors import BuildError, FdvvError
 from fdvv.model import builtin_names
 from fdvv.studio._job_order import BENCH, RIGS
@@ -38,9 +38,9 @@ def choices(studio: Studio) -> WorkChoices:
             DeviceChoice(
                 name,
                 about,
-                not name.startswith("serial:"),
+                not pressed_by_person(name),
                 True,
-                name == "twin" or name.startswith("serial:"),
+                name == "twin" or pressed_by_person(name),
                 leases.holder(name) or leases.holder(BENCH + name),
             )
             for name, about in known

@@ -14,7 +14,6 @@ from fdvv.studio._messages_orders import CompensateOrder, ProbeOrder
 from fdvv.studio._work import Work, curve_standing, let_close
 from fdvv.workflow import (
     CompensationResult,
-    ProbeResult,
     Session,
     compensate,
     load_actuation,
@@ -90,9 +89,8 @@ def _probe(
     told, guide = work.pressed(model.travel_mm), work.guide(order.device)
     speeds = order.velocities_mm_s
     result = probe(device, model, surface, speeds, presses, told, method, session, guide, tuning)
-    write_atomic(
-        work.folder.result("measured"), json.dumps(measured(result, order.button), allow_nan=False) + "\n"
-    )
+    report = {**result.to_dict(), "button": order.button}
+    write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
     worst = max(result.curves, key=lambda c: c.outcome.mean_error_cN).outcome
     sentence = (
         f"mean error on fresh presses at most {worst.mean_error_cN:.2f} cN "
@@ -101,25 +99,6 @@ def _probe(
     curves = tuple(curve_standing(curve.outcome) for curve in result.curves)
     counts = result.presses, len(result.skipped)
     work.tell(JobOutcome("probe", sentence, *counts, result.simulated, curves))
-
-
-def measured(result: ProbeResult, button: str) -> dict[str, Any]:
-    """Give the report of a probe with its curves: median and quartiles of the presses over displacement.
-
-    button : id of what was judged.
-    """
-    import numpy as np
-
-    document = {**result.to_dict(), "button": button}
-    for told, curve in zip(document["curves"], result.curves, strict=True):
-        low, middle, high = np.percentile(curve.rendered_cN, [25, 50, 75], axis=0).round(3).tolist()
-        told |= {
-            "displacement_mm": curve.displacement_mm.round(4).tolist(),
-            "target_cN": curve.target_cN.round(3).tolist(),
-            "rendered_cN": middle,
-            "rendered_quartiles_cN": [low, high],
-        }
-    return document
 
 
 def _keep(work: Work, result: CompensationResult) -> None:

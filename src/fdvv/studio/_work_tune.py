@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from typing import Any
 
 from fdvv.compensate import Acceptance
-from fdvv.model import FDVVModel, Vibration, load_model, save_model
+from fdvv.model import Vibration, load_model, save_model
+from fdvv.studio._drawn import DIGITS, known, rounded
 from fdvv.studio._messages_events import (
     JobBegun,
     JobOutcome,
@@ -18,7 +19,7 @@ from fdvv.studio._messages_events import (
     TuneRanking,
 )
 from fdvv.studio._messages_orders import TuneOrder
-from fdvv.studio._work import DIGITS, Work, let_close
+from fdvv.studio._work import Work, let_close
 from fdvv.vibration import Comparing, Preferred, Question, Rating, TemplateGrid, vibration_samples
 from fdvv.workflow import (
     Candidates,
@@ -63,16 +64,10 @@ def tune(work: Work, order: TuneOrder) -> None:
         )
     finally:
         let_close(device)
-    save_model(_named(result.model, order.name), work.folder.result("button"))
+    save_model(replace(result.model, name=order.name), work.folder.result("button"))
     rankings = tuple(_ranking(tuned) for tuned in result.tuned)
     sentence = "; ".join(f"{r.velocity_mm_s:g} mm/s: {r.sentence}" for r in rankings)
     work.tell(JobOutcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
-
-
-def _named(model: FDVVModel, name: str) -> FDVVModel:
-    from dataclasses import replace
-
-    return replace(model, name=name)
 
 
 def _method(order: TuneOrder) -> Rating | Comparing:
@@ -99,7 +94,7 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
 
 def _wave(vibration: Vibration) -> PlayedWave:
     samples = vibration_samples(vibration, WAVE_Hz, QUIET_s)
-    return PlayedWave(WAVE_Hz, tuple(samples.round(DIGITS).tolist()))
+    return PlayedWave(WAVE_Hz, rounded(samples))
 
 
 def _answered(told: TuneTold) -> QuestionAnswered:
@@ -121,13 +116,12 @@ def _ranking(tuned: TunedVibration) -> TuneRanking:
 def _candidate(tuned: TunedVibration, i: int) -> TuneCandidate:
     standing, vibration = tuned.standing, tuned.candidates.vibrations[i]
     strongest = max(vibration.modes, key=lambda mode: abs(mode.amplitude_m_s2))
-    error = standing.errors[i]
     return TuneCandidate(
         f"template {i}" if i else "measured",
         round(strongest.frequency_Hz, 1),
         round(strongest.amplitude_m_s2, DIGITS),
         round(standing.scores[i], DIGITS),
-        round(error, DIGITS) if math.isfinite(error) else None,
+        known(standing.errors[i]),
         i in standing.alike,
         i == standing.best,
     )

@@ -1,0 +1,126 @@
+"""fdvv device strip: check the LED strip of the pointing task."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._device_options import remote
+from fdvv.cli._output import json_option, number, print_json, print_table
+
+if TYPE_CHECKING:
+    from fdvv.optimize import TaskPress
+    from fdvv.workflow import StripCheck
+
+LEDS = ("each", "together")
+VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
+
+
+@click.command()
+@click.option("--strip", "spec", required=True, help="serial:PORT of the strip's board, or host (simulated).")
+@click.option(
+    "--level",
+    type=click.Choice(["easy", "hard"]),
+    default="easy",
+    show_default=True,
+    help="100 or 150 pixels per second.",
+)
+@click.option("--rounds", type=click.IntRange(1, 100), default=3, show_default=True, help="Presses to make.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the start delays.")
+@click.option(
+    "--led",
+    type=click.Choice(LEDS),
+    default="each",
+    show_default=True,
+    help="When a pixel shows what it is sent: each at once (APA102) or all after the frame (SK9822).",
+)
+@click.option(
+    "--brightness", type=click.IntRange(1, 31), default=8, show_default=True, help="Of lit pixels, in 31sts."
+)
+@click.option("--device", help="Rig that renders BUTTON meanwhile, as of the other commands of fdvv device.")
+@click.option("--button", default="mx-clear", show_default=True, help="Rendered by --device.")
+@json_option
+def strip(
+    spec: str,
+    level: str,
+    rounds: int,
+    seed: int,
+    led: str,
+    brightness: int,
+    device: str | None,
+    button: str,
+    as_json: bool,
+) -> None:
+    """Check the LED strip: light its ends and its middle, then play some rounds of the pointing task.
+
+    Press the key of the rig when the white pixel reaches the middle of the green zone; each press is told in
+    ms after that, early ones with a minus. Exit status 1 if the key line never rose.
+    """
+    from fdvv.workflow import check_strip
+
+    def heard(index: int, press: TaskPress) -> None:
+        if not as_json:
+            click.echo(f"round {index + 1}: {_told(press)}")
+
+    with _rendered(device, button) as feed:
+        found = check_strip(spec, level, rounds, seed, led, brightness, heard, feed)
+    if as_json:
+        print_json(_document(found))
+    else:
+        _show(found)
+    if not found.edges:
+        click.echo(
+            f"fdvv: {spec}: the key line never rose; check its wire and that the rig renders", err=True
+        )
+        raise click.exceptions.Exit(1)
+
+
+@contextmanager
+def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | None]:
+    """Render a button on a device, if there is one; give what keeps it at that."""
+    from fdvv.workflow import program_image, rendering
+
+    if device is None:
+        yield None
+        return
+    with remote(device) as found:
+        found.upload_program(program_image(button, VELOCITIES_mm_s))
+        with rendering(found) as feed:
+            yield feed
+
+
+def _told(press: TaskPress) -> str:
+    assert press.target_s is not None
+    late_ms = [1e3 * (at_s - press.target_s) for at_s in press.activations_s]
+    return ", ".join(f"{late:+.2f} ms" for late in late_ms) or "no press"
+
+
+def _document(found: StripCheck) -> dict[str, Any]:
+    rounds = [
+        {"target_s": press.target_s, "activations_s": list(press.activations_s)} for press in found.presses
+    ]
+    return {
+        "strip": found.name,
+        "simulated": found.simulated,
+        "firmware": found.firmware,
+        "watchdog_reset": found.was_reset,
+        "edges": found.edges,
+        "bad_frames": found.bad_frames,
+        "asynchrony_ms": found.asynchrony_ms,
+        "rounds": rounds,
+    }
+
+
+def _show(found: StripCheck) -> None:
+    rows = [
+        ["firmware", found.firmware],
+        ["last reset by the watchdog", "yes" if found.was_reset else "no"],
+        ["edges of the key line", str(found.edges)],
+        ["damaged requests", str(found.bad_frames)],
+        ["mean asynchrony, ms", number(found.asynchrony_ms)],
+    ]
+    click.echo(f"{found.name}{' (simulated)' if found.simulated else ''}")
+    print_table(["what", "value"], rows, left=1)

@@ -1,0 +1,175 @@
+"""fdvv study: analyse, export."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fdvv.cli._output import (
+    check_folder,
+    check_output,
+    counted,
+    json_option,
+    number,
+    print_json,
+    print_table,
+    print_warnings,
+    print_wrapped,
+)
+
+if TYPE_CHECKING:
+    from fdvv.study import Answers, StudyPlan
+    from fdvv.workflow import StudyAnalysis
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+PLAN_FILE = "study.toml"
+
+
+def table_options(command: Command) -> Command:
+    """Add what a foreign table needs."""
+    options = [
+        click.option("--kind", default="", help="Of the study: realism, abx, 2afc, 2ac, preference, mushra, "
+                     "staircase or timing; a folder's own by default."),
+        click.option("--stimuli", default="", metavar="A,B",
+                     help="Names of what was compared; of two, the second is held against the first."),
+        click.option("--map", "columns", multiple=True, metavar="ROLE=COLUMN",
+                     help="Which column is what: person, item, round, choice, correct, ratio, time_s, "
+                     "excluded, stimulus, RATING:STIMULUS, or RATING. Again for each."),
+        click.option("--code", "codes", multiple=True, metavar="WORD=STIMULUS",
+                     help="What a word in the columns choice and stimulus means; STIMULUS may be equal."),
+        click.option("--missing", multiple=True, metavar="WORD", help="A further word for a missing value."),
+        click.option("--simulated", is_flag=True, help="These are answers of simulated participants."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+source_argument = click.argument("source", type=click.Path(path_type=Path, exists=True))
+plan_option = click.option(
+    "--plan",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="The study's file, for its claim and its rules; of a study's folder its own.",
+)
+
+
+@click.command()
+@source_argument
+@plan_option
+@table_options
+@click.option("--report", type=click.Path(path_type=Path), help="Write an HTML report here.")
+@json_option
+def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool, **table: Any) -> None:
+    """Analyse answers: of an unsealed study's folder, of answers.csv, or of any CSV whose columns are mapped.
+
+    Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
+    thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
+    """
+    check_output(report, ".html")
+    from fdvv.workflow import analyse as analysed
+    from fdvv.workflow import analysis_dict, write_study_report
+
+    answers, declared, told = _opened(source, plan, table)
+    found = analysed(answers, declared, "" if declared else source.name)
+    if report is not None:
+        write_study_report(report, found, declared, told)
+    if as_json:
+        print_json(analysis_dict(found))
+        return
+    _print(found)
+    if report is not None:
+        click.echo(f"report: {report}")
+
+
+@click.command()
+@source_argument
+@plan_option
+@table_options
+@click.option("--folder", required=True, type=click.Path(path_type=Path), help="Where to write.")
+@json_option
+def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table: Any) -> None:
+    """Write answers as plain tables for R, JASP or pandas, and everything the analysis found as JSON.
+
+    answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
+    analysis.json holds every figure.
+    """
+    check_folder(folder)
+    from fdvv.workflow import analyse as analysed
+    from fdvv.workflow import write_analysis, write_answers
+
+    answers, declared, _ = _opened(source, plan, table)
+    found = analysed(answers, declared, "" if declared else source.name)
+    files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
+    if as_json:
+        print_json({"rows": len(answers.person), "files": [str(path) for path in files]})
+        return
+    simulated = " of simulated participants: a proxy, no evidence" if answers.simulated else ""
+    click.echo(f"{counted(len(answers.person), 'trial')}{simulated}")
+    for path in files:
+        click.echo(str(path))
+
+
+def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
+    """Read answers, the plan they come from, if any, and a line that tells where they come from."""
+    from fdvv.files import read_limited
+    from fdvv.study import read_plan_text
+    from fdvv.workflow import ColumnMap, Study, read_answers
+
+    asked = ColumnMap(
+        kind=table["kind"],
+        stimuli=tuple(name.strip() for name in table["stimuli"].split(",") if name.strip()),
+        columns=_pairs("--map", table["columns"]),
+        codes=_pairs("--code", table["codes"]),
+        missing=frozenset(table["missing"]),
+        simulated=table["simulated"],
+    )
+    answers = read_answers(source, asked)
+    if plan is not None:
+        data = read_limited(plan, 4_000_000, "name the study's file")
+        return answers, read_plan_text(data.decode(errors="replace"), plan), f"answers of {source.name}"
+    if (source / PLAN_FILE).is_file():
+        study = Study.open(source)
+        frozen = f", fingerprint {study.fingerprint}" if study.frozen else ", not frozen"
+        return answers, study.plan, f"study {study.plan.name}{frozen}"
+    return answers, None, f"answers of {source.name}"
+
+
+def _pairs(option: str, texts: tuple[str, ...]) -> dict[str, str]:
+    """Read NAME=VALUE options; a name may hold no =, a value may. InputError."""
+    from fdvv.errors import InputError
+
+    found = {}
+    for text in texts:
+        name, sign, value = text.partition("=")
+        if not (name.strip() and sign and value.strip()):
+            raise InputError(option, repr(text), "is no NAME=VALUE", f"write {option} NAME=VALUE")
+        found[name.strip()] = value.strip()
+    return found
+
+
+def _print(found: StudyAnalysis) -> None:
+    """Print the main claim, choices and tests."""
+    from fdvv.workflow import study_summary
+
+    screening = found.screening
+    counts = f"{screening.counted} of {screening.planned} trials count, {screening.people_counted} people"
+    click.echo(f"{found.title} ({found.kind}): {counts}")
+    print_wrapped(study_summary(found))
+    if found.tests:
+        rows = [
+            [
+                one.button, one.rating, str(one.test.n), number(one.test.z),
+                *(_p(p) for p in (one.test.p_asymptotic, one.test.p_exact, one.p_holm)),
+                number(one.test.effect),
+            ]
+            for one in found.tests
+        ]  # fmt: skip
+        print_table(["button", "rating", "people", "Z", "p", "exact p", "Holm", "r"], rows, left=2)
+    print_warnings(found.notes)
+
+
+def _p(p: float) -> str:
+    return "< .0001" if p < 0.0001 else f"{p:.4f}"

@@ -1,0 +1,138 @@
+"""fdvv study new, check and preview: a study before it is frozen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._output import (
+    check_folder,
+    check_output,
+    counted,
+    json_option,
+    print_json,
+    print_table,
+    print_wrapped,
+)
+
+if TYPE_CHECKING:
+    from fdvv.plot import Section
+    from fdvv.workflow import StudyLook
+
+KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase")
+
+study_argument = click.argument("study", type=click.Path(path_type=Path))
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--kind", type=click.Choice(KINDS), default="realism", show_default=True,
+              help="What trials ask; realism is the paper's study.")  # fmt: skip
+def new(folder: Path, kind: str) -> None:
+    """Begin a study: a folder with a commented study.toml to edit, and the buttons it names.
+
+    The study is called as the folder. It holds the paper's design, or a usual one of its kind; what every
+    field means is in docs/reference/study-file.md. Nothing counts before fdvv study freeze.
+    """
+    check_folder(folder)
+    from fdvv.study import write_template
+
+    path = write_template(kind, folder, folder.absolute().name)
+    click.echo(f"written to {path}")
+    click.echo(f"edit it, then: fdvv study check {folder}")
+
+
+@click.command()
+@study_argument
+@json_option
+def check(study: Path, as_json: bool) -> None:
+    """Check a study's file, and that everything it names is there and differs. Exit status 1 if not.
+
+    STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
+    """
+    from fdvv.workflow import look_at_study
+
+    look = look_at_study(study)
+    if as_json:
+        from fdvv.study import plan_account
+
+        told = {"notes": [*look.notes, *(() if look.problems else plan_account(look.plan).notes)]}
+        print_json({"name": look.plan.name, "ok": not look.problems, "problems": look.problems, **told})
+    else:
+        _print_check(look)
+    if look.problems:
+        raise click.exceptions.Exit(1)
+
+
+def _print_check(look: StudyLook) -> None:
+    from fdvv.study import plan_account
+
+    _print_problems(look)
+    if look.problems:
+        return
+    account = plan_account(look.plan)
+    for note in (*look.notes, *account.notes):
+        print_wrapped(f"note: {note}")
+    trials = counted(account.trials, "trial")
+    click.echo(
+        f"{look.plan.name}: can be run; {trials} a person, about {account.minutes:.0f} minutes (assumed), "
+        f"{look.plan.people} people"
+    )
+
+
+def _print_problems(look: StudyLook) -> None:
+    for problem in look.problems:
+        print_wrapped(f"problem: {problem}")
+    if look.problems:
+        click.echo(f"{look.plan.name}: cannot be run, {counted(len(look.problems), 'problem')}")
+
+
+@click.command()
+@study_argument
+@click.option("--html", type=click.Path(path_type=Path, dir_okay=False), metavar="OUT.html",
+              help="Write the account as a page.")  # fmt: skip
+@json_option
+def preview(study: Path, html: Path | None, as_json: bool) -> None:
+    """Tell what a study will be: what a person goes through, what is asked, orders, rules and claim.
+
+    STUDY is a study.toml, or the folder of one. Nothing is drawn: what labels will hide, not even this knows.
+    Exit status 1 where the study cannot be run.
+    """
+    check_output(html, ".html")
+    from fdvv.workflow import look_at_study, preview_dict, preview_html, preview_sections
+
+    look = look_at_study(study)
+    if look.problems:
+        _print_problems(look)
+        raise click.exceptions.Exit(1)
+    if html:
+        from fdvv.plot import write_report
+
+        write_report(html, preview_html(look))
+    if as_json:
+        print_json(preview_dict(look))
+        return
+    _print_head(look)
+    for section in preview_sections(look):
+        _print_section(section)
+    if html:
+        click.echo(f"\nwritten to {html}")
+
+
+def _print_head(look: StudyLook) -> None:
+    from fdvv.workflow import preview_summary, preview_title
+
+    print_wrapped(preview_title(look.plan))
+    print_wrapped(preview_summary(look.plan))
+
+
+def _print_section(section: Section) -> None:
+    click.echo(f"\n{section.title}")
+    for text in section.paragraphs:
+        print_wrapped(text)
+    for table in section.tables:
+        rows: list[Any] = [list(row) for row in table.rows]
+        print_table(table.columns, rows, left=len(table.columns))
+        print_wrapped(table.caption)

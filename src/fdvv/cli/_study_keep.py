@@ -1,0 +1,216 @@
+"""fdvv study: freeze, verify, status, unseal, withdraw."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fdvv.cli._output import counted, json_option, print_json, print_table, print_warnings
+
+if TYPE_CHECKING:
+    from fdvv.study import Answers
+    from fdvv.workflow import Study
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+folder_argument = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
+passphrase_option = click.option(
+    "--passphrase-file",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Read the keeper's passphrase from the first line of a file; else it is asked for.",
+)
+keeper_option = click.option(
+    "--keeper",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="The keeper's file, if it was moved out of the folder.",
+)
+
+
+@click.command()
+@folder_argument
+@passphrase_option
+@json_option
+def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
+    """Freeze a study before the first person: from now on every change is noticed.
+
+    Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
+    hide; nobody can restore it. The fingerprint goes into the preregistration.
+    """
+    from fdvv.workflow import Study
+
+    study = Study.open(folder)
+    fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
+    if as_json:
+        print_json({"folder": str(folder), "name": study.plan.name, "fingerprint": fingerprint})
+        return
+    click.echo(f"{study.plan.name} is frozen")
+    click.echo(f"fingerprint: {fingerprint}")
+    click.echo(
+        "write it into the preregistration: fdvv study verify --fingerprint holds the study against it"
+    )
+    click.echo(
+        f"keeper: {folder / 'keeper.json'}, opened by your passphrase only; move it to where you keep keys"
+    )
+
+
+@click.command()
+@folder_argument
+@click.option("--fingerprint", default="", help="That was written down when the study was frozen.")
+@click.option("--record", default="", help="An end of the record that was written down since.")
+@click.option("--marks", is_flag=True, help="Hold the marks of people's lines too; takes the passphrase.")
+@passphrase_option
+@keeper_option
+@json_option
+def verify(
+    folder: Path,
+    fingerprint: str,
+    record: str,
+    marks: bool,
+    passphrase_file: Path | None,
+    keeper: Path | None,
+    as_json: bool,
+) -> None:
+    """Tell whether a study is as it was frozen, and every log as it was written. Exit status 1 if not."""
+    from fdvv.workflow import Study
+
+    study = Study.open(folder)
+    passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
+    problems = study.verify(fingerprint, passphrase, keeper, record)
+    if as_json:
+        whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
+        print_json({"folder": str(folder), **whole})
+    else:
+        for problem in problems:
+            click.echo(problem)
+        if not problems:
+            click.echo(f"whole; people: {len(study.people())}")
+            click.echo(f"fingerprint: {study.fingerprint}")
+            click.echo(f"the record ends in: {study.record_end}")
+    if problems:
+        click.echo(f"fdvv: {folder}: {counted(len(problems), 'problem')}", err=True)
+        raise click.exceptions.Exit(1)
+
+
+@click.command()
+@folder_argument
+@json_option
+def status(folder: Path, as_json: bool) -> None:
+    """Tell how far a study is and what was done with it; nothing here tells what a label hid."""
+    from fdvv.workflow import Study, people_standing
+
+    study = Study.open(folder)
+    document = _status(study, people_standing(study))
+    if as_json:
+        print_json(document)
+        return
+    click.echo(f"{document['name']} ({document['kind']}), {document['state']}")
+    if document["fingerprint"]:
+        click.echo(f"fingerprint: {document['fingerprint']}")
+        click.echo(f"the record ends in: {document['record']}")
+    for act in document["unsealed"]:
+        click.echo(f"unsealed {act['when']} by {act['who']}: {act['why']}")
+    rows = [
+        [p["person"], p["language"], p["state"], f"{p['answered']} of {p['trials']}", str(p["resumed"])]
+        for p in document["people"]
+    ]
+    if rows:
+        print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
+    click.echo(f"people: {len(rows)} of {document['planned']} planned")
+    print_warnings([p["problem"] for p in document["people"] if p["problem"]])
+
+
+@click.command()
+@folder_argument
+@click.option("--who", required=True, help="Your name; it stays on record.")
+@click.option("--why", required=True, help="The reason; it stays on record.")
+@click.option("--despite", is_flag=True, help="Go on where people's files were changed; theirs do not count.")
+@passphrase_option
+@keeper_option
+@json_option
+def unseal(
+    folder: Path, who: str, why: str, despite: bool, passphrase_file: Path | None, keeper: Path | None,
+    as_json: bool,
+) -> None:  # fmt: skip
+    """Tell what the labels hid. That is recorded before anything can be read, and nobody can begin any more.
+
+    Writes answers.csv, codebook.json, rendered.csv and pages.csv into unsealed/ of the folder; the rules that
+    were frozen with the study say in answers.csv what does not count, and why.
+    """
+    from fdvv.workflow import Study
+
+    study = Study.open(folder)
+    answers = study.unseal(_passphrase(passphrase_file), who, why, keeper, despite)
+    document = _unsealed(folder, answers)
+    if as_json:
+        print_json(document)
+        return
+    simulated = " (simulated)" if answers.simulated else ""
+    click.echo(f"{counted(document['rows'], 'trial')}{simulated}, {document['counted']} count")
+    for reason, rows in document["excluded"].items():
+        click.echo(f"  {rows} left out: {reason}")
+    click.echo(f"written to {document['unsealed']}")
+
+
+@click.command()
+@folder_argument
+@click.argument("person")
+@click.option("--keep", is_flag=True, help="Keep what the person gave until now; only end it.")
+@click.option("--yes", is_flag=True, help="Do not ask.")
+@json_option
+def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) -> None:
+    """Take a person out and delete all that is kept of them; that they were there stays on record.
+
+    What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
+    """
+    from fdvv.workflow import Study
+
+    study = Study.open(folder)
+    person = study.person(person).name
+    if not (yes or as_json):
+        question = f"End {person}'s part?" if keep else f"Delete all that is kept of {person}, for good?"
+        click.confirm(question, abort=True)
+    study.withdraw(person, delete=not keep)
+    if as_json:
+        print_json({"person": person, "deleted": not keep})
+    else:
+        click.echo(f"{person} has withdrawn; " + ("their answers are kept" if keep else "all is deleted"))
+
+
+def _passphrase(file: Path | None, new: bool = False) -> str:
+    """Read the passphrase from a file, or ask for it; a new one twice."""
+    if file is not None:
+        from fdvv.files import read_limited
+
+        text = read_limited(file, 10_000, "name a file with the passphrase in its first line")
+        return text.decode(errors="replace").partition("\n")[0].rstrip("\r")
+    answer: str = click.prompt("Passphrase of the keeper", hide_input=True, confirmation_prompt=new, err=True)
+    return answer
+
+
+def _status(study: Study, people: Any) -> dict[str, Any]:
+    acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
+    state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
+    return {
+        "name": study.plan.name, "kind": study.plan.kind, "state": state, "fingerprint": study.fingerprint,
+        "record": study.record_end, "planned": study.plan.people, "unsealed": acts,
+        "people": [
+            {
+                "person": one.person.name, "language": one.person.language, "state": one.person.state,
+                "simulated": one.person.simulated, "answered": one.answered, "trials": one.trials,
+                "resumed": one.resumed, "interrupted": one.interrupted, "problem": one.problem,
+            }
+            for one in people
+        ],
+    }  # fmt: skip
+
+
+def _unsealed(folder: Path, answers: Answers) -> dict[str, Any]:
+    assert answers.excluded is not None
+    reasons = Counter(str(reason) for reason in answers.excluded if reason)
+    return {
+        "rows": len(answers.person), "counted": int(answers.counts.sum()), "excluded": dict(reasons),
+        "simulated": answers.simulated, "unsealed": str(folder / "unsealed"),
+    }  # fmt: skip

@@ -1,0 +1,191 @@
+"""The studies of a project: their folders, free seats, and who sits at a screen now."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Lock, RLock
+from typing import Protocol
+
+from msgspec import Struct
+
+from fdvv.errors import InputError
+from fdvv.files import write_atomic
+from fdvv.studio._messages_studies import StudiesChanged, StudyState
+from fdvv.studio._studio import Studio
+from fdvv.studio._watchers import Watchers
+from fdvv.workflow import Study, device_problems
+
+FOLDER, DEVICE_SUFFIX = "studies", ".device"
+TWIN = "twin"
+NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
+
+
+@dataclass(eq=False)
+class Seat:
+    """A free seat of a study, taken once; person, code : whose it is until their screen knows."""
+
+    study: str
+    word: str
+    person: str = ""
+    code: str = ""
+    lock: Lock = field(default_factory=Lock)
+
+
+class Screen(Protocol):
+    """A participant's screen, as the operator may use it."""
+
+    def pause(self, on: bool) -> None:
+        """Have it wait, or go on."""
+        ...
+
+    def leave(self, reason: str) -> None:
+        """Have it serve nobody any more."""
+        ...
+
+    def withdraw(self, delete: bool) -> None:
+        """Take its person out of the study."""
+        ...
+
+
+class Studies:
+    """The studies in ``studies/NAME`` of a project."""
+
+    def __init__(self, studio: Studio) -> None:
+        self.folder = studio.project / FOLDER
+        self.watchers = Watchers[Struct]()
+        self._seats: dict[str, Seat] = {}
+        self._screens: dict[tuple[str, str], Screen] = {}
+        self._paused: set[tuple[str, str | None]] = set()
+        # held for a look only: whoever is at a screen may ask for it
+        self._lock = RLock()
+
+    def names(self) -> list[str]:
+        """List all studies."""
+        if not self.folder.is_dir():
+            return []
+        return sorted(path.name for path in self.folder.iterdir() if NAME.fullmatch(path.name))
+
+    def path(self, name: str) -> Path:
+        """Give the folder that a study of this name has, or would have. InputError on a name that is none."""
+        if not NAME.fullmatch(name):
+            remedy = "use small letters, digits and hyphens, 40 at most"
+            raise InputError("study", "name", f"{name!r:.60} is no name of a study", remedy)
+        return self.folder / name
+
+    def study(self, name: str) -> Study:
+        """Open a study. InputError."""
+        return Study.open(self.path(name))
+
+    def device(self, name: str) -> str:
+        """Tell what renders a study: the twin, or a device by what `fdvv.device` calls it."""
+        path = self.path(name).with_suffix(DEVICE_SUFFIX)
+        return path.read_text().strip() if path.is_file() else TWIN
+
+    def use_device(self, name: str, device: str, known: Sequence[str]) -> None:
+        """Have a study rendered by another device of those that are known, from the next trial on.
+
+        InputError on one that is not there, or that cannot hide a change between the study's buttons.
+        """
+        study = self.study(name)
+        if device not in (TWIN, *known):
+            raise InputError("device", "device", f"there is no {device[:80]!r}", "choose one of the list")
+        for problem in device_problems(study.plan, study.folder) if device != TWIN else ():
+            raise InputError("device", device, problem, "use the twin, or change the plan")
+        write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")
+        self.announce(name)
+
+    def free_seat(self, name: str) -> Seat:
+        """Make a seat that one person may take. InputError where nobody can begin."""
+        seat = Seat(name, secrets.token_urlsafe(9))
+        state = state_of(self.study(name))
+        if state == "draft":
+            raise InputError("study", name, "is not frozen", "freeze it before the first person")
+        if state == "unsealed":
+            raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
+        with self._lock:
+            self._seats[seat.word] = seat
+        self.announce(name)
+        return seat
+
+    def seat(self, name: str, word: str) -> Seat | None:
+        """Find a seat that is still to be had."""
+        with self._lock:
+            seat = self._seats.get(word)
+        return seat if seat and seat.study == name else None
+
+    def taken(self, seat: Seat) -> None:
+        """Forget a seat, and the code with it: its person's screen knows."""
+        with self._lock:
+            self._seats.pop(seat.word, None)
+
+    def waiting(self, name: str) -> int:
+        """Count the free seats."""
+        with self._lock:
+            return sum(seat.study == name and not seat.person for seat in self._seats.values())
+
+    def sit(self, name: str, person: str, screen: Screen) -> None:
+        """Note who sits at which screen; the one before it serves nobody any more."""
+        with self._lock:
+            before = self._screens.pop((name, person), None)
+            self._screens[name, person] = screen
+        if before:
+            before.leave("this study goes on at another screen")
+        self.announce(name)
+
+    def rise(self, name: str, person: str, screen: Screen) -> None:
+        """Note that a screen serves a person no more."""
+        with self._lock:
+            if self._screens.get((name, person)) is screen:
+                del self._screens[name, person]
+        self.announce(name)
+
+    def screen(self, name: str, person: str) -> Screen | None:
+        """Find a person's screen."""
+        with self._lock:
+            return self._screens.get((name, person))
+
+    def pause(self, name: str, person: str | None, on: bool) -> None:
+        """Have all screens of a study wait, or one."""
+        with self._lock:
+            change = self._paused.add if on else self._paused.discard
+            change((name, person))
+            screens = [(who, screen) for (study, who), screen in self._screens.items() if study == name]
+        for who, screen in screens:
+            screen.pause(self.paused(name, who))
+        self.announce(name)
+
+    def paused(self, name: str, person: str | None = None) -> bool:
+        """Tell whether a study waits, or one person of it."""
+        with self._lock:
+            return not self._paused.isdisjoint({(name, None), (name, person)})
+
+    def withdraw(self, name: str, person: str, delete: bool) -> None:
+        """Take a person out of a study, wherever they are. InputError."""
+        screen = self.screen(name, person)
+        if screen:
+            screen.withdraw(delete)
+        else:
+            self.study(name).withdraw(person, delete=delete)
+        self.announce(name)
+
+    def announce(self, name: str) -> None:
+        """Tell all operators' pages that a study changed."""
+        self.watchers.tell(StudiesChanged(name))
+
+    def close(self) -> None:
+        """End every session in order."""
+        with self._lock:
+            screens = list(self._screens.values())
+        for screen in screens:
+            screen.leave("the studio was closed")
+
+
+def state_of(study: Study) -> StudyState:
+    """Tell how far a study is."""
+    if study.frozen is None:
+        return "draft"
+    return "unsealed" if any("unsealed" in record for record in study.history()) else "frozen"

@@ -1,0 +1,267 @@
+"""A participant's screen: one page, one person, the button under the hand on a simulated rig at real pace."""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+from threading import RLock
+from typing import Any
+
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.studio import _messages_study as m
+from fdvv.studio._contract import ChannelKind, Tell
+from fdvv.studio._jobs import SharedLeases
+from fdvv.studio._studies import TWIN, Seat, Studies
+from fdvv.studio._studio import Studio
+from fdvv.studio._study_told import frame_told, sound_told, step_told
+from fdvv.study import ENDS, Step, TrialAnswer
+from fdvv.workflow import Participant, PersonFrame, ScreenStage, Study, open_screen_stage
+
+
+class StudyScreen:
+    """What serves one page: nobody, or a participant. See Screen for what the operator does with it."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._studies, self._tell = studio.part(Studies), tell
+        self._leases, self._leased = studio.part(SharedLeases), ""
+        self._name = ""
+        self._participant: Participant | None = None
+        self._stage: ScreenStage | None = None
+        self._seat: Seat | None = None
+        # the operator may use it while the page's own thread does
+        self._lock = RLock()
+
+    def receive(self, ask: Any) -> None:
+        """Do what the page asks; without a participant most asks have come too late and do nothing."""
+        if isinstance(ask, m.StudyLead | m.StudyPush | m.StudyLift | m.StudyHere):
+            self._hand(ask)
+            return
+        with self._lock:
+            try:
+                self._do(ask)
+            except DeviceError:
+                self._tell(m.StudyBroke())
+            except ModelError:
+                # a page that was left behind is told where it is
+                self._tell_step()
+
+    def close(self) -> None:
+        """The page is gone: the session waits to be resumed."""
+        with self._lock:
+            participant, self._participant, self._stage = self._participant, None, None
+            if participant:
+                participant.close()
+                self._studies.rise(self._name, participant.person, self)
+            self._release()
+
+    def pause(self, on: bool) -> None:
+        """Have it wait, or go on."""
+        stage = self._stage
+        if on and stage:
+            stage.lift()
+        self._tell(m.StudyPaused(on))
+
+    def leave(self, reason: str) -> None:
+        """Serve nobody any more, and say why."""
+        self.close()
+        self._tell(m.StudyStopped(reason))
+
+    def withdraw(self, delete: bool) -> None:
+        """Take the person out of the study."""
+        with self._lock:
+            if self._participant:
+                self._go_on(self._participant.withdraw(delete=delete))
+
+    @singledispatchmethod
+    def _do(self, ask: Any) -> None:
+        raise TypeError(f"no such ask: {ask}")
+
+    @_do.register
+    def _(self, ask: m.StudyLook) -> None:
+        plan = self._studies.study(ask.study).plan
+        free = self._studies.seat(ask.study, ask.seat) is not None
+        self._tell(m.StudyAbout(ask.study, plan.title, list(plan.languages), free))
+
+    @_do.register
+    def _(self, ask: m.StudySit) -> None:
+        seat = self._studies.seat(ask.study, ask.seat)
+        if seat is None:
+            raise InputError("study", "seat", "is taken", "ask for another, or go on with your card")
+        self.close()
+        study = self._studies.study(ask.study)
+        with seat.lock:
+            if seat.person:  # the page went away before it heard the code
+                self._sit(study, ask.study, seat.person, seat.code)
+            else:
+                stage = self._first_stage(study)
+                participant, seat.code = Participant.enrol(study, ask.language, stage)
+                seat.person = participant.person
+                self._take(ask.study, participant, stage)
+            self._seat = seat
+        self._begin(seat.code)
+
+    @_do.register
+    def _(self, ask: m.StudyResume) -> None:
+        self.close()
+        self._sit(self._studies.study(ask.study), ask.study, ask.person, ask.code)
+        self._begin("")
+
+    @_do.register
+    def _(self, ask: m.StudyShown) -> None:
+        if self._participant and self._stage:
+            self._heard()
+            self._participant.shown(ask.number)
+            signals = [sound_told(signal) for signal in self._stage.sounds]
+            self._tell(m.StudyReady(ask.number, self._stage.travel_mm, signals))
+
+    @_do.register
+    def _(self, ask: m.StudyGo) -> None:
+        if self._participant:
+            self._require_on()
+            self._participant.go_to(ask.label)
+            self._tell(m.StudyFelt(ask.label))
+
+    @_do.register
+    def _(self, _ask: m.StudyAgain) -> None:
+        if self._participant:
+            self._stage = self._new_stage(self._participant.study)
+            self._participant.take_stage(self._stage)
+            self._tell_step()
+
+    @_do.register
+    def _(self, ask: m.StudyAnswered) -> None:
+        if self._participant:
+            self._require_on()
+            answer = TrialAnswer(choice=ask.choice, ratings=ask.ratings)
+            self._go_on(self._participant.answer(ask.number, answer))
+
+    @_do.register
+    def _(self, ask: m.StudyFilled) -> None:
+        if self._participant:
+            self._heard()
+            self._go_on(self._participant.answer_page(ask.name, ask.values, ask.agreed))
+
+    @_do.register
+    def _(self, _ask: m.StudyRested) -> None:
+        if self._participant:
+            self._go_on(self._participant.end_break())
+
+    @_do.register
+    def _(self, _ask: m.StudyWithdraw) -> None:
+        self.withdraw(delete=True)
+
+    def _hand(self, ask: Any) -> None:
+        """Lead the finger; many of these come, and none waits for anything."""
+        stage = self._stage
+        if stage is None:
+            return
+        if isinstance(ask, m.StudyHere):
+            stage.here()
+        elif isinstance(ask, m.StudyLead):
+            stage.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s)
+        elif isinstance(ask, m.StudyPush):
+            stage.push(ask.force_cN)
+        else:
+            stage.lift()
+
+    def _new_stage(self, study: Study) -> ScreenStage:
+        """Open what the operator chose. InputError where it is used elsewhere, DeviceError."""
+        device = self._studies.device(study.folder.name)
+        if device not in (TWIN, self._leased):
+            self._release()
+            self._leases.take(device, f"the study {study.folder.name}")
+            self._leased = device
+        broke = lambda _line: self._tell(m.StudyBroke())  # noqa: E731
+        return open_screen_stage(device, study.folder, self._show, broke, study.plan.switch_s)
+
+    def _first_stage(self, study: Study) -> ScreenStage:
+        """Open a stage for somebody who sits down. InputError where it cannot be had."""
+        try:
+            return self._new_stage(study)
+        except DeviceError as error:
+            self._release()
+            raise InputError("study", "device", str(error), "ask who leads the study") from error
+
+    def _release(self) -> None:
+        """Let others use the device."""
+        if self._leased:
+            self._leases.give_back(self._leased)
+            self._leased = ""
+
+    def _show(self, frame: PersonFrame) -> None:
+        if frame.t_s.size:  # else this machine was busy, and no time has passed
+            self._tell(frame_told(frame))
+
+    def _sit(self, study: Study, name: str, person: str, code: str) -> None:
+        """Go on as somebody; a screen that serves them lets go first."""
+        other = self._studies.screen(name, person)
+        if other:
+            study.schedule(person, code)  # a wrong code must not take anybody's screen away
+            other.leave("this study goes on at another screen")
+        stage = self._first_stage(study)
+        self._take(name, Participant.resume(study, person, code, stage), stage)
+
+    def _take(self, name: str, participant: Participant, stage: ScreenStage) -> None:
+        self._name, self._participant, self._stage = name, participant, stage
+        self._studies.sit(name, participant.person, self)
+
+    def _begin(self, code: str) -> None:
+        """Tell a page who sits at it, and where they are."""
+        assert self._participant is not None
+        self._tell(m.StudyCard(self._participant.person, self._participant.language, code))
+        self._tell(m.StudyPaused(self._studies.paused(self._name, self._participant.person)))
+        self._tell_step()
+
+    def _heard(self) -> None:
+        """Forget the code: the page has it, for it goes on."""
+        if self._seat:
+            self._studies.taken(self._seat)
+            self._seat = None
+
+    def _require_on(self) -> None:
+        assert self._participant is not None
+        if self._studies.paused(self._name, self._participant.person):
+            raise InputError("study", "screen", "the study pauses", "wait a moment")
+
+    def _go_on(self, step: Step) -> None:
+        """Tell what comes next; an end is an end for the operator too."""
+        self._tell_step(step)
+        if self._participant and step.kind in ENDS:
+            self.close()
+        else:
+            self._studies.announce(self._name)
+
+    def _tell_step(self, step: Step | None = None) -> None:
+        participant = self._participant
+        if participant:
+            now = step or participant.step()
+            self._tell(step_told(participant.study.plan, participant.state, participant.language, now))
+
+
+ASKS = (
+    m.StudyLook,
+    m.StudySit,
+    m.StudyResume,
+    m.StudyShown,
+    m.StudyGo,
+    m.StudyLead,
+    m.StudyPush,
+    m.StudyLift,
+    m.StudyAgain,
+    m.StudyAnswered,
+    m.StudyFilled,
+    m.StudyRested,
+    m.StudyWithdraw,
+    m.StudyHere,
+)
+TELLS = (
+    m.StudyAbout,
+    m.StudyCard,
+    m.StudyStep,
+    m.StudyReady,
+    m.StudyFelt,
+    m.StudyFrame,
+    m.StudyBroke,
+    m.StudyPaused,
+    m.StudyStopped,
+)
+CHANNEL = ChannelKind("study", ASKS, TELLS, StudyScreen)

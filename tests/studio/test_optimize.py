@@ -1,0 +1,347 @@
+"""The part of the studio in which a person, or a simulated one, plays for a better button."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from starlette.testclient import TestClient, WebSocketTestSession
+from tests.studio.conftest import LIVE
+
+from fdvv.model import load_builtin, model_from_json
+from fdvv.optimize import Score, TemporalPointing, TrialState
+from fdvv.studio import Studio
+from fdvv.studio._optimizations import Optimizations
+from fdvv.workflow import OptimizeSession, PlayedRounds
+
+CREATE = {
+    "title": "mine",
+    "engine": "sobol",
+    "space": "paper",
+    "preference": False,
+    "simulated": False,
+    "level": "easy",
+    "also": [],
+    "start": "builtin:mx-brown",
+    "rig": None,
+    "seed": 7,
+    "budget": 3,
+    "task_presses": 2,
+}
+AHEAD_ms = 1000.0
+"""The page's clock of these tests is so far ahead of the server's."""
+
+
+class Player:
+    """One page that plays."""
+
+    def __init__(self, socket: WebSocketTestSession) -> None:
+        self._socket, self.late_ms = socket, 0.0
+
+    def say(self, kind: str, **more: Any) -> None:
+        """Send an ask on the channel."""
+        self._socket.send_json({"channel": "play", "body": {"type": kind, **more}})
+
+    def hear(self, kind: str) -> dict[str, Any]:
+        """Give the next message of a kind, or the first error."""
+        while True:
+            message = self._socket.receive_json()
+            body = {"type": "error", **message} if "error" in message else message["body"]
+            if body["type"] in (kind, "error", "over"):
+                return dict(body)
+
+    def now_ms(self) -> float:
+        """Give the page's clock."""
+        return 1e3 * time.monotonic() + AHEAD_ms
+
+    def round(self, number: int, press: bool = True) -> dict[str, Any]:
+        """Press once, 100 ms before the target is drawn; give what is told of it."""
+        start_ms = at_ms = self.now_ms() - self.late_ms
+        if press:
+            self.say("down", at_ms=at_ms)
+            self.say("up", at_ms=at_ms + 150.0)
+            self.hear("click")
+            time.sleep(0.35)  # until the finger is where it began
+        self.say(
+            "round",
+            number=number,
+            start_ms=start_ms,
+            target_ms=at_ms + 100.0,
+            end_ms=self.now_ms(),
+            hand="key",
+            display={"ms": 30.0, "error_ms": 17.0},
+            input={"ms": 10.0, "error_ms": 8.0},
+            clock_ms=-AHEAD_ms,
+            clock_error_ms=0.5,
+            frame_ms=16.7,
+        )
+        return self.hear("kept")
+
+
+@pytest.fixture
+def ask(client: TestClient) -> Callable[..., Any]:
+    """Ask the part, and give its answer."""
+
+    def answer(name: str, /, **question: Any) -> Any:
+        found = client.post(f"/api/optimize.{name}", json=question).json()
+        assert "error" not in found, found
+        return found
+
+    return answer
+
+
+def refusal(client: TestClient, name: str, **question: Any) -> str:
+    found = client.post(f"/api/optimize.{name}", json=question)
+    assert found.status_code in (400, 422)
+    return str(found.json()["error"])
+
+
+def test_what_a_run_can_be_made_of_is_offered(ask: Callable[..., Any]) -> None:
+    found = ask("offers")
+    assert {"sobol", "tpe"} <= {one["name"] for one in found["engines"]}
+    assert all(one["told"] for kind in ("engines", "spaces", "levels", "objectives") for one in found[kind])
+    assert [one["name"] for one in found["levels"]] == ["easy", "hard"]
+    assert "builtin:mx-clear" in {one["name"] for one in found["starts"]}
+
+
+def test_a_run_begins_from_the_button_it_was_given(ask: Callable[..., Any]) -> None:
+    run = ask("create", **CREATE)["run"]
+    assert ask("list")["rows"][0]["title"] == "mine"
+    assert ask("next", run=run)["trial"] == 0
+    found = ask("detail", run=run)
+    (trial,) = found["trials"]
+    assert trial["origin"] == "start"
+    assert trial["design"] == found["start"]
+    assert trial["state"] == "suggested"
+    assert len(trial["curve"]["force_cN"]) == 40
+    assert ask("best", run=run)["design"] is None
+    assert found["strip"] == {"pixels": 144, "zone_px": 100, "zone_half_px": 5, "speed_px_s": 100.0}
+    model = ask("model", run=run, design=trial["design"], name="the start")["model"]
+    assert model["name"] == "the start"
+    assert model["actuation_mm"] == trial["design"]["actuation_mm"]
+
+
+@pytest.mark.parametrize("space", ["FDV", "FDVV"])
+def test_variations_of_a_button_begin_with_the_button_itself(ask: Callable[..., Any], space: str) -> None:
+    run = ask("create", **{**CREATE, "space": space, "start": "builtin:mx-clear"})["run"]
+    ask("next", run=run)
+    (trial,) = ask("detail", run=run)["trials"]
+    found = model_from_json(json.dumps(ask("model", run=run, design=trial["design"], name="x")["model"]))
+    clear = load_builtin("mx-clear")
+    x = np.linspace(0.2, 3.8, 50)
+    np.testing.assert_allclose(found.force_cN(x, 100.0), clear.force_cN(x, 100.0), atol=1e-6)
+    assert found.actuation_mm == clear.actuation_mm
+
+
+def test_a_suggestion_can_be_edited_until_it_is_shown_and_abandoned(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    run = ask("create", **CREATE)["run"]
+    number = ask("next", run=run)["trial"]
+    design = ask("detail", run=run)["trials"][number]["design"]
+    ask("edit", run=run, trial=number, design={**design, "actuation_mm": 1.0})
+    (trial,) = ask("detail", run=run)["trials"]
+    assert trial["edited"]
+    assert trial["design"]["actuation_mm"] == 1.0
+    beyond = {**design, "actuation_mm": 99.0}
+    assert "99" in refusal(client, "edit", run=run, trial=number, design=beyond)
+    ask("abandon", run=run, trial=number)
+    assert "abandoned" in refusal(client, "edit", run=run, trial=number, design=design)
+    assert ask("next", run=run)["trial"] == number + 1
+    assert ask("list")["rows"][0]["spent"] == 1
+
+
+def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        ready = player.hear("ready")
+        assert (ready["rounds"], ready["attempt"]) == (2, 1)
+        player.say("ping", sent_ms=5.0)
+        pong = player.hear("pong")
+        assert pong["sent_ms"] == 5.0
+        assert abs(pong["server_ms"] - 1e3 * time.monotonic()) < 500
+        first, second = player.round(1), player.round(2)
+    # the button takes the same time; 140 ms between hand and target, delays of screen and keyboard among them
+    assert first["late_ms"] == pytest.approx(second["late_ms"], abs=5.0)
+    assert -140 < first["late_ms"] < 0
+    assert (first["finished"], second["finished"]) == (False, True)
+    assert 0 <= first["transport_ms"] < 200
+    with OptimizeSession.open(own_studio.project / "optimize" / str(run)) as session:
+        (trial,) = session.trials
+        score = trial.scores["asynchrony_ms"]
+    assert trial.state is TrialState.DONE
+    assert score.value == pytest.approx(-(first["late_ms"] + second["late_ms"]) / 2)
+    rounds = PlayedRounds(own_studio.project / "optimize" / str(run))
+    counting = rounds.counting(0)
+    rounds.close()
+    assert [one.timing.display_ms for one in counting] == [30.0, 30.0]
+    assert TemporalPointing(rounds=2, quantised=False).scores([one.press for one in counting]) == trial.scores
+
+
+@pytest.mark.parametrize("way_ms", [0.0, 45.0, 150.0])
+def test_a_long_way_from_hand_to_simulation_moves_no_press(
+    ask: Callable[..., Any], client: TestClient, way_ms: float
+) -> None:
+    """The way down took long, the way up none: still the simulated finger holds as long as the hand did."""
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        player.hear("ready")
+        wanted = player.round(1)
+        player.late_ms = way_ms
+        found = player.round(2)
+    assert found["late_ms"] == pytest.approx(wanted["late_ms"], abs=2.0)
+    assert found["transport_ms"] > way_ms
+
+
+def test_a_fault_at_the_stop_costs_no_press(ask: Callable[..., Any], client: TestClient) -> None:
+    """A force that falls away throws the finger at the stop, beyond what the sensor may tell."""
+    steep = {"x1_mm": 0.7, "x2_mm": 2.3, "x3_mm": 3.5, "y1_cN": 308.0, "y2_cN": 80.0, "y3_cN": 35.0}
+    run = ask("create", **{**CREATE, "task_presses": 3})["run"]
+    ask("next", run=run)
+    ask("edit", run=run, trial=0, design={**steep, "actuation_mm": 3.0, "vibration_mm": 3.0})
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        player.hear("ready")
+        found = [player.round(number)["late_ms"] for number in (1, 2, 3)]
+    assert found == pytest.approx([found[0]] * 3, abs=5.0)
+
+
+def test_a_round_without_a_press_is_lost_and_a_trial_broken_off_begins_anew(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        player.hear("ready")
+        kept = player.round(1, press=False)
+        assert (kept["late_ms"], kept["finished"]) == (None, False)
+        player.say("close")
+        assert player.hear("over")["reason"] == ""
+    assert ask("next", run=run)["trial"] == 0
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        assert player.hear("ready")["attempt"] == 2
+        assert not player.round(1, press=False)["finished"]
+        assert player.round(2, press=False)["finished"]
+        player.say("open", run=run, trial=0)
+        assert "done" in player.hear("ready")["error"]
+
+
+def test_the_page_that_plays_last_plays_alone(ask: Callable[..., Any], client: TestClient) -> None:
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as one, client.websocket_connect(LIVE) as other:
+        first, second = Player(one), Player(other)
+        first.say("open", run=run, trial=0)
+        first.hear("ready")
+        second.say("open", run=run, trial=0)
+        assert second.hear("ready")["attempt"] == 2
+        assert "played elsewhere" in first.round(1, press=False)["error"]
+        assert not second.round(1, press=False)["finished"]
+
+
+def test_a_simulated_person_plays_to_the_end_of_the_budget(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    run = ask("create", **{**CREATE, "simulated": True})["run"]
+    ask("simulate", run=run, person=3, trials=9)
+    play = own_studio.part(Optimizations).simulated(run)
+    assert play is not None
+    play._thread.join(60)
+    found = ask("detail", run=run)
+    assert found["simulated"] == {**found["simulated"], "running": False, "done": 3, "fault": ""}
+    assert [one["state"] for one in found["trials"]] == ["done"] * 3
+    assert ask("best", run=run)["design"].keys() == found["start"].keys()
+    assert "all played" in refusal(client, "next", run=run)
+
+
+def test_presses_of_people_and_simulated_ones_are_never_mixed(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    own, simulated = (ask("create", **{**CREATE, "simulated": who})["run"] for who in (False, True))
+    assert "a person plays this run" in refusal(client, "simulate", run=own, person=0, trials=1)
+    ask("next", run=simulated)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=simulated, trial=0)
+        assert "a simulated person plays" in player.hear("ready")["error"]
+
+
+@pytest.mark.parametrize(
+    ("name", "question", "said"),
+    [
+        ("detail", {"run": 1}, "there is none"),
+        ("next", {"run": 99}, "there is none"),
+        ("create", {**CREATE, "engine": "none"}, "use one of"),
+        ("create", {**CREATE, "start": "own:../x"}, "no button is called"),
+        ("create", {**CREATE, "also": ["beauty"]}, "beauty"),
+        ("create", {**CREATE, "budget": 0}, "budget"),
+        ("create", {**CREATE, "space": "FDV", "start": None}, "choose one"),
+        ("create", {**CREATE, "space": "none"}, "no such space"),
+        ("create", {**CREATE, "rig": "../x"}, "rig"),
+    ],
+)
+def test_what_cannot_be_is_told_in_one_line(
+    client: TestClient, own_studio: Studio, name: str, question: dict[str, Any], said: str
+) -> None:
+    assert said in refusal(client, name, **question)
+    assert not (own_studio.project / "optimize").exists()
+
+
+def test_a_damaged_run_is_told_in_the_list_and_hurts_no_other(
+    ask: Callable[..., Any], own_studio: Studio
+) -> None:
+    first, second = ask("create", **CREATE)["run"], ask("create", **CREATE)["run"]
+    (own_studio.project / "optimize" / str(first) / "optimize.json").write_text("{}")
+    rows = {row["run"]: row["problem"] for row in ask("list")["rows"]}
+    assert rows[second] == ""
+    assert rows[first]
+
+
+def test_two_designs_are_compared_until_the_budget_is_spent(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    run = ask("create", **{**CREATE, "preference": True, "engine": "preference", "budget": 2, "start": None})[
+        "run"
+    ]
+    for number, answer in enumerate(("second", "equal")):
+        assert ask("pair", run=run) == ask("pair", run=run) == {"run": run, "pair": number}
+        ask("answer", run=run, pair=number, answer=answer)
+    found = ask("detail", run=run)
+    assert [one["answer"] for one in found["pairs"]] == ["second", "equal"]
+    assert found["row"]["spent"] == 2
+    assert found["start"] == found["pairs"][0]["first"]
+    assert ask("best", run=run)["design"].keys() == found["start"].keys()
+    assert "all made" in refusal(client, "pair", run=run)
+    assert "answered" in refusal(client, "answer", run=run, pair=0, answer="first")
+    assert "compared" in refusal(client, "next", run=run)
+
+
+def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], own_studio: Studio) -> None:
+    many = {**CREATE, "also": ["lost_ratio"], "simulated": True, "engine": "nsga2"}
+    run = ask("create", **many)["run"]
+    scores = [(60.0, 0.2), (80.0, 0.0), (90.0, 0.3)]
+    with OptimizeSession.open(own_studio.project / "optimize" / str(run)) as session:
+        for number, (late_ms, lost) in enumerate(scores):
+            session.ask()
+            session.show(number)
+            session.done(number, {"asynchrony_ms": Score(late_ms), "lost_ratio": Score(lost)})
+    found = ask("detail", run=run)
+    assert [one["front"] for one in found["trials"]] == [True, True, False]
+    assert ask("best", run=run)["design"] in [one["design"] for one in found["trials"][:2]]
