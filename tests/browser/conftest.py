@@ -14,6 +14,7 @@ from tests.studio.running import RunningStudio
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page
 
+WAIT_ms = 15_000
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
@@ -30,7 +31,9 @@ def browser() -> Iterator[Browser]:
         if os.environ.get("CI"):
             pytest.fail("CI needs Chromium: run make web-tools")
         pytest.skip("Chromium is not installed: run make web-tools")
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
+
+    expect.set_options(timeout=WAIT_ms)
 
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(
@@ -64,7 +67,7 @@ def studio(start_studio: Callable[..., RunningStudio]) -> RunningStudio:
 def context(browser: Browser) -> Iterator[BrowserContext]:
     """A browser profile of its own; any request that would leave the machine fails the test."""
     context = browser.new_context(viewport={"width": 1280, "height": 720})
-    context.set_default_timeout(45_000)
+    context.set_default_timeout(WAIT_ms)
     left: list[str] = []
     context.on("request", lambda request: left.append(request.url) if not _local(request.url) else None)
     yield context

@@ -24,6 +24,8 @@ PAGES = (
     "live/device",
     "programs",
     "programs/shipped:multi-level",
+    "optimize",
+    "studies",
 )
 TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
 

@@ -120,7 +120,7 @@ def test_fifty_steps_by_keys_are_undone_to_the_number_they_began_at(editor: Page
         editor.keyboard.press(("ArrowUp", "Shift+ArrowUp", "Alt+ArrowDown", "ArrowDown")[i % 4])
     assert force_cN(editor) != at
     editor.click("role=tab[name=Steps]")
-    assert editor.locator(".edit-step").count() == 51
+    expect(editor.locator(".edit-step")).to_have_count(51)
     editor.click("role=tab[name=Points]")
     for _ in range(50):
         editor.keyboard.press("Control+z")
@@ -184,16 +184,16 @@ def test_points_are_boxed_added_and_removed(editor: Page) -> None:
     to_screen = scales(editor)
     drag(editor, to_screen(0.7, 52), tuple(np.subtract(to_screen(1.5, 75), to_screen(0.7, 52))))
     selected = editor.locator(".edit-points tr[aria-selected=true]")
-    assert selected.count() == 3
+    expect(selected).to_have_count(3)
     rows = editor.locator(".edit-points tbody tr")
     count = rows.count()
     editor.keyboard.press("Delete")
-    assert rows.count() == count - 3
+    expect(rows).to_have_count(count - 3)
     editor.mouse.dblclick(*to_screen(3.3, 20))
-    assert rows.count() == count - 2
+    expect(rows).to_have_count(count - 2)
     for _ in range(2):
         editor.keyboard.press("Control+z")
-    assert rows.count() == count
+    expect(rows).to_have_count(count)
 
 
 def test_what_the_rig_makes_of_it_follows_the_hand_and_says_where_it_cannot(editor: Page) -> None:
@@ -261,7 +261,7 @@ def test_a_conflict_of_two_tabs_is_put_to_the_person(editor: Page, context: Brow
 def test_a_curve_is_copied_to_another_speed_and_assigned_by_parts(editor: Page, tmp_path: Path) -> None:
     editor.get_by_label("Copy to", exact=True).fill("120")
     editor.keyboard.press("Enter")
-    assert editor.locator(".edit-curves tbody tr").count() == 6
+    expect(editor.locator(".edit-curves tbody tr")).to_have_count(6)
     editor.click("role=tab[name=Assign]")
     editor.get_by_label("Curve", exact=True).select_option("press@200")
     editor.get_by_label("Stroke", exact=True).select_option("press")

@@ -23,9 +23,6 @@ ROWS = ".lib-row:not([hidden])"
 NAMES = ("Kailh Pro Purple", "Gateron Yellow", "Silent Linear Red")
 
 
-expect.set_options(timeout=45_000)
-
-
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of three switches and a file that is none."""

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 import pytest
+from playwright.sync_api import expect
 from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
 
@@ -46,8 +47,8 @@ def learn(page: Page, speeds: str, rounds: str, presses: str, judged: str = "0")
 def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None:
     learn(page, "100", "1", "12", "2")
     page.wait_for_selector(DONE, timeout=LONG_ms)
-    assert page.locator(".multiple").count() == 1
-    assert page.locator(".job-head .tag.simulated").is_visible()
+    expect(page.locator(".multiple")).to_have_count(1)
+    expect(page.locator(".job-head .tag.simulated")).to_be_visible()
     page.get_by_text("Figures").click()
     rows = page.get_by_role("table", name="Errors of every curve").locator("tbody tr")
     press = rows.nth(0).locator("td").all_inner_texts()
@@ -61,7 +62,7 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     assert re.search(r"table\s+mx-clear", kept)
     assert re.search(r"measured on fresh presses\s+mx-clear", kept)
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
-    assert table.count() == 14
+    expect(table).to_have_count(14)
     assert audit(page) == []
     page.get_by_role("button", name="New one").click()
     page.get_by_label("or only judge, on fresh presses,").select_option("mx-clear")
@@ -118,7 +119,7 @@ def test_answers_are_blind_until_they_are_given(page: Page) -> None:
     assert "template" not in page.inner_text("main")
     page.keyboard.press("2")
     page.get_by_role("heading", name="Question 2").wait_for()
-    assert page.locator("details summary", has_text="may lead your answers").is_visible()
+    expect(page.locator("details summary", has_text="may lead your answers")).to_be_visible()
     assert "template" not in page.inner_text("main")
     page.get_by_role("button", name="Stop").click()
     page.wait_for_selector(".job-head .job-state.cancelled")
@@ -134,7 +135,7 @@ def test_a_capture_on_the_simulated_bench_becomes_a_button_of_ones_own(page: Pag
     takes = page.get_by_role("table", name="Takes, newest first")
     assert takes.locator("tbody tr").count() >= 5
     assert "good" in takes.inner_text()
-    assert page.get_by_text("simulated", exact=True).first.is_visible()
+    expect(page.get_by_text("simulated", exact=True).first).to_be_visible()
     opened(page, "compensate")
     page.get_by_label("Button", exact=True).select_option("own:my clear")
 
@@ -162,7 +163,7 @@ def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> N
     page.get_by_text("program: ").wait_for()
     page.get_by_role("button", name="Press once").click()
     page.get_by_text("felt in true displacement, simulated").wait_for()
-    assert page.get_by_role("img", name="Place of the cap over time").is_visible()
+    expect(page.get_by_role("img", name="Place of the cap over time")).to_be_visible()
     page.get_by_text("Each column is the least and the most").wait_for()
     page.get_by_role("button", name="Arm").click()
     page.locator(".job-state.mode-armed").wait_for()
@@ -198,5 +199,5 @@ def test_what_the_studio_refuses_is_told_in_one_line(context: BrowserContext, st
 def test_empty_pages_say_what_to_do_next(page: Page, section: str) -> None:
     opened(page, section)
     page.locator(".work-fields").first.wait_for()
-    assert page.get_by_text("No jobs yet").is_visible()
-    assert page.locator(".button.main").count() >= 1
+    expect(page.get_by_text("No jobs yet")).to_be_visible()
+    page.locator(".button.main").first.wait_for()

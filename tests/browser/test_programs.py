@@ -69,7 +69,7 @@ def test_every_shipped_program_opens_with_its_graph_and_is_accepted(
         gallery.goto(f"{studio.base}/#/programs/shipped:{name}")
         gallery.get_by_role("heading", level=1, name=load_shipped(name).name, exact=True).wait_for()
         gallery.wait_for_selector(".verdict.accepted")
-        assert gallery.locator(".node").count() == len(load_shipped(name).states)
+        expect(gallery.locator(".node")).to_have_count(len(load_shipped(name).states))
         gallery.locator(".node.start").wait_for()
     assert not gallery.locator(".save-state.saved").count()
 
@@ -102,7 +102,7 @@ def test_a_state_and_its_ways_are_drawn_by_mouse_checked_saved_and_there_after_a
 
     own.reload()
     own.wait_for_selector(".verdict.accepted")
-    assert own.locator(".node").count() == 3
+    expect(own.locator(".node")).to_have_count(3)
     kept = load_program(tmp_path / "project" / KEPT)
     assert [s.name for s in kept.states] == ["up", "down", "state"]
     assert [t.to for t in kept.state("down").transitions] == ["up", "state"]

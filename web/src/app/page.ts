@@ -16,6 +16,8 @@ export interface Entry {
   readonly label: string;
   /** Said under the label's place where there is room. */
   readonly hint: string;
+  /** Reached by its address only, with nothing of the studio around it: no navigation, no keys that lead away. */
+  readonly alone?: boolean;
   readonly load: () => Promise<{ readonly page: Page }>;
 }
 
@@ -26,4 +28,10 @@ export const PAGES: readonly Entry[] = [
   { name: "press", label: "Press", hint: "Press a button, simulated", load: () => import("../pages/press") },
   { name: "live", label: "Live work", hint: "Capture, compensate, tune, devices", load: () => import("../pages/live") },
   { name: "programs", label: "Programs", hint: "Buttons of several states", load: () => import("../pages/programs") },
+  { name: "optimize", label: "Optimise", hint: "Find the button you play best with", load: () => import("../pages/optimize") },
+  { name: "studies", label: "Studies", hint: "Compare buttons blind, with people", load: () => import("../pages/studies") },
+  { name: "study", label: "Study", hint: "The participant's screen", alone: true, load: () => import("../pages/study") },
 ];
+
+/** Every page that the navigation leads to. */
+export const LISTED: readonly Entry[] = PAGES.filter((entry) => !entry.alone);

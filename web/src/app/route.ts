@@ -38,15 +38,27 @@ export function go(page: string, id = "", query?: URLSearchParams | Record<strin
   location.hash = address(page, id, query);
 }
 
-/** Keep the state of a page's view in the address, without a step in the browser's history. */
+/** The address as it was last read or written here: another one is a step of the person's that is not read yet. */
+let known = "";
+
+/** Keep the state of a page's view in the address, without a step in the browser's history.
+ *
+ * Nothing is written while a new address waits for its `hashchange`, which browsers send later as a task of its own:
+ * it would be overwritten, and the person would stay where they are. */
 export function keepQuery(query: URLSearchParams | Record<string, string>): void {
+  if (location.hash !== known) return;
   const { page, id } = route.peek();
   const next = address(page, id, query);
-  if (next !== location.hash) history.replaceState(null, "", next);
+  if (next === known) return;
+  history.replaceState(null, "", next);
+  known = location.hash;
 }
 
 export function followAddress(): void {
-  const read = () => route.set(parseRoute(location.hash));
+  const read = () => {
+    known = location.hash;
+    route.set(parseRoute(known));
+  };
   addEventListener("hashchange", read);
   read();
 }

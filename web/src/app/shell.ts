@@ -1,8 +1,8 @@
 /** The frame around every page: navigation, theme, connection, keys. */
 
 import { live, type LiveState } from "../net/live";
-import { addShortcuts, button, effect, h, scope, shortcuts, signal, tell, type Cleanup } from "../ui";
-import { PAGES, type Entry, type Page } from "./page";
+import { addShortcuts, button, effect, h, scope, shortcuts, signal, tell, untracked, type Cleanup } from "../ui";
+import { LISTED, PAGES, type Entry, type Page } from "./page";
 import { address, go, route, type Route } from "./route";
 import { nextTheme, theme } from "./theme";
 
@@ -16,6 +16,9 @@ const SAID: Readonly<Record<LiveState, string>> = {
 /** Whether the help sheet is shown. */
 const helping = signal(false);
 
+/** Whether the page stands alone, with nothing of the studio around it. */
+const alone = (): boolean => !!PAGES.find((entry) => entry.name === route().page)?.alone;
+
 /** Parts of pages that stay in the header, such as a job that runs. */
 export const headerExtras = signal<readonly HTMLElement[]>([]);
 
@@ -23,11 +26,11 @@ export function mountShell(body: HTMLElement): void {
   const host = h("main", { id: "page", tabindex: "-1" });
   body.append(skipLink(host), header(), banner(), host, helpSheet());
   addShortcuts(
-    { keys: "?", does: "Show or hide this list", act: () => helping.update((on) => !on) },
-    ...PAGES.map((entry, at) => ({
+    { keys: "?", does: "Show or hide this list", act: () => untracked(alone) || helping.update((on) => !on) },
+    ...LISTED.map((entry, at) => ({
       keys: `Alt+${at + 1}`,
       does: `Go to ${entry.label}`,
-      act: () => go(entry.name),
+      act: () => untracked(alone) || go(entry.name),
       always: true,
     })),
   );
@@ -39,18 +42,18 @@ function skipLink(host: HTMLElement): HTMLElement {
     event.preventDefault();
     host.focus();
   };
-  return h("a", { class: "skip", href: "#page", on: { click } }, "Skip to the page");
+  return h("a", { class: "skip", href: "#page", hidden: alone, on: { click } }, "Skip to the page");
 }
 
 function header(): HTMLElement {
   return h(
     "header",
-    { class: "top" },
+    { class: "top", hidden: alone },
     h("a", { class: "brand", href: address("library") }, "fdvv studio"),
     h(
       "nav",
       { "aria-label": "Pages" },
-      PAGES.map((entry) =>
+      LISTED.map((entry) =>
         h(
           "a",
           {
@@ -75,7 +78,8 @@ function header(): HTMLElement {
 
 function banner(): HTMLElement {
   const line = () => SAID[live().state()];
-  return h("div", { class: () => `banner${live().state() === "lost" ? " shown" : ""}`, role: "status" }, line);
+  const lost = () => live().state() === "lost" && !alone();
+  return h("div", { class: () => `banner${lost() ? " shown" : ""}`, role: "status" }, line);
 }
 
 function helpSheet(): HTMLElement {
@@ -112,6 +116,7 @@ function showPages(host: HTMLElement): void {
       host.dataset["page"] = entry.name;
       document.title = `${page.title} · fdvv studio`;
       shown = { entry, page, key };
+      if (entry.alone) helping.set(false);
       leave = scope(() => page.mount(host, now));
       document.documentElement.dataset["ready"] = entry.name;
     } catch (error) {

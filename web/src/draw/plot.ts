@@ -4,6 +4,7 @@ import { effect, onCleanup, signal, type Signal } from "../ui/signal";
 import { h } from "../ui/element";
 import { CanvasBrush, SvgBrush, type Box, type Brush } from "./brush";
 import { drawFrame } from "./frame";
+import { zoomByHand } from "./hand";
 import { palette } from "./palette";
 import { linear, type DataPoint, type Range, type Scale, type ScreenPoint } from "./scale";
 
@@ -35,7 +36,7 @@ export interface PlotOptions {
   readonly still?: Layer;
   /** Drawn above it, on its own: what follows the hand. */
   readonly moving?: Layer;
-  /** The wheel and two fingers zoom, a drag with the middle button or with Space held pans. */
+  /** The wheel and two fingers on a touchpad zoom, + - and 0 too; a drag with the middle button pans. */
   readonly zoom?: boolean;
   readonly height_px?: number;
   /** Leave the axes' labels out, for small plots whose neighbours carry them. */
@@ -72,7 +73,7 @@ export class Plot {
       cancelAnimationFrame(this.frame);
     });
     this.follow();
-    if (options.zoom) this.listenForZoom();
+    if (options.zoom) zoomByHand(this);
   }
 
   /** Give the view of now. */
@@ -120,10 +121,9 @@ export class Plot {
     this.window.set({ x: scaled(x.range, factor, at.x), y: scaled(y.range, factor, at.y) });
   }
 
-  /** Move what is seen by parts of its size. */
-  panBy(x_ratio: number, y_ratio: number): void {
-    const { x, y } = this.view();
-    this.window.set({ x: shifted(x.range, x_ratio), y: shifted(y.range, y_ratio) });
+  /** Move what is seen, now or in an earlier view, by parts of its size. */
+  panBy(x_ratio: number, y_ratio: number, from: View = this.view()): void {
+    this.window.set({ x: shifted(from.x.range, x_ratio), y: shifted(from.y.range, y_ratio) });
   }
 
   /** Give the plot as an SVG file. */
@@ -203,48 +203,6 @@ export class Plot {
     const { clientWidth: width_px, clientHeight: height_px } = this.element;
     const now = this.size.peek();
     if (now.width_px !== width_px || now.height_px !== height_px) this.size.set({ width_px, height_px });
-  }
-
-  private listenForZoom(): void {
-    this.element.addEventListener(
-      "wheel",
-      (event) => {
-        event.preventDefault();
-        this.zoomBy(Math.exp(event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), this.at(event));
-      },
-      { passive: false },
-    );
-    this.element.addEventListener("pointerdown", (event) => {
-      if (event.button === 1) this.startPan(event);
-    });
-    this.element.addEventListener("keydown", (event) => this.onKey(event));
-  }
-
-  private startPan(event: PointerEvent): void {
-    event.preventDefault();
-    const [start, view] = [this.at(event), this.view()];
-    this.element.setPointerCapture(event.pointerId);
-    const move = (now: PointerEvent) => {
-      const to = this.at(now);
-      const x_ratio = (start.x_px - to.x_px) / view.box.width;
-      const y_ratio = (to.y_px - start.y_px) / view.box.height;
-      this.window.set({ x: shifted(view.x.range, x_ratio), y: shifted(view.y.range, y_ratio) });
-    };
-    const end = () => {
-      this.element.removeEventListener("pointermove", move);
-      this.element.removeEventListener("pointerup", end);
-    };
-    this.element.addEventListener("pointermove", move);
-    this.element.addEventListener("pointerup", end);
-  }
-
-  private onKey(event: KeyboardEvent): void {
-    if (event.target !== this.element || event.defaultPrevented) return;
-    if (event.key === "+" || event.key === "=") this.zoomBy(0.8);
-    else if (event.key === "-") this.zoomBy(1.25);
-    else if (event.key === "0") this.fit();
-    else return;
-    event.preventDefault();
   }
 }
 

@@ -38,6 +38,9 @@ export function linear(range: Range, from_px: number, to_px: number): Scale {
   };
 }
 
+/** By how much more labels than asked for may stand on an axis. */
+const MORE = 1.3;
+
 /** Give round values about so far apart that `count` of them fill the range. */
 export function ticks(range: Range, count: number): number[] {
   const step = tickStep(range, count);
@@ -46,10 +49,11 @@ export function ticks(range: Range, count: number): number[] {
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
 }
 
+/** Give the round step: rather a few more labels than hardly any. */
 export function tickStep(range: Range, count: number): number {
   const rough = Math.abs(range.high - range.low) / Math.max(1, count) || 1;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const factor = [1, 2, 5, 10].find((f) => f * power >= rough * (1 - 1e-9)) ?? 10;
+  const factor = [1, 2, 5, 10].find((f) => f * power >= rough / MORE) ?? 10;
   return factor * power;
 }
 

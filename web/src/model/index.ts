@@ -13,7 +13,8 @@ export {
 } from "./curves";
 export { applyEdit, type Edit, together } from "./edit";
 export { addNote, type ModelNumber, renameModel, setInterpolation, setNumber, setProvenance } from "./facts";
-export { History, type HistoryRecord, type Made, NUDGE_s, type Pin, type Step, type When } from "./history";
+export { History, type HistoryRecord, type Made, type Pin, type Step } from "./history";
+export { NUDGE_s, type When } from "./steps";
 export { type Conflict, CONFLICTS, merge, type MergeOptions, mergeModels } from "./merge";
 export {
   canonical,

@@ -7,6 +7,7 @@
  * edited the same state, the person chooses.
  */
 
+import { lineOf } from "../math/words";
 import type { Edit } from "./edit";
 import { History, type Made, type Pin, type Step } from "./history";
 import { Outbox, type Sent } from "./outbox";
@@ -107,8 +108,8 @@ export class DocumentStore {
 
   /** Do an edit. Throws ModelError, and then nothing has changed. nudge : edits of one kind become one step. */
   apply(edit: Edit, nudge?: string): boolean {
-    const when = { time_s: this.#around.now_s(), ...(nudge === undefined ? {} : { nudge }) };
-    return this.#made(this.#history.apply(edit, when), when.time_s);
+    const time_s = this.#around.now_s();
+    return this.#made(this.#history.apply(edit, { time_s, nudge }), time_s);
   }
 
   /** Begin a drag. */
@@ -285,8 +286,4 @@ export class DocumentStore {
   #tell(): void {
     for (const listener of [...this.#listeners]) listener();
   }
-}
-
-function lineOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

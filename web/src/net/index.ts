@@ -1,5 +1,6 @@
 /** The studio's server. */
 
 export * from "./call";
+export * from "./clock";
 export * from "./live";
 export type * from "./messages";

@@ -36,6 +36,19 @@ export interface Calls {
   readonly "library.refused": { readonly ask: LibraryRefusedAsk; readonly answer: LibraryRefused };
   readonly "library.rescan": { readonly ask: LibraryRescanAsk; readonly answer: LibraryStanding };
   readonly "library.search": { readonly ask: LibraryQuery; readonly answer: LibraryRows };
+  readonly "optimize.abandon": { readonly ask: OptimizeTrialAsk; readonly answer: OptimizeTrialAsk };
+  readonly "optimize.answer": { readonly ask: OptimizeAnswer; readonly answer: OptimizePairAsk };
+  readonly "optimize.best": { readonly ask: OptimizeAsk; readonly answer: OptimizeBest };
+  readonly "optimize.create": { readonly ask: OptimizeCreate; readonly answer: OptimizeAsk };
+  readonly "optimize.detail": { readonly ask: OptimizeAsk; readonly answer: OptimizeDetail };
+  readonly "optimize.edit": { readonly ask: OptimizeEdit; readonly answer: OptimizeTrialAsk };
+  readonly "optimize.halt": { readonly ask: OptimizeAsk; readonly answer: OptimizeAsk };
+  readonly "optimize.list": { readonly ask: OptimizeListAsk; readonly answer: OptimizeRows };
+  readonly "optimize.model": { readonly ask: OptimizeModelAsk; readonly answer: OptimizeModel };
+  readonly "optimize.next": { readonly ask: OptimizeAsk; readonly answer: OptimizeTrialAsk };
+  readonly "optimize.offers": { readonly ask: OptimizeOffersAsk; readonly answer: OptimizeOffers };
+  readonly "optimize.pair": { readonly ask: OptimizeAsk; readonly answer: OptimizePairAsk };
+  readonly "optimize.simulate": { readonly ask: OptimizeSimulate; readonly answer: OptimizeAsk };
   readonly "press.list": { readonly ask: PressListAsk; readonly answer: PressList };
   readonly "press.trace": { readonly ask: TraceReadAsk; readonly answer: TraceRead };
   readonly "program.check": { readonly ask: CheckProgram; readonly answer: ProgramCheck };
@@ -49,6 +62,20 @@ export interface Calls {
   readonly "program.restore": { readonly ask: ThrownProgram; readonly answer: ProgramText };
   readonly "program.save": { readonly ask: SaveProgram; readonly answer: ProgramText };
   readonly "program.surface": { readonly ask: SurfaceAsk; readonly answer: ProgramSurface };
+  readonly "studies.create": { readonly ask: StudiesCreate; readonly answer: StudiesAsk };
+  readonly "studies.detail": { readonly ask: StudiesAsk; readonly answer: StudiesDetail };
+  readonly "studies.freeze": { readonly ask: StudiesFreeze; readonly answer: StudiesDetail };
+  readonly "studies.list": { readonly ask: StudiesListAsk; readonly answer: StudiesRows };
+  readonly "studies.offers": { readonly ask: StudiesOffersAsk; readonly answer: StudiesOffers };
+  readonly "studies.pause": { readonly ask: StudiesPause; readonly answer: StudiesDetail };
+  readonly "studies.plan": { readonly ask: StudiesAsk; readonly answer: StudiesPlan };
+  readonly "studies.report": { readonly ask: StudiesAsk; readonly answer: StudiesReport };
+  readonly "studies.seat": { readonly ask: StudiesAsk; readonly answer: StudiesSeat };
+  readonly "studies.unseal": { readonly ask: StudiesUnseal; readonly answer: StudiesUnsealed };
+  readonly "studies.use": { readonly ask: StudiesUse; readonly answer: StudiesDetail };
+  readonly "studies.verify": { readonly ask: StudiesAsk; readonly answer: StudiesVerified };
+  readonly "studies.withdraw": { readonly ask: StudiesWithdraw; readonly answer: StudiesDetail };
+  readonly "studies.write": { readonly ask: StudiesWrite; readonly answer: StudiesPlan };
   readonly "studio.about": { readonly ask: AboutAsk; readonly answer: About };
 }
 
@@ -56,8 +83,12 @@ export interface Channels {
   readonly "documents": { readonly asks: DocumentsWatch; readonly tells: DocumentsWatching | DocumentChanged | DocumentGone };
   readonly "jobs": { readonly asks: WatchJobs | WatchJob; readonly tells: JobsTold | JobChanged | EventsTold };
   readonly "library": { readonly asks: LibraryWatch; readonly tells: LibraryStanding };
+  readonly "optimize": { readonly asks: OptimizeWatch; readonly tells: OptimizeWatching | OptimizeChanged };
+  readonly "play": { readonly asks: PlayOpen | PlayPing | PlayDown | PlayUp | PlayRound | PlayClose; readonly tells: PlayReady | PlayPong | PlayClick | PlayKept | PlayOver };
   readonly "press": { readonly asks: PressStart | PressLead | PressPush | PressLift | PressReplay | PressHostEvent | PressHere | PressPause | PressStop | PressFail | PressClear; readonly tells: PressReady | PressMeant | PressFrame | PressRefused | PressOver };
   readonly "scope": { readonly asks: WatchScope; readonly tells: DeviceStanding | ScopeTold | PressSeen };
+  readonly "studies": { readonly asks: StudiesWatch; readonly tells: StudiesWatching | StudiesChanged };
+  readonly "study": { readonly asks: StudyLook | StudySit | StudyResume | StudyShown | StudyGo | StudyLead | StudyPush | StudyLift | StudyAgain | StudyAnswered | StudyFilled | StudyRested | StudyWithdraw | StudyHere; readonly tells: StudyAbout | StudyCard | StudyStep | StudyReady | StudyFelt | StudyFrame | StudyBroke | StudyPaused | StudyStopped };
 }
 
 export interface DeviceAsk {
@@ -633,6 +664,184 @@ export interface LibraryRows {
   readonly ended: boolean;
 }
 
+export interface OptimizeTrialAsk {
+  readonly run: number;
+  readonly trial: number;
+}
+
+export interface OptimizeAnswer {
+  readonly run: number;
+  readonly pair: number;
+  readonly answer: Answer;
+}
+
+export type Answer = "first" | "second" | "equal";
+
+export interface OptimizePairAsk {
+  readonly run: number;
+  readonly pair: number;
+}
+
+export interface OptimizeAsk {
+  readonly run: number;
+}
+
+export interface OptimizeBest {
+  readonly design: Readonly<Record<string, number>> | null;
+}
+
+export interface OptimizeCreate {
+  readonly title: string;
+  readonly engine: string;
+  readonly space: string;
+  readonly preference: boolean;
+  readonly simulated: boolean;
+  readonly level: "easy" | "hard";
+  readonly also: readonly string[];
+  readonly start: string | null;
+  readonly rig: string | null;
+  readonly seed: number;
+  readonly budget: number;
+  readonly task_presses?: number;
+}
+
+export interface OptimizeDetail {
+  readonly row: OptimizeRow;
+  readonly seed: number;
+  readonly parameters: readonly OptimizeParameter[];
+  readonly rules: readonly string[];
+  readonly objectives: readonly OptimizeObjective[];
+  readonly rounds: number;
+  readonly strip: OptimizeStrip;
+  readonly trials: readonly OptimizeTrial[];
+  readonly pairs: readonly OptimizePair[];
+  readonly start: Readonly<Record<string, number>> | null;
+  readonly start_name: string;
+  readonly simulated: OptimizeSimulated | null;
+  readonly playable: boolean;
+}
+
+export interface OptimizeRow {
+  readonly run: number;
+  readonly title: string;
+  readonly engine: string;
+  readonly preference: boolean;
+  readonly simulated: boolean;
+  readonly level: string;
+  readonly spent: number;
+  readonly budget: number;
+  readonly best: OptimizeScore | null;
+  readonly made: string;
+  readonly problem: string;
+}
+
+export interface OptimizeScore {
+  readonly value: number;
+  readonly error: number | null;
+}
+
+export interface OptimizeParameter {
+  readonly name: string;
+  readonly low: number;
+  readonly high: number;
+}
+
+export interface OptimizeObjective {
+  readonly name: string;
+  readonly larger_is_better: boolean;
+}
+
+export interface OptimizeStrip {
+  readonly pixels: number;
+  readonly zone_px: number;
+  readonly zone_half_px: number;
+  readonly speed_px_s: number;
+}
+
+export interface OptimizeTrial {
+  readonly number: number;
+  readonly design: Readonly<Record<string, number>>;
+  readonly edited: boolean;
+  readonly state: TrialState;
+  readonly scores: Readonly<Record<string, OptimizeScore>>;
+  readonly reason: string;
+  readonly origin: string;
+  readonly curve: OptimizeCurve;
+  readonly front: boolean;
+}
+
+export type TrialState = "suggested" | "shown" | "done" | "failed" | "abandoned";
+
+export interface OptimizeCurve {
+  readonly step_mm: number;
+  readonly force_cN: readonly number[];
+  readonly actuation_mm: number | null;
+}
+
+export interface OptimizePair {
+  readonly number: number;
+  readonly first: Readonly<Record<string, number>>;
+  readonly second: Readonly<Record<string, number>>;
+  readonly first_curve: OptimizeCurve;
+  readonly second_curve: OptimizeCurve;
+  readonly answer: Answer | null;
+}
+
+export interface OptimizeSimulated {
+  readonly running: boolean;
+  readonly done: number;
+  readonly total: number;
+  readonly told: string;
+  readonly fault: string;
+}
+
+export interface OptimizeEdit {
+  readonly run: number;
+  readonly trial: number;
+  readonly design: Readonly<Record<string, number>>;
+}
+
+export interface OptimizeListAsk {
+}
+
+export interface OptimizeRows {
+  readonly rows: readonly OptimizeRow[];
+}
+
+export interface OptimizeModelAsk {
+  readonly run: number;
+  readonly design: Readonly<Record<string, number>>;
+  readonly name: string;
+}
+
+export interface OptimizeModel {
+  readonly model: Readonly<Record<string, unknown>>;
+}
+
+export interface OptimizeOffersAsk {
+}
+
+export interface OptimizeOffers {
+  readonly engines: readonly OptimizeOffer[];
+  readonly pair_engines: readonly OptimizeOffer[];
+  readonly spaces: readonly OptimizeOffer[];
+  readonly rigs: readonly OptimizeOffer[];
+  readonly levels: readonly OptimizeOffer[];
+  readonly objectives: readonly OptimizeOffer[];
+  readonly starts: readonly OptimizeOffer[];
+}
+
+export interface OptimizeOffer {
+  readonly name: string;
+  readonly told: string;
+}
+
+export interface OptimizeSimulate {
+  readonly run: number;
+  readonly person: number;
+  readonly trials: number;
+}
+
 export interface PressListAsk {
 }
 
@@ -802,6 +1011,145 @@ export interface ProgramSurface {
   readonly displacement_mm: readonly number[];
   readonly velocity_mm_s: readonly number[];
   readonly force_cN: readonly (readonly number[])[];
+}
+
+export interface StudiesCreate {
+  readonly name: string;
+  readonly template: string;
+}
+
+export interface StudiesAsk {
+  readonly study: string;
+}
+
+export interface StudiesDetail {
+  readonly row: StudiesRow;
+  readonly fingerprint: string;
+  readonly frozen: string;
+  readonly people: readonly StudiesPerson[];
+  readonly waiting: number;
+  readonly paused: boolean;
+  readonly history: readonly string[];
+  readonly device: string;
+  readonly devices: readonly StudiesDevice[];
+}
+
+export interface StudiesRow {
+  readonly name: string;
+  readonly title: string;
+  readonly kind: string;
+  readonly state: "broken" | "draft" | "frozen" | "unsealed";
+  readonly people: number;
+  readonly planned: number;
+  readonly problem: string;
+}
+
+export interface StudiesPerson {
+  readonly person: string;
+  readonly language: string;
+  readonly state: string;
+  readonly answered: number;
+  readonly trials: number;
+  readonly here: boolean;
+  readonly paused: boolean;
+  readonly told: string;
+}
+
+export interface StudiesDevice {
+  readonly name: string;
+  readonly about: string;
+}
+
+export interface StudiesFreeze {
+  readonly study: string;
+  readonly passphrase: string;
+}
+
+export interface StudiesListAsk {
+}
+
+export interface StudiesRows {
+  readonly rows: readonly StudiesRow[];
+}
+
+export interface StudiesOffersAsk {
+}
+
+export interface StudiesOffers {
+  readonly templates: readonly StudiesOffer[];
+}
+
+export interface StudiesOffer {
+  readonly name: string;
+  readonly told: string;
+}
+
+export interface StudiesPause {
+  readonly study: string;
+  readonly person: string | null;
+  readonly on: boolean;
+}
+
+export interface StudiesPlan {
+  readonly study: string;
+  readonly text: string;
+  readonly problems: readonly string[];
+  readonly preview: readonly StudiesSection[];
+}
+
+export interface StudiesSection {
+  readonly title: string;
+  readonly paragraphs: readonly string[];
+  readonly tables: readonly StudiesTable[];
+}
+
+export interface StudiesTable {
+  readonly heads: readonly string[];
+  readonly rows: readonly (readonly string[])[];
+}
+
+export interface StudiesReport {
+  readonly name: string;
+  readonly html: string;
+}
+
+export interface StudiesSeat {
+  readonly study: string;
+  readonly seat: string;
+}
+
+export interface StudiesUnseal {
+  readonly study: string;
+  readonly passphrase: string;
+  readonly who: string;
+  readonly why: string;
+}
+
+export interface StudiesUnsealed {
+  readonly rows: number;
+  readonly excluded: number;
+  readonly folder: string;
+}
+
+export interface StudiesUse {
+  readonly study: string;
+  readonly device: string;
+}
+
+export interface StudiesVerified {
+  readonly problems: readonly string[];
+}
+
+export interface StudiesWithdraw {
+  readonly study: string;
+  readonly person: string;
+  readonly delete: boolean;
+}
+
+export interface StudiesWrite {
+  readonly study: string;
+  readonly text: string;
+  readonly keep: boolean;
 }
 
 export interface AboutAsk {
@@ -1027,6 +1375,112 @@ export interface LibraryWatch {
   readonly type: "watch";
 }
 
+export interface OptimizeWatch {
+  readonly type: "watch";
+}
+
+export interface OptimizeWatching {
+  readonly type: "watching";
+}
+
+export interface OptimizeChanged {
+  readonly type: "changed";
+  readonly run: number;
+}
+
+export interface PlayOpen {
+  readonly type: "open";
+  readonly run: number;
+  readonly trial: number;
+}
+
+export interface PlayPing {
+  readonly type: "ping";
+  readonly sent_ms: number;
+}
+
+export interface PlayDown {
+  readonly type: "down";
+  readonly at_ms: number;
+}
+
+export interface PlayUp {
+  readonly type: "up";
+  readonly at_ms: number;
+}
+
+export interface PlayRound {
+  readonly type: "round";
+  readonly number: number;
+  readonly start_ms: number;
+  readonly target_ms: number;
+  readonly end_ms: number;
+  readonly hand: "key" | "mouse" | "pen" | "touch";
+  readonly display: PlayDelay;
+  readonly input: PlayDelay;
+  readonly clock_ms: number | null;
+  readonly clock_error_ms: number | null;
+  readonly frame_ms: number;
+}
+
+export interface PlayDelay {
+  readonly ms: number;
+  readonly error_ms: number;
+}
+
+export interface PlayClose {
+  readonly type: "close";
+}
+
+export interface PlayReady {
+  readonly type: "ready";
+  readonly run: number;
+  readonly trial: number;
+  readonly attempt: number;
+  readonly rounds: number;
+  readonly told: string;
+  readonly signals: readonly ShakeSignal[];
+}
+
+export interface ShakeSignal {
+  readonly name: string;
+  readonly duration_s: number;
+  readonly modes: readonly ShakeMode[];
+}
+
+export interface ShakeMode {
+  readonly frequency_Hz: number;
+  readonly amplitude_m_s2: number;
+  readonly decay_1_s: number;
+  readonly phase_rad: number;
+}
+
+export interface PlayPong {
+  readonly type: "pong";
+  readonly sent_ms: number;
+  readonly server_ms: number;
+}
+
+export interface PlayClick {
+  readonly type: "click";
+  readonly slot: number;
+  readonly server_ms: number;
+  readonly velocity_mm_s: number;
+}
+
+export interface PlayKept {
+  readonly type: "kept";
+  readonly number: number;
+  readonly late_ms: number | null;
+  readonly transport_ms: number | null;
+  readonly finished: boolean;
+}
+
+export interface PlayOver {
+  readonly type: "over";
+  readonly reason: string;
+}
+
 export interface PressStart {
   readonly type: "start";
   readonly button?: string | null;
@@ -1111,19 +1565,6 @@ export interface PressPlace {
   readonly place_mm: number;
 }
 
-export interface ShakeSignal {
-  readonly name: string;
-  readonly duration_s: number;
-  readonly modes: readonly ShakeMode[];
-}
-
-export interface ShakeMode {
-  readonly frequency_Hz: number;
-  readonly amplitude_m_s2: number;
-  readonly decay_1_s: number;
-  readonly phase_rad: number;
-}
-
 export interface PressMeant {
   readonly type: "meant";
   readonly velocity_mm_s: number;
@@ -1202,4 +1643,198 @@ export interface PressSeen {
   readonly felt_release_cN: readonly (number | null)[];
   readonly intended_press_cN: readonly number[];
   readonly intended_release_cN: readonly number[];
+}
+
+export interface StudiesWatch {
+  readonly type: "watch";
+}
+
+export interface StudiesWatching {
+  readonly type: "watching";
+}
+
+export interface StudiesChanged {
+  readonly type: "changed";
+  readonly study: string;
+}
+
+export interface StudyLook {
+  readonly type: "look";
+  readonly study: string;
+  readonly seat: string;
+}
+
+export interface StudySit {
+  readonly type: "sit";
+  readonly study: string;
+  readonly seat: string;
+  readonly language: string;
+}
+
+export interface StudyResume {
+  readonly type: "resume";
+  readonly study: string;
+  readonly person: string;
+  readonly code: string;
+}
+
+export interface StudyShown {
+  readonly type: "shown";
+  readonly number: number;
+}
+
+export interface StudyGo {
+  readonly type: "go";
+  readonly label: string;
+}
+
+export interface StudyLead {
+  readonly type: "lead";
+  readonly referent_mm: number;
+  readonly velocity_mm_s: number;
+  readonly near_1_s?: number;
+}
+
+export interface StudyPush {
+  readonly type: "push";
+  readonly force_cN: number;
+}
+
+export interface StudyLift {
+  readonly type: "lift";
+}
+
+export interface StudyAgain {
+  readonly type: "again";
+}
+
+export interface StudyAnswered {
+  readonly type: "answer";
+  readonly number: number;
+  readonly choice: string;
+  readonly ratings: Readonly<Record<string, Readonly<Record<string, number>>>>;
+}
+
+export interface StudyFilled {
+  readonly type: "page";
+  readonly name: string;
+  readonly values: Readonly<Record<string, string | number>>;
+  readonly agreed: boolean;
+}
+
+export interface StudyRested {
+  readonly type: "rested";
+}
+
+export interface StudyWithdraw {
+  readonly type: "withdraw";
+}
+
+export interface StudyHere {
+  readonly type: "here";
+}
+
+export interface StudyAbout {
+  readonly type: "about";
+  readonly study: string;
+  readonly titles: Readonly<Record<string, string>>;
+  readonly languages: readonly string[];
+  readonly seat: boolean;
+}
+
+export interface StudyCard {
+  readonly type: "card";
+  readonly person: string;
+  readonly language: string;
+  readonly code: string;
+}
+
+export interface StudyStep {
+  readonly type: "step";
+  readonly kind: "break" | "declined" | "done" | "page" | "practice" | "trial" | "withdrawn";
+  readonly progress_ratio: number;
+  readonly form?: StudyForm | null;
+  readonly task?: StudyTask | null;
+  readonly left_s?: number | null;
+}
+
+export interface StudyForm {
+  readonly name: string;
+  readonly title: string;
+  readonly paragraphs: readonly string[];
+  readonly questions: readonly StudyAsked[];
+  readonly consent: boolean;
+}
+
+export interface StudyAsked {
+  readonly name: string;
+  readonly question: string;
+  readonly choices: readonly string[];
+  readonly low: number | null;
+  readonly high: number | null;
+  readonly required: boolean;
+}
+
+export interface StudyTask {
+  readonly number: number;
+  readonly at: number;
+  readonly of: number;
+  readonly item: string;
+  readonly question: string;
+  readonly places: readonly string[];
+  readonly choices: readonly string[];
+  readonly equal: string;
+  readonly rated: readonly string[];
+  readonly scales: readonly StudyScale[];
+}
+
+export interface StudyScale {
+  readonly name: string;
+  readonly question: string;
+  readonly low: string;
+  readonly high: string;
+  readonly points: number;
+}
+
+export interface StudyReady {
+  readonly type: "ready";
+  readonly number: number;
+  readonly travel_mm: number;
+  readonly signals: readonly ShakeSignal[];
+}
+
+export interface StudyFelt {
+  readonly type: "felt";
+  readonly label: string;
+}
+
+export interface StudyFrame {
+  readonly type: "frame";
+  readonly label: string;
+  readonly t_s: number;
+  readonly displacement_mm: number;
+  readonly key: boolean;
+  readonly pressed: number;
+  readonly dropped_s: number;
+  readonly clicks: readonly StudyClick[];
+}
+
+export interface StudyClick {
+  readonly sound: number;
+  readonly t_s: number;
+  readonly velocity_mm_s: number;
+}
+
+export interface StudyBroke {
+  readonly type: "broke";
+}
+
+export interface StudyPaused {
+  readonly type: "paused";
+  readonly on: boolean;
+}
+
+export interface StudyStopped {
+  readonly type: "stopped";
+  readonly reason: string;
 }

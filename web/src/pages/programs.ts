@@ -2,6 +2,7 @@
 
 import type { Page } from "../app/page";
 import { go } from "../app/route";
+import { lineOf } from "../math/words";
 import { call } from "../net";
 import type { ProgramText } from "../net/messages";
 import { button, empty, h, onCleanup, scope, type Cleanup } from "../ui";
@@ -36,7 +37,7 @@ function openProgram(host: HTMLElement, id: string, at: string): void {
   };
   const missing = (error: unknown): void =>
     place.replaceChildren(
-      empty("It cannot be opened", error instanceof Error ? error.message : String(error), button({ label: "All programs", act: () => go("programs") })),
+      empty("It cannot be opened", lineOf(error), button({ label: "All programs", act: () => go("programs") })),
     );
   call("program.open", { program: id }).then(show, missing);
 }

@@ -1,4 +1,4 @@
-import type { Condition, ConditionKind, VelocitySource } from "./document";
+import type { Condition, ConditionKind, ProgramDocument, VelocitySource } from "./document";
 
 /** What is known of a kind of condition. */
 export interface KindOfCondition {
@@ -146,4 +146,10 @@ export function transitionInWords(
 export function placeOf_mm(told: Condition): number | null {
   const name = kindOf(told).kind;
   return name === "deeper_than_mm" || name === "shallower_than_mm" ? valueOf(told) : null;
+}
+
+/** A new arrow leads on beyond half the travel, or back above a quarter of it: far enough apart not to flutter. */
+export function firstCondition(document: ProgramDocument, from: string): Condition {
+  const part_mm = (ratio: number): number => Math.round(document.travel_mm * ratio * 100) / 100;
+  return from === document.start ? condition("deeper_than_mm", part_mm(0.5)) : condition("shallower_than_mm", part_mm(0.25));
 }

@@ -3,5 +3,7 @@
 export * from "./controls";
 export * from "./element";
 export * from "./keys";
+export * from "./later";
+export * from "./pointer";
 export * from "./signal";
 export * from "./toast";

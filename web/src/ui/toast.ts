@@ -1,5 +1,6 @@
 /** Short notices at the edge of the page, read out by screen readers; errors stay until they are closed. */
 
+import { lineOf } from "../math/words";
 import { h } from "./element";
 
 export type ToastKind = "told" | "done" | "wrong";
@@ -25,5 +26,5 @@ export function toast(text: string, kind: ToastKind = "told"): () => void {
 
 /** Tell what went wrong, whatever was thrown. */
 export function tell(error: unknown): void {
-  toast(error instanceof Error ? error.message : String(error), "wrong");
+  toast(lineOf(error), "wrong");
 }

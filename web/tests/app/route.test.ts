@@ -1,5 +1,8 @@
+// @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import { address, parseRoute } from "../../src/app/route";
+import { address, followAddress, go, keepQuery, parseRoute, route } from "../../src/app/route";
+
+const told = () => new Promise((done) => addEventListener("hashchange", done, { once: true }));
 
 describe("an address", () => {
   it("is read as it was written", () => {
@@ -12,5 +15,28 @@ describe("an address", () => {
   it("is read whatever a person types", () => {
     for (const hash of ["", "#", "#/", "#/edit", "#edit/x", "#/edit/%", "#/a/b/c?d"]) expect(() => parseRoute(hash)).not.toThrow();
     expect(parseRoute("#/edit/%").id).toBe("%");
+  });
+});
+
+describe("the state of a view", () => {
+  it("is kept in the address without a step in the browser's history", () => {
+    location.hash = "";
+    followAddress();
+    const steps = history.length;
+    keepQuery({ q: "mx" });
+    keepQuery({ q: "mx clear" });
+    expect([location.hash, history.length]).toEqual([address("", "", { q: "mx clear" }), steps]);
+  });
+
+  it("does not write over an address the browser has not told yet", async () => {
+    followAddress();
+    for (const leave of [() => go("press", "own:a"), () => go("press", "own:a", { mode: "measured" }), () => go("library")]) {
+      const change = told();
+      leave();
+      keepQuery({ q: "late" });
+      await change;
+      expect(location.hash).not.toContain("late");
+      expect(route.peek()).toEqual(parseRoute(location.hash));
+    }
   });
 });

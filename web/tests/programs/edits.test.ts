@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { KINDS, condition, inWords, kindOf, shortly, transitionInWords, valueProblem } from "../../src/programs/condition";
+import { KINDS, condition, firstCondition, inWords, kindOf, shortly, transitionInWords, valueProblem } from "../../src/programs/condition";
 import { freeName, nameProblem, transitionsOf } from "../../src/programs/document";
 import type { ProgramDocument } from "../../src/programs/document";
 import * as edits from "../../src/programs/edits";
@@ -10,6 +10,13 @@ import { flatSurface } from "../../src/programs/surface";
 import { SHIPPED, randomProgram, seeded } from "./shipped";
 
 const [button, dwell] = [SHIPPED[0]!, SHIPPED[1]!];
+
+it("begins an arrow from the start beyond half the travel, another above a quarter of it", () => {
+  const [travel_mm, other] = [4, button.states.find((state) => state.name !== button.start)!.name];
+  const held = { ...button, travel_mm };
+  expect(firstCondition(held, held.start)).toEqual(condition("deeper_than_mm", 2));
+  expect(firstCondition(held, other)).toEqual(condition("shallower_than_mm", 1));
+});
 
 /** Names that a document refers to and that are not there, or are there twice. */
 function dangling(document: ProgramDocument): string[] {

@@ -1,5 +1,6 @@
 /** What the chosen rig makes of the active curve, asked while the hand moves, and what presses gave. */
 
+import { lineOf } from "../../math/words";
 import { call } from "../../net";
 import type { AchievableForce, MeasuredPresses, RigChoice } from "../../net/messages";
 import type { FDVVModel } from "../../model";
@@ -68,8 +69,4 @@ function answered(view: RigView, curves: readonly AchievableForce[], wrong: stri
   view.curves.set(curves);
   view.wrong.set(wrong);
   view.waiting.set(false);
-}
-
-function lineOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -15,11 +15,13 @@ export interface Finder {
 export function finder(store: LibraryStore, open: (id: string) => void, showFilters: () => void): Finder {
   const list = new ButtonList(store, open);
   const search = searchLine(store, list);
+  // of its own: a letter that is typed changes nothing that is read out until its answer is there
+  const like = computed(() => store.query().like);
   const element = h(
     "section",
     { class: "panel lib-finder", "aria-label": "Buttons" },
     h("div", { class: "row" }, search, button({ label: "Filters", act: showFilters, hint: "Show or hide the filters (F)" })),
-    h("div", { class: "row spread lib-status" }, h("span", { role: "status" }, () => status(store)), sorting(store)),
+    h("div", { class: "row spread lib-status" }, h("span", { role: "status" }, () => status(store, like())), sorting(store)),
     () => indexing(store),
     heads(store),
     h("div", { class: "lib-list-place" }, list.element, () => nothing(store)),
@@ -55,10 +57,9 @@ function searchLine(store: LibraryStore, list: ButtonList): HTMLInputElement {
   return search;
 }
 
-function status(store: LibraryStore): Child {
+function status(store: LibraryStore, like: string | null): Child {
   store.grown();
   const { positions, mended } = store.found();
-  const like = store.query().like;
   const of = positions.length === store.rows.length ? `${positions.length} buttons` : `${positions.length} of ${store.rows.length} buttons`;
   const typo = mended.length ? `; no such word as “${mended.join("”, “")}”: read with a letter changed` : "";
   const near = like === null ? "" : `, nearest first to ${store.rows.names[store.rows.at(like)] ?? like}`;

@@ -2,7 +2,7 @@
 
 import { palette } from "../../draw";
 import type { LibraryHistogram } from "../../net/messages";
-import { button, effect, h, numberField } from "../../ui";
+import { afterPaint, button, computed, effect, followPointer, h, numberField } from "../../ui";
 import { columnOf, type Column } from "./columns";
 import type { RangeAsked } from "./state";
 import type { LibraryStore } from "./store";
@@ -12,7 +12,8 @@ const OPEN: RangeAsked = { low: null, high: null };
 
 export function rangeFilter(store: LibraryStore, name: string): HTMLElement {
   const column = columnOf(name) as Column;
-  const range = () => store.query().ranges[name] ?? OPEN;
+  // of its own, so that a letter that is typed redraws no filter
+  const range = computed(() => store.query().ranges[name] ?? OPEN);
   const set = (next: RangeAsked) => {
     const others = Object.entries(store.query.peek().ranges).filter(([other]) => other !== name);
     const all = next.low === null && next.high === null ? others : [...others, [name, next] as const];
@@ -51,24 +52,15 @@ function picture(store: LibraryStore, name: string, range: () => RangeAsked, set
   effect(() => {
     const found = store.found().histograms[name];
     draw(canvas, found, range());
-  });
+  }, afterPaint());
   canvas.addEventListener("pointerdown", (event) => {
     const found = store.found.peek().histograms[name];
     if (!found) return;
-    canvas.setPointerCapture(event.pointerId);
     const from = valueAt(canvas, found, event);
-    const move = (now: PointerEvent) => {
+    followPointer(canvas, event, (now) => {
       const to = valueAt(canvas, found, now);
       if (from !== to) set({ low: Math.min(from, to), high: Math.max(from, to) });
-    };
-    const end = () => {
-      canvas.removeEventListener("pointermove", move);
-      canvas.removeEventListener("pointerup", end);
-      canvas.removeEventListener("pointercancel", end);
-    };
-    canvas.addEventListener("pointermove", move);
-    canvas.addEventListener("pointerup", end);
-    canvas.addEventListener("pointercancel", end);
+    });
   });
   return canvas;
 }

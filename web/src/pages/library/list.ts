@@ -63,7 +63,6 @@ export class ButtonList {
     effect(() => {
       store.query();
       this.element.ariaBusy = "true";
-      this.element.scrollTop = 0;
     });
   }
 
@@ -108,6 +107,9 @@ export class ButtonList {
   /** Put the rows in sight in their places; a row that is there already is only moved. */
   private paint(): void {
     const count = this.store.found.peek().positions.length;
+    const settled = this.store.answered.peek() === this.store.query.peek();
+    // the rows of another question begin at the top; moved only now, for that costs a layout
+    if (settled && this.element.ariaBusy === "true") this.element.scrollTop = 0;
     const first = Math.max(0, Math.floor(this.element.scrollTop / ROW_px) - AHEAD);
     const last = Math.min(count, Math.ceil((this.element.scrollTop + this.element.clientHeight) / ROW_px) + AHEAD);
     while (this.views.length < last - first) this.views.push(this.make());
@@ -118,7 +120,7 @@ export class ButtonList {
       view.element.hidden = place >= last;
       if (place < last) this.fill(view, place);
     }
-    if (this.store.answered.peek() === this.store.query.peek()) this.element.ariaBusy = "false";
+    if (settled) this.element.ariaBusy = "false";
     const active = this.views.find((view) => !view.element.hidden && view.place === this.store.active.peek());
     if (active) this.element.setAttribute("aria-activedescendant", active.element.id);
     else this.element.removeAttribute("aria-activedescendant");

@@ -12,10 +12,12 @@ const FULL_cN = 200;
 const WIDEST_px = 460;
 
 export interface Seen {
-  readonly ready: PressReady;
-  readonly frame: PressFrame | null;
+  readonly ready: Pick<PressReady, "travel_mm" | "places">;
+  readonly frame: Pick<PressFrame, "displacement_mm" | "finger_mm" | "force_cN" | "key"> | null;
   /** Where the hand leads the finger, mm; null if it does not. */
   readonly aim_mm: number | null;
+  /** Neither force nor ruler may be seen. */
+  readonly blind?: boolean;
 }
 
 /** Give the scale of the drawing: displacement downwards. */
@@ -69,12 +71,16 @@ function drawStage(brush: Brush, seen: Seen, width_px: number, height_px: number
   const finger_mm = seen.frame ? last(seen.frame.finger_mm) : -2;
   // a wide stage is no reason for a wide key
   const wide_px = Math.min(width_px, WIDEST_px);
-  const place = { y, width_px: wide_px, height_px, left_px: (width_px - wide_px) / 2, middle_px: (width_px - wide_px) / 2 + wide_px * 0.42 };
+  const left_px = (width_px - wide_px) / 2;
+  // the ruler needs room beside the key
+  const place = { y, width_px: wide_px, height_px, left_px, middle_px: left_px + wide_px * (seen.blind ? 0.5 : 0.42) };
   drawHousing(brush, place, seen.ready.travel_mm);
-  drawCap(brush, place, cap_mm, (seen.frame?.key ?? 0) > 0);
+  drawCap(brush, place, cap_mm, (seen.frame?.key ?? 0) > 0, !seen.blind);
   drawFinger(brush, place, finger_mm, cap_mm);
-  drawForce(brush, place, last(seen.frame?.force_cN), cap_mm);
-  drawRuler(brush, place, seen.ready, cap_mm);
+  if (!seen.blind) {
+    drawForce(brush, place, last(seen.frame?.force_cN), cap_mm);
+    drawRuler(brush, place, seen.ready, cap_mm);
+  }
   if (seen.aim_mm !== null) drawAim(brush, place, seen.aim_mm);
 }
 
@@ -102,7 +108,7 @@ function drawHousing(brush: Brush, p: Place, travel_mm: number): void {
   brush.rect({ left: p.middle_px - half, top: stop_px, width: 2 * half, height: p.height_px - stop_px + 4 }, { colour: raised }, { colour: line });
 }
 
-function drawCap(brush: Brush, p: Place, cap_mm: number, on: boolean): void {
+function drawCap(brush: Brush, p: Place, cap_mm: number, on: boolean, said: boolean): void {
   const { accent, surface, text } = palette();
   const [top, bottom] = [p.y.px(cap_mm), p.y.px(cap_mm + CAP.height_mm)];
   const [a, b] = [(p.width_px * CAP.top_ratio) / 2, (p.width_px * CAP.foot_ratio) / 2];
@@ -111,6 +117,7 @@ function drawCap(brush: Brush, p: Place, cap_mm: number, on: boolean): void {
   brush.area(x, sides, { colour: surface });
   if (on) brush.area(x, sides, { colour: accent, opacity: 0.28 });
   brush.line(x, sides, { colour: on ? accent : text, width_px: on ? 2.5 : 1.5 });
+  if (!said) return;
   const at = { x_px: p.middle_px, y_px: (top + bottom) / 2 };
   brush.text(on ? "ON" : "off", at, { colour: on ? text : palette().muted, align: "center", weight: on ? 700 : 400, size_px: 15 });
 }
@@ -149,7 +156,7 @@ function drawForce(brush: Brush, p: Place, force_cN: number, cap_mm: number): vo
 }
 
 /** Travel with its marks; the place of the cap's top beside it. */
-function drawRuler(brush: Brush, p: Place, ready: PressReady, cap_mm: number): void {
+function drawRuler(brush: Brush, p: Place, ready: Seen["ready"], cap_mm: number): void {
   const { muted, text, accent, surface, danger } = palette();
   const x = p.left_px + p.width_px * 0.79;
   brush.line([x, x], [p.y.px(0), p.y.px(ready.travel_mm)], { colour: muted, width_px: 1.5 });
@@ -178,7 +185,7 @@ interface Mark {
 }
 
 /** Put labels of places that lie close together under each other; those of programs are too long to be named. */
-function spread(ready: PressReady, y: Scale): Mark[] {
+function spread(ready: Seen["ready"], y: Scale): Mark[] {
   const plain = ready.places.filter((place) => place.label === "actuation" || place.label === "reset");
   const places = plain.length ? plain : ready.places.map((place) => ({ ...place, label: `${shown(place.place_mm, 2)} mm` }));
   const seen = new Set<string>();

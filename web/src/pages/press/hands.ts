@@ -2,7 +2,6 @@
 
 import { addShortcuts, onCleanup, signal, type Signal } from "../../ui";
 import type { Scale } from "../../draw";
-import type { PressSession } from "./session";
 
 /** The twin's finger gives way by so much, 450 N/m, and its pulp by some half a millimetre. */
 const YIELD_mm_cN = 1 / 45;
@@ -23,6 +22,15 @@ const LISTED = [
   { keys: "Escape, while pressing", does: "Lift the finger", act: () => undefined },
 ];
 
+/** What hands lead: a session with a simulated finger. */
+export interface Led {
+  /** Of what is under the finger; null while nothing is. */
+  travel_mm(): number | null;
+  lead(referent_mm: number, velocity_mm_s: number, at_ms: number, near_1_s?: number): void;
+  push(force_cN: number, at_ms: number): void;
+  lift(at_ms: number): void;
+}
+
 export interface HandOptions {
   /** How fast the space bar presses, mm/s, and with what push at the bottom, cN. */
   readonly pace_mm_s: () => number;
@@ -42,7 +50,7 @@ export class Hands {
   private held: { readonly at_ms: number; readonly mm: number } | null = null;
 
   constructor(
-    private readonly session: PressSession,
+    private readonly session: Led,
     private readonly options: HandOptions,
   ) {
     onCleanup(() => cancelAnimationFrame(this.growing));
@@ -161,7 +169,7 @@ export class Hands {
 
   private key(at_ms: number): void {
     this.begin("key");
-    const travel_mm = this.session.ready.peek()?.travel_mm ?? 4;
+    const travel_mm = this.session.travel_mm() ?? 4;
     const bottom_mm = travel_mm + this.options.push_cN() * YIELD_mm_cN + PULP_mm;
     this.aim(bottom_mm, at_ms, 0, this.rate(bottom_mm - LIFTED_mm));
   }
@@ -178,7 +186,7 @@ export class Hands {
 
   private nudge(by_mm: number, at_ms: number): void {
     const from_mm = this.how.peek() === "height" ? (this.aim_mm.peek() ?? 0) : 0;
-    const travel_mm = this.session.ready.peek()?.travel_mm ?? 4;
+    const travel_mm = this.session.travel_mm() ?? 4;
     const mm = Math.min(travel_mm + 5, Math.max(LIFTED_mm, from_mm + by_mm));
     this.begin("height");
     this.aim(mm, at_ms, 0);

@@ -68,6 +68,10 @@ export class PressSession {
     this.channel.send({ type: "start", ...choice.what, mode: choice.mode, rig: choice.rig, seed: 0 });
   }
 
+  travel_mm(): number | null {
+    return this.ready.peek()?.travel_mm ?? null;
+  }
+
   lead(referent_mm: number, velocity_mm_s: number, at_ms: number, near_1_s?: number): void {
     const near = near_1_s === undefined ? {} : { near_1_s: Math.min(1000, Math.max(1, near_1_s)) };
     this.send({ type: "lead", referent_mm, velocity_mm_s, sequence: this.next(at_ms), ...near });

@@ -9,6 +9,9 @@ import { PressSession, type Choice } from "./session";
 import { stageCanvas, stageScale } from "./drawing";
 import "./stage.css";
 
+export { stageCanvas, stageScale } from "./drawing";
+export { Hands, type Led } from "./hands";
+export { Clicker } from "./sound";
 export type { Choice, Mode, What } from "./session";
 
 export interface StageOptions {
@@ -16,6 +19,8 @@ export interface StageOptions {
   readonly choice?: Choice;
   /** Without the curves over time: for a place beside something else. */
   readonly compact?: boolean;
+  /** With what push the space bar presses at first; 120 if left out. */
+  readonly push_cN?: number;
   /** More controls below the drawing. */
   readonly extra?: (stage: PressStage) => Child;
 }
@@ -34,7 +39,7 @@ export function pressStage(host: HTMLElement, options: StageOptions = {}): Press
   const session = new PressSession();
   const clicker = new Clicker();
   const pace_mm_s = signal(120);
-  const push_cN = signal(120);
+  const push_cN = signal(options.push_cN ?? 120);
   const used = () => clicker.wake();
   const hands = new Hands(session, { pace_mm_s, push_cN, used });
   hear(session, clicker, hands);

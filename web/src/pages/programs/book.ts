@@ -1,9 +1,10 @@
 /** An open program: its history, what is chosen in it, what the check says of it, and its way to the server. */
 
 import type { ProgramCheck, ProgramFinding, ProgramText } from "../../net/messages";
+import { lineOf } from "../../math/words";
 import { computed, signal, type Signal } from "../../ui/signal";
 import { readDocument, writeDocument, type ProgramDocument } from "../../programs/document";
-import { History } from "../../programs/history";
+import { historyOf, type ProgramHistory } from "../../programs/history";
 import { isThere, WHOLE, type Choice } from "../../programs/path";
 import { problemsOf } from "../../programs/problems";
 
@@ -37,7 +38,7 @@ export class ProgramBook {
   readonly redoLabel: Signal<string | null> = signal<string | null>(null);
   /** What is wrong: at once what the page can tell, else what the check found. */
   readonly findings: () => readonly ProgramFinding[];
-  private readonly history: History<ProgramDocument>;
+  private readonly history: ProgramHistory;
   private revision: string;
   private checkTimer: ReturnType<typeof setTimeout> | undefined;
   private saveTimer: ReturnType<typeof setTimeout> | undefined;
@@ -53,7 +54,7 @@ export class ProgramBook {
     this.id = opened.program;
     this.revision = opened.revision;
     const document = readDocument(opened.text);
-    this.history = new History(document);
+    this.history = historyOf(document);
     this.document = signal(document);
     this.handled = document;
     this.saved = signal(this.settled);
@@ -73,7 +74,7 @@ export class ProgramBook {
 
   /** Do an edit as one step of undo; edits of one `nudge` that follow each other are one. */
   edit(label: string, change: (document: ProgramDocument) => ProgramDocument, nudge?: string): void {
-    this.history.apply(label, change(this.history.present), nudge ?? null);
+    this.history.put(label, change(this.history.settled), { time_s: now_s(), nudge });
     this.changed();
   }
 
@@ -89,13 +90,12 @@ export class ProgramBook {
 
   /** Show what a drag gives so far, told from the document as it was when it began. */
   drag(change: (before: ProgramDocument) => ProgramDocument): void {
-    this.history.drag(change);
-    this.document.set(this.history.present);
+    this.document.set(this.history.show(change));
   }
 
   /** End a drag as one step. */
   release(): void {
-    this.history.release();
+    this.history.release(now_s());
     this.changed();
   }
 
@@ -176,6 +176,10 @@ export class ProgramBook {
   }
 }
 
+function now_s(): number {
+  return Date.now() / 1000;
+}
+
 function localFindings(document: ProgramDocument): readonly ProgramFinding[] | null {
   const found = problemsOf(document);
   if (found.length === 0) return null;
@@ -201,8 +205,4 @@ function unchecked(line: string): ProgramCheck {
     at_mm: null,
   };
   return { accepted: false, findings: [finding], sizes: [], surfaces: [], return_s: null, stiffness_cN_mm: null, rise_K: null };
-}
-
-function lineOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

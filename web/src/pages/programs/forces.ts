@@ -2,28 +2,21 @@
 
 import { Plot, rangeOf, type Range } from "../../draw";
 import { surfaceNamed, type Stroke, type Surface } from "../../programs/document";
-import { replaceSurface, usesOfSurface } from "../../programs/edits_parts";
-import { movedColumn, pulledSurface, withColumn, withoutColumn } from "../../programs/surface";
+import { usesOfSurface } from "../../programs/edits_parts";
+import { movedColumn } from "../../programs/surface";
 import { button, choice, computed, effect, h, numberField, panel, shown, signal, toggle, toolbar, type Signal } from "../../ui";
 import type { ProgramBook } from "./book";
 import { drawCurves, drawHeat, drawPoints, type ForcePicture } from "./forces_draw";
-import { handlesOf, nearestHandle } from "./forces_points";
+import { PointEdits, type Editing } from "./forces_edits";
+import { pullByHand } from "./forces_hand";
 import { surfaceTools } from "./forces_tools";
 
-const REACH_mm = 0.3;
-const DENSE = 25;
-const NEAR_px = 22;
 /** How fast fingers press at most, mostly: the map goes so far. */
 const FASTEST_mm_s = 300;
 
-/** Which state's forces are shown, and which line of them is edited. */
-export interface Editing {
-  readonly state: Signal<string>;
-  readonly stroke: Signal<Stroke>;
-  readonly row: Signal<number>;
-  /** The column of the chosen point. */
-  readonly column: Signal<number>;
-  readonly reach_mm: Signal<number>;
+interface Seen {
+  readonly x: Range;
+  readonly y: Range;
 }
 
 /** Force panel: what it shows follows the choice in the graph. */
@@ -34,11 +27,9 @@ export class ForcePanel {
   private readonly plot: Plot;
   private readonly heat = signal(false);
   private readonly picture: () => ForcePicture | null;
-  /** The range of forces while a point is pulled: the axes must not follow the hand. */
-  private readonly frozen: Signal<{ readonly x: Range; readonly y: Range } | null> = signal<{
-    readonly x: Range;
-    readonly y: Range;
-  } | null>(null);
+  private readonly edits: PointEdits;
+  /** What is seen while a point is pulled: the axes must not follow the hand. */
+  private readonly frozen = signal<Seen | null>(null);
 
   constructor(
     private readonly book: ProgramBook,
@@ -49,6 +40,7 @@ export class ForcePanel {
       const held = book.document().states.find((one) => one.name === this.editing.state());
       return (held && surfaceNamed(book.document(), held[this.editing.stroke()])) ?? null;
     });
+    this.edits = new PointEdits(book, this.editing, this.surface);
     this.picture = computed(() => this.pictured());
     this.plot = new Plot({
       label: "Force over displacement in the chosen state, for the press and the release at each velocity",
@@ -69,7 +61,7 @@ export class ForcePanel {
     this.plot.element.classList.add("curves");
     this.element = panel("Forces of the state", this.controls(), this.picturesElement(), this.values(), surfaceTools(book, this.editing, this.surface));
     this.element.classList.add("forces");
-    this.listen();
+    pullByHand(this.plot, this.edits, (pulling) => this.frozen.set(pulling ? this.whole() : null));
   }
 
   /** See everything. */
@@ -108,14 +100,14 @@ export class ForcePanel {
       document,
       state,
       stroke: this.editing.stroke(),
-      row: Math.min(this.editing.row(), (this.surface()?.velocity_mm_s.length ?? 1) - 1),
+      row: this.edits.row,
       press: surfaceNamed(document, state.press) ?? null,
       release: surfaceNamed(document, state.release) ?? null,
       findings: this.book.findings(),
     };
   }
 
-  private whole(): { readonly x: Range; readonly y: Range } {
+  private whole(): Seen {
     const picture = this.picture();
     const travel_mm = picture?.document.travel_mm ?? 4;
     const rows = [picture?.press, picture?.release].flatMap((surface) => surface?.force_cN ?? []);
@@ -166,8 +158,7 @@ export class ForcePanel {
   }
 
   private values(): HTMLElement {
-    const { editing } = this;
-    const column = (): number => Math.min(editing.column(), (this.surface()?.displacement_mm.length ?? 1) - 1);
+    const { edits, editing } = this;
     return h(
       "div",
       { class: "row point-values" },
@@ -176,8 +167,8 @@ export class ForcePanel {
         unit: "mm",
         digits: 4,
         step: 0.01,
-        value: () => this.surface()?.displacement_mm[column()] ?? null,
-        set: (x_mm) => this.change("move a point", (held) => movedColumn(held, column(), x_mm), "column"),
+        value: () => this.surface()?.displacement_mm[edits.column] ?? null,
+        set: (x_mm) => edits.change("move a point", (held) => movedColumn(held, edits.column, x_mm), "column"),
       }),
       numberField({
         label: "force",
@@ -186,8 +177,8 @@ export class ForcePanel {
         step: 1,
         least: -600,
         most: 600,
-        value: () => this.surface()?.force_cN[this.row()]?.[column()] ?? null,
-        set: (force_cN) => this.pull(column(), force_cN),
+        value: () => this.surface()?.force_cN[edits.row]?.[edits.column] ?? null,
+        set: (force_cN) => edits.pull(force_cN),
       }),
       numberField({
         label: "reach",
@@ -195,106 +186,9 @@ export class ForcePanel {
         least: 0,
         most: 6,
         step: 0.1,
-        value: () => this.reach_mm(),
+        value: () => edits.reach_mm,
         set: (reach) => editing.reach_mm.set(reach),
       }),
     );
   }
-
-  private row(): number {
-    return Math.min(this.editing.row(), (this.surface()?.velocity_mm_s.length ?? 1) - 1);
-  }
-
-  /** How far points follow a pulled one: chosen, else a little where there are many. */
-  private reach_mm(): number {
-    return this.editing.reach_mm() || ((this.surface()?.displacement_mm.length ?? 0) > DENSE ? REACH_mm : 0);
-  }
-
-  private change(label: string, edit: (surface: Surface) => Surface, nudge?: string): void {
-    const name = this.surface()?.name;
-    if (name === undefined) return;
-    this.book.edit(label, (held) => replaceSurface(held, name, edit(surfaceNamed(held, name)!)), nudge);
-  }
-
-  private pull(column: number, force_cN: number): void {
-    const [row, reach_mm] = [this.row(), this.reach_mm()];
-    this.change("pull a point", (held) => pulledSurface(held, row, column, force_cN, reach_mm), `pull ${column}`);
-  }
-
-  private listen(): void {
-    const { element } = this.plot;
-    element.addEventListener("pointerdown", (event) => this.down(event));
-    element.addEventListener("keydown", (event) => this.key(event));
-    element.addEventListener("dblclick", (event) => {
-      const { x } = this.plot.at(event);
-      this.addPoint(Number(x.toFixed(3)));
-    });
-  }
-
-  private addPoint(at_mm: number): void {
-    this.change("add a point", (held) => withColumn(held, at_mm));
-    const places = this.surface()?.displacement_mm ?? [];
-    this.editing.column.set(Math.max(0, places.findIndex((x_mm) => Math.abs(x_mm - at_mm) < 1e-6)));
-  }
-
-  private down(event: PointerEvent): void {
-    const surface = this.surface();
-    if (event.button !== 0 || !surface) return;
-    const column = nearestHandle(surface, this.row(), this.plot.view(), this.plot.at(event), NEAR_px);
-    if (column === null) return;
-    event.preventDefault();
-    this.plot.element.focus();
-    this.editing.column.set(column);
-    this.follow(event, surface, column);
-  }
-
-  private follow(event: PointerEvent, surface: Surface, column: number): void {
-    const { element } = this.plot;
-    const [begin, row, reach_mm] = [this.plot.at(event), this.row(), this.reach_mm()];
-    const first_cN = surface.force_cN[row]![column]!;
-    this.frozen.set(this.whole());
-    this.book.mark("pull a point");
-    element.setPointerCapture(event.pointerId);
-    const move = (now: PointerEvent): void => this.drag(surface, row, column, first_cN + this.plot.at(now).y - begin.y, reach_mm);
-    const end = (kept: boolean): void => {
-      element.removeEventListener("pointermove", move);
-      this.frozen.set(null);
-      if (kept) this.book.release();
-      else this.book.cancel();
-    };
-    element.addEventListener("pointermove", move);
-    element.addEventListener("pointerup", () => end(true), { once: true });
-    element.addEventListener("pointercancel", () => end(false), { once: true });
-  }
-
-  private drag(surface: Surface, row: number, column: number, force_cN: number, reach_mm: number): void {
-    const pulled = pulledSurface(surface, row, column, Number(force_cN.toFixed(1)), reach_mm);
-    this.book.drag((before) => replaceSurface(before, surface.name, pulled));
-  }
-
-  private key(event: KeyboardEvent): void {
-    const surface = this.surface();
-    if (event.target !== this.plot.element || !surface || event.ctrlKey || event.metaKey) return;
-    const held = Math.min(this.editing.column.peek(), surface.displacement_mm.length - 1);
-    const by = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
-    if (by) this.pull(held, surface.force_cN[this.row()]![held]! + by * (event.shiftKey ? 10 : event.altKey ? 0.1 : 1));
-    else if (event.key === "ArrowLeft" || event.key === "ArrowRight") this.step(surface, held, event.key === "ArrowRight" ? 1 : -1);
-    else if (event.key === "Delete") this.change("remove a point", (one) => withoutColumn(one, held));
-    else if (event.key === "Insert") this.addPoint(this.between(surface, held));
-    else return;
-    event.preventDefault();
-  }
-
-  private step(surface: Surface, held: number, by: 1 | -1): void {
-    const handles = handlesOf(surface);
-    const at = by > 0 ? handles.findIndex((i) => i > held) : handles.findLastIndex((i) => i < held);
-    if (at >= 0) this.editing.column.set(handles[at]!);
-  }
-
-  private between(surface: Surface, held: number): number {
-    const places = surface.displacement_mm;
-    const next = places[held + 1] ?? places[held]! + 0.2;
-    return Number(((places[held]! + next) / 2).toFixed(4));
-  }
 }
-

@@ -7,7 +7,7 @@ import { assignSurface } from "../../programs/edits";
 import * as forces from "../../programs/surface";
 import { button, choice, computed, h, numberField, signal, tell } from "../../ui";
 import type { ProgramBook } from "./book";
-import type { Editing } from "./forces";
+import type { Editing } from "./forces_edits";
 import { bases } from "./server";
 
 /** A row of tools below the curves, folded until it is wanted. */

@@ -1,7 +1,7 @@
 /** The graph of a program: nodes and arrows to choose, to drag and to draw. */
 
-import { condition } from "../../programs/condition";
-import { transitionsOf, type Condition, type ProgramDocument } from "../../programs/document";
+import { firstCondition } from "../../programs/condition";
+import { transitionsOf } from "../../programs/document";
 import { addState, addTransition, removeState, removeTransition } from "../../programs/edits";
 import { centreOf, holds, type Point } from "../../programs/layout/geometry";
 import { graphOf, neighbour, type Graph } from "../../programs/layout/layout";
@@ -248,10 +248,4 @@ export class GraphPanel {
     if (!this.drawing.peek()) this.options.book.choose(choice);
     this.focus(keyOf(choice));
   }
-}
-
-/** A new arrow leads on beyond half the travel, or back above a quarter of it: far enough apart not to flutter. */
-function firstCondition(document: ProgramDocument, from: string): Condition {
-  const part_mm = (ratio: number): number => Math.round(document.travel_mm * ratio * 100) / 100;
-  return from === document.start ? condition("deeper_than_mm", part_mm(0.5)) : condition("shallower_than_mm", part_mm(0.25));
 }

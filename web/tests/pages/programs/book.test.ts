@@ -2,7 +2,8 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { CHECK_AFTER_ms, ProgramBook, SAVE_AFTER_ms } from "../../../src/pages/programs/book";
 import { readDocument, writeDocument } from "../../../src/programs/document";
 import { addState, changeProgram, removeState, renameState } from "../../../src/programs/edits";
-import { History, NUDGE_ms } from "../../../src/programs/history";
+import { NUDGE_s, StepLine } from "../../../src/model/steps";
+import { whole } from "../../../src/programs/history";
 import type { ProgramCheck } from "../../../src/net/messages";
 import { SHIPPED } from "../../programs/shipped";
 
@@ -36,15 +37,15 @@ class Shelf {
 
 describe("the history of a document", () => {
   it("goes back and forth, and forgets what was undone once something else is done", () => {
-    const history = new History("a");
-    history.apply("to b", "b");
-    history.apply("to c", "c");
+    const history = new StepLine("a", whole<string>());
+    history.put("to b", "b", { time_s: 0 });
+    history.put("to c", "c", { time_s: 1 });
     history.undo();
     expect([history.present, history.undoLabel, history.redoLabel]).toEqual(["b", "to b", "to c"]);
     history.redo();
     expect(history.present).toBe("c");
     history.undo();
-    history.apply("to d", "d");
+    history.put("to d", "d", { time_s: 2 });
     history.redo();
     expect([history.present, history.redoLabel]).toEqual(["d", null]);
     for (let i = 0; i < 5; i += 1) history.undo();
@@ -52,16 +53,13 @@ describe("the history of a document", () => {
   });
 
   it("makes one step of nudges that follow each other, and of a drag", () => {
-    let now_ms = 0;
-    const history = new History(0, () => now_ms);
-    history.apply("nudge", 1, "n");
-    now_ms += NUDGE_ms;
-    history.apply("nudge", 2, "n");
-    now_ms += NUDGE_ms + 1;
-    history.apply("nudge", 3, "n");
+    const history = new StepLine(0, whole<number>());
+    history.put("nudge", 1, { time_s: 0, nudge: "n" });
+    history.put("nudge", 2, { time_s: NUDGE_s, nudge: "n" });
+    history.put("nudge", 3, { time_s: 2.01 * NUDGE_s, nudge: "n" });
     history.mark("drag");
-    for (const by of [1, 5, 9]) history.drag((before) => before + by);
-    history.release();
+    for (const by of [1, 5, 9]) history.show((before) => before + by);
+    history.release(9);
     expect(history.present).toBe(12);
     history.undo();
     expect(history.present).toBe(3);
@@ -72,9 +70,9 @@ describe("the history of a document", () => {
   });
 
   it("leaves nothing of a drag that was cancelled", () => {
-    const history = new History(0);
+    const history = new StepLine(0, whole<number>());
     history.mark("drag");
-    history.drag(() => 7);
+    history.show(() => 7);
     history.cancel();
     expect([history.present, history.undoLabel]).toEqual([0, null]);
   });

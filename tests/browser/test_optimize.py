@@ -1,0 +1,303 @@
+"""The page on which one plays for a better button: timed honestly, kept, gone on with, compared, saved."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from benchmarks.studio_play import button_ms
+from playwright.sync_api import expect
+from tests.browser.test_accessibility import audit
+from tests.studio.running import RunningStudio
+
+from fdvv.optimize import Answer, TrialState
+from fdvv.workflow import (
+    OptimizeSession,
+    PlayedRound,
+    PlayedRounds,
+)
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+ROUNDS = 3
+CLOCK_ms = 0.2
+"""Browsers tell times in steps of 0.1 ms."""
+BUTTON_ms = 2.0
+"""A press takes the simulated button so long, give or take: its noise, and steps of the run."""
+PRESS_WHEN_SEEN = """(x_ratio) => {
+    const canvas = document.querySelectorAll('.opt-strip canvas')[1];
+    const lit = () => {
+        if (canvas.width < 2) return false;
+        const [x, y] = [Math.floor(x_ratio * canvas.width), Math.floor(canvas.height / 2)];
+        const beyond = canvas.getContext('2d').getImageData(x, y, canvas.width - x, 1).data;
+        return beyond.some((value, i) => i % 4 === 3 && value > 200);
+    };
+    const key = (kind) => document.dispatchEvent(new KeyboardEvent(kind, {key: ' ', cancelable: true}));
+    window.seen = [];
+    let [was, before_ms] = [false, Infinity];
+    const look = (at_ms) => {
+        const now = lit();
+        if (now && !was) {
+            window.seen.push({at_ms, gap_ms: at_ms - before_ms});
+            key('keydown');
+            setTimeout(() => key('keyup'), 120);
+        }
+        [was, before_ms] = [now, at_ms];
+        requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+}"""
+"""Presses as soon as the picture shows the bullet at a place of the strip or beyond, by its pixels alone:
+between two pictures of a screen it may jump over any one. Once the game draws, this looks after it."""
+
+
+class Wire:
+    """What the page says and hears on the channel of the game."""
+
+    def __init__(self, page: Page) -> None:
+        self.said: list[dict[str, Any]] = []
+        self.heard: list[dict[str, Any]] = []
+        page.on("websocket", self._join)
+
+    def _join(self, socket: Any) -> None:
+        socket.on("framesent", lambda text: self._take(text, self.said))
+        socket.on("framereceived", lambda text: self._take(text, self.heard))
+
+    @staticmethod
+    def _take(text: str | bytes, into: list[dict[str, Any]]) -> None:
+        message = json.loads(text)
+        if message["channel"] == "play":
+            into.append(message.get("body", {}))
+
+    def of(self, kind: str) -> list[dict[str, Any]]:
+        """Give what was said or heard of a kind, in order."""
+        return [body for body in (*self.said, *self.heard) if body.get("type") == kind]
+
+
+def begin(page: Page, engine: str = "sobol", **more: str) -> None:
+    """Begin a run of few presses on its page, with a wire on it."""
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    page.get_by_label("Engine").select_option(engine)
+    for label, value in {"Score after": str(ROUNDS), "Budget": "3", **more}.items():
+        page.get_by_label(label, exact=True).fill(value)
+        page.keyboard.press("Enter")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    page.wait_for_selector("main[data-page=optimize] [role=tablist]")
+
+
+def play(page: Page, trial: int) -> None:
+    """Play a trial: press now and then until it is scored."""
+    page.get_by_role("button", name=f"Play trial {trial}").click()
+    for number in range(1, ROUNDS + 1):
+        page.wait_for_selector(f".opt-line >> text=/^Press {number} of/")
+        wait_for_bullet(page)
+        page.keyboard.press(" ", delay=80)
+    page.wait_for_selector(f".opt-line >> text=/^Trial {trial}: asynchrony/")
+
+
+def wait_for_bullet(page: Page) -> None:
+    """Wait until the strip shows a bullet."""
+    page.wait_for_function(
+        """() => {
+            const canvas = document.querySelectorAll('.opt-strip canvas')[1];
+            if (canvas.width < 2) return false;
+            const middle = Math.floor(canvas.height / 2);
+            const row = canvas.getContext('2d').getImageData(0, middle, canvas.width, 1);
+            return row.data.some((value) => value > 0);
+        }"""
+    )
+
+
+def kept_rounds(folder: Path) -> tuple[PlayedRound, ...]:
+    """Read what is on the disk of a run that nobody plays."""
+    rounds = PlayedRounds(folder)
+    rounds.close()
+    return rounds.all
+
+
+@pytest.fixture
+def wire(page: Page) -> Wire:
+    """A page on which a run of ROUNDS presses begins, and what it says."""
+    heard = Wire(page)
+    page.reload()
+    page.wait_for_selector("html[data-ready]")
+    begin(page)
+    return heard
+
+
+def test_a_press_at_a_known_time_has_a_known_asynchrony(
+    page: Page, wire: Wire, studio: RunningStudio
+) -> None:
+    page.get_by_role("button", name="Play trial 1").click()
+    page.wait_for_selector(".opt-line >> text=/^Press 1 of/")
+    page.evaluate(PRESS_WHEN_SEEN, 100 / 144)
+    page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony/")
+    folder = studio.project / "optimize" / "1"
+    seen = page.evaluate("() => window.seen")
+    page.get_by_role("link", name="All runs").click()
+    page.wait_for_selector(".opt-start")
+    took_ms = button_ms(folder)
+    downs, rounds, kept = wire.of("down"), wire.of("round"), wire.of("kept")
+    assert len(downs) == len(rounds) == len(kept) == ROUNDS
+    for down, over, found, picture in zip(downs, rounds, kept, seen, strict=True):
+        # told by the times alone: hand, what the button takes, target, the two delays
+        told_ms = down["at_ms"] - over["input"]["ms"] + took_ms - over["target_ms"] - over["display"]["ms"]
+        assert found["late_ms"] == pytest.approx(told_ms, abs=BUTTON_ms)
+        # told by what was seen: the bullet came between this picture and the one before
+        assert 0 <= picture["at_ms"] - over["target_ms"] + CLOCK_ms <= picture["gap_ms"] + 2 * CLOCK_ms
+    on_disk = kept_rounds(folder)
+    late_ms = [1e3 * (one.activations_s[0] - one.target_s) for one in on_disk]
+    assert late_ms == pytest.approx([one["late_ms"] for one in kept], abs=1e-6)
+
+
+def test_the_clocks_of_page_and_server_are_joined_within_their_bound(page: Page, wire: Wire) -> None:
+    """The server's clock is the system's monotonic one, which this process reads as well."""
+    page.get_by_role("button", name="Play trial 1").click()
+    around = []
+    for number in range(1, ROUNDS + 1):
+        page.wait_for_selector(f".opt-line >> text=/^Press {number} of/")
+        wait_for_bullet(page)
+        before_ms = 1e3 * time.monotonic()
+        page.keyboard.down(" ")
+        around.append((before_ms, 1e3 * time.monotonic()))
+        page.keyboard.up(" ")
+    page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony/")
+    for down, over, (before_ms, after_ms) in zip(wire.of("down"), wire.of("round"), around, strict=True):
+        at_ms, bound_ms = down["at_ms"] + over["clock_ms"], over["clock_error_ms"]
+        assert before_ms - bound_ms <= at_ms <= after_ms + bound_ms
+        assert bound_ms < 20
+
+
+def test_a_run_is_played_stopped_gone_on_with_compared_and_saved(
+    page: Page, wire: Wire, studio: RunningStudio
+) -> None:
+    play(page, 1)
+    page.get_by_role("button", name="Play trial 2").click()
+    page.wait_for_selector(".opt-line >> text=/^Press 1 of/")
+    page.keyboard.press("Escape")
+    page.wait_for_selector(".opt-line >> text=/^Paused after 0/")
+    page.keyboard.press("Escape")
+    page.wait_for_selector(".opt-line >> text=/^Press 1 of/")
+    wait_for_bullet(page)
+    page.wait_for_selector(".opt-line >> text=/^Press 2 of/")
+    page.reload()
+    play(page, 2)
+    assert [(one.trial, one.attempt) for one in kept_rounds_of(page, studio)] == [
+        *[(0, 1)] * ROUNDS,
+        (1, 1),
+        *[(1, 2)] * ROUNDS,
+    ]
+    page.get_by_role("link", name="mine").or_(page.locator("a.opt-run")).first.click()
+    page.get_by_role("tab", name="Result").click()
+    page.wait_for_selector(".opt-compared")
+    page.get_by_label("Found", exact=True).select_option("1")
+    page.wait_for_selector("th:has-text('actuation, mm') ~ td")
+    press_each(page)
+    page.get_by_label("Name", exact=True).fill("mine")
+    page.get_by_role("button", name="Save as my button").click()
+    page.get_by_role("link", name="Edit mine").click()
+    page.wait_for_selector("main[data-page=edit]")
+    assert (studio.project / "buttons" / "mine.fdvv.json").exists()
+
+
+def kept_rounds_of(page: Page, studio: RunningStudio) -> tuple[PlayedRound, ...]:
+    """Leave the run, so that its files are free, and read them."""
+    page.get_by_role("link", name="All runs").click()
+    page.wait_for_selector("a.opt-run")
+    return kept_rounds(studio.project / "optimize" / "1")
+
+
+def press_each(page: Page) -> None:
+    """Press both designs on the stage."""
+    for side in ("start", "found"):
+        page.get_by_role("button", name=side, exact=True).click()
+        press_once(page, side)
+
+
+def press_once(page: Page, name: str) -> None:
+    """Press what is under the finger until its key has gone down."""
+    page.wait_for_selector(f".press-view[aria-label^='{name} ']")
+    page.wait_for_selector(".press-lamp[data-key='0']")
+    page.focus(".press-view")
+    page.keyboard.down(" ")
+    page.wait_for_selector("[data-value='actuations'] >> text=/^1$/", state="attached")
+    page.keyboard.up(" ")
+
+
+def test_a_suggestion_is_changed_before_it_is_played_and_a_trial_abandoned(
+    page: Page, wire: Wire, studio: RunningStudio
+) -> None:
+    page.get_by_role("button", name="Show the next design").click()
+    page.get_by_label("actuation", exact=True).fill("1.25")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Use this design").click()
+    page.wait_for_selector("text=edited by you")
+    page.get_by_role("button", name="Abandon this trial").click()
+    page.wait_for_selector("td:has-text('abandoned')")
+    page.get_by_role("link", name="All runs").click()
+    page.wait_for_selector("a.opt-run")
+    with OptimizeSession.open(studio.project / "optimize" / "1") as session:
+        (trial,) = session.trials
+    assert (trial.state, trial.design["actuation_mm"]) == (TrialState.ABANDONED, 1.25)
+
+
+def test_a_simulated_person_goes_on_while_the_page_is_away(page: Page, studio: RunningStudio) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    page.get_by_label("How").select_option("simulated")
+    begin(page)
+    page.get_by_role("button", name="Let them play").click()
+    page.wait_for_selector("text=/of 3 trials/")
+    page.reload()
+    page.wait_for_selector("text=simulated person 0: 3 of 3 trials, done")
+    assert page.locator(".tag.simulated").count() >= 2
+    expect(page.locator("tbody tr")).to_have_count(3)
+
+
+def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    page.get_by_label("How").select_option("prefer")
+    page.get_by_label("Budget", exact=True).fill("2")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    for number, key in ((1, "2"), (2, "0")):
+        page.wait_for_selector(f"h2:has-text('Comparison {number}')")
+        for side in ("A", "B"):
+            press_once(page, side)
+            page.keyboard.press("x" if side == "A" else key)
+    page.wait_for_selector("text=All comparisons are made")
+    page.get_by_role("tab", name="Result").click()
+    page.wait_for_selector(".opt-compared")
+    page.get_by_role("link", name="All runs").click()
+    page.wait_for_selector("a.opt-run")
+    with OptimizeSession.open(studio.project / "optimize" / "1") as session:
+        assert [one.answer for one in session.comparisons] == [Answer.SECOND, Answer.EQUAL]
+
+
+@pytest.mark.parametrize(
+    ("how", "tab"),
+    [
+        ("simulated", "Play"),
+        ("simulated", "Result"),
+        ("play", "Play"),
+        ("play", "Timing"),
+        ("prefer", "Compare"),
+    ],
+)
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_serious_in_a_run(page: Page, how: str, tab: str, scheme: Any) -> None:
+    page.emulate_media(color_scheme=scheme)
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    page.get_by_label("How").select_option(how)
+    page.get_by_label("Budget", exact=True).fill("2")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    if how == "simulated":
+        page.get_by_role("button", name="Let them play").click()
+        page.wait_for_selector("text=2 of 2 trials, done")
+    page.get_by_role("tab", name=tab).click()
+    page.wait_for_load_state("networkidle")
+    assert audit(page) == []

@@ -1,0 +1,99 @@
+/** One run as the server knows it, and followed while the page is open. */
+
+import { call, live, type LiveChannel, StudioError } from "../../net";
+import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
+import { onCleanup, signal, tell, type Signal } from "../../ui";
+
+export type Design = Readonly<Record<string, number>>;
+
+export class RunStore {
+  readonly detail: Signal<OptimizeDetail | null> = signal<OptimizeDetail | null>(null);
+  readonly wrong: Signal<string> = signal("");
+  /** Number of the trial that is looked at; null: the newest. */
+  readonly chosen: Signal<number | null> = signal<number | null>(null);
+  private asking = false;
+  private again = false;
+
+  constructor(readonly run: number) {
+    let channel: LiveChannel<"optimize"> | null = null;
+    const watch = () => void channel?.send({ type: "watch" });
+    channel = live().channel("optimize", {
+      opened: watch,
+      told: (news) => {
+        if (news.type === "watching" || news.run === run) void this.refresh();
+      },
+    });
+    watch();
+    onCleanup(() => channel.close());
+    void this.refresh();
+  }
+
+  /** Ask anew; asks that come meanwhile are one. */
+  async refresh(): Promise<void> {
+    this.again = true;
+    if (this.asking) return;
+    this.asking = true;
+    try {
+      while (this.again) {
+        this.again = false;
+        this.detail.set(await call("optimize.detail", { run: this.run }));
+        this.wrong.set("");
+      }
+    } catch (error) {
+      // what the person cannot change is said in the page, the rest beside it
+      if (error instanceof StudioError && !this.detail.peek()) this.wrong.set(error.message);
+      else tell(error);
+    } finally {
+      this.asking = false;
+    }
+  }
+
+  /** Give the trial that is looked at. */
+  trial(): OptimizeTrial | null {
+    const trials = this.detail()?.trials ?? [];
+    return trials[this.chosen() ?? trials.length - 1] ?? trials.at(-1) ?? null;
+  }
+
+  /** Give the trial that waits or is under way. */
+  open(): OptimizeTrial | null {
+    return this.detail()?.trials.find((one) => one.state === "suggested" || one.state === "shown") ?? null;
+  }
+
+  /** Name of the first objective. */
+  objective(): string {
+    return this.detail()?.objectives[0]?.name ?? "asynchrony_ms";
+  }
+
+  /** How many trials are done, or comparisons answered. */
+  count(): number {
+    return this.done().length + (this.detail()?.pairs.filter((one) => one.answer !== null).length ?? 0);
+  }
+
+  done(): readonly OptimizeTrial[] {
+    return (this.detail()?.trials ?? []).filter((one) => one.state === "done");
+  }
+}
+
+const UNITS: Readonly<Record<string, string>> = { mm: "mm", cN: "cN", ms: "ms", ratio: "", Hz: "Hz", N_s: "N s", mm_s: "mm/s" };
+
+/** Write a name with its unit for people: "asynchrony_ms" is "asynchrony" in "ms". */
+export function named(name: string): { readonly label: string; readonly unit: string } {
+  const suffix = Object.keys(UNITS).filter((one) => name.endsWith(`_${one}`)).sort((a, b) => b.length - a.length)[0];
+  if (suffix === undefined) return { label: name.replaceAll("_", " "), unit: "" };
+  return { label: name.slice(0, -suffix.length - 1).replaceAll("_", " "), unit: UNITS[suffix] as string };
+}
+
+export function scoreText(score: OptimizeScore | undefined, unit: string): string {
+  if (!score) return "–";
+  const error = score.error === null ? "" : ` ± ${round(score.error)}`;
+  return `${round(score.value)}${error}${unit ? ` ${unit}` : ""}`;
+}
+
+function round(value: number): string {
+  return value.toFixed(Math.abs(value) < 10 ? 2 : 1).replace("-", "−");
+}
+
+/** Give places and forces of a small picture's curve. */
+export function curveLine(curve: OptimizeCurve): { readonly x_mm: number[]; readonly y_cN: readonly number[] } {
+  return { x_mm: curve.force_cN.map((_, i) => i * curve.step_mm), y_cN: curve.force_cN };
+}

@@ -1,0 +1,15 @@
+/** The participant's screen of a study: nothing of the studio around it, and nothing that tells what a label hides. */
+
+import type { Page } from "../app/page";
+import { h } from "../ui";
+import { StudySession } from "./study/session";
+import { studyScreen } from "./study/screen";
+import "./study/study.css";
+
+export const page: Page = {
+  title: "Study",
+  mount(host, route) {
+    const session = new StudySession(route.id, route.query.get("seat") ?? "");
+    host.append(h("div", { class: "study-page", lang: session.language }, studyScreen(session)));
+  },
+};
