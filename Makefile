@@ -39,9 +39,7 @@ test-slow: setup ## The long tests
 	$(BIN)/pytest -n 2 -m "slow and not browser"
 
 test-browser: setup web-tools ## Drive the studio in a real browser
-	# a browser, its server, a rig and jobs share two cores: what failed for want of one is tried once more, alone
-	$(BIN)/pytest --timeout 180 -m browser || \
-	  $(BIN)/pytest --timeout 180 -m browser --last-failed --last-failed-no-failures none
+	$(BIN)/pytest -n 2 --timeout 180 -m browser
 
 format: setup ## Format the code in place
 	$(BIN)/ruff format .

@@ -18,7 +18,7 @@ LEVELS = [
     GROUND,
     {"model"},
     {"recording"},
-    {"capture", "compensate", "preprocess", "program", "twin", "vibration"},
+    {"capture", "compensate", "optimize", "preprocess", "program", "study", "twin", "vibration"},
     {"device", "plot"},
     {"workflow"},
     {"studio"},

@@ -30,6 +30,7 @@ def tool(name: str) -> ModuleType:
     [
         ("cli.md", "make_cli_reference", "reference"),
         ("protocol.md", "make_protocol_reference", "reference"),
+        ("strip-protocol.md", "make_protocol_reference", "strip_reference"),
         ("rig.md", "make_rig_reference", "reference"),
         ("button.md", "make_rig_reference", "button_reference"),
     ],

@@ -168,3 +168,21 @@ def test_capturing_a_button_goes_as_the_tutorial_shows(tmp_path: Path, environme
             assert text == printed, "the block after a program shows what it prints"
     assert ran_here == ["capture"] * 3
     assert [path.name for path in tmp_path.iterdir()] == ["clear.recording.jsonl"]
+
+
+STUDY = REPOSITORY / "docs" / "tutorials" / "run-a-study.md"
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_a_study_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    (tmp_path / "passphrase.txt").write_text("four words of one keeper\n")
+    ran_here = list[str]()
+    for language, text in blocks(STUDY):
+        if language == "console":
+            for command, shown in steps(text):
+                check(command, shown, tmp_path, environment)
+                ran_here.append(command[2])
+    dry = ["new", "freeze", "simulate", "unseal", "analyse"]
+    assert ran_here == ["new", "check", "power", *dry, "freeze", "verify"]
+    assert "simulated" in (tmp_path / "dry-run.html").read_text().lower()

@@ -88,6 +88,33 @@ def connect(page: Page) -> None:
     page.wait_for_timeout(1500)
 
 
+def optimise(page: Page) -> None:
+    """Have a simulated person play a run, and stay on its page."""
+    page.get_by_label("How").select_option("simulated")
+    page.get_by_label("Engine").select_option("tpe")
+    page.get_by_label("Budget", exact=True).fill("12")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    page.get_by_role("button", name="Let them play").click()
+    page.wait_for_selector("text=12 of 12 trials, done", timeout=LONG_ms)
+
+
+def found(page: Page) -> None:
+    """Look at what such a run found."""
+    optimise(page)
+    page.get_by_role("tab", name="Result").click()
+    page.wait_for_selector(".opt-compared", timeout=LONG_ms)
+
+
+def bullet(page: Page) -> None:
+    """Begin to play, and wait for the bullet."""
+    page.get_by_label("Engine").select_option("sobol")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    page.get_by_role("button", name="Play trial 1").click()
+    page.wait_for_selector(".opt-line >> text=/^Press 1 of/")
+    page.wait_for_timeout(1300)
+
+
 def still(page: Page) -> None:
     """Wait until nothing is on its way."""
     page.wait_for_load_state("networkidle")
@@ -103,6 +130,9 @@ SHOTS = (
     Shot("press", "press/builtin:mx-clear", "dark", WIDE, hold),
     Shot("programs", "programs/shipped:multi-level", "light", WIDE, still),
     Shot("programs-dark", "programs/shipped:dwell-ticks", "dark", WIDE, still),
+    Shot("optimise", "optimize", "light", WIDE, optimise),
+    Shot("optimise-play", "optimize", "dark", WIDE, bullet),
+    Shot("optimise-found", "optimize", "light", TABLET, found),
     Shot("live-compensate", "live/compensate", "light", WIDE, learn),
     Shot("live-device", "live/device", "dark", WIDE, connect),
 )
