@@ -18,7 +18,10 @@ LEVELS = [
     GROUND,
     {"model"},
     {"recording"},
-    {"capture", "compensate", "optimize", "preprocess", "program", "study", "twin", "vibration"},
+    {
+        *("capture", "compensate", "exchange", "hardware", "mechanism", "optimize", "preprocess", "program"),
+        *("study", "twin", "vibration"),
+    },
     {"device", "plot"},
     {"workflow"},
     {"studio"},

@@ -1,0 +1,1 @@
+"""Buttons, vibrations and recordings in the files and records that other programs use."""

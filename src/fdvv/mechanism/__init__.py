@@ -1,0 +1,1 @@
+"""From a model to a real switch: springs, leaves on cams and domes that give its curves."""
