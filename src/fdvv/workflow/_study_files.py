@@ -107,7 +107,7 @@ def kept_path(folder: Path, name: str) -> Path:
 
 
 def study_file(folder: Path, name: str) -> Path:
-    """Find a file that a plan names: what the study's folder keeps, and is frozen, before what lies beside it.
+    """Find a file that a plan names: what the folder keeps, and is frozen, before what lies beside it.
 
     InputError on one that is not there, or outside the folder.
     """
