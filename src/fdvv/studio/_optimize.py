@@ -9,6 +9,7 @@ from fdvv.studio import _optimize_told as t
 from fdvv.studio._contract import Call, ChannelKind, Tell
 from fdvv.studio._optimizations import Optimizations
 from fdvv.studio._play import CHANNEL as PLAY
+from fdvv.studio._play_device import pressed_devices
 from fdvv.studio._played_trial import open_trials
 from fdvv.studio._pointing import PRESSES, TASK, playable, pointing_of
 from fdvv.studio._studio import Studio
@@ -59,6 +60,11 @@ def offers(studio: Studio, _ask: m.OptimizeOffersAsk) -> m.OptimizeOffers:
         [m.OptimizeOffer(name, MORE_TOLD[name]) for name in MORE_TOLD],
         [m.OptimizeOffer(choice.id, choice.name) for choice in button_choices(studio.shelf)],
     )
+
+
+def devices(_studio: Studio, _ask: m.OptimizeDevicesAsk) -> m.OptimizeDevices:
+    """Tell what a person can press beside the page."""
+    return m.OptimizeDevices([m.OptimizeOffer(name, about) for name, about in pressed_devices()])
 
 
 def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
@@ -244,6 +250,7 @@ class OptimizeChannel:
 
 CALLS = (
     Call("optimize.offers", m.OptimizeOffersAsk, m.OptimizeOffers, offers),
+    Call("optimize.devices", m.OptimizeDevicesAsk, m.OptimizeDevices, devices),
     Call("optimize.create", m.OptimizeCreate, m.OptimizeAsk, create),
     Call("optimize.list", m.OptimizeListAsk, m.OptimizeRows, rows),
     Call("optimize.detail", m.OptimizeAsk, m.OptimizeDetail, detail),
