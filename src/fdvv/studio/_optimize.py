@@ -11,7 +11,7 @@ from fdvv.studio._optimizations import Optimizations
 from fdvv.studio._play import CHANNEL as PLAY
 from fdvv.studio._play_device import pressed_devices
 from fdvv.studio._played_trial import open_trials
-from fdvv.studio._pointing import PRESSES, TASK, playable, pointing_of
+from fdvv.studio._pointing import TASK, playable, pointing_of
 from fdvv.studio._studio import Studio
 from fdvv.studio._told import told
 from fdvv.workflow import (
@@ -80,7 +80,7 @@ def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
         seed=ask.seed,
         budget=ask.budget,
         start=start,
-        about={t.TITLE: ask.title.strip(), t.START: ask.start, PRESSES: ask.task_presses},
+        about={t.TITLE: ask.title.strip(), t.START: ask.start, OptimizeSetup.PRESSES: ask.task_presses},
     )
     if playable(setup):
         try:
