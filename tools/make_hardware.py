@@ -34,8 +34,8 @@ def main() -> None:
 
         export_parts(HARDWARE, Dimensions(), lambda name, done, total: print(f"{done + 1}/{total} {name}"))
         write_atomic(PRINTED, printed(read_manifest(HARDWARE)))
-    sys.path.insert(0, str(Path(__file__).parent))
-    from hardware_pictures import draw_all
+    sys.path.insert(0, str(ROOT))
+    from tools.hardware_pictures import draw_all
 
     draw_all(HARDWARE)
 

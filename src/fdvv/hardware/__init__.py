@@ -1,6 +1,6 @@
 """The rig as things to make and buy: parts, circuit, bill of materials, and which part is wrong."""
 
-from fdvv.hardware._bought import Block, Envelope, Rod, bought_parts
+from fdvv.hardware._bought import bought_parts
 from fdvv.hardware._check import (
     Assembly,
     Clearance,
@@ -12,6 +12,7 @@ from fdvv.hardware._check import (
 )
 from fdvv.hardware._dimension_file import assumed, dimensions_toml, load_dimensions
 from fdvv.hardware._dimensions import Dimensions, meaning_of, source_of
+from fdvv.hardware._envelope import Block, Envelope, Rod
 from fdvv.hardware._exported import FolderCheck, PartCheck, check_exported
 from fdvv.hardware._fits import check_fits, misses
 from fdvv.hardware._layout import Layout

@@ -1,52 +1,12 @@
-"""The room that bought parts take: cylinders and blocks, drawn where they stand at travel 0."""
+"""The bought parts that the rig is built about, as the room they take."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fdvv.hardware._dimensions import Dimensions
+from fdvv.hardware._envelope import Block, Envelope, Rod
 from fdvv.hardware._layout import Layout
 from fdvv.hardware._placement import Moves
-from fdvv.hardware._pose import Row
-
-
-@dataclass(frozen=True)
-class Rod:
-    """A cylinder between two points of a line along an axis ("x", "y" or "z"), with a bore if it is not 0."""
-
-    axis: str
-    begin_mm: Row
-    length_mm: float
-    diameter_mm: float
-    bore_mm: float = 0.0
-
-
-@dataclass(frozen=True)
-class Block:
-    """A block between two corners."""
-
-    low_mm: Row
-    high_mm: Row
-
-
-@dataclass(frozen=True)
-class Envelope:
-    """A bought part as the room it takes.
-
-    Attributes
-    ----------
-    name, title : of the part; moves : what it moves with; solids : the room; hollows : what is open in it.
-    holds : names of parts that it is fastened to or bears on: it may touch them.
-    enters : names of parts that its thread cuts or that are drawn full where it goes: it may share their room.
-    """
-
-    name: str
-    title: str
-    moves: Moves
-    solids: tuple[Rod | Block, ...]
-    hollows: tuple[Rod | Block, ...] = ()
-    holds: frozenset[str] = frozenset()
-    enters: frozenset[str] = frozenset()
+from fdvv.hardware._screws import screws
 
 
 def bought_parts(d: Dimensions) -> tuple[Envelope, ...]:
@@ -62,8 +22,8 @@ def bought_parts(d: Dimensions) -> tuple[Envelope, ...]:
         _horn(d),
         _exciter(d),
         _keycap(d),
-        _pin(d),
         *_boards(d),
+        *screws(d),
     )
 
 
@@ -145,19 +105,7 @@ def _keycap(d: Dimensions) -> Envelope:
     body = Block((-half_mm, -half_mm, low_mm), (half_mm, half_mm, high_mm))
     inner_mm = half_mm - 1.5
     hollow = Block((-inner_mm, -inner_mm, low_mm - 1.0), (inner_mm, inner_mm, high_mm - 2.0))
-    return Envelope(
-        "keycap", "MX keycap", Moves.SLIDER, (body,), (hollow,), frozenset({"keycap-adapter"})
-    )
-
-
-def _pin(d: Dimensions) -> Envelope:
-    """Give the screw that runs in the tongue's slot; its head stays clear of the tongue."""
-    layout = Layout(d)
-    head_mm = -(layout.tongue_out_mm + d.tongue_thickness_mm + 2 * d.slide_gap_mm)
-    thread = Rod("x", (head_mm, 0.0, layout.pin_height_mm), 12.0, 3.0)
-    head = Rod("x", (head_mm - 3.0, 0.0, layout.pin_height_mm), 3.0, d.m3_head_mm)
-    enters = frozenset({"coil-mount"})
-    return Envelope("pin", "M3 x 12 screw", Moves.FIXED, (thread, head), (), frozenset(), enters)
+    return Envelope("keycap", "MX keycap", Moves.SLIDER, (body,), (hollow,), frozenset({"keycap-adapter"}))
 
 
 def _boards(d: Dimensions) -> tuple[Envelope, Envelope]:

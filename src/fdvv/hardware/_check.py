@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
-from fdvv.hardware._bought import Envelope, bought_parts
+from fdvv.hardware._bought import bought_parts
 from fdvv.hardware._dimensions import Dimensions
+from fdvv.hardware._envelope import Envelope
 from fdvv.hardware._mesh import Mesh
 from fdvv.hardware._placement import MOVES, RIG, Moves, State, in_rig, moved
 from fdvv.hardware._solids import Body, body_of, body_of_bought, gap_mm, placed, shared_mm3

@@ -40,14 +40,15 @@ def load_dimensions(path: Path | str | None = None, words: Iterable[str] = ()) -
 def dimensions_toml(dimensions: Dimensions) -> str:
     """Write all dimensions as TOML, one a line, with meaning and source beside it."""
     lines = ["# Dimensions of the rig; a name left out keeps its default.", ""]
+    usual = dataclasses.asdict(Dimensions())
     for name, value in dataclasses.asdict(dimensions).items():
-        mark = source_of(name)
+        mark = source_of(name) if value == usual[name] else f"set, {usual[name]:g} by default"
         lines.append(f"{f'{name} = {value!r}':<32}# {meaning_of(name)}; {mark}")
     return "\n".join(lines) + "\n"
 
 
 def assumed() -> tuple[str, ...]:
-    """Give the names of the dimensions that belong to bought parts and were not read from their data sheets."""
+    """Give the names of the dimensions that were not read from a data sheet: measure these."""
     return tuple(name for name in NAMES if source_of(name) == CLASS)
 
 

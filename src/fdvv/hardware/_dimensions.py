@@ -1,7 +1,7 @@
 """Every dimension of the rig, once, with what it means and where it comes from.
 
-Bought parts are recalled from data sheets and sellers' pages; only the paper's own numbers are certain. Measure
-what you bought and set what differs: everything printed follows.
+Bought parts are recalled from data sheets and sellers' pages; only the paper's own numbers are certain.
+Measure what you bought and set what differs: everything printed follows.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ def _of(default: float, meaning: str, source: str) -> Any:
 class Dimensions:
     """The rig's dimensions in mm; angles and forces carry their own units.
 
-    `meaning_of` and `source_of` tell of each. Raises InputError where a value is not a positive number; whether
-    the parts fit each other is asked by `check_fits`.
+    `meaning_of` and `source_of` tell of each. Raises InputError where a value is not a positive number;
+    whether the parts fit each other is asked by `check_fits`.
     """
 
     # what the rig does

@@ -1,8 +1,8 @@
 """Where everything stands, derived from the dimensions.
 
-Frame of the rig: the axis of coil, bushing and sensor is x = y = 0; z is up, 0 on top of the base's plate; the
-front, where the hand comes from, is -y; the limiter is at +x, the guide at -x. Heights of what moves hold for the
-slider at travel 0, its highest place.
+Frame of the rig: the axis of coil, bushing and sensor is x = y = 0; z is up, 0 on top of the base's plate;
+the front, where the hand comes from, is -y; the limiter is at +x, the guide at -x. Heights of what moves hold
+for the slider at travel 0, its highest place.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ class Layout:
 
     @property
     def servo_axis_mm(self) -> float:
-        """Get the height of the servo's shaft: the spiral's range is the travel and as much more at either end."""
+        """Get the height of the servo's shaft; the spiral reaches as far beyond either end of the travel."""
         rise_mm = self.d.limiter_large_mm - self.d.limiter_small_mm
         return self.foot_low_mm + (rise_mm - self.d.travel_mm) / 2 - self.d.limiter_large_mm
 
@@ -193,6 +193,21 @@ class Layout:
     def yoke_screw_mm(self) -> float:
         """Get how far the two screws between yoke and adapter stand from the axis, along x."""
         return self.body_width_mm / 2 - 3.0
+
+    @property
+    def foot_plate_mm(self) -> float:
+        """Get the thickness of the feet of tower and bracket, which screws hold on the base."""
+        return 5.0
+
+    @property
+    def head_room_mm(self) -> float:
+        """Get how deep the heads of the yoke's screws are sunk."""
+        return 2.2
+
+    @property
+    def ear_mm(self) -> float:
+        """Get how far the ears of the coil's clamp reach from the middle, along x."""
+        return 7.25
 
     @property
     def flange_mm(self) -> float:

@@ -1,4 +1,4 @@
-"""The travel limiter: a spiral on the servo's horn under the yoke's round foot; angle to height of the stop."""
+"""The travel limiter: a spiral on the servo's horn under the yoke's round foot; its angle sets the stop."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Limiter:
     def profile(self) -> FloatArray:
         """Get the arm's outline, (n, 2): y and z in mm about the servo's axis, at angle 0, counter-clockwise.
 
-        The spiral's radius grows by the same amount per degree, so travel is linear in the angle; beyond it the
-        outline returns to the smallest radius. At angle 0 the spiral's small end points up; the servo turns
-        the large end there, so the spiral lies clockwise from the top.
+        The spiral's radius grows by the same amount per degree, so travel is linear in the angle; beyond it
+        the outline returns to the smallest radius. At angle 0 the spiral's small end points up; the servo
+        turns the large end there, so the spiral lies clockwise from the top.
         """
         at_deg = np.arange(0.0, 360.0, STEP_DEG)
         sweep_deg = self.d.servo_sweep_deg
@@ -63,7 +63,7 @@ class Limiter:
         return deg, layout.foot_low_mm - layout.servo_axis_mm - foot
 
     def travel_mm(self, angle_deg: float) -> float:
-        """Give the travel at which the slider is stopped, for an angle within the sweep; below 0: it cannot sink."""
+        """Give the travel at which an angle within the sweep stops the slider; below 0 it cannot sink."""
         deg, travel = self._table
         return float(np.interp(angle_deg, deg, travel))
 
@@ -99,7 +99,7 @@ class Limiter:
 
     @property
     def torque_N_mm(self) -> float:
-        """Get the torque that a hard press puts on the servo, without friction: force times rise per radian."""
+        """Get the torque of a hard press on the servo, without friction: force times rise per radian."""
         return self.d.finger_force_N * self.mm_per_deg * DEG_PER_RAD
 
     @property

@@ -1,4 +1,4 @@
-"""The manifest of exported parts: what they were made from, what they measure, the fingerprints of their files."""
+"""The manifest of exported parts: what they were made from, what they measure, their files' fingerprints."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ def manifest_bytes(manifest: Manifest) -> bytes:
 def read_manifest(folder: Path | str) -> Manifest:
     """Read the manifest of a folder of exported parts. Raises InputError."""
     path = Path(folder) / NAME
-    data = read_limited(path, LARGEST_BYTES, "name a folder that fdvv hardware export wrote")
+    if not path.is_file():
+        remedy = "name a folder that fdvv hardware export wrote, or the source's hardware/"
+        raise InputError(folder, "whole folder", f"holds no {NAME} of exported parts", remedy)
+    data = read_limited(path, LARGEST_BYTES, REMEDY)
     return read_document(
         data, path, KIND, lambda raw: msgspec.json.decode(raw, type=Manifest), lambda _place: None
     )

@@ -78,11 +78,12 @@ def joined(corners_mm: FloatArray) -> Mesh:
     places, index = np.unique(rounded, axis=0, return_inverse=True)
     triangles = index.reshape(-1, 3)
     a, b, c = triangles.T
-    return Mesh(places * ROUND_mm, triangles[(a != b) & (b != c) & (c != a)])
+    points: FloatArray = np.asarray(places * ROUND_mm, dtype=np.float64)
+    return Mesh(points, triangles[(a != b) & (b != c) & (c != a)])
 
 
 def stl_bytes(mesh: Mesh) -> bytes:
-    """Write a mesh as binary STL: triangles begin at their lowest point and are sorted, so equal parts are equal."""
+    """Write a mesh as binary STL, its triangles sorted, so that equal parts give equal bytes."""
     lowest = np.argmin(mesh.triangles, axis=1)
     turned = np.take_along_axis(mesh.triangles, (lowest[:, None] + np.arange(3)) % 3, axis=1)
     order = np.lexsort(turned.T[::-1])
@@ -102,7 +103,7 @@ def _normals(corners: FloatArray) -> FloatArray:
 
 
 def read_stl(path: Path | str) -> Mesh:
-    """Read a binary STL file. Raises InputError for a text STL, a torn file and numbers that are not finite."""
+    """Read a binary STL file. Raises InputError for a text STL, a torn file, numbers that are not finite."""
     data = read_limited(Path(path), LARGEST_BYTES, "pass an exported part")
     count = int(np.frombuffer(data[80:84], "<u4")[0]) if len(data) >= 84 else 0
     if not count or len(data) != 84 + count * RECORD.itemsize:

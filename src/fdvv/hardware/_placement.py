@@ -1,4 +1,4 @@
-"""Where each part stands: printed on its bed, in the rig at a travel and a setting of the limiter, on the jig."""
+"""Where each part stands: on its bed, in the rig at a travel and a setting of the limiter, on the jig."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class State:
 
 
 def on_bed(name: str, d: Dimensions) -> Pose:
-    """Give the pose that lays a printed part, drawn where it stands, on the bed; its lowest face is then z = 0."""
+    """Give the pose that lays a part, drawn where it stands, on the bed; its lowest face is then z = 0."""
     layout = Layout(d)
     match name:
         case "base" | "capture-jig":

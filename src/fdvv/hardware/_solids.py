@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import BuildError
-from fdvv.hardware._bought import Block, Envelope, Rod
+from fdvv.hardware._envelope import Block, Envelope, Rod
 from fdvv.hardware._mesh import Mesh
 from fdvv.hardware._pose import Pose
 
@@ -18,7 +18,7 @@ Body = Any
 SIDES = 96
 """Of the prisms that stand for cylinders."""
 
-FAR_mm = 10.0
+FAR_mm = 3.0
 
 
 def _library() -> ModuleType:
@@ -26,15 +26,14 @@ def _library() -> ModuleType:
         import manifold3d
     except ImportError as error:
         raise BuildError('checking how parts fit needs more: pip install "fdvv[hardware]"') from error
-    return manifold3d
+    module: ModuleType = manifold3d
+    return module
 
 
 def body_of(mesh: Mesh) -> Body:
     """Give a mesh as a solid. Raises BuildError without manifold3d; ValueError where it is not closed."""
     library = _library()
-    found = library.Manifold(
-        library.Mesh(mesh.points.astype(np.float32), mesh.triangles.astype(np.uint32))
-    )
+    found = library.Manifold(library.Mesh(mesh.points.astype(np.float32), mesh.triangles.astype(np.uint32)))
     if found.status() != library.Error.NoError or found.volume() <= 0:
         raise ValueError(f"not a closed solid ({found.status().name})")
     return found

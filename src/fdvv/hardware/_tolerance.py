@@ -1,4 +1,4 @@
-"""What stands between the axis of the rod and the axis of the sensor: one line per cause, worst case and likely.
+"""What sets the axis of the rod off the axis of the sensor: one line per cause, worst case and likely.
 
 Coil pocket and bushing's seat are bored in one part, so no joint lies between the two bearings. The sensor's
 mount stands on the base and is moved until the core runs free, so what follows is what that must take up.
@@ -44,7 +44,9 @@ def core_stack(d: Dimensions) -> Stack:
         (
             Cause("rod in its bushing", play_mm),
             Cause("bushing's seat in the tower", d.print_error_mm),
-            Cause("tower on the base: screws in their holes", (d.m3_clearance_mm - 3.0) / 2 + d.print_error_mm),
+            Cause(
+                "tower on the base: screws in their holes", (d.m3_clearance_mm - 3.0) / 2 + d.print_error_mm
+            ),
             Cause("sensor in its clamp", d.fit_gap_mm),
             Cause("clamp above the mount's foot", d.print_error_mm),
         )

@@ -39,6 +39,6 @@ def build(name: str, d: Dimensions) -> Solid:
 def _posed(solid: Solid, pose: Pose) -> Solid:
     """Put a solid at a pose, and take its placement into its geometry."""
     k = kernel()
-    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = pose.turn
-    plane = k.Plane(origin=pose.shift_mm, x_dir=(ax, bx, cx), z_dir=(az, bz, cz))
+    right, _, up = zip(*pose.turn, strict=True)
+    plane = k.Plane(origin=pose.shift_mm, x_dir=right, z_dir=up)
     return plane.location * solid

@@ -8,7 +8,6 @@ from fdvv.hardware.cad._shapes import Solid, block, cone, hexagon, prism, rod
 
 M3_NUT_mm = (5.5, 2.6)
 SLIT_mm = 2.5
-TOWER_FOOT_mm = 5.0
 
 
 def base(d: Dimensions) -> Solid:
@@ -66,11 +65,11 @@ def coil_mount(d: Dimensions) -> Solid:
     layout = Layout(d)
     radius, half = layout.tower_radius_mm, layout.flange_mm
     made = rod("z", (0, 0, 0), layout.coil_top_mm, 2 * radius)
-    made += block((-half, -half, 0.0), (half, half, TOWER_FOOT_mm), 4.0)
+    made += block((-half, -half, 0.0), (half, half, layout.foot_plate_mm), 4.0)
     made += _clamp_ears(d) + _guide(d)
     made -= _bore(d) + _window(d) + _clamp_cut(d) + _guide_cut(d)
     for x, y in layout.tower_screws_mm:
-        made -= rod("z", (x, y, -1), TOWER_FOOT_mm + 2, d.m3_clearance_mm + d.hole_excess_mm)
+        made -= rod("z", (x, y, -1), layout.foot_plate_mm + 2, d.m3_clearance_mm + d.hole_excess_mm)
     return made
 
 
@@ -89,7 +88,7 @@ def _bore(d: Dimensions) -> Solid:
 def _window(d: Dimensions) -> Solid:
     """Make the opening at the front through which the sensor is clamped; its top is a gable."""
     layout = Layout(d)
-    half, low = layout.tower_bore_mm / 2 + 1, TOWER_FOOT_mm
+    half, low = layout.tower_bore_mm / 2 + 1, layout.foot_plate_mm
     eaves = max(low + 22.0, layout.floor_low_mm - 3.0 - half)
     points = [(-half, low), (half, low), (half, eaves), (0, eaves + half), (-half, eaves)]
     return prism("y", points, -layout.tower_radius_mm - 1, -layout.tower_bore_mm / 4)
@@ -103,7 +102,7 @@ def _clamp_ears(d: Dimensions) -> Solid:
         *((-radius + 3, top), (-radius - 9, top)),
         *((-radius - 9, top - 11), (-radius + 3, top - 23)),
     ]
-    half = SLIT_mm / 2 + 6
+    half = layout.ear_mm
     return prism("x", points, -half, half)
 
 
@@ -116,7 +115,7 @@ def _clamp_cut(d: Dimensions) -> Solid:
         (SLIT_mm / 2, -layout.tower_bore_mm / 2 + 1, top + 1),
     )
     across, thick = M3_NUT_mm
-    y, z, end = -radius - 4.5, top - 5.5, SLIT_mm / 2 + 6
+    y, z, end = -radius - 4.5, top - 5.5, layout.ear_mm
     made += rod("x", (-end - 1, y, z), 2 * end + 2, d.m3_clearance_mm + d.hole_excess_mm)
     return made + hexagon("x", (end - thick, y, z), thick + 1, across + d.hole_excess_mm)
 
@@ -136,7 +135,7 @@ def _guide_cut(d: Dimensions) -> Solid:
     """Make the tongue's channel and the hole that its screw cuts a thread in."""
     layout = Layout(d)
     face, half = layout.tower_radius_mm + 3.5, d.tongue_width_mm / 2 + d.slide_gap_mm
-    made = block((-face - 20, -half, TOWER_FOOT_mm), (-face, half, layout.coil_top_mm + 1))
+    made = block((-face - 20, -half, layout.foot_plate_mm), (-face, half, layout.coil_top_mm + 1))
     deep = layout.tower_bore_mm / 2 + 0.8
     return made + rod(
         "x", (-face - 1, 0, layout.pin_height_mm), face + 1 - deep, d.m3_pilot_mm + d.hole_excess_mm

@@ -27,8 +27,9 @@ def export_parts(
 ) -> Manifest:
     """Make every part anew and write parts/*.stl, parts/*.step, drawings/*.svg and manifest.json to a folder.
 
-    tell : is called with the part's name and how many of how many are done. Equal dimensions give equal bytes.
-    The manifest is written last. Raises BuildError without the CAD kernel; InputError where parts do not fit.
+    tell : is called with the part's name and how many of how many are done.
+    Equal dimensions give equal bytes. The manifest is written last. Raises BuildError without the CAD
+    kernel; InputError where parts do not fit.
     """
     check_fits(d)
     made = {}

@@ -7,7 +7,6 @@ from fdvv.hardware._layout import Layout
 from fdvv.hardware._limiter import Limiter
 from fdvv.hardware.cad._shapes import Solid, block, kernel, prism, rod
 
-HEAD_DEPTH_mm = 2.2
 INSERT_DEPTH_mm = 5.8
 HORN_SHARE = 0.9
 """Where in the sweep the horn points: towards the spiral's large end, a little before it."""
@@ -26,7 +25,7 @@ def slider_yoke(d: Dimensions) -> Solid:
     for side in (-1, 1):
         at = (side * layout.yoke_screw_mm, 0.0, low - 1)
         made -= rod("z", at, top - low + 2, d.m2_clearance_mm + d.hole_excess_mm)
-        made -= rod("z", at, HEAD_DEPTH_mm + 1, d.m2_head_mm)
+        made -= rod("z", at, layout.head_room_mm + 1, d.m2_head_mm)
     middle = (low + top) / 2
     made -= rod("y", (0, 0, middle), half + 1, d.m3_clearance_mm)
     return made - rod("y", (0, half - INSERT_DEPTH_mm, middle), INSERT_DEPTH_mm + 1, d.m3_insert_mm)
@@ -101,8 +100,14 @@ def limiter_bracket(d: Dimensions) -> Solid:
     begin, end, plate = layout.bracket_in_mm, layout.bracket_out_mm, layout.bracket_plate_mm
     half, (servo_low, servo_top) = d.servo_width_mm / 2 + 5.0, layout.servo_z_mm
     made = block((begin, -half, 0), (begin + plate, half, servo_top + d.servo_ear_mm + 3))
-    made += block((begin, -half - 9, 0), (end, half + 9, 5.0))
-    cheek = [(begin, 1.0), (end, 1.0), (end, 9.0), (begin + plate, servo_low - d.servo_ear_mm - 2), (begin, 9.0)]
+    made += block((begin, -half - 9, 0), (end, half + 9, layout.foot_plate_mm))
+    cheek = [
+        (begin, 1.0),
+        (end, 1.0),
+        (end, 9.0),
+        (begin + plate, servo_low - d.servo_ear_mm - 2),
+        (begin, 9.0),
+    ]
     for y in (-half, half - 3.0):
         made += prism("y", cheek, y, y + 3.0)
     gap = d.fit_gap_mm + d.hole_excess_mm / 2

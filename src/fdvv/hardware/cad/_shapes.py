@@ -23,7 +23,8 @@ def kernel() -> ModuleType:
         import build123d
     except ImportError as error:
         raise BuildError('making parts needs a CAD kernel: pip install "fdvv[cad]"') from error
-    return build123d
+    module: ModuleType = build123d
+    return module
 
 
 def block(low: Point, high: Point, radius_mm: float = 0.0) -> Solid:

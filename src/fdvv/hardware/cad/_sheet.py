@@ -50,7 +50,7 @@ def sheet(part: Part, drawn: tuple[View, ...], d: Dimensions) -> str:
     body = [*_frame(), *_title(part, d, scale)]
     for placed in _arranged(front, right, above, oblique, scale):
         body += _lines(placed, placed.view.shown, "s") + _lines(placed, placed.view.hidden, "h")
-        body += _sizes(placed) if placed.view.circles is not None and placed.view is not oblique else []
+        body += [] if placed.view is oblique else _sizes(placed)
         body += _rounds(placed)
         x, y = placed.at(placed.view.box_mm[0], placed.view.box_mm[3])
         body.append(_text(x, y - 2.0, placed.view.title, "q"))
@@ -84,7 +84,7 @@ def _low(front: View, right: View, above: View, scale: float) -> float | None:
 
 
 def _arranged(front: View, right: View, above: View, oblique: View, scale: float) -> list[Placed]:
-    """Place the front at the lower left, the right side beside it, the top above it, the oblique view opposite."""
+    """Place the front at the lower left, the side beside it, the top above it, the oblique view apart."""
     left, bottom = MARGIN_mm + AIR_mm - 6, _low(front, right, above, scale) or SHEET_mm[1] - MARGIN_mm
     (wide, high), (deep, tall) = _size(front), _size(right)
     beside, over = left + wide * scale + AIR_mm, bottom - high * scale - AIR_mm
@@ -133,7 +133,10 @@ def _sizes(placed: Placed) -> list[str]:
 
 def _arrow(x: float, y: float, dx: int, dy: int) -> str:
     """Draw an arrow's head whose tip is at a point and that opens along dx, dy."""
-    a, b = (x + 1.6 * dx + 0.5 * dy, y + 1.6 * dy + 0.5 * dx), (x + 1.6 * dx - 0.5 * dy, y + 1.6 * dy - 0.5 * dx)
+    a, b = (
+        (x + 1.6 * dx + 0.5 * dy, y + 1.6 * dy + 0.5 * dx),
+        (x + 1.6 * dx - 0.5 * dy, y + 1.6 * dy - 0.5 * dx),
+    )
     return f"M{a[0]:.2f} {a[1]:.2f}L{x:.2f} {y:.2f}L{b[0]:.2f} {b[1]:.2f}"
 
 
@@ -169,7 +172,9 @@ def _title(part: Part, d: Dimensions, scale: float) -> list[str]:
         f'<rect class="f" x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" fill="white"/>',
         _text(x + 4, y + 7.5, part.title, "b"),
         _text(x + width - 4, y + 6.5, f"scale {ratio}   mm", "", "end"),
-        _text(x + 4, y + 13, f"fdvv button simulator · {part.name} · {part.count} needed · {part.material}", ""),
+        _text(
+            x + 4, y + 13, f"fdvv button simulator · {part.name} · {part.count} needed · {part.material}", ""
+        ),
         _text(x + 4, y + 17.5, f"prints {part.lies}; drawn as it lies", "q"),
         f'<path class="t" d="M{x:g} {y + 20:g}h{width:g}"/>',
     ]

@@ -72,7 +72,9 @@ def black_box(d: Dimensions) -> Solid:
     (width, depth, height), (left, right) = layout.box_mm, layout.base_x_mm
     x, low = (left + right) / 2, -d.base_height_mm
     half_x, half_y, top = width / 2, depth / 2, low + height
-    made = block((x - half_x - wall, -half_y - wall, low), (x + half_x + wall, half_y + wall, top + wall), 8.0)
+    made = block(
+        (x - half_x - wall, -half_y - wall, low), (x + half_x + wall, half_y + wall, top + wall), 8.0
+    )
     made -= block((x - half_x, -half_y, low - 1), (x + half_x, half_y, top), 8.0 - wall)
     made -= prism("y", _hand(d), -half_y - wall - 1, -half_y + 1)
     made -= block((x - 20, half_y - 1, low - 1), (x + 20, half_y + wall + 1, low + 14))
@@ -86,4 +88,11 @@ def _hand(d: Dimensions) -> list[tuple[float, float]]:
     key, half = Layout(d).keycap_top_mm, d.box_hand_mm / 2
     flat = 10.0
     low = key - half
-    return [(-flat, low), (flat, low), (half, low + half - flat), (half, key + 45), (-half, key + 45), (-half, low + half - flat)]
+    return [
+        (-flat, low),
+        (flat, low),
+        (half, low + half - flat),
+        (half, key + 45),
+        (-half, key + 45),
+        (-half, low + half - flat),
+    ]
