@@ -236,7 +236,7 @@ def _spread(wanted: list[float], height: int, apart: float = 24.0) -> list[float
     return at
 
 
-def save(image: Image.Image, path: Path, colours: int = 128) -> None:
+def save(image: Image.Image, path: Path, colours: int = 256) -> None:
     """Write a picture as a small PNG."""
     buffer = io.BytesIO()
     image.quantize(colours, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)

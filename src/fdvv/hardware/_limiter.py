@@ -12,7 +12,7 @@ from fdvv.hardware._dimensions import Dimensions
 from fdvv.hardware._layout import Layout
 from fdvv.units import FloatArray
 
-STEP_DEG = 5.0
+STEP_DEG = 2.0
 RETURN_DEG = 60.0
 PULSE_US_PER_DEG = 1900.0 / 180.0
 """Of a micro servo, 500 to 2400 µs over 180 degrees; assumed, measure yours."""
@@ -40,12 +40,15 @@ class Limiter:
         the outline returns to the smallest radius. At angle 0 the spiral's small end points up; the servo
         turns the large end there, so the spiral lies clockwise from the top.
         """
-        at_deg = np.arange(0.0, 360.0, STEP_DEG)
+        return self.outline(np.arange(0.0, 360.0, STEP_DEG))[::-1]
+
+    def outline(self, at_deg: FloatArray) -> FloatArray:
+        """Give points of the arm's outline, (n, 2), at angles from its small end on, clockwise."""
         sweep_deg = self.d.servo_sweep_deg
         rise = np.interp(at_deg, [0.0, sweep_deg, sweep_deg + RETURN_DEG, 360.0], [0.0, 1.0, 0.0, 0.0])
         radius = self.d.limiter_small_mm + rise * (self.d.limiter_large_mm - self.d.limiter_small_mm)
         angle = np.radians(90.0 - at_deg)
-        return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)[::-1]
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
     def foot_mm(self, angle_deg: float) -> float:
         """Give the height of the foot's lowest line above the servo's axis when it rests on the arm."""
@@ -58,7 +61,7 @@ class Limiter:
     def _table(self) -> tuple[FloatArray, FloatArray]:
         """Give angles and the travel that each allows."""
         layout = Layout(self.d)
-        deg = np.linspace(0.0, self.d.servo_sweep_deg, 301)
+        deg = np.linspace(0.0, self.d.servo_sweep_deg, 151)
         foot = np.array([self.foot_mm(angle) for angle in deg])
         return deg, layout.foot_low_mm - layout.servo_axis_mm - foot
 
@@ -109,9 +112,9 @@ class Limiter:
 
 
 def _dense(profile: FloatArray) -> FloatArray:
-    """Put nine points on every edge of the outline, which is what the printed arm really is."""
+    """Put points on every edge of the outline, so that the foot finds the highest."""
     after = np.roll(profile, -1, axis=0)
-    share = np.linspace(0.0, 1.0, 10)[:-1, None, None]
+    share = np.linspace(0.0, 1.0, 5)[:-1, None, None]
     points: FloatArray = (profile + share * (after - profile)).reshape(-1, 2)
     return points
 

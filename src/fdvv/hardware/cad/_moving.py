@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fdvv.hardware._dimensions import Dimensions
 from fdvv.hardware._layout import Layout
-from fdvv.hardware._limiter import Limiter
+from fdvv.hardware._limiter import RETURN_DEG, Limiter
 from fdvv.hardware.cad._shapes import Solid, block, kernel, prism, rod
 
 INSERT_DEPTH_mm = 5.8
@@ -73,13 +75,26 @@ def limiter_arm(d: Dimensions) -> Solid:
     """Make the limiter's arm: the spiral with a pocket for the horn on the servo's side."""
     layout = Layout(d)
     begin, end, z = layout.limiter_in_mm, layout.limiter_out_mm, layout.servo_axis_mm
-    outline = [(float(y), float(up) + z) for y, up in Limiter(d).profile]
-    made = prism("x", outline, begin, end)
+    made = _spiral(d, begin, end)
     face = end - d.horn_thickness_mm
     hub = d.horn_hub_mm + 2 * d.fit_gap_mm + d.hole_excess_mm
     made -= rod("x", (face, 0, z), d.horn_thickness_mm + 1, hub)
     made -= rod("x", (begin - 1, 0, z), end - begin + 2, d.horn_hub_mm - 1.5)
     return made - _horn_pocket(d, face, end)
+
+
+def _spiral(d: Dimensions, begin: float, end: float) -> Solid:
+    """Make the arm's body: the spiral, its way back and the round rest, each one smooth face."""
+    k, limiter, z = kernel(), Limiter(d), Layout(d).servo_axis_mm
+    sweep, back = d.servo_sweep_deg, d.servo_sweep_deg + RETURN_DEG
+
+    def points(first: float, last: float, count: int) -> list[tuple[float, float, float]]:
+        at = limiter.outline(np.linspace(first, last, count))
+        return [(begin, float(y), float(up) + z) for y, up in at]
+
+    edges = [k.Spline(*points(0.0, sweep, 16)), k.Spline(*points(sweep, back, 7))]
+    edges.append(k.ThreePointArc(*points(back, 360.0, 3)))
+    return k.extrude(k.make_face(edges), amount=end - begin, dir=(1, 0, 0))
 
 
 def _horn_pocket(d: Dimensions, face: float, end: float) -> Solid:

@@ -11,7 +11,8 @@ from fdvv.hardware.cad._view import Line, View
 
 SHEET_mm = (297.0, 210.0)
 MARGIN_mm = 8.0
-TITLE_mm = (136.0, 44.0)
+TITLE_mm = (134.0, 44.0)
+LEFT_mm = MARGIN_mm + 14.0
 SCALES = (5.0, 2.0, 1.0, 0.5, 0.4, 0.25, 0.2)
 AIR_mm = 24.0
 """Between views: room for their sizes."""
@@ -24,7 +25,7 @@ STYLE = """
 .f{fill:none;stroke:#14213d;stroke-width:.5}
 .t{fill:none;stroke:#14213d;stroke-width:.2}
 text{font-family:Helvetica,Arial,sans-serif;font-size:2.9px;fill:#14213d}
-.n{fill:#0072b2}.m{fill:#b4530a}.q{fill:#5b6472;font-size:2.4px}.b{font-size:5.2px;font-weight:bold}
+.n{fill:#0072b2}.m{fill:#b4530a}.q{fill:#5b6472;font-size:2.2px}.b{font-size:5.2px;font-weight:bold}
 """
 
 
@@ -50,7 +51,7 @@ def sheet(part: Part, drawn: tuple[View, ...], d: Dimensions) -> str:
     body = [*_frame(), *_title(part, d, scale)]
     for placed in _arranged(front, right, above, oblique, scale):
         body += _lines(placed, placed.view.shown, "s") + _lines(placed, placed.view.hidden, "h")
-        body += [] if placed.view is oblique else _sizes(placed)
+        body += _sizes(placed, placed.view is not oblique, placed.view in (front, above))
         body += _rounds(placed)
         x, y = placed.at(placed.view.box_mm[0], placed.view.box_mm[3])
         body.append(_text(x, y - 2.0, placed.view.title, "q"))
@@ -74,24 +75,24 @@ def _scale(front: View, right: View, above: View) -> float:
 def _low(front: View, right: View, above: View, scale: float) -> float | None:
     """Give where the lower views stand on the paper; None where they do not fit at this scale."""
     (wide, high), (deep, _), (_, back) = _size(front), _size(right), _size(above)
-    end = MARGIN_mm + AIR_mm + scale * (wide + deep) + AIR_mm
+    end = LEFT_mm + scale * (wide + deep) + AIR_mm + 10
     tall = scale * (high + back) + AIR_mm + 10
     bottom = SHEET_mm[1] - MARGIN_mm - 14
-    if end + 14 <= SHEET_mm[0] - MARGIN_mm - TITLE_mm[0] and bottom - tall >= MARGIN_mm:
+    if end <= SHEET_mm[0] - MARGIN_mm - TITLE_mm[0] and bottom - tall >= MARGIN_mm:
         return bottom
     bottom -= TITLE_mm[1]
-    return bottom if end + 14 <= SHEET_mm[0] - MARGIN_mm and bottom - tall >= MARGIN_mm else None
+    return bottom if end <= SHEET_mm[0] - MARGIN_mm and bottom - tall >= MARGIN_mm else None
 
 
 def _arranged(front: View, right: View, above: View, oblique: View, scale: float) -> list[Placed]:
     """Place the front at the lower left, the side beside it, the top above it, the oblique view apart."""
-    left, bottom = MARGIN_mm + AIR_mm - 6, _low(front, right, above, scale) or SHEET_mm[1] - MARGIN_mm
+    left, bottom = LEFT_mm, _low(front, right, above, scale) or SHEET_mm[1] - MARGIN_mm
     (wide, high), (deep, tall) = _size(front), _size(right)
     beside, over = left + wide * scale + AIR_mm, bottom - high * scale - AIR_mm
     made = [Placed(front, left, bottom, scale), Placed(right, beside, bottom, scale)]
     made.append(Placed(above, left, over, scale))
     x = left + max(wide, _size(above)[0]) * scale + AIR_mm
-    free = beside + deep * scale + 14 < SHEET_mm[0] - MARGIN_mm - TITLE_mm[0]
+    free = beside + deep * scale + 10 <= SHEET_mm[0] - MARGIN_mm - TITLE_mm[0]
     floor = SHEET_mm[1] - MARGIN_mm - TITLE_mm[1] if free else bottom - tall * scale
     x = max(x, beside + deep * scale + AIR_mm) if free else x
     return [*made, _filling(oblique, x, MARGIN_mm + 8, SHEET_mm[0] - MARGIN_mm - 4, floor - 8)]
@@ -115,20 +116,23 @@ def _lines(placed: Placed, lines: tuple[Line, ...], kind: str) -> list[str]:
     return [f'<path class="{kind}" d="{"".join(paths)}"/>']
 
 
-def _sizes(placed: Placed) -> list[str]:
-    """Draw the view's width below it and its height to its left."""
+def _sizes(placed: Placed, width: bool, height: bool) -> list[str]:
+    """Draw the view's width below it and its height to its left, as told."""
     left, low, right, top = placed.view.box_mm
     (x0, y0), (x1, y1) = placed.at(left, low), placed.at(right, top)
     y, x = y0 + 7, x0 - 7
-    return [
+    across = [
         f'<path class="d" d="M{x0:.2f} {y0 + 1:.2f}V{y + 1.5:.2f}M{x1:.2f} {y0 + 1:.2f}V{y + 1.5:.2f}'
         f'M{x0:.2f} {y:.2f}H{x1:.2f}{_arrow(x0, y, 1, 0)}{_arrow(x1, y, -1, 0)}"/>',
         _text((x0 + x1) / 2, y - 0.8, _mm(right - left), "n", "middle"),
+    ]
+    upright = [
         f'<path class="d" d="M{x0 - 1:.2f} {y0:.2f}H{x - 1.5:.2f}M{x0 - 1:.2f} {y1:.2f}H{x - 1.5:.2f}'
         f'M{x:.2f} {y0:.2f}V{y1:.2f}{_arrow(x, y0, 0, -1)}{_arrow(x, y1, 0, 1)}"/>',
         f'<text class="n" text-anchor="middle" transform="translate({x - 0.8:.2f} {(y0 + y1) / 2:.2f})'
         f' rotate(-90)">{_mm(top - low)}</text>',
     ]
+    return [*(across if width else []), *(upright if height else [])]
 
 
 def _arrow(x: float, y: float, dx: int, dy: int) -> str:
@@ -181,7 +185,7 @@ def _title(part: Part, d: Dimensions, scale: float) -> list[str]:
     for i, name in enumerate(part.drawn):
         at = y + 24.5 + 4.2 * i
         made.append(_text(x + 4, at, f"{name} = {getattr(d, name):g}", ""))
-        made.append(_text(x + 52, at, f"{meaning_of(name)} ({source_of(name)})", "q"))
+        made.append(_text(x + 49, at, f"{meaning_of(name)} ({source_of(name)})", "q"))
     made.append(_text(x + 4, y + height - 2, f"dimensions {d.digest()}", "q"))
     return made
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fdvv.hardware.cad._shapes import Solid, kernel
 
 Line = tuple[tuple[float, float], ...]
+Box = tuple[float, float, float, float]
 FAR_mm = 1000.0
 ROUND = 2
 """Decimals of a millimetre in drawings."""
@@ -27,19 +28,13 @@ class Circle:
 
 @dataclass(frozen=True)
 class View:
-    """A solid seen along a line: x to the right, y up, in mm."""
+    """A solid seen along a line: x to the right, y up, in mm; its box is left, bottom, right and top."""
 
     title: str
     shown: tuple[Line, ...]
     hidden: tuple[Line, ...]
     circles: tuple[Circle, ...]
-
-    @property
-    def box_mm(self) -> tuple[float, float, float, float]:
-        """Get left, bottom, right and top of what shows."""
-        xs = [x for line in self.shown for x, _ in line]
-        ys = [y for line in self.shown for _, y in line]
-        return min(xs), min(ys), max(xs), max(ys)
+    box_mm: Box
 
 
 # title: from where, what is up, what is to the right (None: not square to the axes)
@@ -62,7 +57,21 @@ def _view(solid: Solid, title: str) -> View:
     shown, hidden = solid.project_to_viewport(eye, up, (0, 0, 0))
     front = _lines(shown)
     behind = () if axis is None else tuple(line for line in _lines(hidden) if line not in front)
-    return View(title, front, behind, () if axis is None else _circles(solid, title))
+    circles = () if axis is None else _circles(solid, title)
+    return View(title, front, behind, circles, _box(front) if axis is None else _true_box(solid, title))
+
+
+def _box(lines: tuple[Line, ...]) -> Box:
+    xs, ys = zip(*(point for line in lines for point in line), strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def _true_box(solid: Solid, title: str) -> Box:
+    """Give the box of a view square to an axis from the solid: a round edge's points lie inside its own."""
+    box = solid.bounding_box()
+    left, low = _seen((box.min.X, box.min.Y, box.min.Z), title)
+    right, top = _seen((box.max.X, box.max.Y, box.max.Z), title)
+    return left, low, right, top
 
 
 def _lines(edges: list[Solid]) -> tuple[Line, ...]:
