@@ -100,6 +100,9 @@ if TYPE_CHECKING:
         measured_files,
         summarise,
     )
+    from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
+    from fdvv.workflow._hardware_measure import measure_rig
+    from fdvv.workflow._hardware_stand import AskedStand, SimulatedStand, Stand
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
@@ -258,10 +261,12 @@ __all__ = [
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
+    "RIG_FAULTS",
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
     "AchievableCurve",
     "Ask",
+    "AskedStand",
     "Block",
     "ButtonMean",
     "ButtonPress",
@@ -371,6 +376,7 @@ __all__ = [
     "RenderedWinner",
     "Rendering",
     "RigEntry",
+    "RigFault",
     "RigOnShelf",
     "RigShelf",
     "RoundTiming",
@@ -392,11 +398,13 @@ __all__ = [
     "SimulatedParticipant",
     "SimulatedPlayer",
     "SimulatedSession",
+    "SimulatedStand",
     "SimulatedStudy",
     "Size",
     "SpaceSetup",
     "Stage",
     "StageEvidence",
+    "Stand",
     "Standing",
     "Step",
     "StripCheck",
@@ -486,6 +494,7 @@ __all__ = [
     "lock_with_code",
     "look_at_study",
     "make_program",
+    "measure_rig",
     "measured_button",
     "measured_files",
     "merge_parts",

@@ -1,0 +1,95 @@
+"""Does the self-test name the part that is wrong? Every fault on rigs drawn at random. Simulated.
+
+``python -m benchmarks.hardware_diagnosis [rigs] [first seed]``; bounds were set on seeds below FIRST_SEED.
+A drawn rig is what its builder has the settings for; what was built is off by what parts and hands leave.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+
+from fdvv.device import LibraryBoard, LinkedDevice
+from fdvv.hardware import Diagnosis, diagnose
+from fdvv.twin import Rig, draw_rig
+from fdvv.workflow import RIG_FAULTS, SimulatedStand, measure_rig
+
+FIRST_SEED = 1000
+RIGS = 24
+SOUND_RIGS = 100
+NONE = "none"
+
+
+def parts(seed: int) -> tuple[Rig, Rig]:
+    """Draw a rig with a force sensor in its cap, and what its builder made of it."""
+    random = np.random.default_rng(seed)
+    rig = draw_rig(random)
+    exact = replace(rig.controller, gain_error_ratio=0.0)
+    rig = replace(rig, keycap_sensor=replace(rig.keycap_sensor, kind="force"), controller=exact)
+    return rig, as_built(rig, random)
+
+
+def as_built(rig: Rig, random: np.random.Generator) -> Rig:
+    """Give the rig with the errors that remain: coil 10 and 5 %, supply 3 %, stop 2 % and 10 us, cap sensor 5 %."""
+    coil, servo, cap = rig.coil, rig.servo, rig.keycap_sensor
+
+    def off(ratio: float) -> float:
+        return 1 + random.uniform(-ratio, ratio)
+
+    coil = replace(
+        coil,
+        force_constant_N_A=coil.force_constant_N_A * off(0.1),
+        resistance_ohm=coil.resistance_ohm * off(0.05),
+        supply_V=coil.supply_V * off(0.03),
+    )
+    servo = replace(
+        servo,
+        pulse_us_mm=servo.pulse_us_mm * off(0.02),
+        pulse_zero_us=servo.pulse_zero_us + random.uniform(-10, 10),
+    )
+    return replace(rig, coil=coil, servo=servo, keycap_sensor=replace(cap, full_scale_N=cap.full_scale_N * off(0.05)))
+
+
+def tested(case: tuple[int, str]) -> tuple[str, str, str, str]:
+    """Test one rig with one fault; give fault, part that is wrong, part that was named, and the evidence."""
+    seed, name = case
+    rig, built = parts(seed)
+    fault = RIG_FAULTS.get(name)
+    stand = SimulatedStand(rig, seed, *([fault] if fault else []), built=built)
+    device = LinkedDevice(LibraryBoard(), stand)
+    try:
+        found: Diagnosis = diagnose(measure_rig(device, stand))
+    finally:
+        device.close()
+    wrong = found.wrong
+    named = wrong.part if wrong else (NONE if found.passed else "unfinished")
+    return name, fault.part if fault else NONE, named, f"seed {seed}: {wrong.evidence if wrong else ''}"
+
+
+def main(rigs: int = RIGS, first: int = FIRST_SEED, sound: int = SOUND_RIGS) -> None:
+    cases = [(first + i, name) for i in range(rigs) for name in RIG_FAULTS]
+    cases += [(first + i, NONE) for i in range(sound)]
+    table: Counter[tuple[str, str]] = Counter()
+    told: list[str] = []
+    with ProcessPoolExecutor(2) as pool:
+        for name, part, named, seen in pool.map(tested, cases, chunksize=4):
+            table[name, named] += 1
+            if named != part:
+                told.append(f"  {name}: named {named}; {seen}")
+    print("simulated; fault: part named (times)")
+    for name in [NONE, *RIG_FAULTS]:
+        row = {named: n for (fault, named), n in sorted(table.items()) if fault == name}
+        print(f"  {name:18} {', '.join(f'{named} {n}' for named, n in row.items())}")
+    right = sum(n for (name, named), n in table.items() if name != NONE and named == RIG_FAULTS[name].part)
+    alarms = sound - table[NONE, NONE]
+    print(f"right part named: {right} of {rigs * len(RIG_FAULTS)} ({100 * right / (rigs * len(RIG_FAULTS)):.1f} %)")
+    print(f"false alarms: {alarms} of {sound} sound rigs ({100 * alarms / sound:.1f} %)")
+    print("\n".join(told))
+
+
+if __name__ == "__main__":
+    main(*(int(arg) for arg in sys.argv[1:]))
