@@ -34,7 +34,7 @@ def parts(seed: int) -> tuple[Rig, Rig]:
 
 
 def as_built(rig: Rig, random: np.random.Generator) -> Rig:
-    """Give the rig with the errors that remain: coil 10 and 5 %, supply 3 %, stop 2 % and 10 us, cap sensor 5 %."""
+    """Give the rig with what remains off: coil, supply, stop and force sensor, within what hands leave."""
     coil, servo, cap = rig.coil, rig.servo, rig.keycap_sensor
 
     def off(ratio: float) -> float:
@@ -51,7 +51,9 @@ def as_built(rig: Rig, random: np.random.Generator) -> Rig:
         pulse_us_mm=servo.pulse_us_mm * off(0.02),
         pulse_zero_us=servo.pulse_zero_us + random.uniform(-10, 10),
     )
-    return replace(rig, coil=coil, servo=servo, keycap_sensor=replace(cap, full_scale_N=cap.full_scale_N * off(0.05)))
+    return replace(
+        rig, coil=coil, servo=servo, keycap_sensor=replace(cap, full_scale_N=cap.full_scale_N * off(0.05))
+    )
 
 
 def tested(case: tuple[int, str]) -> tuple[str, str, str, str]:
@@ -85,8 +87,9 @@ def main(rigs: int = RIGS, first: int = FIRST_SEED, sound: int = SOUND_RIGS) -> 
         row = {named: n for (fault, named), n in sorted(table.items()) if fault == name}
         print(f"  {name:18} {', '.join(f'{named} {n}' for named, n in row.items())}")
     right = sum(n for (name, named), n in table.items() if name != NONE and named == RIG_FAULTS[name].part)
+    tried = rigs * len(RIG_FAULTS)
     alarms = sound - table[NONE, NONE]
-    print(f"right part named: {right} of {rigs * len(RIG_FAULTS)} ({100 * right / (rigs * len(RIG_FAULTS)):.1f} %)")
+    print(f"right part named: {right} of {tried} ({100 * right / tried:.1f} %)")
     print(f"false alarms: {alarms} of {sound} sound rigs ({100 * alarms / sound:.1f} %)")
     print("\n".join(told))
 

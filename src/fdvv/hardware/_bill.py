@@ -1,4 +1,4 @@
-"""The bill of materials: what to buy or print, how many the circuit and the drawings ask for, what it costs."""
+"""The bill of materials: what to buy or print, how many, and what it costs."""
 
 from __future__ import annotations
 
@@ -16,8 +16,19 @@ from fdvv.hardware._circuit import Circuit
 PAPER_USD = 550.0
 """What the paper says the construction of its simulator costs, about."""
 GROUPS = ("rig", "vibration", "strip", "capture")
-"""The rig without which nothing works; what makes it vibrate; the pointing task's strip; the capture bench."""
-COLUMNS = ("group", "role", "maker", "part_number", "count", "pack", "packs", "price_USD", "total_USD", "alternatives")
+"""The rig itself; what makes it vibrate; the pointing task's strip; the capture bench."""
+COLUMNS = (
+    "group",
+    "role",
+    "maker",
+    "part_number",
+    "count",
+    "pack",
+    "packs",
+    "price_USD",
+    "total_USD",
+    "alternatives",
+)
 
 
 @dataclass(frozen=True)
@@ -92,7 +103,7 @@ class Bill:
 
 
 def load_bill(circuit: Circuit, printed_g: Mapping[str, float] | None = None) -> Bill:
-    """Give the rig's bill: counts of electrical parts come from the circuit, the plastic from the printed parts.
+    """Give the rig's bill: counts come from the circuit, the plastic from the printed parts.
 
     printed_g : mass of every printed part by name; None leaves the filament of the file's own guess.
     Raises InputError if the circuit asks for a role that bill.toml does not have.
@@ -136,7 +147,9 @@ def to_csv(bill: Bill) -> str:
     import io
 
     out = io.StringIO()
-    writer = csv.DictWriter(out, [*COLUMNS[:-1], "priced", "price_source", "alternatives", "note"], lineterminator="\n")
+    writer = csv.DictWriter(
+        out, [*COLUMNS[:-1], "priced", "price_source", "alternatives", "note"], lineterminator="\n"
+    )
     writer.writeheader()
     for row in bill.rows():
         writer.writerow(row | {"alternatives": "; ".join(row["alternatives"])})

@@ -91,11 +91,12 @@ class Part:
 
 @dataclass(frozen=True)
 class Sheet:
-    """What is drawn together; every path leads from a pin over parts of two pins to a pin."""
+    """What is drawn together; each path leads from pin to pin; grounds are listed below."""
 
     name: str
     title: str
     paths: tuple[tuple[str, ...], ...]
+    grounds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,9 @@ def load_circuit(path: Path | None = None) -> Circuit:
     try:
         return read_circuit(path.read_text("utf-8"), path)
     except UnicodeDecodeError as error:
-        raise InputError(path, "whole file", f"is no text ({error.reason})", "name a circuit's TOML") from None
+        raise InputError(
+            path, "whole file", f"is no text ({error.reason})", "name a circuit's TOML"
+        ) from None
 
 
 def read_circuit(text: str, source: object = "circuit") -> Circuit:
@@ -104,7 +106,9 @@ class _Reader:
         return found
 
     def _sheet(self, raw: dict[str, Any]) -> Sheet:
-        return Sheet(raw["name"], raw["title"], tuple(tuple(path) for path in raw["paths"]))
+        return Sheet(
+            raw["name"], raw["title"], tuple(map(tuple, raw["paths"])), tuple(raw.get("grounds", ()))
+        )
 
     def _filter(self, raw: dict[str, Any], parts: dict[str, Part]) -> Filter:
         if raw["capacitor"] not in parts:

@@ -1,4 +1,4 @@
-"""Which part of a rig is wrong, from what a self-test measured: every part judged by evidence that is its own."""
+"""Which part of a rig is wrong, from what a self-test measured: each judged by its own evidence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fdvv.hardware._evidence import GAUGES_mm, Evidence
+from fdvv.hardware._evidence import Evidence, GAUGES_mm
 
 
 class Verdict(StrEnum):
@@ -46,8 +46,8 @@ class Bounds:
     force_ratio: float = 0.15
     force_zero_cN: float = 10.0
     tone_ratio: float = 4.0
-    pwm_ratio: float = 5.0
-    pwm_um: float = 2.0
+    pwm_ratio: float = 3.5
+    pwm_um: float = 1.5
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,9 @@ def _supply(evidence: Evidence, bounds: Bounds) -> Finding:
     volts = f"{evidence.supply_mV / 1e3:.2f} V at rest, {evidence.nominal_mV / 1e3:g} V nominal"
     if math.isfinite(evidence.sag_mV):
         seen = f"falls to {evidence.sag_mV / 1e3:.2f} V while the coil pushes"
-        return _failed("supply", seen, "measure the 12 V at C4 under load; mend joints, fuse, stop; a 5 A supply")
+        return _failed(
+            "supply", seen, "measure the 12 V at C4 under load; mend joints, fuse, stop; a 5 A supply"
+        )
     off = abs(evidence.supply_mV / evidence.nominal_mV - 1)
     if off > bounds.supply_ratio or (stopped and not off < bounds.supply_ratio):
         return _failed("supply", stopped or volts, "measure the 12 V at C4, then the divider R3, R4")
@@ -144,11 +146,15 @@ def _position(evidence: Evidence, bounds: Bounds) -> Finding:
     noise = evidence.rest_sd_um
     seen = f"scale {slope:.3f}, zero {zero_mm:+.2f} mm, noise {noise:.1f} µm"
     if noise < bounds.quiet_um:
-        return _failed(part, f"no noise at all, {seen}", "its wire is off, or the conditioner is dead: measure U3.OUT")
+        return _failed(
+            part, f"no noise at all, {seen}", "its wire is off, or the conditioner is dead: measure U3.OUT"
+        )
     if slope < -0.5:
         return _failed(part, f"runs backwards, {seen}", "exchange SEC1 and SEC2 of U2")
     if abs(slope - 1) > bounds.scale_ratio:
-        return _failed(part, f"wrong scale, {seen}", "set the conditioner's gain; check R1, R2 and the settings")
+        return _failed(
+            part, f"wrong scale, {seen}", "set the conditioner's gain; check R1, R2 and the settings"
+        )
     if abs(zero_mm) > bounds.zero_mm:
         return _failed(part, f"wrong zero, {seen}", "shift U2 in its mount, or the conditioner's zero")
     if noise > bounds.loud_um:
@@ -157,7 +163,7 @@ def _position(evidence: Evidence, bounds: Bounds) -> Finding:
 
 
 def _wild(evidence: Evidence, bounds: Bounds) -> bool:
-    """Tell whether readings out of bounds are the sensor's own: nothing was measured, or its noise is large."""
+    """Tell whether readings out of bounds are the sensor's own, not a cap that went too deep."""
     return not evidence.gauge_mm or evidence.rest_sd_um > bounds.loud_um or not evidence.position_ok
 
 
@@ -169,7 +175,9 @@ def _on_gauges(evidence: Evidence) -> tuple[float, float]:
 
 def _slider(evidence: Evidence, bounds: Bounds) -> Finding:
     part, resting = "slider", evidence.gauge_mm[-1]
-    hung = abs(evidence.fallen_mm - resting) < 0.3 and all(abs(d - resting) < 0.3 for _, d in evidence.stops_mm)
+    hung = abs(evidence.fallen_mm - resting) < 0.3 and all(
+        abs(d - resting) < 0.3 for _, d in evidence.stops_mm
+    )
     remedy = "take the cap off and move the slider by hand; free the bushing, mind wires and magnet"
     friction = abs(evidence.empty.friction_cN) * min(1.0, evidence.gain or 1.0)
     if hung and not _moves(evidence):
@@ -193,7 +201,9 @@ def _stop(evidence: Evidence, bounds: Bounds) -> Finding:
     seen = ", ".join(f"{found:.2f} for {asked:g} mm" for asked, found in told)
     found_mm = [found for _, found in told]
     if max(found_mm) - min(found_mm) < 0.5:
-        return _failed(part, f"does not move: {seen}", "measure 5 V at M1 and the pulse at U7.2Y; is the arm jammed?")
+        return _failed(
+            part, f"does not move: {seen}", "measure 5 V at M1 and the pulse at U7.2Y; is the arm jammed?"
+        )
     if max(abs(found - asked) for asked, found in told) > bounds.stop_mm:
         remedy = "put the horn on the tooth that the drawing shows, then set stop_zero_us and stop_us_mm"
         return _failed(part, f"stands elsewhere: {seen}", remedy)
@@ -205,10 +215,14 @@ def _coil(evidence: Evidence, bounds: Bounds) -> Finding:
     if lift.reversed or (lift.moved and lift.weight_cN < -2):
         return _failed(part, "pushes the other way", "exchange its two wires at U5")
     if not lift.moved:
-        remedy = "with the power off measure the coil, 2.9 ohm; then 12 V at U5.VM, the stop button, IN1 and IN2"
+        remedy = (
+            "with the power off measure the coil, 2.9 ohm; then 12 V at U5.VM, the stop button, IN1 and IN2"
+        )
         return _failed(part, "no force moves the cap, which falls freely", remedy)
     if not evidence.loaded.moved:
-        return _failed(part, "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?")
+        return _failed(
+            part, "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?"
+        )
     gain = evidence.gain or 0.0
     seen = f"force {gain:.2f} of what was told, lifts {lift.weight_cN:.1f} cN"
     if not bounds.gain_low <= gain <= bounds.gain_high:
@@ -225,7 +239,9 @@ def _driver(evidence: Evidence, bounds: Bounds) -> Finding:
         return _unknown(part)
     seen = f"{evidence.pwm_um:.1f} µm at 732 Hz, {evidence.pwm_floor_um:.1f} µm beside it"
     if evidence.pwm_um > max(bounds.pwm_um, bounds.pwm_ratio * evidence.pwm_floor_um):
-        return _failed(part, f"its PWM shakes the cap: {seen}", "flash fdvv's firmware, whose PWM is 23.4 kHz")
+        return _failed(
+            part, f"its PWM shakes the cap: {seen}", "flash fdvv's firmware, whose PWM is 23.4 kHz"
+        )
     return _passed(part, seen)
 
 
@@ -241,7 +257,9 @@ def _force(evidence: Evidence, bounds: Bounds) -> Finding:
     if gain < -0.2:
         return _failed(part, f"reads backwards: {seen}", "turn it round; is the plug reversed?")
     if gain < 0.2:
-        return _failed(part, f"feels nothing: {seen}", "measure U4.OUT: it rises by 15 mV per 5 g; check plug and R5")
+        return _failed(
+            part, f"feels nothing: {seen}", "measure U4.OUT: it rises by 15 mV per 5 g; check plug and R5"
+        )
     if abs(gain - 1) > bounds.force_ratio:
         return _failed(part, f"wrong scale: {seen}", "check the part number's range, then set force_gain_q14")
     if abs(zero) > bounds.force_zero_cN:
@@ -252,7 +270,9 @@ def _force(evidence: Evidence, bounds: Bounds) -> Finding:
 def _board(evidence: Evidence, _bounds: Bounds) -> Finding:
     part = "vibration board"
     if _latched(evidence, "vibration_board") or evidence.vibration_answers is False:
-        remedy = "is the Uno powered? SDA and SCL exchanged? measure both at 3.3 V and 5 V on either side of U8"
+        remedy = (
+            "is the Uno powered? SDA and SCL exchanged? measure both at 3.3 V and 5 V on either side of U8"
+        )
         return _failed(part, "does not answer on the wire", remedy)
     if not evidence.has_exciter:
         return Finding(part, Verdict.ABSENT, "none is expected")

@@ -9,13 +9,16 @@ from fdvv.hardware._circuit import TWO, Circuit, Part, Sheet
 from fdvv.hardware._rules import path_nets
 
 STEP, SERIES, SHUNT, TAG = 1.7, 3.0, 2.2, 3.4
-"""Widths, in units of the drawing: of a pin on a line, a part within it, a part that hangs on it, an end's box."""
+"""Widths: of a pin on a line, a part within it, a part that hangs on it, an end's box."""
 DOWN, UP, PLAIN = 3.4, 2.9, 0.9
 """Heights: of a part that hangs down, of one that stands up, of a pin."""
 BOX_FILL, PIN_FILL, INK, FAINT = "#e8eef7", "#f6f2e4", "#1c2430", "#5a6676"
 ELEMENTS = {"resistor": "ResistorIEC", "coil": "Inductor2", "exciter": "ResistorIEC", "fuse": "FuseIEC"}
-ELEMENTS |= {"switch": "Switch", "diode": "Diode", "suppressor": "Zener", "capacitor": "Capacitor"}
-POLAR_F = 1e-5
+ELEMENTS |= {"switch": "Button", "diode": "Diode", "suppressor": "Zener", "capacitor": "Capacitor"}
+CONTACTS = {"emergency stop": {"nc": True}, "clapper switch": {"nc": False}}
+POLAR_F, LETTER = 1e-5, 0.145
+TOLD = 9
+"""Pins of a ground told in one line."""
 
 
 def sheet_svgs(circuit: Circuit) -> dict[str, str]:
@@ -55,6 +58,8 @@ class _Drawer:
             y -= self._above(fresh, path)
             self._path(drawing, path, nets, y)
             y -= self._below(fresh)
+        for net in self._sheet.grounds:
+            y = self._ground(drawing, net, y)
         return str(drawing.get_imagedata("svg").decode())
 
     def _above(self, nets: list[str], path: tuple[str, ...]) -> float:
@@ -111,10 +116,11 @@ class _Drawer:
         hanging = self._hanging(net) if fresh else []
         others = self._others(net, path) if fresh else []
         self._seen.add(net)
-        end = x + 1.5 + SHUNT * len(hanging) + STEP * len(others)
+        lead = max(1.5, 0.4 + LETTER * len(net))
+        end = x + lead + SHUNT * len(hanging) + STEP * len(others)
         drawing.add(self._elements.Line().at((x, y)).to((end, y)))
         self._text(drawing, (x + 0.1, y + 0.18), net, 8, "left", FAINT)
-        x += 1.5
+        x += lead
         for part, rail in hanging:
             self._hang(drawing, part, net, rail, (x, y))
             x += SHUNT
@@ -124,6 +130,15 @@ class _Drawer:
             self._text(drawing, (x, y + 0.62), pin, 9, "center")
             x += STEP
         return end
+
+    def _ground(self, drawing: Any, net: str, y: float) -> float:
+        """List what lies at a ground, but parts of two pins, which are drawn where they hang."""
+        pins = [p for p in self._circuit.nets[net] if self._circuit.part_of(p).kind.name not in TWO]
+        lines = [pins[i : i + TOLD] for i in range(0, len(pins), TOLD)]
+        for i, line in enumerate(lines):
+            text = f"{net}, joined in one star: " if i == 0 else "      "
+            self._text(drawing, (0, y - 0.5 * i), text + "  ".join(line), 10, "left")
+        return y - 0.5 * len(lines) - 0.4
 
     def _hang(self, drawing: Any, part: Part, net: str, rail: str, at: tuple[float, float]) -> None:
         x, y = at
@@ -135,7 +150,9 @@ class _Drawer:
             self._part(drawing, part, net, at, (x, y + 2.0))
             drawing.add(self._elements.Vdd().at((x, y + 2.0)).label(rail, fontsize=8))
 
-    def _part(self, drawing: Any, part: Part, net: str, a: tuple[float, float], b: tuple[float, float]) -> None:
+    def _part(
+        self, drawing: Any, part: Part, net: str, a: tuple[float, float], b: tuple[float, float]
+    ) -> None:
         """Draw a part from a, where it meets the net, to b."""
         name = ELEMENTS[part.kind.name]
         if part.kind.name == "capacitor" and (part.value or 0) > POLAR_F:
@@ -144,11 +161,12 @@ class _Drawer:
             name = "LED"
         first_is_net = self._circuit.net_of[f"{part.ref}.1"] == net
         begin, end = (a, b) if first_is_net else (b, a)
-        element = getattr(self._elements, name)().endpoints(begin, end)
+        element = getattr(self._elements, name)(**CONTACTS.get(part.bill, {})).endpoints(begin, end)
         drawing.add(element)
         told = f"{part.ref} {part.text}".strip()
         if a[1] == b[1]:
-            self._text(drawing, ((a[0] + b[0]) / 2, a[1] + 0.55), told, 10, "center")
+            above = -0.55 if name == "LED" else 0.55  # its arrows point up
+            self._text(drawing, ((a[0] + b[0]) / 2, a[1] + above), told, 10, "center")
         else:
             x, middle = a[0] + 0.42, (a[1] + b[1]) / 2
             self._text(drawing, (x, middle + 0.22), part.ref, 10, "left")
@@ -162,7 +180,9 @@ class _Drawer:
         drawing.add(box.at((x, y)).theta(0))
         known = self._circuit.pin(pin)
         extra = known.chip or (f"pin {known.number}" if known.number else "")
-        self._text(drawing, (x + TAG / 2, y + 0.2), f"{pin} {f'({extra})' if extra else ''}".strip(), 11, "center")
+        self._text(
+            drawing, (x + TAG / 2, y + 0.2), f"{pin} {f'({extra})' if extra else ''}".strip(), 11, "center"
+        )
         self._text(drawing, (x + TAG / 2, y - 0.24), part.kind.name, 8, "center", FAINT)
 
     def _text(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 NAN = math.nan
 GAUGES_mm = (4.5, 2.0)
-"""Things of known size between stop and cap, in the order in which they are laid: the cap is only ever lifted."""
+"""Things of known size between stop and cap, in the order in which they are laid."""
 WEIGHT_g = 50.0
 """Laid onto the force sensor."""
 
@@ -66,7 +66,8 @@ class Evidence:
     gauge_mm : displacement on each of GAUGES_mm.
     fallen_mm : where the cap came to rest once nothing but the stop at free_stop_mm held it.
     stops_mm : displacement on the stop, by the travel that the stop was told.
-    empty, loaded : lifting the cap without and with the weight. hard_mm : place, pushed as hard as the settings allow.
+    empty, loaded : lifting the cap without and with the weight.
+    hard_mm : place, pushed as hard as the settings allow.
     weight_cN : of what was laid on the cap.
     sensor_zero_cN, sensor_weight_cN : force sensor without and with it. has_sensor : the settings have one.
     vibration_answers : the board on the wire answers; None: it was not asked.

@@ -1,4 +1,4 @@
-"""Filters and levels reckoned from the parts: cut-offs, delays, steps of the converters, settings that follow."""
+"""What follows from the parts: cut-offs, delays, steps of the converters, settings."""
 
 from __future__ import annotations
 
@@ -91,7 +91,9 @@ def _seen_ohm(circuit: Circuit, one: Filter) -> float:
     if one.kind == "low pass":
         return levels(circuit, State())[one.net].ohm
     loads = [circuit.pin(p).load_ohm for p in circuit.nets[one.net]]
-    before = [n for _, a, b in circuit.between("capacitor") for n in (a, b) if one.net in (a, b) and n != one.net]
+    before = [
+        n for _, a, b in circuit.between("capacitor") for n in (a, b) if one.net in (a, b) and n != one.net
+    ]
     source = levels(circuit, State())[before[0]].ohm if before else 0.0
     return source + sum(load for load in loads if load)
 
@@ -108,11 +110,20 @@ def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
     at = levels(circuit, State())
     span_V = at["POSITION"].V  # of a conditioner that gives 0 to its full 5 V
     mm_V = facts["position_range_mm"] / span_V
-    force_V = at["FORCE"].V / facts["force_high_ratio"] * (facts["force_high_ratio"] - facts["force_low_ratio"])
+    force_V = (
+        at["FORCE"].V / facts["force_high_ratio"] * (facts["force_high_ratio"] - facts["force_low_ratio"])
+    )
     supply = (circuit.pin("PS1.+").V or 0.0) / at["SUPPLY"].V
     top_V = facts["converter_V"]
     return (
-        Step("position", "POSITION", 1e3 * count_V, 1e3 * mm_V * count_V, "um", facts["position_range_mm"] * 1e3),
+        Step(
+            "position",
+            "POSITION",
+            1e3 * count_V,
+            1e3 * mm_V * count_V,
+            "um",
+            facts["position_range_mm"] * 1e3,
+        ),
         Step("force", "FORCE", 1e3 * count_V, 100 * facts["force_range_N"] / force_V * count_V, "cN", 981.0),
         Step("supply", "SUPPLY", 1e3 * count_V, 1e3 * supply * count_V, "mV", 1e3 * supply * top_V),
     )

@@ -1,4 +1,4 @@
-"""Direct voltages of every net and the resistance it is driven with: resistors, sources and outputs, solved at once."""
+"""Direct voltage of every net and the resistance behind it, solved at once."""
 
 from __future__ import annotations
 

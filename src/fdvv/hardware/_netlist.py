@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from fdvv.hardware._circuit import Circuit
@@ -62,11 +63,18 @@ def to_document(circuit: Circuit) -> dict[str, Any]:
 
 
 def wiring_rows(circuit: Circuit) -> list[tuple[str, str, str]]:
-    """List every wire once: from, to, net; a net of many pins is a chain that begins at what drives it."""
+    """List every wire once: from, to, net.
+
+    A net is a chain that begins at what drives it. Every pin of a ground has a wire of its own to one star:
+    the coil's current must not lift what sensors measure from.
+    """
     rows = []
     for net, pins in circuit.nets.items():
+        if any(circuit.pin(pin).type == "ground" for pin in pins):
+            rows += [(f"{net} star", _named(circuit, pin), net) for pin in pins]
+            continue
         order = sorted(pins, key=lambda pin: (_rank(circuit, pin), pins.index(pin)))
-        rows += [(_named(circuit, a), _named(circuit, b), net) for a, b in zip(order, order[1:], strict=False)]
+        rows += [(_named(circuit, a), _named(circuit, b), net) for a, b in itertools.pairwise(order)]
     return rows
 
 

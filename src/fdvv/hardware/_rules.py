@@ -85,7 +85,9 @@ def _supplies(circuit: Circuit) -> Iterator[Violation]:
         pin, V = circuit.pin(name), at[net].V
         if pin.type == "supply" and not (pin.low_V or 0.0) <= V <= (pin.high_V or 1e9):
             bound = f"{pin.low_V:g} to {pin.high_V:g} V"
-            yield Violation("supply", name, f"is fed {V:.2f} V, it takes {bound}", "feed it from another rail")
+            yield Violation(
+                "supply", name, f"is fed {V:.2f} V, it takes {bound}", "feed it from another rail"
+            )
         if pin.type == "ground" and at[net].V > 0.05:
             yield Violation("ground", name, f"stands at {V:.2f} V", "join it with ground")
 
@@ -104,10 +106,10 @@ def _inputs(circuit: Circuit) -> Iterator[Violation]:
         pin, level = circuit.pin(name), at[net]
         if pin.type not in HEARS:
             continue
-        if pin.max_V is not None and level.V > pin.max_V:
+        if pin.max_V is not None and pin.max_V < level.V:
             reason = f"is driven with {level.V:.2f} V, it bears {pin.max_V:g} V"
             yield Violation("too high", name, reason, "put a level shifter or a divider before it")
-        elif pin.high_V is not None and _driven(circuit, net) and level.V < pin.high_V:
+        elif pin.high_V is not None and _driven(circuit, net) and pin.high_V > level.V:
             reason = f"gets {level.V:.2f} V at most and takes {pin.high_V:g} V as high"
             yield Violation("too low", name, reason, "put a level shifter before it")
         if pin.max_source_ohm and level.ohm > pin.max_source_ohm and not level.floats:
@@ -141,7 +143,9 @@ def _floating(circuit: Circuit) -> Iterator[Violation]:
             listens = pin.type in HEARS and not pin.bias and circuit.part_of(name).ref not in state.absent
             if listens and at[net].floats and name not in told:
                 told.add(name)
-                yield Violation("floats", name, f"floats{when}", "give it a resistor to ground or to its rail")
+                yield Violation(
+                    "floats", name, f"floats{when}", "give it a resistor to ground or to its rail"
+                )
 
 
 def _resting(circuit: Circuit) -> Iterator[Violation]:
@@ -174,7 +178,9 @@ def path_nets(circuit: Circuit, path: tuple[str, ...]) -> list[str]:
     for ref in path[1:-1]:
         ends = [circuit.net_of.get(f"{ref}.1", ""), circuit.net_of.get(f"{ref}.2", "")]
         if nets[-1] not in ends:
-            raise InputError("circuit", " ".join(path), f"{ref} is not at {nets[-1]}", "mend the sheet's path")
+            raise InputError(
+                "circuit", " ".join(path), f"{ref} is not at {nets[-1]}", "mend the sheet's path"
+            )
         nets.append(ends[1] if ends[0] == nets[-1] else ends[0])
     if circuit.net_of[path[-1]] != nets[-1]:
         raise InputError("circuit", " ".join(path), f"ends at {nets[-1]}", "mend the sheet's path")

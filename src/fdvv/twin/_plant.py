@@ -26,7 +26,7 @@ from fdvv.twin._kernel import (
     doors,
     rig_bytes,
 )
-from fdvv.twin._led import LIFTED_m, NEAR_1_s, Led
+from fdvv.twin._led import Led, LIFTED_m, NEAR_1_s
 from fdvv.twin._noise import Noise, draw_ticks
 from fdvv.twin._rig import Rig
 from fdvv.twin._settings import settings_of

@@ -102,6 +102,14 @@ if TYPE_CHECKING:
     )
     from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
     from fdvv.workflow._hardware_measure import measure_rig
+    from fdvv.workflow._hardware_open import open_rig
+    from fdvv.workflow._hardware_receipt import (
+        SelftestReceipt,
+        calibrated,
+        changed,
+        read_selftest,
+        write_selftest,
+    )
     from fdvv.workflow._hardware_stand import AskedStand, SimulatedStand, Stand
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
@@ -386,6 +394,7 @@ __all__ = [
     "ScreenStage",
     "Seal",
     "SealedTrial",
+    "SelftestReceipt",
     "Session",
     "Shelf",
     "ShelfFound",
@@ -452,10 +461,12 @@ __all__ = [
     "builtin_rows",
     "button_choices",
     "button_files",
+    "calibrated",
     "candidates_for",
     "capture_html",
     "capture_report",
     "capture_session",
+    "changed",
     "check_file",
     "check_strip",
     "chunks_of",
@@ -516,6 +527,7 @@ __all__ = [
     "open_plan",
     "open_program",
     "open_receipt",
+    "open_rig",
     "open_screen_stage",
     "open_winner_devices",
     "operator_view",
@@ -556,6 +568,7 @@ __all__ = [
     "read_population",
     "read_press_trace",
     "read_program",
+    "read_selftest",
     "read_session",
     "read_setup",
     "record_of",
@@ -606,6 +619,7 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_selftest",
     "write_study_report",
 ]
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from fdvv.device import Inputs
-from fdvv.protocol import NONE
 from fdvv.twin import Rig
 
 SLOW_PWM_Hz = 48e6 / 2**16
@@ -25,9 +24,11 @@ class RigFault:
     Attributes
     ----------
     part : that ought to be named. about : for people.
-    rig : changes what the rig is made of. duty : changes the bridge's output, given ratio, time and tick in s.
+    rig : changes what the rig is made of.
+    duty : changes the bridge's output, given ratio, time and tick in s; None is an open bridge.
     inputs : changes what the board reads, given its reads and converter steps.
-    stop_mm : where the stop is stuck; None: it moves. stop_us : added to every pulse. silent : nothing is played.
+    stop_mm : where the stop is stuck; None: it moves. stop_us : added to every pulse.
+    silent : nothing is played.
     """
 
     part: str
@@ -107,7 +108,9 @@ RIG_FAULTS = {
     "position-reversed": RigFault("position sensor", "its secondaries are exchanged", inputs=_mapped(-1.0)),
     "position-dead": RigFault("position sensor", "its conditioner stands at mid scale", inputs=_frozen),
     "position-off": RigFault("position sensor", "its wire is off", inputs=_broken_wire),
-    "position-noisy": RigFault("position sensor", "20 times its noise", _with("position_sensor", noise_m=20.0)),
+    "position-noisy": RigFault(
+        "position sensor", "20 times its noise", _with("position_sensor", noise_m=20.0)
+    ),
     "position-scale": RigFault("position sensor", "reads a fifth too little", inputs=_mapped(0.8)),
     "position-shifted": RigFault("position sensor", "is mounted 0.6 mm off", inputs=_mapped(1.0, 0.6 / 12.7)),
     "force-dead": RigFault("force sensor", "its wire is off", inputs=_force(0.0)),

@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.device import RefusedError, Remote, TickColumns
 from fdvv.errors import DeviceError
-from fdvv.hardware import GAUGES_mm, WEIGHT_g, Evidence, Latched, Lift
+from fdvv.hardware import Evidence, GAUGES_mm, Latched, Lift, WEIGHT_g
 from fdvv.protocol import CN64_PER_cN, Fault, Part, Settings, Verdict
 from fdvv.units import FloatArray
 from fdvv.workflow._hardware_faults import SLOW_PWM_Hz
@@ -39,9 +39,9 @@ def measure_rig(
     """Measure every part of a rig that nobody presses; fdvv.hardware.diagnose tells what follows from it.
 
     stand : lays gauges and the weight. say : told of every step, its number and how many there are.
-    exciter : one is expected. A fault that the firmware latches is evidence: it is kept, cleared and gone on from; one
-    whose cause lasts ends the test. The device is left without force, its settings as they were. Raises DeviceError if
-    the device is gone.
+    exciter : one is expected. A fault that the firmware latches is evidence: it is kept, cleared and gone on
+    from; one whose cause lasts ends the test. The device is left without force, its settings as they were.
+    Raises DeviceError if the device is gone.
     """
     return _Measuring(device, stand, say, exciter).run()
 
@@ -138,7 +138,7 @@ class _Measuring:
         self._settled()
 
     def _hard(self) -> None:
-        """Push the cap against its top as hard as may be, with the firmware watching the supply more closely than usual."""
+        """Push the cap against its top as hard as may be; the firmware watches the supply closely."""
         low_mV = round(SAG_ratio * self._settings.nominal_supply_mV)
         self._device.configure(replace(self._settings, supply_low_mV=low_mV))
         try:
@@ -147,7 +147,11 @@ class _Measuring:
             found = self._device.fault()
             sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else float("nan")
             self._add(sag_mV=sag)
-            late = told.part(told.tick > told.tick[-1] - round(HARD_s / self._tick_s)) if told.tick.size else told
+            late = (
+                told.part(told.tick > told.tick[-1] - round(HARD_s / self._tick_s))
+                if told.tick.size
+                else told
+            )
             line, beside = _line_and_floor(late, self._tick_s, SLOW_PWM_Hz)
             self._add(pwm_um=line, pwm_floor_um=beside)
             self._add(hard_mm=_mean(late.displacement_mm[-50:]))
@@ -264,7 +268,7 @@ def lift_of(up: TickColumns, down: TickColumns) -> Lift:
 
 
 def _left(told: TickColumns) -> tuple[float, float] | None:
-    """Give the command at which the cap had last been where it then left for good, and the way it went, mm."""
+    """Give the command at which the cap left its place for good, and the way it went, mm."""
     command, place = told.commanded_cN, told.displacement_mm
     if place.size < 200:
         return None
@@ -291,8 +295,8 @@ def _spread_um(told: TickColumns) -> float:
 def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, float, float]:
     """Give the cap's motion at the tones, um, that beside them, and how far their power stands out of it.
 
-    The board that plays has a clock of its own, up to CLOCK_ratio off: the clock at which they stand out most counts.
-    Without an exciter the last number is about 1, the mean over the tones of power over power beside.
+    The board that plays has a clock of its own, up to CLOCK_ratio off: the one at which they stand out most
+    counts. Without an exciter the last number, a mean of power over power beside, is about 1.
     """
     found = []
     for off in np.linspace(-CLOCK_ratio, CLOCK_ratio, 11):
@@ -322,4 +326,6 @@ def line_um(told: TickColumns, tick_s: float, frequency_Hz: float) -> float:
     t_s = (told.tick - told.tick[0]) * tick_s
     free = place - np.polyval(np.polyfit(t_s, place, 3), t_s)
     window = np.hanning(place.size)
-    return 1e3 * float(2 * abs(np.sum(window * free * np.exp(-2j * np.pi * frequency_Hz * t_s))) / window.sum())
+    return 1e3 * float(
+        2 * abs(np.sum(window * free * np.exp(-2j * np.pi * frequency_Hz * t_s))) / window.sum()
+    )

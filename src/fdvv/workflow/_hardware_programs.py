@@ -15,7 +15,7 @@ COUNTS = 2047.0
 
 
 def force_image(settings: Settings, travel_mm: float, start_cN: float, end_cN: float, span_s: float) -> bytes:
-    """Give a program whose force goes from one to the other in that time and stays there, wherever the cap is."""
+    """Give a program whose force goes from one to the other in that time, wherever the cap is."""
     flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
     span_ms = round(1e3 * span_s)
     state = State(

@@ -152,4 +152,3 @@ class SimulatedStand:
     def rest(self, settings: Settings) -> SimulatedStand:
         """Leave the button alone."""
         return self
-
