@@ -9,13 +9,15 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from fdvv.device import LibraryBoard, LinkedDevice
+from fdvv.errors import ModelError
 from fdvv.hardware import Diagnosis, diagnose
-from fdvv.twin import Rig, draw_rig
+from fdvv.twin import Rig, draw_rig, settings_of
 from fdvv.workflow import RIG_FAULTS, SimulatedStand, measure_rig
 
 FIRST_SEED = 1000
@@ -25,12 +27,19 @@ NONE = "none"
 
 
 def parts(seed: int) -> tuple[Rig, Rig]:
-    """Draw a rig with a force sensor in its cap, and what its builder made of it."""
+    """Draw a rig with a force sensor in its cap, and what its builder made of it.
+
+    A coil too weak for the settings cannot be run at all: the next draw counts.
+    """
     random = np.random.default_rng(seed)
-    rig = draw_rig(random)
-    exact = replace(rig.controller, gain_error_ratio=0.0)
-    rig = replace(rig, keycap_sensor=replace(rig.keycap_sensor, kind="force"), controller=exact)
-    return rig, as_built(rig, random)
+    while True:
+        rig = draw_rig(random)
+        exact = replace(rig.controller, gain_error_ratio=0.0)
+        rig = replace(rig, keycap_sensor=replace(rig.keycap_sensor, kind="force"), controller=exact)
+        built = as_built(rig, random)
+        with suppress(ModelError):
+            settings_of(rig)
+            return rig, built
 
 
 def as_built(rig: Rig, random: np.random.Generator) -> Rig:

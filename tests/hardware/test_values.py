@@ -98,7 +98,9 @@ def test_the_committed_drawings_netlists_and_pages_are_those_of_the_circuit() ->
     spec.loader.exec_module(tool)
     for path, text in tool.files().items():
         assert path.read_text() == text, f"run python tools/make_circuit.py: {path.name}"
-    assert {p.name for p in tool.CIRCUIT.iterdir()} == {p.name for p in tool.files() if p.parent == tool.CIRCUIT}
+    assert {p.name for p in tool.CIRCUIT.iterdir()} == {
+        p.name for p in tool.files() if p.parent == tool.CIRCUIT
+    }
 
 
 def test_every_part_and_value_stands_in_a_drawing() -> None:
@@ -172,7 +174,8 @@ def test_printed_parts_are_paid_by_their_mass() -> None:
 
 
 def test_a_role_that_the_bill_lacks_and_one_that_the_circuit_lacks_are_refused() -> None:
-    line = '[[lines]]\nrole = "screw"\ngroup = "rig"\nmaker = "m"\npart_number = "p"\nprice_USD = 1\npriced = 2026-11-01\n'
+    line = '[[lines]]\nrole = "screw"\ngroup = "rig"\nmaker = "m"\npart_number = "p"\n'
+    line += "price_USD = 1\npriced = 2026-11-01\n"
     assert read_bill(line, {"screw": 5}).lines[0].count == 5
     with pytest.raises(Exception, match="is not in the circuit"):
         read_bill(line, {})

@@ -82,7 +82,7 @@ def write_selftest(path: Path, found: Diagnosis, evidence: Evidence, head: dict[
 
 def read_selftest(path: Path) -> tuple[SelftestReceipt, Evidence]:
     """Read a receipt and judge its evidence again; InputError if it is none or does not pass."""
-    data = read_limited(path, LARGEST_bytes)
+    data = read_limited(path, LARGEST_bytes, KIND.remedy)
     receipt = read_document(
         data, path, KIND, lambda raw: msgspec.json.decode(raw, type=SelftestReceipt), lambda _place: None
     )
