@@ -18,7 +18,7 @@ from fdvv.device import LibraryBoard, LinkedDevice
 from fdvv.errors import ModelError
 from fdvv.hardware import Diagnosis, diagnose
 from fdvv.twin import Rig, draw_rig, settings_of
-from fdvv.workflow import RIG_FAULTS, SimulatedStand, measure_rig
+from fdvv.workflow import RIG_FAULTS, SimulatedHands, measure_rig
 
 FIRST_SEED = 1000
 RIGS = 24
@@ -70,10 +70,10 @@ def tested(case: tuple[int, str]) -> tuple[str, str, str, str]:
     seed, name = case
     rig, built = parts(seed)
     fault = RIG_FAULTS.get(name)
-    stand = SimulatedStand(rig, seed, *([fault] if fault else []), built=built)
-    device = LinkedDevice(LibraryBoard(), stand)
+    hands = SimulatedHands(rig, seed, *([fault] if fault else []), built=built)
+    device = LinkedDevice(LibraryBoard(), hands)
     try:
-        found: Diagnosis = diagnose(measure_rig(device, stand))
+        found: Diagnosis = diagnose(measure_rig(device, hands))
     finally:
         device.close()
     wrong = found.wrong
@@ -82,13 +82,14 @@ def tested(case: tuple[int, str]) -> tuple[str, str, str, str]:
 
 
 def main(rigs: int = RIGS, first: int = FIRST_SEED, sound: int = SOUND_RIGS) -> None:
-    cases = [(first + i, name) for i in range(rigs) for name in RIG_FAULTS]
-    cases += [(first + i, NONE) for i in range(sound)]
+    cases = [(first + i, NONE) for i in range(sound)]
+    cases += [(first + i, name) for i in range(rigs) for name in RIG_FAULTS]
     table: Counter[tuple[str, str]] = Counter()
     told: list[str] = []
     with ProcessPoolExecutor(2) as pool:
-        for name, part, named, seen in pool.map(tested, cases, chunksize=4):
+        for done, (name, part, named, seen) in enumerate(pool.map(tested, cases), start=1):
             table[name, named] += 1
+            print(f"{done} of {len(cases)}, {len(told)} wrong", file=sys.stderr, end="\r")
             if named != part:
                 told.append(f"  {name}: named {named}; {seen}")
     print("simulated; fault: part named (times)")

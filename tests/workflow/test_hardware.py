@@ -15,8 +15,8 @@ from fdvv.hardware import Diagnosis, Evidence, diagnose
 from fdvv.twin import Rig
 from fdvv.workflow import (
     RIG_FAULTS,
-    AskedStand,
-    SimulatedStand,
+    AskedHands,
+    SimulatedHands,
     calibrated,
     changed,
     measure_rig,
@@ -32,11 +32,11 @@ HEAD = {"device": "host", "serial": 1, "simulated": True, "tested": "2026-01-01T
 
 
 def trial(fault: str | None = None, seed: int = 0) -> tuple[Evidence, Diagnosis]:
-    stand = SimulatedStand(with_sensor(Rig()), seed, *([RIG_FAULTS[fault]] if fault else []))
-    device = LinkedDevice(LibraryBoard(), stand)
+    hands = SimulatedHands(with_sensor(Rig()), seed, *([RIG_FAULTS[fault]] if fault else []))
+    device = LinkedDevice(LibraryBoard(), hands)
     try:
         before = device.settings()
-        evidence = measure_rig(device, stand)
+        evidence = measure_rig(device, hands)
         assert device.settings() == before
     finally:
         device.close()
@@ -90,7 +90,7 @@ def test_calibration_takes_out_what_gauges_and_weight_have_shown(sound: tuple[Ev
     import dataclasses
 
     evidence, _ = sound
-    settings = SimulatedStand(with_sensor(Rig())).settings
+    settings = SimulatedHands(with_sensor(Rig())).settings
     off = dataclasses.replace(
         evidence, gauge_mm=(4.5 * 1.05 + 0.1, 2.0 * 1.05 + 0.1), sensor_zero_cN=2.0, sensor_weight_cN=47.0
     )
@@ -140,12 +140,12 @@ def test_a_real_rig_is_neither_drawn_nor_broken_on_purpose(tmp_path: Path) -> No
 
 def test_a_person_is_asked_for_every_gauge_and_weight() -> None:
     said: list[str] = []
-    stand = AskedStand(said.append)
-    stand.gauge(2.0)
-    stand.let_go()
-    stand.gauge(None)
-    stand.weight(50.0)
-    stand.weight(None)
+    hands = AskedHands(said.append)
+    hands.gauge(2.0)
+    hands.let_go()
+    hands.gauge(None)
+    hands.weight(50.0)
+    hands.weight(None)
     assert [text.split()[0] for text in said] == ["Lay", "Take", "Lay", "Take"]
     assert "2 mm" in said[0]
     assert "50 g" in said[2]
@@ -166,9 +166,9 @@ def test_the_part_that_is_wrong_is_named(fault: str) -> None:
 def test_every_board_with_the_firmware_in_it_is_tested_alike(spec: str, tmp_path: Path) -> None:
     ran: list[tuple[str, int, int]] = []
     say: Callable[[str, int, int], None] = lambda *one: ran.append(one)  # noqa: E731
-    device, stand = open_rig(spec, print)
+    device, hands = open_rig(spec, print)
     try:
-        assert diagnose(measure_rig(device, stand, say)).passed
+        assert diagnose(measure_rig(device, hands, say)).passed
     finally:
         device.close()
     assert ran[-1] == ("done", 7, 7)

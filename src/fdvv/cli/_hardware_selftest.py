@@ -61,10 +61,10 @@ def selftest(
         )
         return
     check_output(output, ".json")
-    device, stand = open_rig(spec, _ask, rig, seed, fault)
+    device, hands = open_rig(spec, _ask, rig, seed, fault)
     try:
         with stages() as advance:
-            evidence = measure_rig(device, stand, advance, exciter=not no_exciter)
+            evidence = measure_rig(device, hands, advance, exciter=not no_exciter)
         found = diagnose(evidence)
         told = _told(device, found, evidence)
         if found.passed:

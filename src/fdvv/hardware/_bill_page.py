@@ -17,7 +17,7 @@ def bill_page(bill: Bill) -> str:
     lines = [
         "# Bill of materials",
         "",
-        "Made by `fdvv hardware bill` and `tools/make_circuit.py`; do not edit.",
+        "Made from `src/fdvv/hardware/bill.toml` and the circuit by `tools/make_circuit.py`; do not edit.",
         "",
     ]
     lines += [summary(bill), ""]

@@ -101,6 +101,7 @@ if TYPE_CHECKING:
         summarise,
     )
     from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
+    from fdvv.workflow._hardware_hands import AskedHands, Hands, SimulatedHands
     from fdvv.workflow._hardware_measure import measure_rig
     from fdvv.workflow._hardware_open import open_rig
     from fdvv.workflow._hardware_receipt import (
@@ -110,7 +111,6 @@ if TYPE_CHECKING:
         read_selftest,
         write_selftest,
     )
-    from fdvv.workflow._hardware_stand import AskedStand, SimulatedStand, Stand
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
@@ -274,7 +274,7 @@ __all__ = [
     "SHIPPED_RIGS",
     "AchievableCurve",
     "Ask",
-    "AskedStand",
+    "AskedHands",
     "Block",
     "ButtonMean",
     "ButtonPress",
@@ -322,6 +322,7 @@ __all__ = [
     "FolderSummary",
     "Frozen",
     "Guide",
+    "Hands",
     "HeardStroke",
     "Keeper",
     "KeptProgram",
@@ -404,16 +405,15 @@ __all__ = [
     "ShelfSearch",
     "ShelfStand",
     "SimulatedFingerStage",
+    "SimulatedHands",
     "SimulatedParticipant",
     "SimulatedPlayer",
     "SimulatedSession",
-    "SimulatedStand",
     "SimulatedStudy",
     "Size",
     "SpaceSetup",
     "Stage",
     "StageEvidence",
-    "Stand",
     "Standing",
     "Step",
     "StripCheck",

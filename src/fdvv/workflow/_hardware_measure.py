@@ -14,8 +14,8 @@ from fdvv.hardware import Evidence, GAUGES_mm, Latched, Lift, WEIGHT_g
 from fdvv.protocol import CN64_PER_cN, Fault, Part, Settings, Verdict
 from fdvv.units import FloatArray
 from fdvv.workflow._hardware_faults import SLOW_PWM_Hz
+from fdvv.workflow._hardware_hands import G_cN, Hands
 from fdvv.workflow._hardware_programs import TONE_s, TONES_Hz, force_image, tone_image
-from fdvv.workflow._hardware_stand import G_cN, Stand
 
 DEEP_mm, STOPS_mm = 5.0, (3.5, 2.0)
 """A stop that is a millimetre off must not leave the range of the position sensor."""
@@ -34,23 +34,23 @@ Say = Callable[[str, int, int], None]
 
 
 def measure_rig(
-    device: Remote, stand: Stand, say: Say = lambda _text, _done, _total: None, exciter: bool = True
+    device: Remote, hands: Hands, say: Say = lambda _text, _done, _total: None, exciter: bool = True
 ) -> Evidence:
     """Measure every part of a rig that nobody presses; fdvv.hardware.diagnose tells what follows from it.
 
-    stand : lays gauges and the weight. say : told of every step, its number and how many there are.
+    hands : lays gauges and the weight. say : told of every step, its number and how many there are.
     exciter : one is expected. A fault that the firmware latches is evidence: it is kept, cleared and gone on
     from; one whose cause lasts ends the test. The device is left without force, its settings as they were.
     Raises DeviceError if the device is gone.
     """
-    return _Measuring(device, stand, say, exciter).run()
+    return _Measuring(device, hands, say, exciter).run()
 
 
 class _Measuring:
     """One self-test on one device; every step adds to the evidence."""
 
-    def __init__(self, device: Remote, stand: Stand, say: Say, exciter: bool) -> None:
-        self._device, self._stand, self._say = device, stand, say
+    def __init__(self, device: Remote, hands: Hands, say: Say, exciter: bool) -> None:
+        self._device, self._hands, self._say = device, hands, say
         self._settings: Settings = device.settings()
         self._faults: list[Latched] = []
         self._notes: list[str] = []
@@ -108,14 +108,14 @@ class _Measuring:
         self._load(force_image(self._settings, DEEP_mm, 0.0, 0.0, 0.0))
         found = []
         for size_mm in GAUGES_mm:
-            self._stand.gauge(size_mm)
+            self._hands.gauge(size_mm)
             self._settled()
-            self._stand.let_go()
+            self._hands.let_go()
             found.append(self._settled())
         rest = self._listened(REST_s)
         self._add(rest_sd_um=_spread_um(rest), link_missing=self._missing(rest, REST_s))
         self._add(late_ticks=self._device.client.telemetry.late_ticks)
-        self._stand.gauge(None)
+        self._hands.gauge(None)
         self._add(gauge_mm=tuple(found), free_stop_mm=DEEP_mm, fallen_mm=self._settled())
 
     def _stop(self) -> None:
@@ -131,10 +131,10 @@ class _Measuring:
         self._add(sensor_zero_cN=self._force_cN(), empty=self._lifted())
 
     def _lift_loaded(self) -> None:
-        self._stand.weight(WEIGHT_g)
+        self._hands.weight(WEIGHT_g)
         self._settled()
         self._add(weight_cN=G_cN * WEIGHT_g, sensor_weight_cN=self._force_cN(), loaded=self._lifted())
-        self._stand.weight(None)
+        self._hands.weight(None)
         self._settled()
 
     def _hard(self) -> None:

@@ -19,7 +19,7 @@ from fdvv.device import (
 from fdvv.errors import InputError
 from fdvv.twin import Rig, load_rig
 from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
-from fdvv.workflow._hardware_stand import SOUND, AskedStand, SimulatedStand, Stand
+from fdvv.workflow._hardware_hands import SOUND, AskedHands, Hands, SimulatedHands
 
 KINDS = "twin, host, emulated or serial:PORT"
 
@@ -30,7 +30,7 @@ def open_rig(
     rig: Path | None = None,
     seed: int = 0,
     fault: str | None = None,
-) -> tuple[Remote, Stand]:
+) -> tuple[Remote, Hands]:
     """Open the device that spec names, and who stands at it; a simulated rig gets a force sensor in its cap.
 
     ask : says what a person at a real rig is to do, and waits. rig, seed, fault : of a simulated one.
@@ -43,9 +43,9 @@ def open_rig(
         device = open_device(spec)
         if not isinstance(device, Remote):
             raise InputError("--device", spec, "there is no firmware in it", f"use {KINDS}")
-        return device, AskedStand(ask)
-    stand = SimulatedStand(with_sensor(load_rig(rig) if rig else Rig()), seed, _fault(fault))
-    return LinkedDevice(_board(spec), stand), stand
+        return device, AskedHands(ask)
+    hands = SimulatedHands(with_sensor(load_rig(rig) if rig else Rig()), seed, _fault(fault))
+    return LinkedDevice(_board(spec), hands), hands
 
 
 def with_sensor(rig: Rig) -> Rig:

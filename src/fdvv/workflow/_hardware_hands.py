@@ -22,7 +22,7 @@ G_cN = 0.980665
 """Weight of a gram."""
 
 
-class Stand(Protocol):
+class Hands(Protocol):
     """Someone at the rig."""
 
     def gauge(self, size_mm: float | None) -> None:
@@ -38,7 +38,7 @@ class Stand(Protocol):
         ...
 
 
-class AskedStand:
+class AskedHands:
     """A person at a real rig: every step is said, and waited for."""
 
     def __init__(self, ask: Callable[[str], None]) -> None:
@@ -62,7 +62,7 @@ class AskedStand:
             self._ask(f"Lay the weight of {mass_g:g} g onto the force sensor on the cap, and let go.")
 
 
-class SimulatedStand:
+class SimulatedHands:
     """A simulated rig with one fault, or none, upright, that nobody presses. Simulated.
 
     Parameters
@@ -71,7 +71,7 @@ class SimulatedStand:
     built : what was really built; the same if None.
     fault, seed : what is wrong; of everything random.
 
-    It is the person of a LinkedDevice as well as the stand of a self-test.
+    It is the person of a LinkedDevice as well as the hands of a self-test.
     """
 
     settle_s = 0.0
@@ -149,6 +149,6 @@ class SimulatedStand:
         """Give the vibration board the waveforms of a program."""
         self._plant.load(image)
 
-    def rest(self, settings: Settings) -> SimulatedStand:
+    def rest(self, settings: Settings) -> SimulatedHands:
         """Leave the button alone."""
         return self
