@@ -130,12 +130,9 @@ def test_the_kicad_netlist_holds_every_part_and_every_connection() -> None:
     export = _lists(to_kicad(CIRCUIT))[0]
     assert isinstance(export, list)
     sections = {part[0]: part[1:] for part in export[1:] if isinstance(part, list)}
-    refs = {comp[1][1] for comp in sections["components"]}  # type: ignore[index]
+    refs = {comp[1][1] for comp in sections["components"]}
     assert refs == set(CIRCUIT.parts)
-    nets = {
-        net[2][1]: tuple(f"{node[1][1]}.{node[2][1]}" for node in net[3:])  # type: ignore[index]
-        for net in sections["nets"]
-    }
+    nets = {net[2][1]: tuple(f"{node[1][1]}.{node[2][1]}" for node in net[3:]) for net in sections["nets"]}
     assert nets == CIRCUIT.nets
 
 

@@ -15,6 +15,7 @@ from fdvv.hardware import Diagnosis, Evidence, diagnose
 from fdvv.twin import Rig
 from fdvv.workflow import (
     RIG_FAULTS,
+    SOUND,
     AskedHands,
     SimulatedHands,
     calibrated,
@@ -32,7 +33,7 @@ HEAD = {"device": "host", "serial": 1, "simulated": True, "tested": "2026-01-01T
 
 
 def trial(fault: str | None = None, seed: int = 0) -> tuple[Evidence, Diagnosis]:
-    hands = SimulatedHands(with_sensor(Rig()), seed, *([RIG_FAULTS[fault]] if fault else []))
+    hands = SimulatedHands(with_sensor(Rig()), seed, RIG_FAULTS[fault] if fault else SOUND)
     device = LinkedDevice(LibraryBoard(), hands)
     try:
         before = device.settings()
@@ -97,7 +98,7 @@ def test_calibration_takes_out_what_gauges_and_weight_have_shown(sound: tuple[Ev
     better = calibrated(settings, off)
 
     def place_mm(found: object, sum_: float) -> float:
-        gain, zero = found.position_gain_q14, found.position_offset_um16  # type: ignore[attr-defined]
+        gain, zero = found.position_gain_q14, found.position_offset_um16
         return float(sum_ * gain / 2**14 + zero) / 16000
 
     for seen_mm, true_mm in ((4.5 * 1.05 + 0.1, 4.5), (2.0 * 1.05 + 0.1, 2.0)):

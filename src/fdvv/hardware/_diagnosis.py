@@ -45,7 +45,7 @@ class Bounds:
     gain_high: float = 1.4
     force_ratio: float = 0.15
     force_zero_cN: float = 10.0
-    tone_ratio: float = 4.0
+    tone_ratio: float = 4.4
     pwm_ratio: float = 3.5
     pwm_um: float = 1.5
 

@@ -101,7 +101,7 @@ if TYPE_CHECKING:
         summarise,
     )
     from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
-    from fdvv.workflow._hardware_hands import AskedHands, Hands, SimulatedHands
+    from fdvv.workflow._hardware_hands import SOUND, AskedHands, Hands, SimulatedHands
     from fdvv.workflow._hardware_measure import measure_rig
     from fdvv.workflow._hardware_open import open_rig
     from fdvv.workflow._hardware_receipt import (
@@ -272,6 +272,7 @@ __all__ = [
     "RIG_FAULTS",
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
+    "SOUND",
     "AchievableCurve",
     "Ask",
     "AskedHands",

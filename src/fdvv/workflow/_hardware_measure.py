@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -263,7 +264,7 @@ def lift_of(up: TickColumns, down: TickColumns) -> Lift:
     """Find the commands at which the cap leaves its place as the force grows, and as it falls."""
     grown, fallen = _left(up), _left(down)
     if grown is None or fallen is None:
-        return Lift(*(float("nan") if one is None else one[0] for one in (grown, fallen)))
+        return Lift(*(math.nan if one is None else one[0] for one in (grown, fallen)), reversed=False)
     return Lift(grown[0], fallen[0], reversed=grown[1] > 0 and fallen[1] < 0)
 
 

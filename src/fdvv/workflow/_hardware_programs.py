@@ -10,7 +10,7 @@ from fdvv.protocol import Settings
 
 TONES_Hz = (310.0, 430.0, 550.0, 670.0)
 """About the exciter's resonance, wherever it is; none folds onto another at 1 kHz."""
-TONE_s = 1.0
+TONE_s = 2.5
 COUNTS = 2047.0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -96,8 +97,10 @@ def read_selftest(path: Path) -> tuple[SelftestReceipt, Evidence]:
 
 def _evidence(raw: dict[str, Any], path: Path) -> Evidence:
     try:
-        known = {name: float("nan") if value is None and name != "vibration_answers" else value
-                 for name, value in raw.items()}  # fmt: skip
+        known: dict[str, Any] = {
+            name: math.nan if value is None and name != "vibration_answers" else value
+            for name, value in raw.items()
+        }
         for name in ("empty", "loaded"):
             known[name] = Lift(**known[name])
         known["faults"] = tuple(Latched(**one) for one in known["faults"])
