@@ -70,6 +70,8 @@ def test_faults_can_be_listed_and_a_wrong_one_is_refused(fdvv: Run) -> None:
     assert fdvv("hardware", "selftest", "--fault", "x").status == 2
     assert fdvv("hardware", "selftest", "--device", "x").status == 2
     assert fdvv("hardware", "selftest", "-o", "receipt.txt").status == 2
+    ran = fdvv("hardware", "selftest", "--device", "serial:none")
+    assert (ran.status, "run it in a terminal" in ran.err) == (2, True)
 
 
 @pytest.mark.slow

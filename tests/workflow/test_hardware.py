@@ -12,6 +12,7 @@ import pytest
 from fdvv.device import LibraryBoard, LinkedDevice, TickColumns
 from fdvv.errors import DeviceError, InputError
 from fdvv.hardware import Diagnosis, Evidence, diagnose
+from fdvv.protocol import Settings
 from fdvv.twin import Rig
 from fdvv.workflow import (
     RIG_FAULTS,
@@ -97,7 +98,7 @@ def test_calibration_takes_out_what_gauges_and_weight_have_shown(sound: tuple[Ev
     )
     better = calibrated(settings, off)
 
-    def place_mm(found: object, sum_: float) -> float:
+    def place_mm(found: Settings, sum_: float) -> float:
         gain, zero = found.position_gain_q14, found.position_offset_um16
         return float(sum_ * gain / 2**14 + zero) / 16000
 
@@ -131,7 +132,7 @@ def test_the_slow_pwm_of_the_fault_has_the_mean_it_was_told() -> None:
 def test_a_real_rig_is_neither_drawn_nor_broken_on_purpose(tmp_path: Path) -> None:
     for options in ({"fault": "coil-open"}, {"rig": tmp_path / "rig.toml"}):
         with pytest.raises(InputError, match="a real rig is as it is"):
-            open_rig("serial:none", print, **options)  # type: ignore[arg-type]
+            open_rig("serial:none", print, **options)
     for spec, words in (("nothing", "names no device"), ("emulated:no.elf", "no such file")):
         with pytest.raises(InputError, match=words):
             open_rig(spec, print)

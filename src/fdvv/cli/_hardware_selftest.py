@@ -61,6 +61,7 @@ def selftest(
         )
         return
     check_output(output, ".json")
+    _check_person(spec)
     device, hands = open_rig(spec, _ask, rig, seed, fault)
     try:
         with stages() as advance:
@@ -76,16 +77,20 @@ def selftest(
         raise click.exceptions.Exit(1)
 
 
-def _ask(text: str) -> None:
-    """Say what to do and wait for Enter. Raises InputError where nobody can answer."""
+def _check_person(spec: str) -> None:
+    """Refuse a real rig where nobody can answer. Raises InputError."""
     import sys
 
     from fdvv.errors import InputError
 
-    if not sys.stdin.isatty():
-        raise InputError(
-            "--device", "serial", "a person must lay gauges and a weight", "run it in a terminal"
-        )
+    if spec.startswith("serial:") and not sys.stdin.isatty():
+        raise InputError("--device", spec, "a person must lay gauges and a weight", "run it in a terminal")
+
+
+def _ask(text: str) -> None:
+    """Say what to do and wait for Enter."""
+    import sys
+
     click.echo(f"{text} Then press Enter.", err=True)
     sys.stdin.readline()
 

@@ -146,7 +146,7 @@ class _Measuring:
             hard_cN = self._settings.force_limit_cN64 / CN64_PER_cN
             told = self._armed(force_image(self._settings, DEEP_mm, 0.0, hard_cN, 0.3), 0.3 + HARD_s)
             found = self._device.fault()
-            sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else float("nan")
+            sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else math.nan
             self._add(sag_mV=sag)
             late = (
                 told.part(told.tick > told.tick[-1] - round(HARD_s / self._tick_s))
@@ -264,7 +264,7 @@ def lift_of(up: TickColumns, down: TickColumns) -> Lift:
     """Find the commands at which the cap leaves its place as the force grows, and as it falls."""
     grown, fallen = _left(up), _left(down)
     if grown is None or fallen is None:
-        return Lift(*(math.nan if one is None else one[0] for one in (grown, fallen)), reversed=False)
+        return Lift(grown[0] if grown else math.nan, fallen[0] if fallen else math.nan)
     return Lift(grown[0], fallen[0], reversed=grown[1] > 0 and fallen[1] < 0)
 
 
@@ -284,13 +284,13 @@ def _left(told: TickColumns) -> tuple[float, float] | None:
 
 
 def _mean(values: FloatArray) -> float:
-    return float(np.mean(values)) if values.size else float("nan")
+    return float(np.mean(values)) if values.size else math.nan
 
 
 def _spread_um(told: TickColumns) -> float:
     """Give the spread from tick to tick, free of slow motion."""
     place = told.displacement_mm
-    return 1e3 * float(np.std(np.diff(place)) / np.sqrt(2)) if place.size > 20 else float("nan")
+    return 1e3 * float(np.std(np.diff(place)) / np.sqrt(2)) if place.size > 20 else math.nan
 
 
 def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, float, float]:
