@@ -1,4 +1,4 @@
-"""fdvv hardware: parts, export and check of the rig's printed parts."""
+"""fdvv hardware: what to print, check and export; bill, circuit and selftest come from beside."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fdvv.cli._hardware_electric import bill, circuit
+from fdvv.cli._hardware_selftest import selftest
 from fdvv.cli._output import (
     check_folder,
     json_option,
@@ -41,7 +43,7 @@ set_option = click.option(
 
 @click.group()
 def hardware() -> None:
-    """Make the rig: list its printed parts, export them, check that they go together.
+    """Build a rig: what to print and to buy, how to wire it, and which part is wrong.
 
     Dimensions of bought parts are assumed unless you measured yours; everything printed follows from them.
     """
@@ -271,3 +273,8 @@ def _print_figures(d: Dimensions) -> None:
         f"sensor's mount: tolerances {mount['worst_mm']:.2f} mm at worst, {mount['likely_mm']:.2f} mm likely"
         f"; the core has {mount['room_mm']:.2f} mm, the mount moves {mount['float_mm']:.2f} mm"
     )
+
+
+hardware.add_command(bill)
+hardware.add_command(circuit)
+hardware.add_command(selftest)

@@ -101,6 +101,17 @@ if TYPE_CHECKING:
         measured_files,
         summarise,
     )
+    from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
+    from fdvv.workflow._hardware_hands import SOUND, AskedHands, Hands, SimulatedHands
+    from fdvv.workflow._hardware_measure import measure_rig
+    from fdvv.workflow._hardware_open import open_rig
+    from fdvv.workflow._hardware_receipt import (
+        SelftestReceipt,
+        calibrated,
+        changed,
+        read_selftest,
+        write_selftest,
+    )
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
@@ -259,10 +270,13 @@ __all__ = [
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
+    "RIG_FAULTS",
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
+    "SOUND",
     "AchievableCurve",
     "Ask",
+    "AskedHands",
     "Block",
     "ButtonMean",
     "ButtonPress",
@@ -311,6 +325,7 @@ __all__ = [
     "FolderSummary",
     "Frozen",
     "Guide",
+    "Hands",
     "HeardStroke",
     "Keeper",
     "KeptProgram",
@@ -373,6 +388,7 @@ __all__ = [
     "RenderedWinner",
     "Rendering",
     "RigEntry",
+    "RigFault",
     "RigOnShelf",
     "RigShelf",
     "RoundTiming",
@@ -382,6 +398,7 @@ __all__ = [
     "ScreenStage",
     "Seal",
     "SealedTrial",
+    "SelftestReceipt",
     "Session",
     "Shelf",
     "ShelfFound",
@@ -391,6 +408,7 @@ __all__ = [
     "ShelfSearch",
     "ShelfStand",
     "SimulatedFingerStage",
+    "SimulatedHands",
     "SimulatedParticipant",
     "SimulatedPlayer",
     "SimulatedSession",
@@ -446,10 +464,12 @@ __all__ = [
     "builtin_rows",
     "button_choices",
     "button_files",
+    "calibrated",
     "candidates_for",
     "capture_html",
     "capture_report",
     "capture_session",
+    "changed",
     "check_file",
     "check_strip",
     "chunks_of",
@@ -488,6 +508,7 @@ __all__ = [
     "lock_with_code",
     "look_at_study",
     "make_program",
+    "measure_rig",
     "measured_button",
     "measured_files",
     "merge_parts",
@@ -509,6 +530,7 @@ __all__ = [
     "open_plan",
     "open_program",
     "open_receipt",
+    "open_rig",
     "open_screen_stage",
     "open_winner_devices",
     "operator_view",
@@ -549,6 +571,7 @@ __all__ = [
     "read_population",
     "read_press_trace",
     "read_program",
+    "read_selftest",
     "read_session",
     "read_setup",
     "record_of",
@@ -599,6 +622,7 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_selftest",
     "write_study_report",
 ]
 
