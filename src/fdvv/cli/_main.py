@@ -31,6 +31,7 @@ COMMANDS = {
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
+    "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "optimize": ("fdvv.cli._optimize", "Find the button that makes a person perform best."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),

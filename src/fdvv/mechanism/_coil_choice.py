@@ -9,7 +9,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.mechanism._coil import Coil, cN_PER_N
-from fdvv.mechanism._material import WIRE_SIZES_mm, WIRES, coil_tolerance_mm, wire_tolerance_mm
+from fdvv.mechanism._material import WIRES, WIRE_SIZES_mm, coil_tolerance_mm, wire_tolerance_mm
 
 LEAST_ACTIVE, MOST_ACTIVE = 3.0, 40.0
 LEAST_INDEX, MOST_INDEX = 4.0, 20.0

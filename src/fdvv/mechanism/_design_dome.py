@@ -35,16 +35,16 @@ NARROWEST_mm = 4.0
 def design_dome(target: Target, making: Making) -> DomeMechanism:
     """Design the dome whose press and release miss the target least.
 
-    The solver starts from low and high, thin and thick domes; the rubber is then rounded to a hardness that is sold and the
-    rest found anew. Raises ModelError if the target's travel is too short for a moulded dome.
+    The solver starts from low and high, thin and thick domes; the rubber is then rounded to a hardness that
+    is sold and the rest found anew. Raises ModelError if the travel is too short for a moulded dome.
     """
     if target.travel_mm < 1.0:
         raise ModelError(f"a rubber dome cannot be moulded for {target.travel_mm:g} mm of travel")
     low, high = _bounds(target, making)
     soft, hard = rubber_MPa(SOFTEST_shoreA), rubber_MPa(HARDEST_shoreA)
     miss = _misser(target)
-    ends = [np.array([soft, *low]), np.array([hard, *high])]
-    found = [solve(miss, start, *ends, evaluations=60) for start in _starts(target)]
+    least, most = np.array([soft, *low]), np.array([hard, *high])
+    found = [solve(miss, start, least, most, evaluations=60) for start in _starts(target)]
     best = min(found, key=lambda f: f[1])[0]
     step = HARDNESS_STEP_shoreA
     hardness = float(np.clip(step * round(hardness_shoreA(best[0]) / step), SOFTEST_shoreA, HARDEST_shoreA))
@@ -75,7 +75,9 @@ def _misser(target: Target) -> Callable[[FloatArray], FloatArray]:
         young, height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim = p
         radii = (0.5 * base, 0.5 * base * slim)
         s = press_in + x
-        force = cone_force_N(s, *radii, height, wall, young) + hinge_force_N(s, *radii, height, hinge * wall, young)
+        force = cone_force_N(s, *radii, height, wall, young) + hinge_force_N(
+            s, *radii, height, hinge * wall, young
+        )
         both = cN_PER_N * force + foot * np.maximum(x - gap, 0.0)
         down, up = Guide(drag, load, seat).strokes_cN(x, both, both)
         return np.concatenate([down - press, up - release])
@@ -86,8 +88,8 @@ def _misser(target: Target) -> Callable[[FloatArray], FloatArray]:
 def _made(p: FloatArray, hardness: float, target: Target, making: Making) -> DomeMechanism:
     """Round every size to what a mould is drawn to."""
     height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim = (float(v) for v in p)
-    sizes = [round(v, 2) for v in (base, slim * base, height, wall, hinge * wall)]
-    dome = Dome(*sizes, hardness, round(press_in, 2))
+    outer, inner, high, thick, thin = (round(v, 2) for v in (base, slim * base, height, wall, hinge * wall))
+    dome = Dome(outer, inner, high, thick, thin, hardness, round(press_in, 2))
     under = _foot(foot, hardness, target.travel_mm - gap, making)
     return DomeMechanism(dome, Guide(drag, load, seat).rounded(), under, round(gap, 2))
 

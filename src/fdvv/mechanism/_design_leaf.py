@@ -1,8 +1,8 @@
 """From curves to a coil, a leaf and the cam that leads it.
 
 First the energy tells where to begin: what press and release have in common beyond the coil is what the leaf
-gives back, its integral the energy of the leaf, and that its force and height. Then coil, leaf, guide and the
-cam's spline are found together by least squares, with slope and radii of the cam held within what can be made.
+gives back, its integral the energy of the leaf, and that its force and height. Then coil, leaf, guide and cam
+are found together by least squares, with slope and radii of the cam held within what can be made.
 Last the round sizes of a coil and a strip are chosen, and the cam is found anew around them.
 """
 
@@ -25,19 +25,23 @@ from fdvv.units import FloatArray
 
 REACH_ratio = 0.8
 """The cam ends at this part of the travel; the coil is alone beyond."""
-CONTROLS = 40
+CONTROLS, FREE = 42, 40
 SEAT_mm = 0.25
 SLOPE_cN, BEND_cN, WAVE_cN, FALL_cN = 30.0, 3.0, 0.01, 30.0
 """What a cam beyond its limits costs: per slope, per curvature (1/mm); per second derivative, so that it is
 smooth where the curves say nothing; and per 10 cN that a cam is farther off the leaf than clears it."""
 CLEAR_cN = 3.0
+OPEN_cN_mm = 300.0
+"""What a circuit costs that is closed too early or open too late, per height of the cam."""
+CLOSING_mm = 0.3
+"""It may close so far from where the model's does."""
 SEAT_ratio = 20.0
 """So much smoother is a cam where the top stop hides what it does."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """The cam's B-spline and its derivatives at the target's displacements: (n, controls) each."""
+    """The cam's B-spline and its derivatives at the target's displacements: (n, FREE) each."""
 
     knots_mm: FloatArray
     height: FloatArray
@@ -66,7 +70,13 @@ def _basis(target: Target) -> _Basis:
     spline = BSpline(knots, np.eye(CONTROLS), DEGREE)
     past = (target.displacement_mm > end)[:, None]
     slope, second = (np.where(past, 0.0, spline(x, nu=n)) for n in (1, 2))
-    return _Basis(knots, np.asarray(spline(x)), slope, second)
+    tie = _level_end()
+    return _Basis(knots, np.asarray(spline(x)) @ tie, slope @ tie, second @ tie)
+
+
+def _level_end() -> FloatArray:
+    """Give the matrix from free heights to control heights: the last three are one, so the cam ends level."""
+    return np.vstack([np.eye(FREE), np.tile(np.eye(FREE)[-1], (CONTROLS - FREE, 1))])
 
 
 def design_leaf(target: Target, making: Making) -> LeafMechanism:
@@ -80,7 +90,7 @@ def design_leaf(target: Target, making: Making) -> LeafMechanism:
     low = np.array([*coil_low, *GUIDE_LOW, 1.0, 3.0])
     high = np.array([*coil_high, *GUIDE_HIGH, 150.0, 200.0])
     start = np.array([*_flat(free), *controls])
-    wide = np.full(CONTROLS, 5.0)
+    wide = np.full(FREE, 5.0)
     p, _ = solve(
         lambda v: _miss(target, making, basis, _unflat(v[:7]), v[7:]),
         start,
@@ -125,9 +135,7 @@ def _begin(target: Target, making: Making, basis: _Basis) -> tuple[_Free, FloatA
     return _Free(max(preload, 0.0) / rate, rate, guide, at_close, stiffness), np.asarray(controls)
 
 
-def _miss(
-    target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray
-) -> FloatArray:
+def _miss(target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray) -> FloatArray:
     """Give what press and release miss (cN), and what the cam exceeds, weighed."""
     x, ratio = target.displacement_mm, making.contact_ratio
     height, slope, second = (part @ controls for part in (basis.height, basis.slope, basis.second))
@@ -142,13 +150,13 @@ def _miss(
         BEND_cN * np.maximum(-curvature - 1.0 / (making.nose_mm + making.edge_mm), 0.0),
         WAVE_cN * np.where(x < SEATED_mm, SEAT_ratio, 1.0) * second,
         FALL_cN * np.maximum(-bent - CLEAR_cN, 0.0) / 10.0,
+        OPEN_cN_mm * np.maximum(making.gap_mm - height, 0.0) * (x < target.close_mm - CLOSING_mm),
+        OPEN_cN_mm * np.maximum(height, 0.0) * (x > target.close_mm + CLOSING_mm),
     )
     return np.concatenate([press - target.press_cN, release - target.release_cN, *over])
 
 
-def _made(
-    target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray
-) -> LeafMechanism:
+def _made(target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray) -> LeafMechanism:
     """Choose coil and strip in round sizes, and find guide and cam anew around them."""
     preload = free.pressed_mm * free.rate_cN_mm
     coil = choose_coil(preload, free.rate_cN_mm, target.travel_mm, making.envelope, making.wire)
@@ -165,14 +173,14 @@ def _made(
     making = replace(making, contact_ratio=leaf.contact_cN_mm / leaf.stiffness_cN_mm)
     guide = free.guide
     start = np.array([guide.drag_cN, guide.load_ratio, guide.seat_mm, *controls])
-    wide = np.full(CONTROLS, 5.0)
+    wide = np.full(FREE, 5.0)
     p, _ = solve(
         lambda v: _miss(target, making, basis, replace(sized, guide=Guide(*v[:3])), v[3:]),
         start,
         np.concatenate([GUIDE_LOW, -wide]),
         np.concatenate([GUIDE_HIGH, wide]),
     )
-    cam = Cam(basis.knots_mm, p[3:], making.nose_mm)
+    cam = Cam(basis.knots_mm, _level_end() @ p[3:], making.nose_mm)
     if float(leaf.force_cN(cam.at(target.displacement_mm)).max()) <= 0.0:
         raise ModelError(f"{target.name}: no force is left for a leaf, a coil alone gives the curves")
     guide = Guide(*(float(v) for v in p[:3])).rounded()

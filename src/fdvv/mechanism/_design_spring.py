@@ -34,7 +34,7 @@ def coil_bounds(making: Making) -> tuple[tuple[float, float], tuple[float, float
 
 
 def design_spring(target: Target, making: Making) -> SpringMechanism:
-    """Design the coil whose press and release miss the target least. Raises ModelError if none can be made."""
+    """Design the coil whose strokes miss the target least. Raises ModelError if none can be made."""
     x = target.displacement_mm
 
     def miss(p: FloatArray) -> FloatArray:

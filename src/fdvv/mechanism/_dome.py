@@ -1,9 +1,9 @@
 """A dome: a truncated cone whose wall tips over, and hinges at its edges; under it a foot.
 
-The wall turns as a rigid section about a neutral ring, so that only its circumference is strained: the theory of
-the coned disc spring (Almen and Laszlo, Transactions of the ASME 58, 1936), here with exact angles, because a
-dome's wall is steep. In the limit of flat cones both agree. The hinges are thinner rings as long as three times
-their thickness that bend (assumed length).
+The wall turns as a rigid section about a neutral ring, so that only its circumference is strained: the theory
+of the coned disc spring (Almen and Laszlo, Transactions of the ASME 58, 1936), here with exact angles,
+because a dome's wall is steep. In the limit of flat cones both agree. The hinges are thinner rings, three
+times as long as they are thick, that bend (assumed length).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Dome:
 
 @dataclass(frozen=True, eq=False)
 class _Section:
-    """A turning section at every displacement: strain and its rate over the angle (n, points), and weights."""
+    """A turning section: strain and its rate over the angle (n, points), weights (points,), lever (n,)."""
 
     strain: FloatArray
     rate: FloatArray
@@ -93,9 +93,9 @@ def _section(s: FloatArray, outer: float, inner: float, height: float, wall: flo
     start, end = (inner - neutral) / math.cos(first), (outer - neutral) / math.cos(first)
     u, wu = np.polynomial.legendre.leggauss(ALONG)
     z, wz = np.polynomial.legendre.leggauss(ACROSS)
-    u, z = np.meshgrid(0.5 * (end - start) * u + 0.5 * (end + start), 0.5 * wall * z, indexing="ij")
+    grid = np.meshgrid(0.5 * (end - start) * u + 0.5 * (end + start), 0.5 * wall * z, indexing="ij")
     weight = np.outer(0.5 * (end - start) * wu, 0.5 * wall * wz).ravel()
-    u, z = u.ravel(), z.ravel()
+    u, z = (points.ravel() for points in grid)
     radius = neutral + u * math.cos(first) + z * math.sin(first)
     strain = np.outer(cosine - math.cos(first), u) + np.outer(sine - math.sin(first), z)
     rate = np.outer(-sine, u) + np.outer(cosine, z)

@@ -1,8 +1,8 @@
 """A leaf that rides on a cam of the slider: strip, cam, and what both give the finger.
 
 The cam holds the leaf at height h, 0 where the leaf just reaches the fixed contact; above it the leaf alone
-bends, below it leaf and fixed contact do, side by side. With leaf force P, cam slope t = h' and coefficient of
-friction m, the wedge gives P (t + m)/(1 - m t) against a press and P (t - m)/(1 + m t) against a release.
+bends, below it leaf and fixed contact do, side by side. With leaf force P, cam slope t = h' and coefficient
+of friction m, the wedge gives P (t + m)/(1 - m t) against a press and P (t - m)/(1 + m t) against a release.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from fdvv.errors import ModelError
 from fdvv.mechanism._coil import cN_PER_N
 from fdvv.mechanism._leaf import Leaf
 from fdvv.mechanism._making import Making
-from fdvv.mechanism._material import STRIP_SIZES_mm, STRIP_WIDTHS_mm, STRIPS
+from fdvv.mechanism._material import STRIPS, STRIP_SIZES_mm, STRIP_WIDTHS_mm
 
 LENGTH_STEP_mm, OFFSET_STEP_mm = 0.05, 0.01
 

@@ -22,6 +22,7 @@ class Making:
     hollow_mm : smallest radius of the nose's path in a hollow of the cam.
     slope_ratio : steepest cam, across over along the travel; 1.2 is a pressure angle of 50 degrees; assumed.
     leaf_mm : shortest and longest leaf.
+    gap_mm : how far the open leaf stands off its contact, at least.
     contact_ratio : stiffness of the fixed contact over that of the leaf.
     widest_mm : largest base of a dome; keys stand 19 mm apart.
     """
@@ -35,6 +36,7 @@ class Making:
     hollow_mm: float = 0.1
     slope_ratio: float = 1.2
     leaf_mm: tuple[float, float] = (4.0, 12.0)
+    gap_mm: float = 0.03
     contact_ratio: float = 3.0
     widest_mm: float = 15.0
 

@@ -1,7 +1,7 @@
 """What springs, leaves and domes are made of: stiffness, strength, sizes that are sold, and their tolerances.
 
-Numbers of standards are cited; what is called "catalogue" is a round value that makers print, "assumed" has no
-source. A design is no better than these: ask the maker for the certificate of the coil or compound.
+Numbers of standards are cited; what is called "catalogue" is a round value that makers print, "assumed" has
+no source. A design is no better than these: ask the maker for the certificate of the coil or compound.
 """
 
 from __future__ import annotations
@@ -98,7 +98,9 @@ STRIPS = {
     "beryllium-copper": Strip(
         "beryllium copper CW101C, aged", 130_000.0, 1000.0, 8260.0, "EN 1654, R1200; catalogue"
     ),
-    "bronze": Strip("phosphor bronze CW452K", 118_000.0, 550.0, 8800.0, "EN 1654, R560 and harder; catalogue"),
+    "bronze": Strip(
+        "phosphor bronze CW452K", 118_000.0, 550.0, 8800.0, "EN 1654, R560 and harder; catalogue"
+    ),
     "stainless": Strip("stainless strip 1.4310", 185_000.0, 1100.0, 7900.0, "EN 10151, +C1300; catalogue"),
 }
 STRIP_SIZES_mm = (0.06, 0.08, 0.10, 0.12, 0.15, 0.18, 0.20)

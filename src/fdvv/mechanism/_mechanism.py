@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
@@ -20,7 +20,11 @@ Mechanism: TypeAlias = SpringMechanism | LeafMechanism | DomeMechanism
 
 KINDS = ("spring", "leaf", "dome")
 """From the simplest to the one with most to tune."""
-_DESIGNERS = {"spring": design_spring, "leaf": design_leaf, "dome": design_dome}
+_DESIGNERS: dict[str, Callable[[Target, Making], Mechanism]] = {
+    "spring": design_spring,
+    "leaf": design_leaf,
+    "dome": design_dome,
+}
 
 
 def design(target: Target, kind: str, making: Making) -> Mechanism:

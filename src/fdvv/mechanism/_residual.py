@@ -129,8 +129,9 @@ def _shape(target: Target, mechanism: Mechanism, press: FloatArray) -> Iterator[
     if isinstance(mechanism, DomeMechanism):
         if wanted and got and abs(wanted[2] - got[2]) > 0.02:
             yield (
-                f"a cone that tips over gives a snap ratio of {got[2]:.2f} here, the curve has {wanted[2]:.2f}: "
-                "its force is nearly a cubic of the travel, its peak and its valley cannot be shaped apart"
+                f"a cone that tips over gives a snap ratio of {got[2]:.2f} here, the curve has "
+                f"{wanted[2]:.2f}: its force is nearly a cubic of the travel, so its peak and its valley "
+                "cannot be shaped apart"
             )
         elif not wanted:
             yield "the curve has no bump, a dome is made for one"
@@ -155,9 +156,9 @@ def _loop(target: Target, half_cN: FloatArray) -> Iterator[str]:
     wanted, got = target.half_loop_cN[inside], half_cN[inside]
     if rms(got - wanted) > TELLING_cN:
         yield (
-            f"half of the curve's loop goes from {wanted.min():.1f} to {wanted.max():.1f} cN over the travel, "
-            f"that of the mechanism from {got.min():.1f} to {got.max():.1f}: one coefficient of friction "
-            "cannot change along the way"
+            f"half of the curve's loop goes from {wanted.min():.1f} to {wanted.max():.1f} cN over the "
+            f"travel, that of the mechanism from {got.min():.1f} to {got.max():.1f}: one coefficient of "
+            "friction cannot change along the way"
         )
 
 
@@ -165,9 +166,11 @@ def _start(target: Target, press: FloatArray, release: FloatArray) -> Iterator[s
     """Say what the first tenth of a millimetre adds: a cap on its stop holds no force before it has moved."""
     x = target.displacement_mm
     first = x < SEATED_mm
-    error = max(np.abs(press - target.press_cN)[first].max(), np.abs(release - target.release_cN)[first].max())
+    error = max(
+        np.abs(press - target.press_cN)[first].max(), np.abs(release - target.release_cN)[first].max()
+    )
     if error > 3.0:
         yield (
-            f"up to {error:.0f} cN are missed before {SEATED_mm:g} mm, where the curves hold the give of the bench "
-            "that measured them"
+            f"up to {error:.0f} cN are missed before {SEATED_mm:g} mm, where the curves hold the give of the "
+            "bench that measured them"
         )

@@ -48,14 +48,14 @@ class Target:
 
 
 def target_of(model: FDVVModel) -> Target:
-    """Take the slowest curves of a model. Raises ModelError if a stroke is missing or the travel too short."""
+    """Take a model's slowest curves. Raises ModelError if a stroke is missing or the travel too short."""
     missing = [str(stroke) for stroke in Stroke if not model.of(stroke)]
     if missing:
         raise ModelError(f"{model.name}: a mechanism needs press and release, the model has no {missing[0]}")
     if model.travel_mm < 0.5:
         raise ModelError(f"{model.name}: {model.travel_mm:g} mm of travel are fewer than the 0.5 mm needed")
     count = int(np.floor((model.travel_mm - STOP_mm) / STEP_mm)) + 1
-    x = STEP_mm * np.arange(count)
+    x: FloatArray = np.asarray(STEP_mm * np.arange(count), dtype=np.float64)
     press, release = (_slowest(model, stroke, x) for stroke in Stroke)
     close = 0.5 * model.travel_mm if model.actuation_mm is None else model.actuation_mm
     return Target(model.name, x, press, release, model.travel_mm, close)

@@ -106,6 +106,15 @@ if TYPE_CHECKING:
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
     from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
+    from fdvv.workflow._mechanism import DesignedKind, MechanismResult, design_mechanism
+    from fdvv.workflow._mechanism_files import write_mechanism
+    from fdvv.workflow._mechanism_report import designed_strokes, drawn_parts, mechanism_report
+    from fdvv.workflow._mechanism_twin import (
+        PressedDesign,
+        cam_difference_um,
+        mechanism_button,
+        press_design,
+    )
     from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
     from fdvv.workflow._open_program import make_program, open_program
     from fdvv.workflow._operator_view import OperatorView, PersonView, operator_view
@@ -282,6 +291,7 @@ __all__ = [
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
+    "DesignedKind",
     "DeviceStage",
     "Difference",
     "DraftChange",
@@ -321,6 +331,7 @@ __all__ = [
     "LiveRun",
     "MeasuredBand",
     "MeasuredButton",
+    "MechanismResult",
     "ModelFit",
     "ModelTemplate",
     "ObjectiveSetup",
@@ -357,6 +368,7 @@ __all__ = [
     "PressTable",
     "PressTimes",
     "PressTrace",
+    "PressedDesign",
     "Presses",
     "ProbeResult",
     "ProgramEntry",
@@ -444,6 +456,7 @@ __all__ = [
     "builtin_rows",
     "button_choices",
     "button_files",
+    "cam_difference_um",
     "candidates_for",
     "capture_html",
     "capture_report",
@@ -459,7 +472,10 @@ __all__ = [
     "cue_length_s",
     "demo",
     "demo_report",
+    "design_mechanism",
+    "designed_strokes",
     "device_problems",
+    "drawn_parts",
     "drawn_trace",
     "drawn_traces",
     "expected_ms",
@@ -488,6 +504,8 @@ __all__ = [
     "make_program",
     "measured_button",
     "measured_files",
+    "mechanism_button",
+    "mechanism_report",
     "merge_parts",
     "model_of",
     "model_of_recording",
@@ -525,6 +543,7 @@ __all__ = [
     "power_design",
     "prepare_exciter",
     "press_button",
+    "press_design",
     "press_of",
     "press_table",
     "preview_dict",
@@ -597,6 +616,7 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_mechanism",
     "write_study_report",
 ]
 

@@ -1,4 +1,4 @@
-"""A designed mechanism as a real button of the twin, and what the twin gives when it is pressed. Simulated."""
+"""A designed mechanism as a real button of the twin, and what pressing it gives. Simulated."""
 
 from __future__ import annotations
 
@@ -8,17 +8,29 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fdvv.mechanism import (
-    STOP_mm,
     DomeMechanism,
     LeafMechanism,
     Mechanism,
     Miss,
+    STOP_mm,
     Target,
     miss_of,
 )
 from fdvv.model import FDVVModel, Stroke
-from fdvv.twin import ButtonPhysics, Curve, Dome, Finger, Leaf, Slider, identify, no_button_noise, plan
-from fdvv.twin import probe_button, simulate_button, solve_button_pace
+from fdvv.twin import (
+    ButtonPhysics,
+    Curve,
+    Dome,
+    Finger,
+    Leaf,
+    Slider,
+    identify,
+    no_button_noise,
+    plan,
+    probe_button,
+    simulate_button,
+    solve_button_pace,
+)
 from fdvv.units import FloatArray, N_from_cN, m_from_mm, mm_from_m
 
 STEP_mm = 0.02
@@ -27,7 +39,7 @@ SPEEDS_mm_s = (50.0, 100.0, 200.0)
 STIFFNESS_N_m = 10.0
 """Of one cN/mm."""
 STRAIGHT = Dome(law="linear", linear_s_m=0.0, arm_m=1e-5, arm_s=1e4)
-"""A coil in the twin: what the twin calls a dome, without rubber: no growth with speed, friction that stays."""
+"""A coil in the twin: its dome without rubber, so no growth with speed and friction that stays."""
 START_mm = 0.1
 
 
@@ -60,11 +72,11 @@ class PressedDesign:
 def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence: str) -> ButtonPhysics:
     """Give a design to the twin: its slow curves, and its leaf or rubber.
 
-    The twin identifies spring, cam and friction anew from these curves, with the leaf's stiffness of the design.
-    Raises ModelError if the twin's leaf cannot close its circuit on them.
+    The twin identifies spring, cam and friction anew from these curves, with the stiffness of the design's
+    leaf. Raises ModelError if the twin's leaf cannot close its circuit on them.
     """
     count = int(np.floor(target.travel_mm / STEP_mm + 1e-9)) + 1
-    x = STEP_mm * np.arange(count)
+    x: FloatArray = np.asarray(STEP_mm * np.arange(count), dtype=np.float64)
     press, release = mechanism.strokes_cN(x)
     kind = "leaf" if isinstance(mechanism, LeafMechanism) else "dome"
     close = _closing_mm(mechanism, target)
@@ -90,7 +102,7 @@ def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence:
 
 
 def _closing_mm(mechanism: Mechanism, target: Target) -> float:
-    """Give where the leaf falls on its contact; a coil's or a dome's circuit closes where the model's does."""
+    """Give where the leaf falls on its contact; other circuits close where the model's does."""
     if not isinstance(mechanism, LeafMechanism):
         return target.close_mm
     x = target.displacement_mm
@@ -149,7 +161,7 @@ def _first_crossing(at_mm: FloatArray, force_cN: FloatArray, x: FloatArray) -> F
     """Read the force where the cap first gets beyond each displacement."""
     reached = np.maximum.accumulate(at_mm)
     fresh = np.append(True, np.diff(reached) > 0.0)
-    return np.interp(x, reached[fresh], force_cN[fresh])
+    return np.asarray(np.interp(x, reached[fresh], force_cN[fresh]))
 
 
 def _compared(
@@ -173,7 +185,7 @@ def cam_difference_um(mechanism: LeafMechanism, button: ButtonPhysics) -> float:
     """
     found = identify(button)
     x = mm_from_m(found.x_m)
-    lag = m_from_mm(1.0) and found.normal_N / button.leaf.cam_stiffness_N_m
+    lag = found.normal_N / button.leaf.cam_stiffness_N_m
     height = mm_from_m(found.height_m - lag)
     riding = (x > 0.3) & (found.normal_N > 0.02) & (x < mechanism.cam.end_mm)
     return float(1e3 * np.sqrt(np.mean((height - mechanism.cam.at(x))[riding] ** 2)))
