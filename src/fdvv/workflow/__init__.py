@@ -111,7 +111,6 @@ if TYPE_CHECKING:
     from fdvv.workflow._mechanism_report import designed_strokes, drawn_parts, mechanism_report
     from fdvv.workflow._mechanism_twin import (
         PressedDesign,
-        cam_difference_um,
         mechanism_button,
         press_design,
     )
@@ -456,7 +455,6 @@ __all__ = [
     "builtin_rows",
     "button_choices",
     "button_files",
-    "cam_difference_um",
     "candidates_for",
     "capture_html",
     "capture_report",

@@ -18,20 +18,20 @@ from fdvv.mechanism import (
 )
 from fdvv.model import FDVVModel, Stroke
 from fdvv.twin import (
+    BuiltCam,
     ButtonPhysics,
     Curve,
     Dome,
     Finger,
     Leaf,
     Slider,
-    identify,
     no_button_noise,
     plan,
     probe_button,
     simulate_button,
     solve_button_pace,
 )
-from fdvv.units import FloatArray, N_from_cN, m_from_mm, mm_from_m
+from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
 STEP_mm = 0.02
 SLOW_mm_s = 0.5
@@ -72,8 +72,9 @@ class PressedDesign:
 def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence: str) -> ButtonPhysics:
     """Give a design to the twin: its slow curves, and its leaf or rubber.
 
-    The twin identifies spring, cam and friction anew from these curves, with the stiffness of the design's
-    leaf. Raises ModelError if the twin's leaf cannot close its circuit on them.
+    A leaf is given as it is built, coil, cam, strip and friction, so the twin's own equations (contact of
+    leaf and cam, friction with its turning, moving masses) make the force; the design's curves only stand
+    beside it. A coil or a dome is given by its curves. Raises ModelError if the twin cannot take it.
     """
     count = int(np.floor(target.travel_mm / STEP_mm + 1e-9)) + 1
     x: FloatArray = np.asarray(STEP_mm * np.arange(count), dtype=np.float64)
@@ -98,6 +99,26 @@ def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence:
         leaf=_leaf(mechanism),
         dome=Dome() if isinstance(mechanism, DomeMechanism) else STRAIGHT,
         slider=Slider(),
+        cam=_built(mechanism, x),
+    )
+
+
+def _built(mechanism: Mechanism, x: FloatArray) -> BuiltCam | None:
+    """Give coil, cam and friction at the places of the curves, less what the top stop bears."""
+    if not isinstance(mechanism, LeafMechanism):
+        return None
+    guide, coil = mechanism.guide, mechanism.coil
+    spring = coil.preload_cN + coil.rate_cN_mm * x
+    height = mechanism.cam.at(x)
+    along = mechanism.leaf.force_cN(height) * mechanism.cam.at(x, 1)
+    resting = np.exp(-x / guide.seat_mm)
+    moving = 1.0 - resting
+    return BuiltCam(
+        N_from_cN(spring - (spring[0] + along[0]) * resting),
+        m_from_mm(height),
+        N_from_cN((guide.drag_cN + guide.load_ratio * spring) * moving),
+        mechanism.friction_ratio * moving,
+        float(N_from_cN(mechanism.leaf.preload_cN)),
     )
 
 
@@ -176,16 +197,3 @@ def _compared(
             wanted = min(model.of(stroke), key=lambda c: c.velocity_mm_s or 0.0).force_cN(x)
         misses.append(miss_of(x, got, wanted))
     return PressedDesign(speed_mm_s, misses[0], misses[1], own, x, press, release)
-
-
-def cam_difference_um(mechanism: LeafMechanism, button: ButtonPhysics) -> float:
-    """Compare the cam that the twin finds in the design's slow curves with the designed one, um rms.
-
-    Both are heights of the leaf where it rides on the cam; an error of the identification, not of the part.
-    """
-    found = identify(button)
-    x = mm_from_m(found.x_m)
-    lag = found.normal_N / button.leaf.cam_stiffness_N_m
-    height = mm_from_m(found.height_m - lag)
-    riding = (x > 0.3) & (found.normal_N > 0.02) & (x < mechanism.cam.end_mm)
-    return float(1e3 * np.sqrt(np.mean((height - mechanism.cam.at(x))[riding] ** 2)))
