@@ -20,8 +20,10 @@ from fdvv.mechanism._solve import solve
 from fdvv.mechanism._target import Target
 from fdvv.units import FloatArray
 
-STRIDE = 4
-"""Every so many displacements are enough for a curve of ten numbers."""
+STRIDE, FINE_STRIDE = 6, 2
+"""So many displacements are skipped while looking, and in the last pass."""
+LOOK, PURSUED = 20, 2
+"""Every start is tried for so many evaluations, and so many of the best are followed to the end."""
 HARDNESS_STEP_shoreA = 5.0
 """Compounds are sold in such steps."""
 FOOT_LENGTHS_mm = (1.0, 1.5, 2.0, 3.0)
@@ -42,14 +44,17 @@ def design_dome(target: Target, making: Making) -> DomeMechanism:
         raise ModelError(f"a rubber dome cannot be moulded for {target.travel_mm:g} mm of travel")
     low, high = _bounds(target, making)
     soft, hard = rubber_MPa(SOFTEST_shoreA), rubber_MPa(HARDEST_shoreA)
-    miss = _misser(target)
+    miss = _misser(target, STRIDE)
     least, most = np.array([soft, *low]), np.array([hard, *high])
-    found = [solve(miss, start, least, most, evaluations=60) for start in _starts(target)]
+    begun = [solve(miss, start, least, most, evaluations=LOOK) for start in _starts(target)]
+    begun.sort(key=lambda f: f[1])
+    found = [solve(miss, p, least, most) for p, _ in begun[:PURSUED]]
     best = min(found, key=lambda f: f[1])[0]
     step = HARDNESS_STEP_shoreA
     hardness = float(np.clip(step * round(hardness_shoreA(best[0]) / step), SOFTEST_shoreA, HARDEST_shoreA))
     young = rubber_MPa(hardness)
-    rest, _ = solve(lambda p: miss(np.array([young, *p])), best[1:], low, high)
+    fine = _misser(target, FINE_STRIDE)
+    rest, _ = solve(lambda p: fine(np.array([young, *p])), best[1:], low, high)
     return _made(rest, hardness, target, making)
 
 
@@ -66,10 +71,10 @@ def _starts(target: Target) -> Iterator[FloatArray]:
         yield np.array([2.0, height, wall, 0.5, 0.1, gap, 20.0, 2.0, 0.03, 0.05, 7.0, 0.4])
 
 
-def _misser(target: Target) -> Callable[[FloatArray], FloatArray]:
+def _misser(target: Target, stride: int) -> Callable[[FloatArray], FloatArray]:
     """Give the function from modulus and sizes to what press and release miss."""
-    x = target.displacement_mm[::STRIDE]
-    press, release = target.press_cN[::STRIDE], target.release_cN[::STRIDE]
+    x = target.displacement_mm[::stride]
+    press, release = target.press_cN[::stride], target.release_cN[::stride]
 
     def miss(p: FloatArray) -> FloatArray:
         young, height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim = p
