@@ -1,9 +1,9 @@
 """Which real curves can be made as a spring, a leaf or a dome? Simulated; some minutes.
 
-Run as ``python -m benchmarks.mechanism [FOLDER]``; FOLDER holds the real measurements (bluepylons, buddyog-topre,
-haata). Every shipped button and every measured one with press and release is designed by all kinds, the chosen
-one is pressed slowly by the twin, as it is built. Nothing was tuned on the measured ones. A line tells what each
-kind misses (rms of the worse stroke, cN) and the first reason of the chosen one.
+Run as ``python -m benchmarks.mechanism [FOLDER]``; FOLDER holds the real measurements (bluepylons,
+buddyog-topre, haata). Every shipped button and every measured one with press and release is designed by all
+kinds; the chosen one is pressed slowly by the twin, a leaf as it is built. A line tells what each kind misses
+(rms of the worse stroke, cN) and the first reason of the chosen one.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ def shipped() -> Iterator[tuple[str, FDVVModel]]:
 def measured(folder: Path) -> Iterator[tuple[str, FDVVModel | str]]:
     """Give every button measured in a folder, or the reason why it cannot be read."""
     for part in FOLDERS:
-        for path in sorted(p for p in (folder / part).rglob("*") if p.is_dir()) + [folder / part]:
-            for file in button_files(path):
-                try:
-                    yield f"{part[:5]} {file.parent.name[:10]} {file.stem}", open_model(str(file))
-                except FdvvError as error:
-                    yield f"{part[:5]} {file.stem}", str(error)
+        for file in button_files(folder / part):
+            name = f"{part[:5]} {file.parent.name[:10] if file.parent.name != part else ''} {file.stem}"
+            try:
+                yield name, open_model(str(file))
+            except FdvvError as error:
+                yield name, str(error).partition(": ")[2]
 
 
 def judged(name: str, model: FDVVModel | str) -> Line:
@@ -89,8 +89,9 @@ def summary(title: str, lines: list[Line]) -> str:
     met = int(np.sum([line.result.met for line in made if line.result]))
     worst = made[int(np.argmax(missed))]
     return (
-        f"{title}: {met} of {len(made)} within {WANTED_cN:g} cN on both strokes, median {np.median(missed):.1f}, "
-        f"worst {missed.max():.1f} ({worst.name}); {len(lines) - len(made)} not designed"
+        f"{title}: {met} of {len(made)} within {WANTED_cN:g} cN on both strokes, median "
+        f"{np.median(missed):.1f}, worst {missed.max():.1f} ({worst.name}); "
+        f"{len(lines) - len(made)} not designed"
     )
 
 

@@ -57,4 +57,4 @@ def rubber() -> Target:
 def rubber_dome() -> DomeMechanism:
     """Give a dome like those of keyboards, a pin under it."""
     dome = Dome(10.0, 4.0, 2.4, 0.6, 0.4, 55.0, 0.1)
-    return DomeMechanism(dome, Guide(2.0, 0.03, 0.02), Pin(1.0, 1.0, 55.0), 3.0)
+    return DomeMechanism(dome, Guide(2.0, 0.03, 0.02), Pin(1.0, 1.0, 55.0), 3.0, Pin(2.0, 1.0, 30.0))

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.mechanism import Dome, cone_force_N, hardness_shoreA, rubber_MPa
+from fdvv.mechanism import Dome, DomeMechanism, Guide, Pin, cone_force_N, hardness_shoreA, rubber_MPa
 
 DOME = Dome(10.0, 4.0, 2.4, 0.6, 0.4, 50.0, 0.1)
 
@@ -86,3 +86,24 @@ def test_a_dome_without_a_wall_is_refused() -> None:
         replace(DOME, top_mm=11.0)
     with pytest.raises(ModelError, match="hinge"):
         replace(DOME, hinge_mm=-0.1)
+
+
+def test_a_pad_adds_its_own_way_to_that_of_the_dome() -> None:
+    pad, foot = Pin(2.0, 1.0, 30.0), Pin(0.0, 1.0, 50.0)
+    bare = DomeMechanism(DOME, Guide(0.0, 0.0, 1e-4), foot, 9.0)
+    padded = replace(bare, pad=pad)
+    top = np.linspace(0.0, 3.0, 800)
+    force = DOME.force_cN(top)
+    key = top + (force - force[0]) / pad.stiffness_cN_mm
+    assert (np.diff(key) > 0).all()
+    press, release = padded.strokes_cN(key)
+    np.testing.assert_allclose(press[20:], force[20:], atol=0.05)
+    np.testing.assert_array_equal(press, release)
+    np.testing.assert_allclose(bare.strokes_cN(top)[0][20:], force[20:], atol=0.05)
+
+
+def test_over_a_pad_that_is_too_soft_the_key_jumps_and_never_goes_back() -> None:
+    soft = DomeMechanism(DOME, Guide(0.0, 0.0, 1e-4), Pin(0.0, 1.0, 50.0), 9.0, Pin(0.8, 2.0, 30.0))
+    press, _ = soft.strokes_cN(np.linspace(0.0, 8.0, 2000))
+    assert np.diff(press).min() < -1.0
+    assert np.isfinite(press).all()

@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.mechanism._coil import cN_PER_N
-from fdvv.mechanism._dome import Dome, DomeMechanism, Pin, cone_force_N, hinge_force_N
+from fdvv.mechanism._dome import Dome, DomeMechanism, Pin, cone_force_N, hinge_force_N, through_pad_cN
 from fdvv.mechanism._guide import Guide
 from fdvv.mechanism._leaf import Leaf
 from fdvv.mechanism._leaf_choice import choose_leaf
@@ -28,6 +28,10 @@ HARDNESS_STEP_shoreA = 5.0
 """Compounds are sold in such steps."""
 FOOT_LENGTHS_mm = (1.0, 1.5, 2.0, 3.0)
 LEAST_FOOT_mm = 0.6
+SOFTEST_PAD_mm_cN, LEAST_PAD_mm_cN, LEAST_PAD_mm, PAD_shoreA = 0.02, 0.0005, 0.8, 30.0
+"""Give of the softest pad and of one that is not worth making, its smallest diameter and its rubber."""
+JUMP_cN_mm = 1e4
+"""What a pad costs that lets the dome run ahead of the key, so that the key would jump."""
 LEAST_FOOT_cN_mm = 1.0
 """A foot softer than this is left out."""
 NARROWEST_mm = 4.0
@@ -60,43 +64,60 @@ def design_dome(target: Target, making: Making) -> DomeMechanism:
 
 def _bounds(target: Target, making: Making) -> tuple[FloatArray, FloatArray]:
     t = target.travel_mm
-    low = np.array([0.3 * t, 0.15, 0.2, 0.0, 0.3 * t, 0.0, 0.0, 0.0, 0.005, NARROWEST_mm, 0.2])
-    high = np.array([1.5 * t, 1.2, 1.0, 0.4 * t, t, 1000.0, 8.0, 0.25, 0.4, making.widest_mm, 0.8])
+    low = np.array([0.3 * t, 0.15, 0.2, 0.0, 0.3 * t, 0.0, 0.0, 0.0, 0.005, NARROWEST_mm, 0.2, 0.0])
+    high = np.array(
+        [1.5 * t, 1.2, 1.0, 0.4 * t, t, 1000.0, 8.0, 0.25, 0.4, making.widest_mm, 0.8, SOFTEST_PAD_mm_cN]
+    )
     return low, high
 
 
 def _starts(target: Target) -> Iterator[FloatArray]:
     t = target.travel_mm
     for height, gap, wall in itertools.product((0.6 * t, 0.9 * t), (0.7 * t, 0.95 * t), (0.3, 0.8)):
-        yield np.array([2.0, height, wall, 0.5, 0.1, gap, 20.0, 2.0, 0.03, 0.05, 7.0, 0.4])
+        yield np.array([2.0, height, wall, 0.5, 0.1, gap, 20.0, 2.0, 0.03, 0.05, 7.0, 0.4, 0.005])
 
 
 def _misser(target: Target, stride: int) -> Callable[[FloatArray], FloatArray]:
     """Give the function from modulus and sizes to what press and release miss."""
     x = target.displacement_mm[::stride]
+    top = np.linspace(0.0, float(x[-1]), 2 * x.size)
     press, release = target.press_cN[::stride], target.release_cN[::stride]
 
     def miss(p: FloatArray) -> FloatArray:
-        young, height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim = p
+        young, height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim, give = p
         radii = (0.5 * base, 0.5 * base * slim)
-        s = press_in + x
+        s = press_in + top
         force = cone_force_N(s, *radii, height, wall, young) + hinge_force_N(
             s, *radii, height, hinge * wall, young
         )
-        both = cN_PER_N * force + foot * np.maximum(x - gap, 0.0)
-        down, up = Guide(drag, load, seat).strokes_cN(x, both, both)
-        return np.concatenate([down - press, up - release])
+        both = cN_PER_N * force + foot * np.maximum(top - gap, 0.0)
+        jump = JUMP_cN_mm * np.minimum(np.diff(top + give * both), 0.0)
+        held = through_pad_cN(x, top, both, give)
+        down, up = Guide(drag, load, seat).strokes_cN(x, held, held)
+        return np.concatenate([down - press, up - release, jump])
 
     return miss
 
 
 def _made(p: FloatArray, hardness: float, target: Target, making: Making) -> DomeMechanism:
     """Round every size to what a mould is drawn to."""
-    height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim = (float(v) for v in p)
+    height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim, give = (float(v) for v in p)
     outer, inner, high, thick, thin = (round(v, 2) for v in (base, slim * base, height, wall, hinge * wall))
     dome = Dome(outer, inner, high, thick, thin, hardness, round(press_in, 2))
     under = _foot(foot, hardness, target.travel_mm - gap, making)
-    return DomeMechanism(dome, Guide(drag, load, seat).rounded(), under, round(gap, 2))
+    return DomeMechanism(dome, Guide(drag, load, seat).rounded(), under, round(gap, 2), _pad(give))
+
+
+def _pad(give_mm_cN: float) -> Pin | None:
+    """Give the shortest soft pin of that give that can be moulded; None where the key may sit on the dome."""
+    if give_mm_cN < LEAST_PAD_mm_cN:
+        return None
+    young = cN_PER_N * rubber_MPa(PAD_shoreA)
+    for length in FOOT_LENGTHS_mm:
+        diameter = math.sqrt(4.0 * length / (math.pi * young * give_mm_cN))
+        if diameter >= LEAST_PAD_mm:
+            break
+    return Pin(round(diameter, 2), length, PAD_shoreA)
 
 
 def _foot(stiffness_cN_mm: float, hardness: float, way_mm: float, making: Making) -> Pin | Leaf:

@@ -27,6 +27,7 @@ REACH_ratio = 0.8
 """The cam ends at this part of the travel; the coil is alone beyond."""
 CONTROLS, FREE = 42, 40
 SEAT_mm = 0.25
+SOFTEST_LEAF_cN_mm, STIFFEST_LEAF_cN_mm = 4.0, 200.0
 SLOPE_cN, BEND_cN, WAVE_cN, FALL_cN = 30.0, 3.0, 0.01, 30.0
 """What a cam beyond its limits costs: per slope, per curvature (1/mm); per second derivative, so that it is
 smooth where the curves say nothing; and per 10 cN that a cam is farther off the leaf than clears it."""
@@ -87,8 +88,8 @@ def design_leaf(target: Target, making: Making) -> LeafMechanism:
     basis = _basis(target)
     free, controls = _begin(target, making, basis)
     coil_low, coil_high = coil_bounds(making)
-    low = np.array([*coil_low, *GUIDE_LOW, 1.0, 3.0])
-    high = np.array([*coil_high, *GUIDE_HIGH, 150.0, 200.0])
+    low = np.array([*coil_low, *GUIDE_LOW, 1.0, SOFTEST_LEAF_cN_mm])
+    high = np.array([*coil_high, *GUIDE_HIGH, 150.0, STIFFEST_LEAF_cN_mm])
     start = np.array([*_flat(free), *controls])
     wide = np.full(FREE, 5.0)
     p, _ = solve(

@@ -24,6 +24,8 @@ HINGE_LENGTH_ratio = 3.0
 ALONG, ACROSS = 8, 4
 """Gauss points along the wall and through it; the energy is a polynomial of few terms over the radius."""
 FLATTEST = 1e-3
+TOPS, LEAST_WAY_mm = 400, 0.01
+"""Places of the dome's top between which its force is interpolated."""
 
 
 @dataclass(frozen=True)
@@ -159,19 +161,38 @@ class Pin:
 
 @dataclass(frozen=True)
 class DomeMechanism:
-    """A dome under a guided key, and what the key meets after a gap: a pin of rubber or a leaf of metal.
+    """A dome under a guided key, a soft pad between them, and what the dome's top meets after a gap.
 
     Loss in the rubber grows with its force, as the guide's load_ratio has it.
+
+    Attributes
+    ----------
+    foot : a pin of rubber or a leaf of metal.
+    gap_mm : how far the dome's top goes before the foot bears.
+    pad : the pin of rubber that gives way between key and dome; None where the key sits on the dome.
     """
 
     dome: Dome
     guide: Guide
     foot: Pin | Leaf
     gap_mm: float
+    pad: Pin | None = None
 
     kind = "dome"
 
     def strokes_cN(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give the slow press and release at displacements (mm), each as long as x."""
-        force = self.dome.force_cN(x) + self.foot.stiffness_cN_mm * np.maximum(x - self.gap_mm, 0.0)
-        return self.guide.strokes_cN(x, force, force)
+        top = np.linspace(0.0, max(float(x[-1]), LEAST_WAY_mm), TOPS)
+        force = self.dome.force_cN(top) + self.foot.stiffness_cN_mm * np.maximum(top - self.gap_mm, 0.0)
+        give = 0.0 if self.pad is None else 1.0 / self.pad.stiffness_cN_mm
+        held = through_pad_cN(x, top, force, give)
+        return self.guide.strokes_cN(x, held, held)
+
+
+def through_pad_cN(x: FloatArray, top_mm: FloatArray, force_cN: FloatArray, give_mm_cN: float) -> FloatArray:
+    """Give the force on the key at x (mm) from that on the dome's top, a pad of that give between them.
+
+    Where a soft pad lets the top run ahead of the key, the key jumps to the force beyond.
+    """
+    key = top_mm + give_mm_cN * (force_cN - force_cN[0])
+    return np.asarray(np.interp(x, np.maximum.accumulate(key), force_cN))

@@ -27,6 +27,8 @@ def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float 
             "angle_deg": dome.angle_deg,
             "largest_strain_ratio": dome.strain_ratio(x),
         }
+        if mechanism.pad:
+            found["pad"] = _foot(mechanism.pad)
         found["foot"] = {"gap_mm": mechanism.gap_mm, **_foot(mechanism.foot)}
     else:
         found["spring"] = _coil(mechanism.coil, target.travel_mm)

@@ -128,6 +128,9 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Outline]:
     """Draw both halves of the unloaded dome with its sheet and plug, the foot and the board."""
     right = _dome_half(mechanism.dome)
     yield Outline("DOME", np.vstack([right, (right * [-1.0, 1.0])[::-1]]), True)
+    if mechanism.pad:
+        half, low = 0.5 * mechanism.pad.diameter_mm, mechanism.dome.height_mm + PLUG_mm
+        yield _rectangle("PAD", -half, low, half, low + mechanism.pad.length_mm)
     top = mechanism.dome.height_mm - mechanism.dome.press_in_mm
     if isinstance(mechanism.foot, Pin) and mechanism.foot.diameter_mm > 0:
         half, tip = 0.5 * mechanism.foot.diameter_mm, mechanism.gap_mm

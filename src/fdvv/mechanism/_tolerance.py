@@ -114,6 +114,9 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Tolerance]:
     yield Tolerance("top diameter", "dome.top_mm", 0.1, "ISO 3302-1 M2, rounded")
     yield Tolerance("pressed in at rest", "dome.press_in_mm", 0.05, "assumed, stack of the key")
     yield Tolerance("gap of the foot", "gap_mm", 0.05, "assumed, stack of the key")
+    if mechanism.pad:
+        yield Tolerance("pad's diameter", "pad.diameter_mm", 0.03, "assumed, compression mould")
+        yield Tolerance("pad's hardness", "pad.hardness_shoreA", 5.0, "usual for compounds, ISO 48-4")
     if isinstance(mechanism.foot, Pin):
         yield Tolerance("foot's diameter", "foot.diameter_mm", 0.03, "assumed, compression mould")
     else:
