@@ -30,11 +30,14 @@ FOOT_LENGTHS_mm = (1.0, 1.5, 2.0, 3.0)
 LEAST_FOOT_mm = 0.6
 SOFTEST_PAD_mm_cN, LEAST_PAD_mm_cN, LEAST_PAD_mm, PAD_shoreA = 0.02, 0.0005, 0.8, 30.0
 """Give of the softest pad and of one that is not worth making, its smallest diameter and its rubber."""
+STEEPEST_ratio, STEEP_cN = 1.2, 100.0
+"""Height over width of the steepest wall, 50 degrees, and what a steeper one costs: its edges would widen
+and shrink more than sheet and plug let them."""
 JUMP_cN_mm = 1e4
 """What a pad costs that lets the dome run ahead of the key, so that the key would jump."""
 LEAST_FOOT_cN_mm = 1.0
 """A foot softer than this is left out."""
-NARROWEST_mm = 4.0
+NARROWEST_mm = 6.0
 """Smallest base of a dome."""
 
 
@@ -64,7 +67,7 @@ def design_dome(target: Target, making: Making) -> DomeMechanism:
 
 def _bounds(target: Target, making: Making) -> tuple[FloatArray, FloatArray]:
     t = target.travel_mm
-    low = np.array([0.3 * t, 0.15, 0.2, 0.0, 0.3 * t, 0.0, 0.0, 0.0, 0.005, NARROWEST_mm, 0.2, 0.0])
+    low = np.array([0.3 * t, 0.15, 0.2, 0.0, 0.3 * t, 0.0, 0.0, 0.0, 0.005, NARROWEST_mm, 0.25, 0.0])
     high = np.array(
         [1.5 * t, 1.2, 1.0, 0.4 * t, t, 1000.0, 8.0, 0.25, 0.4, making.widest_mm, 0.8, SOFTEST_PAD_mm_cN]
     )
@@ -92,9 +95,10 @@ def _misser(target: Target, stride: int) -> Callable[[FloatArray], FloatArray]:
         )
         both = cN_PER_N * force + foot * np.maximum(top - gap, 0.0)
         jump = JUMP_cN_mm * np.minimum(np.diff(top + give * both), 0.0)
+        steep = STEEP_cN * np.maximum(height / (radii[0] - radii[1]) - STEEPEST_ratio, 0.0)
         held = through_pad_cN(x, top, both, give)
         down, up = Guide(drag, load, seat).strokes_cN(x, held, held)
-        return np.concatenate([down - press, up - release, jump])
+        return np.concatenate([down - press, up - release, jump, [steep]])
 
     return miss
 

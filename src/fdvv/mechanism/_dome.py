@@ -24,6 +24,8 @@ HINGE_LENGTH_ratio = 3.0
 ALONG, ACROSS = 8, 4
 """Gauss points along the wall and through it; the energy is a polynomial of few terms over the radius."""
 FLATTEST = 1e-3
+LEAF_ROOM_mm = 1.5
+"""Height that a leaf under the dome needs to bend."""
 TOPS, LEAST_WAY_mm = 400, 0.01
 """Places of the dome's top between which its force is interpolated."""
 
@@ -64,7 +66,8 @@ class Dome:
         """Give the force at displacements of the key (mm); friction, loss and foot left out."""
         young = rubber_MPa(self.hardness_shoreA)
         radii = (0.5 * self.base_mm, 0.5 * self.top_mm)
-        s = self.press_in_mm + x
+        # a key that stands off its dome does not pull at it
+        s = np.maximum(self.press_in_mm + x, 0.0)
         wall = cone_force_N(s, *radii, self.height_mm, self.wall_mm, young)
         hinge = hinge_force_N(s, *radii, self.height_mm, self.hinge_mm, young)
         return np.asarray(cN_PER_N * (wall + hinge))
@@ -179,6 +182,17 @@ class DomeMechanism:
     pad: Pin | None = None
 
     kind = "dome"
+
+    @property
+    def tip_mm(self) -> float:
+        """Get the height of the foot's tip over the plane of the dome's base, on which it stands."""
+        return self.dome.height_mm - 0.5 * self.dome.hinge_mm - self.dome.press_in_mm - self.gap_mm
+
+    @property
+    def rim_mm(self) -> float:
+        """Get the height of the rim under the base: a cone goes on past flat, so its top must find room."""
+        length = self.foot.length_mm if isinstance(self.foot, Pin) else LEAF_ROOM_mm
+        return max(length - self.tip_mm - 0.5 * self.dome.hinge_mm, 0.0)
 
     def strokes_cN(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give the slow press and release at displacements (mm), each as long as x."""

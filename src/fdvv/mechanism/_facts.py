@@ -29,7 +29,7 @@ def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float 
         }
         if mechanism.pad:
             found["pad"] = _foot(mechanism.pad)
-        found["foot"] = {"gap_mm": mechanism.gap_mm, **_foot(mechanism.foot)}
+        found["foot"] = {"gap_mm": mechanism.gap_mm, "rim_mm": mechanism.rim_mm, **_foot(mechanism.foot)}
     else:
         found["spring"] = _coil(mechanism.coil, target.travel_mm)
     if isinstance(mechanism, LeafMechanism):
@@ -120,6 +120,11 @@ def _notes(mechanism: Mechanism, target: Target) -> Iterator[str]:
         if strain > MOST_STRAIN_ratio:
             told = f"{100 * strain:.0f} %, more than the {100 * MOST_STRAIN_ratio:.0f} % it bears for long"
             yield f"the rubber is strained by {told}"
+        if mechanism.rim_mm > 0:
+            yield (
+                f"the cone goes on past flat: its base stands on a rim of {mechanism.rim_mm:.2f} mm, "
+                "as drawn, so that its top finds room"
+            )
         yield "the theory of the cone takes the wall for rigid: correct the first mould by its hardness"
         return
     pressed = mechanism.coil.free_mm - mechanism.coil.built_mm + target.travel_mm

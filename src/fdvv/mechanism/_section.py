@@ -131,12 +131,20 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Outline]:
     if mechanism.pad:
         half, low = 0.5 * mechanism.pad.diameter_mm, mechanism.dome.height_mm + PLUG_mm
         yield _rectangle("PAD", -half, low, half, low + mechanism.pad.length_mm)
-    top = mechanism.dome.height_mm - mechanism.dome.press_in_mm
-    if isinstance(mechanism.foot, Pin) and mechanism.foot.diameter_mm > 0:
-        half, tip = 0.5 * mechanism.foot.diameter_mm, mechanism.gap_mm
-        yield _rectangle("FOOT", -half, min(tip, top), half, max(tip, top))
-    wide, floor = 0.5 * mechanism.dome.base_mm + SHEET_mm, -0.5 * mechanism.dome.hinge_mm
-    yield Outline("BOARD", np.array([[-wide, floor], [wide, floor]]), False)
+    yield from _under(mechanism)
+
+
+def _under(mechanism: DomeMechanism) -> Iterator[Outline]:
+    """Draw the foot on the board, and the rim that the dome's base stands on."""
+    dome, foot, tip = mechanism.dome, mechanism.foot, mechanism.tip_mm
+    base, wide = -0.5 * dome.hinge_mm, 0.5 * dome.base_mm + SHEET_mm
+    floor, inside = base - mechanism.rim_mm, 0.5 * dome.base_mm - 0.5 * dome.hinge_mm
+    if isinstance(foot, Pin) and foot.diameter_mm > 0:
+        yield _rectangle("FOOT", -0.5 * foot.diameter_mm, tip - foot.length_mm, 0.5 * foot.diameter_mm, tip)
+    elif not isinstance(foot, Pin):
+        yield _rectangle("FOOT", -inside, tip - foot.thickness_mm, 0.0, tip)
+    ground = [[-wide, base], [-inside, base], [-inside, floor], [inside, floor], [inside, base], [wide, base]]
+    yield Outline("BOARD", np.array(ground), False)
 
 
 def _dome_half(dome: Dome) -> FloatArray:
