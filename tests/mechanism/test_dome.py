@@ -12,16 +12,20 @@ from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.mechanism import Dome, DomeMechanism, Guide, Pin, cone_force_N, hardness_shoreA, rubber_MPa
+from fdvv.units import FloatArray
 
 DOME = Dome(10.0, 4.0, 2.4, 0.6, 0.4, 50.0, 0.1)
 
 
-def almen_laszlo_N(s, outer, inner, height, wall, young, poisson):  # type: ignore[no-untyped-def]
+def almen_laszlo_N(
+    s: FloatArray, outer: float, inner: float, height: float, wall: float, young: float, poisson: float
+) -> FloatArray:
     """Write the coned disc spring's force as DIN EN 16984 prints it."""
     d = outer / inner
     k1 = ((d - 1) / d) ** 2 / (math.pi * ((d + 1) / (d - 1) - 2 / math.log(d)))
     steep = (height / wall - s / wall) * (height / wall - s / (2 * wall)) + 1
-    return 4 * young / (1 - poisson**2) * wall**4 / (k1 * (2 * outer) ** 2) * s / wall * steep
+    scale = 4 * young / (1 - poisson**2) * wall**4 / (k1 * (2 * outer) ** 2)
+    return np.asarray(scale * s / wall * steep)
 
 
 @pytest.mark.parametrize(("height", "wall"), [(0.3, 0.4), (0.6, 0.4), (0.9, 0.5)])

@@ -17,9 +17,11 @@ def built(name: str = "mx-brown") -> ButtonPhysics:
     button = load_button(name)
     found = identify(button)
     x = button.curve.step_m * np.arange(button.press_N.size)
-    columns = (np.interp(x, found.x_m, c) for c in (found.elastic_N, found.height_m, found.rail_N))
-    ratio = np.interp(x, found.x_m, found.friction_ratio)
-    return replace(button, cam=BuiltCam(*columns, ratio, found.preload_N))
+    elastic, height, rail, ratio = (
+        np.interp(x, found.x_m, column)
+        for column in (found.elastic_N, found.height_m, found.rail_N, found.friction_ratio)
+    )
+    return replace(button, cam=BuiltCam(elastic, height, rail, ratio, found.preload_N))
 
 
 def test_parts_that_were_identified_and_are_given_back_press_alike() -> None:
