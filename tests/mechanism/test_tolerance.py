@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fdvv.mechanism import (
     DomeMechanism,
+    LeafMechanism,
     Mechanism,
     SpringMechanism,
     Target,
@@ -85,3 +88,10 @@ def test_every_fact_is_a_finite_number_or_a_word(
         assert np.isfinite(numbers).all()
         assert all(note.strip() for note in notes_of(mechanism, target))
     assert facts_of(clear_leaf, clear)["spring"]["stress_ratio"] < 1.0  # type: ignore[operator]
+
+
+def test_a_size_smaller_than_its_tolerance_is_not_driven_below_nothing(clear_leaf: Mechanism) -> None:
+    assert isinstance(clear_leaf, LeafMechanism)
+    slack = replace(clear_leaf, leaf=replace(clear_leaf.leaf, offset_mm=0.01))
+    band = band_of(slack, X, draws=20)
+    assert np.isfinite(band.press_low_cN).all()

@@ -18,6 +18,7 @@ from fdvv.units import FloatArray
 SIGMAS = 2.0
 """A tolerance is taken as this many standard deviations of a normal distribution."""
 DRAWS = 300
+LEFT_ratio = 0.9
 LOW_percent, HIGH_percent = 5.0, 95.0
 LEAST_FALL_cN = 1.0
 
@@ -98,7 +99,9 @@ def _leaf(mechanism: LeafMechanism) -> Iterator[Tolerance]:
     yield Tolerance("strip thickness", "leaf.thickness_mm", strip, "assumed, close to EN 1654")
     yield Tolerance("leaf length", "leaf.length_mm", 0.05, "assumed, clamp and punch")
     yield Tolerance("leaf width", "leaf.width_mm", 0.03, "assumed, punch")
-    yield Tolerance("leaf's bend", "leaf.offset_mm", 0.05, "assumed, forming")
+    yield Tolerance(
+        "leaf's bend", "leaf.offset_mm", _at_most(0.05, mechanism.leaf.offset_mm), "assumed, forming"
+    )
     yield Tolerance("strip's modulus", "leaf.young_ratio", 0.02, "assumed, 2 %")
     yield Tolerance("friction on the cam", "friction_ratio", 0.25 * mechanism.friction_ratio, "assumed, 25 %")
     yield Tolerance("cam along the travel", "shift_mm", 0.05, "assumed, moulded slider")
@@ -108,7 +111,9 @@ def _leaf(mechanism: LeafMechanism) -> Iterator[Tolerance]:
 def _dome(mechanism: DomeMechanism) -> Iterator[Tolerance]:
     yield Tolerance("hardness", "dome.hardness_shoreA", 5.0, "usual for compounds, ISO 48-4")
     yield Tolerance("wall", "dome.wall_mm", 0.03, "assumed, compression mould")
-    yield Tolerance("hinges", "dome.hinge_mm", 0.03, "assumed, compression mould")
+    yield Tolerance(
+        "hinges", "dome.hinge_mm", _at_most(0.03, mechanism.dome.hinge_mm), "assumed, compression mould"
+    )
     yield Tolerance("height", "dome.height_mm", 0.05, "assumed, compression mould")
     yield Tolerance("base diameter", "dome.base_mm", 0.1, "ISO 3302-1 M2, rounded")
     yield Tolerance("top diameter", "dome.top_mm", 0.1, "ISO 3302-1 M2, rounded")
@@ -118,9 +123,15 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Tolerance]:
         yield Tolerance("pad's diameter", "pad.diameter_mm", 0.03, "assumed, compression mould")
         yield Tolerance("pad's hardness", "pad.hardness_shoreA", 5.0, "usual for compounds, ISO 48-4")
     if isinstance(mechanism.foot, Pin):
-        yield Tolerance("foot's diameter", "foot.diameter_mm", 0.03, "assumed, compression mould")
+        half = _at_most(0.03, mechanism.foot.diameter_mm)
+        yield Tolerance("foot's diameter", "foot.diameter_mm", half, "assumed, compression mould")
     else:
         yield Tolerance("foot's strip", "foot.thickness_mm", 0.005, "assumed, close to EN 1654")
+
+
+def _at_most(half: float, size: float) -> float:
+    """Give a tolerance that leaves something of a small size."""
+    return min(half, LEFT_ratio * size)
 
 
 def band_of(mechanism: Mechanism, x: FloatArray, draws: int = DRAWS, seed: int = 0) -> Band:
