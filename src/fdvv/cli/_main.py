@@ -35,6 +35,7 @@ COMMANDS = {
     ),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
+    "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "optimize": ("fdvv.cli._optimize", "Find the button that makes a person perform best."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),

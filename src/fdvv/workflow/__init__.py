@@ -118,6 +118,14 @@ if TYPE_CHECKING:
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
     from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
+    from fdvv.workflow._mechanism import DesignedKind, MechanismResult, design_mechanism
+    from fdvv.workflow._mechanism_files import write_mechanism
+    from fdvv.workflow._mechanism_report import designed_strokes, drawn_parts, mechanism_report
+    from fdvv.workflow._mechanism_twin import (
+        PressedDesign,
+        mechanism_button,
+        press_design,
+    )
     from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
     from fdvv.workflow._open_program import make_program, open_program
     from fdvv.workflow._operator_view import OperatorView, PersonView, operator_view
@@ -297,6 +305,7 @@ __all__ = [
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
+    "DesignedKind",
     "DeviceKey",
     "DeviceStage",
     "Difference",
@@ -338,6 +347,7 @@ __all__ = [
     "LiveRun",
     "MeasuredBand",
     "MeasuredButton",
+    "MechanismResult",
     "ModelFit",
     "ModelTemplate",
     "ObjectiveSetup",
@@ -374,6 +384,7 @@ __all__ = [
     "PressTable",
     "PressTimes",
     "PressTrace",
+    "PressedDesign",
     "Presses",
     "ProbeResult",
     "ProgramEntry",
@@ -481,7 +492,10 @@ __all__ = [
     "cue_length_s",
     "demo",
     "demo_report",
+    "design_mechanism",
+    "designed_strokes",
     "device_problems",
+    "drawn_parts",
     "drawn_trace",
     "drawn_traces",
     "expected_ms",
@@ -511,6 +525,8 @@ __all__ = [
     "measure_rig",
     "measured_button",
     "measured_files",
+    "mechanism_button",
+    "mechanism_report",
     "merge_parts",
     "model_of",
     "model_of_recording",
@@ -549,6 +565,7 @@ __all__ = [
     "power_design",
     "prepare_exciter",
     "press_button",
+    "press_design",
     "press_of",
     "press_table",
     "preview_dict",
@@ -622,6 +639,7 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_mechanism",
     "write_selftest",
     "write_study_report",
 ]
