@@ -1,0 +1,121 @@
+"""A button in a running MuJoCo simulation: a passive force from the model itself, at every step."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from fdvv.errors import BuildError, ModelError
+from fdvv.exchange._mjcf import CAP_g, fine_surface, scene_xml
+from fdvv.model import FDVVModel, Stroke
+
+TABLE_mm = 0.002
+TABLE_SPEEDS = 21
+TURN_mm_s = 2.0
+"""Below this speed press and release are mixed: a jump of force at rest would make the cap chatter."""
+
+
+class MujocoButton:
+    """A button that MuJoCo asks for its force: ``xml`` is the scene, ``attached()`` installs the callbacks.
+
+    Attributes
+    ----------
+    xml : body, slide joint ``button`` and sensors ``button_displacement`` (m), ``button_velocity`` (m/s) and
+        ``button_closed`` (1 while the contact is closed, with its hysteresis, kept in the data's userdata).
+    joint : name of the joint the callbacks act on; in a scene of one's own it may be another.
+    """
+
+    def __init__(self, model: FDVVModel, cap_mass_g: float = CAP_g, joint: str = "button") -> None:
+        if not model.of(Stroke.PRESS):
+            raise ModelError(f"model {model.name!r} has no press curve, MuJoCo's joint needs one")
+        self.xml = scene_xml(model, cap_mass_g, None)
+        self.joint = joint
+        self._close_mm = model.actuation_mm
+        self._open_mm = model.reset_mm if model.reset_mm is not None else model.actuation_mm
+        table = fine_surface(model, TABLE_mm, TABLE_SPEEDS)
+        # lists of floats: of single numbers Python reads them faster than arrays
+        self._speeds: list[float] = table.velocity_mm_s.tolist()
+        self._press: list[list[float]] = table.press_cN.tolist()
+        self._release: list[list[float]] = table.release_cN.tolist()
+
+    def force_cN(self, displacement_mm: float, velocity_mm_s: float) -> float:
+        """Give the force against the finger; velocity is signed, positive on the press.
+
+        From the model's own curves, tabulated every 2 µm; within 2 mm/s of rest press and release are mixed.
+        """
+        at = self._place(displacement_mm, abs(velocity_mm_s))
+        press, release = _read(self._press, *at), _read(self._release, *at)
+        share = 0.5 + 0.5 * max(-1.0, min(1.0, velocity_mm_s / TURN_mm_s))
+        return share * press + (1 - share) * release
+
+    def _place(self, x_mm: float, v_mm_s: float) -> tuple[int, float, int, float]:
+        last = len(self._press[0]) - 2
+        column = max(0, min(last, int(x_mm / TABLE_mm)))
+        across = max(0.0, min(1.0, x_mm / TABLE_mm - column))
+        row = max(0, min(len(self._speeds) - 2, bisect.bisect_right(self._speeds, v_mm_s) - 1))
+        step = self._speeds[row + 1] - self._speeds[row]
+        return row, max(0.0, min(1.0, (v_mm_s - self._speeds[row]) / step)), column, across
+
+    def passive(self, model: Any, data: Any) -> None:
+        """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``."""
+        joint = model.joint(self.joint)
+        position, dof = joint.qposadr[0], joint.dofadr[0]
+        x_mm = 1000.0 * float(data.qpos[position])
+        data.qfrc_passive[dof] -= 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
+        if data.userdata.size and self._close_mm is not None:
+            data.userdata[0] = self._closed(x_mm, bool(data.userdata[0]))
+
+    def _closed(self, x_mm: float, before: bool) -> bool:
+        assert self._close_mm is not None
+        assert self._open_mm is not None
+        return x_mm >= self._close_mm or (before and x_mm > self._open_mm)
+
+    def sense(self, model: Any, data: Any, stage: int) -> None:
+        """Write the contact into sensor ``button_closed``: MuJoCo's ``mjcb_sensor``."""
+        sensor = model.sensor("button_closed")
+        if stage == sensor.needstage[0]:
+            data.sensordata[sensor.adr[0]] = data.userdata[0]
+
+    @contextmanager
+    def attached(self) -> Iterator[None]:
+        """Install the callbacks while a block runs, and put back those that were there before.
+
+        Callbacks of MuJoCo are of the whole process: all models that step meanwhile must have the joint.
+        Raises BuildError without MuJoCo.
+        """
+        mujoco = require_mujoco()
+        before = mujoco.get_mjcb_passive(), mujoco.get_mjcb_sensor()
+        mujoco.set_mjcb_passive(self.passive)
+        mujoco.set_mjcb_sensor(self.sense)
+        try:
+            yield
+        finally:
+            mujoco.set_mjcb_passive(before[0])
+            mujoco.set_mjcb_sensor(before[1])
+
+
+def mujoco_button(model: FDVVModel, cap_mass_g: float = CAP_g) -> MujocoButton:
+    """Make a button for MuJoCo whose force is the model's, on press and release and at every velocity.
+
+    Raises ModelError if the model has no press curve.
+    """
+    return MujocoButton(model, cap_mass_g)
+
+
+def require_mujoco() -> Any:
+    """Import MuJoCo; BuildError that tells how to get it where it is absent."""
+    try:
+        import mujoco
+    except ImportError as error:
+        raise BuildError("this needs MuJoCo; install it with: pip install mujoco") from error
+    return mujoco
+
+
+def _read(table: list[list[float]], row: int, down: float, column: int, across: float) -> float:
+    """Interpolate between four neighbours."""
+    low, high = table[row], table[row + 1]
+    slow = low[column] + across * (low[column + 1] - low[column])
+    fast = high[column] + across * (high[column + 1] - high[column])
+    return slow + down * (fast - slow)
