@@ -179,7 +179,9 @@ def _joined(events: list[Event], curves: list[Curve], scale: float) -> Pulse:
     corners = {0.0, end - start}
     corners |= {c.time + p.time - start for c in curves for p in c.points}
     corners |= {event.time - start for event in events}
-    grid = np.linspace(0.0, end - start, 500)
+    # events that fade or overlap bend between their corners; one alone does not
+    bends = len(events) > 1 or events[0].event_type == "HapticTransient"
+    grid = np.linspace(0.0, end - start, 500 if bends else 2)
     t = np.unique(np.append(grid, [c for c in corners if 0 <= c <= end - start]))
     power, pitch, loudest = np.zeros(t.size), np.full(t.size, DEFAULT_SHARPNESS), np.zeros(t.size)
     intensity, shift = (_control(curves, n, t + start, d) for n, d in CONTROLS)

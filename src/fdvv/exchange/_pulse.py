@@ -20,6 +20,7 @@ from fdvv.units import FloatArray
 SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
 TOLERANCE_ratio = 0.01
+EXACT = 1e-3
 RATE_Hz = 8000.0
 _SCALE = re.compile(r"\b1 is (\d[\d.e+-]*) m/s2")
 
@@ -70,19 +71,35 @@ def pulse_of(vibration: Vibration) -> Pulse:
     return Pulse(t[at], amplitude[at], frequency[at])
 
 
-def modes_of(pulse: Pulse) -> tuple[Mode, ...]:
+def mode_of(pulse: Pulse, phase_rad: float = 0.0) -> Mode:
     """Find the one damped mode nearest to a pulse: least squares of the amplitude, mean frequency by power.
 
-    The phase is 0, for no file holds one. Raises ModelError if the pulse is silent.
+    Where the corners lie on an exponential they are samples of one, and it is taken; between them a file can
+    only draw straight lines. Raises ModelError if the pulse is silent.
     """
-    from scipy.optimize import minimize_scalar
-
     t = np.linspace(0.0, float(pulse.t_s[-1]), 400)
     amplitude = np.interp(t, pulse.t_s, pulse.amplitude_m_s2)
     power = float(amplitude @ amplitude)
     if not power:
         raise ModelError("the pulse is silent")
     frequency = float(amplitude**2 @ np.interp(t, pulse.t_s, pulse.frequency_Hz)) / power
+    strength, decay = _through_corners(pulse) or _nearest(t, amplitude)
+    return Mode(frequency, strength, decay, phase_rad)
+
+
+def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
+    """Give amplitude and decay of the exponential that all corners lie on; None if they do not."""
+    amplitude = pulse.amplitude_m_s2
+    if amplitude.size < 3 or np.any(amplitude <= 0):
+        return None
+    slope, start = np.polyfit(pulse.t_s, np.log(amplitude), 1, w=amplitude)
+    off = np.abs(np.exp(start + slope * pulse.t_s) - amplitude)
+    return (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
+
+
+def _nearest(t: FloatArray, amplitude: FloatArray) -> tuple[float, float]:
+    """Give amplitude and decay of the exponential nearest to an amplitude on equal times."""
+    from scipy.optimize import minimize_scalar
 
     def strength(decay: float) -> float:
         shape = np.exp(-decay * t)
@@ -91,10 +108,10 @@ def modes_of(pulse: Pulse) -> tuple[Mode, ...]:
     def off(decay: float) -> float:
         return float(np.sum((amplitude - strength(decay) * np.exp(-decay * t)) ** 2))
 
-    # a mode that falls to a thousandth within a tenth of the pulse is the fastest that can be told
-    found = minimize_scalar(off, bounds=(0.0, 70.0 / float(t[-1])), method="bounded", options={"xatol": 1e-6})
-    decay = max(float(found.x), 0.0)
-    return (Mode(frequency, strength(decay), decay),)
+    # what falls to a thousandth within a tenth of the pulse is the fastest that can be told
+    bounds = (0.0, 70.0 / float(t[-1]))
+    decay = max(float(minimize_scalar(off, bounds=bounds, method="bounded").x), 0.0)
+    return strength(decay), decay
 
 
 def sharpness(frequency_Hz: FloatArray) -> FloatArray:
