@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import keyword
 import os
 import sys
 from typing import Any, NoReturn
@@ -24,11 +25,13 @@ COMMANDS = {
         "fdvv.cli._device",
         "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
     ),
+    "export": ("fdvv.cli._exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (
         "fdvv.cli._feasible",
         "Tell whether a rig can render a button, and why not, before any upload.",
     ),
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
+    "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
@@ -56,7 +59,9 @@ class LazyGroup(click.Group):
         """Import and give one command."""
         if cmd_name not in COMMANDS:
             return None
-        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), cmd_name)
+        # a function cannot be called import
+        name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), name)
         assert isinstance(found, click.Command)
         return found
 

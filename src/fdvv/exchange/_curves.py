@@ -21,8 +21,8 @@ DECIMALS_mm = 9
 def curves_csv(model: FDVVModel, step_mm: float = STEP_mm) -> Exported:
     """Write every curve into one plain table, mm and cN, each as it was made: presses down, releases up.
 
-    A curve has its displacement and force, and where the contact's point is known whether it is closed; stroke,
-    velocity and unit stand in the names. Columns of shorter curves end early.
+    A curve has its displacement and force, and where the contact's point is known whether it is closed;
+    stroke, velocity and unit stand in the names. Columns of shorter curves end early.
     """
     titles: list[str] = []
     columns: list[Sequence[str]] = []
@@ -36,12 +36,21 @@ def curves_csv(model: FDVVModel, step_mm: float = STEP_mm) -> Exported:
     return Exported(
         "csv",
         _table(titles, columns),
-        (f"{len(model.curves)} curves with stroke and velocity, a sample each {step_mm:g} mm", *_points(model)),
-        ("control points (samples of them are written)", *_without_vibration(model), "provenance and spreads"),
+        (
+            f"{len(model.curves)} curves with stroke and velocity, a sample each {step_mm:g} mm",
+            *_points(model),
+        ),
+        (
+            "control points (samples of them are written)",
+            *_without_vibration(model),
+            "provenance and spreads",
+        ),
     )
 
 
-def bluepylons_csv(model: FDVVModel, velocity_mm_s: float | None = None, step_mm: float = STEP_mm) -> Exported:
+def bluepylons_csv(
+    model: FDVVModel, velocity_mm_s: float | None = None, step_mm: float = STEP_mm
+) -> Exported:
     """Write one press and its release as the Open Switch Curve Meter does: x_um, force_gf, actuated."""
     parts = [_as_made(model, curve, step_mm) for curve in _pair(model, velocity_mm_s)]
     x, force = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
@@ -71,8 +80,10 @@ def haata_csv(model: FDVVModel, step_mm: float = STEP_mm) -> Exported:
     return Exported("haata", _table(titles, columns, '""'), (f"{len(model.curves)} curves",), lost)
 
 
-def tester_json(model: FDVVModel, velocity_mm_s: float | None = None, step_mm: float = STEP_mm) -> Exported:
-    """Write one press and its release as the switch force tester's JSON: lists in mm and gf, contact points."""
+def switch_tester_json(
+    model: FDVVModel, velocity_mm_s: float | None = None, step_mm: float = STEP_mm
+) -> Exported:
+    """Write one press and its release as the switch force tester's JSON: lists in mm and gf, points."""
     record: dict[str, object] = {}
     for curve in _pair(model, velocity_mm_s):
         x, force, _ = _as_made(model, curve, step_mm)
@@ -104,7 +115,11 @@ def _as_made(
     x = np.unique(np.round(np.append(whole, [curve.end_mm, *([point] if inside else [])]), DECIMALS_mm))
     closed = None
     if model.actuation_mm is not None or model.reset_mm is not None:
-        at = round(float(point), DECIMALS_mm) if inside and point is not None else (np.inf if press else -np.inf)
+        at = (
+            round(float(point), DECIMALS_mm)
+            if inside and point is not None
+            else (np.inf if press else -np.inf)
+        )
         closed = (x >= at if press else x > at).astype(np.float64)
     order = slice(None) if press else slice(None, None, -1)
     return x[order], curve.force_cN(x)[order], None if closed is None else closed[order]

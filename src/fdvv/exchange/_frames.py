@@ -25,10 +25,12 @@ FLAGS = ("saturated", "tick")
 def require_frames() -> None:
     """Raise BuildError that tells how to get pandas and xarray, unless they are there."""
     try:
-        import pandas  # noqa: F401, ICN001
+        import pandas  # noqa: F401
         import xarray  # noqa: F401
     except ImportError as error:
-        raise BuildError('tables need pandas and xarray; install them with: pip install "fdvv[frames]"') from error
+        raise BuildError(
+            'tables need pandas and xarray; install them with: pip install "fdvv[frames]"'
+        ) from error
 
 
 def recording_to_pandas(recording: Recording) -> pd.DataFrame:
@@ -42,9 +44,22 @@ def recording_to_pandas(recording: Recording) -> pd.DataFrame:
     import pandas as pd
 
     rows = [_rows(take, stream) for take in recording.takes for stream in take.streams]
-    columns = ["take", "stage", "velocity_mm_s", "stream", "axis", "quantity", "unit", "clock", "t_s", "value"]
+    columns = [
+        "take",
+        "stage",
+        "velocity_mm_s",
+        "stream",
+        "axis",
+        "quantity",
+        "unit",
+        "clock",
+        "t_s",
+        "value",
+    ]
     table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=columns)
-    table = table[columns].astype({n: "category" for n in ("stage", "stream", "axis", "quantity", "unit", "clock")})
+    table = table[columns].astype(
+        dict.fromkeys(("stage", "stream", "axis", "quantity", "unit", "clock"), "category")
+    )
     table.attrs = {**_about(recording), "units": {"velocity_mm_s": "mm s-1", "t_s": "s"}}
     return table
 
@@ -78,10 +93,10 @@ def _axes(count: int) -> list[str]:
 def recording_to_xarray(recording: Recording) -> xr.DataTree:
     """Give a recording as a tree: a node ``take_1`` … for each take, a variable for each stream.
 
-    Streams run on their own clocks, so each has a time dimension of its own, ``t_STREAM`` in s with its clock in
-    the attributes; a marker has a second one, ``axis_STREAM``. Values have their units in ``attrs["units"]``; marks are
-    in the node's attributes, ``mark_NAME`` with their times. Raises BuildError without xarray, ModelError if two
-    streams of a take would get one name.
+    Streams run on their own clocks, so each has a time dimension of its own, ``t_STREAM`` in s with its
+    clock in the attributes; a marker has a second one, ``axis_STREAM``. Values have their units in
+    ``attrs["units"]``; marks are in the node's attributes, ``mark_NAME`` with their times. Raises
+    BuildError without xarray, ModelError if two streams of a take would get one name.
     """
     require_frames()
     import xarray as xr
@@ -132,8 +147,8 @@ def _about(recording: Recording) -> dict[str, Any]:
 def presses_to_pandas(presses: Sequence[Press]) -> pd.DataFrame:
     """Give presses as one table, a row for each sample, the press counted from 0 in column ``press``.
 
-    Columns are those of Press, units in their names and in ``attrs["units"]``; what a press has not (no rig) is
-    missing. Raises BuildError without pandas.
+    Columns are those of Press, units in their names and in ``attrs["units"]``; what a press has not (no
+    rig) is missing. Raises BuildError without pandas.
     """
     require_frames()
     import pandas as pd
@@ -149,7 +164,16 @@ def presses_to_pandas(presses: Sequence[Press]) -> pd.DataFrame:
             part[name] = pd.array([pd.NA] * press.t_s.size if column is None else column, dtype="boolean")
         part["simulated"] = press.simulated
         parts.append(part)
-    columns = ["press", "velocity_mm_s", "t_s", "displacement_mm", "force_cN", *RIG_UNITS, *FLAGS, "simulated"]
+    columns = [
+        "press",
+        "velocity_mm_s",
+        "t_s",
+        "displacement_mm",
+        "force_cN",
+        *RIG_UNITS,
+        *FLAGS,
+        "simulated",
+    ]
     table = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
     table.attrs["units"] = PRESS_UNITS | RIG_UNITS
     return table
@@ -169,7 +193,9 @@ def presses_from_pandas(table: pd.DataFrame) -> tuple[Press, ...]:
 def _press(part: pd.DataFrame) -> Press:
     optional: dict[str, Any] = {}
     for name, kind in (*((n, np.float64) for n in RIG_UNITS), *((n, np.bool_) for n in FLAGS)):
-        if name in part.columns and (part[name].notna().all() if kind is np.bool_ else part[name].notna().any()):
+        if name in part.columns and (
+            part[name].notna().all() if kind is np.bool_ else part[name].notna().any()
+        ):
             optional[name] = part[name].to_numpy(dtype=kind)
     simulated = "simulated" in part.columns and bool(part["simulated"].iloc[0])
     t_s, x, force = (part[n].to_numpy(dtype=np.float64) for n in ("t_s", "displacement_mm", "force_cN"))

@@ -1,7 +1,8 @@
 """Meta's .haptic, written by Haptics Studio: envelopes of amplitude and frequency, as JSON.
 
 Fields, ranges and rules: the data model of the Haptics SDK, version 1.0.0. Both envelopes are 0 to 1; which
-frequencies the second stands for is the player's affair. A breakpoint may have an emphasis, a click of its own.
+frequencies the second stands for is the player's affair. A breakpoint may have an emphasis, a click of its
+own.
 """
 
 from __future__ import annotations
@@ -108,7 +109,13 @@ def meta_haptic(vibration: Vibration, name: str = "vibration") -> Exported:
     }
     record = {
         "version": {"major": 1, "minor": 0, "patch": 0},
-        "metadata": {"editor": "fdvv", "source": "", "project": name, "tags": [], "description": told_scale(scale)},
+        "metadata": {
+            "editor": "fdvv",
+            "source": "",
+            "project": name,
+            "tags": [],
+            "description": told_scale(scale),
+        },
         "signals": {"continuous": {"envelopes": envelopes}},
     }
     return Exported(
@@ -144,8 +151,10 @@ def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None
 
 def _pulse(envelopes: Envelopes, scale: float) -> Pulse:
     t = np.array([p.time for p in envelopes.amplitude])
-    loud = np.array([max(p.amplitude, p.emphasis.amplitude if p.emphasis else 0.0) for p in envelopes.amplitude])
-    if t.size < 2 or np.any(np.diff(t) < 0) or not (0 <= t[0] and t[-1] <= LONGEST_s):
+    loud = np.array(
+        [max(p.amplitude, p.emphasis.amplitude if p.emphasis else 0.0) for p in envelopes.amplitude]
+    )
+    if t.size < 2 or np.any(np.diff(t) < 0) or not (t[0] >= 0 and t[-1] <= LONGEST_s):
         raise ModelError(f"the amplitude needs 2 or more times that rise from 0 to at most {LONGEST_s:g} s")
     if np.any((loud < 0) | (loud > 1)):
         raise ModelError("an amplitude lies outside 0 to 1")

@@ -1,10 +1,10 @@
 """A button as MuJoCo's XML: springs that switch in one after another draw its force curve.
 
-MuJoCo knows no tabulated spring. A fixed tendon whose springlength is a pair of numbers, however, has no force
-between them, so that tendons of one joint, each with its own dead zone, add up to any broken line; the line's
-straight part is an actuator with affine bias. Both are documented and need positive stiffnesses only. What a
-broken line over displacement cannot hold is the loop and the speed: they become Coulomb friction and damping,
-and what that leaves is told per stroke and velocity.
+MuJoCo knows no tabulated spring. A fixed tendon whose springlength is a pair of numbers, however, has no
+force between them, so that tendons of one joint, each with its own dead zone, add up to any broken line;
+the line's straight part is an actuator with affine bias. Both are documented and need positive stiffnesses
+only. What a broken line over displacement cannot hold is the loop and the speed: they become Coulomb
+friction and damping, and what that leaves is told per stroke and velocity.
 """
 
 from __future__ import annotations
@@ -175,7 +175,8 @@ def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None)
 def _springs(springs: SpringButton) -> tuple[str, str]:
     """Turn the broken line into an affine bias and tendons, one for each corner.
 
-    Where the slope rises by k the tendon pulls beyond the corner; where it falls by k a tendon pulls up to it.
+    Where the slope rises by k the tendon pulls beyond the corner; where it falls by k a tendon pulls up to
+    it.
     """
     x, force = m_from_mm(springs.displacement_mm), N_from_cN(springs.force_cN)
     slopes = np.diff(force) / np.diff(x)

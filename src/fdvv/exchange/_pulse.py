@@ -1,8 +1,9 @@
 """What haptic files hold of a vibration: how strong and how high it is over time, but not its phase.
 
-AHAP and Meta's .haptic know two curves of 0 to 1, joined by straight lines: intensity (amplitude) and sharpness
-(frequency). Neither maker says which frequency a sharpness is. The reference software of MPEG's haptics coding
-reads Apple's 0 to 1 as 65 to 300 Hz, which is what is used here, both ways, and told with every file.
+AHAP and Meta's .haptic know two curves of 0 to 1, joined by straight lines: intensity (amplitude) and
+sharpness (frequency). Neither maker says which frequency a sharpness is. The reference software of MPEG's
+haptics coding reads Apple's 0 to 1 as 65 to 300 Hz, which is what is used here, both ways, and told with
+every file.
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ class Pulse:
 def pulse_of(vibration: Vibration) -> Pulse:
     """Follow the envelope of all modes together: the size of their analytic sum, and its mean frequency.
 
-    Beats between modes stay in the amplitude; the frequency at each time is the mean of the modes', weighted by
-    their power.
+    Beats between modes stay in the amplitude; the frequency at each time is the mean of the modes',
+    weighted by their power.
     """
     t = np.arange(max(2, round(vibration.duration_s * RATE_Hz) + 1)) / RATE_Hz
     t = t * (vibration.duration_s / t[-1])
@@ -94,7 +95,9 @@ def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
         return None
     slope, start = np.polyfit(pulse.t_s, np.log(amplitude), 1, w=amplitude)
     off = np.abs(np.exp(start + slope * pulse.t_s) - amplitude)
-    return (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
+    return (
+        (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
+    )
 
 
 def _nearest(t: FloatArray, amplitude: FloatArray) -> tuple[float, float]:

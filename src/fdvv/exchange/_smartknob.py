@@ -1,11 +1,12 @@
 """A button's snap as the detents of a SmartKnob: the fields of its SmartKnobConfig, as JSON.
 
-The knob's firmware pulls towards the centre of the detent it is at, stiffness times angle, and goes to the next
-one where the angle passes the snap point, in widths; snap_point_bias moves that point away from position 0, for
-the way out and back alike, and may not be negative. Two positions one travel apart therefore make a button that
-snaps where its press peaks and returns where its release does: position 0 is the end that those places lie
-further from. Field names, law and limits: scottbez1/smartknob, proto/smartknob.proto and
-firmware/src/motor_task.cpp. A dead zone of a fifth of the width, at most a degree, lies around each centre.
+The knob's firmware pulls towards the centre of the detent it is at, stiffness times angle, and goes to the
+next one where the angle passes the snap point, in widths; snap_point_bias moves that point away from
+position 0, for the way out and back alike, and may not be negative. Two positions one travel apart
+therefore make a button that snaps where its press peaks and returns where its release does: position 0 is
+the end that those places lie further from. Field names, law and limits: scottbez1/smartknob,
+proto/smartknob.proto and firmware/src/motor_task.cpp. A dead zone of a fifth of the width, at most a
+degree, lies around each centre.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ class KnobDetents:
         return self.snap_point + bias, 1 - self.snap_point + bias
 
     def pull(self, way_ratio: FloatArray, pressed: bool) -> FloatArray:
-        """Give what the knob pushes back, strength times radians, on the way from released (0) to pressed (1)."""
+        """Give what the knob pushes back, strength times radians, between released (0) and pressed (1)."""
         width = self.position_width_radians
         off = (np.asarray(way_ratio, dtype=np.float64) - float(pressed)) * width
         dead = min(width * DEAD_ratio, math.radians(DEAD_degrees))
@@ -90,7 +91,11 @@ def smartknob(
         "velocities",
         *(("vibrations",) if model.vibrations else ()),
     ]
-    kept = ("where it snaps and returns", "the fall of force, as a strength") if snaps else ("that it has no snap",)
+    kept = (
+        ("where it snaps and returns", "the fall of force, as a strength")
+        if snaps
+        else ("that it has no snap",)
+    )
     data = json.dumps(asdict(detents), indent=2, ensure_ascii=False) + "\n"
     return Exported("smartknob", data.encode(), kept, tuple(lost), _figures(model, velocity_mm_s, detents))
 
@@ -98,7 +103,7 @@ def smartknob(
 def knob_detents(
     model: FDVVModel, velocity_mm_s: float | None = None, degrees_per_mm: float = DEGREES_per_mm
 ) -> KnobDetents:
-    """Choose the detents of a button: two positions if its press has a bump, one without. Raises ModelError."""
+    """Choose a button's detents: two positions if its press has a bump, else one. Raises ModelError."""
     if not (np.isfinite(degrees_per_mm) and degrees_per_mm > 0):
         raise ModelError(f"degrees_per_mm must be positive, got {degrees_per_mm}")
     width = model.travel_mm * math.radians(degrees_per_mm)
@@ -138,9 +143,7 @@ def _bump(model: FDVVModel, curve: ForceCurve | None) -> Bump | None:
     return find_bump(x, curve.force_cN(x))
 
 
-def _figures(
-    model: FDVVModel, velocity_mm_s: float | None, detents: KnobDetents
-) -> dict[str, float | None]:
+def _figures(model: FDVVModel, velocity_mm_s: float | None, detents: KnobDetents) -> dict[str, float | None]:
     """Compare the press with the knob's law at its best gain and offset."""
     way = np.linspace(0.0, 1.0, 800)
     places = detents.snaps_at_ratio

@@ -48,7 +48,12 @@ class ChartLine:
 
 
 def chart_svg(
-    lines: Sequence[ChartLine], x_label: str, y_label: str, title: str, width: float = 430.0, height: float = 230.0
+    lines: Sequence[ChartLine],
+    x_label: str,
+    y_label: str,
+    title: str,
+    width: float = 430.0,
+    height: float = 230.0,
 ) -> str:
     """Draw lines on common axes as one ``<svg>`` element. Raises ModelError if there is nothing to draw.
 
@@ -62,7 +67,8 @@ def chart_svg(
     up = height - TOP - BOTTOM, TOP
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
-        f'height="{height:g}" role="img" aria-label="{escape(title)}" font-family="sans-serif" font-size="11">',
+        f'height="{height:g}" role="img" '
+        f'aria-label="{escape(title)}" font-family="sans-serif" font-size="11">',
         f"<title>{escape(title)}</title>",
         *_axes(x_range, y_range, x_label, y_label, right, height - BOTTOM),
     ]
@@ -112,7 +118,9 @@ def _axes(
         made.append(f'<path d="M{LEFT} {at:.1f}H{right}" opacity="0.12"/>')
         words.append(f'<text x="{LEFT - 5}" y="{at + 4:.1f}" text-anchor="end">{value:g}</text>')
     middle = (LEFT + right) / 2, (TOP + bottom) / 2
-    words.append(f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{escape(x_label)}</text>')
+    words.append(
+        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{escape(x_label)}</text>'
+    )
     turned = f'transform="translate(11 {middle[1]:.1f}) rotate(-90)"'
     words.append(f'<text {turned} text-anchor="middle">{escape(y_label)}</text>')
     return [*made, "</g>", *words, "</g>"]

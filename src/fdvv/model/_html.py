@@ -1,4 +1,4 @@
-"""What a notebook shows of a model, its landmarks or a press: a small chart and a table, escaped, no script."""
+"""What a notebook shows of a model, its landmarks or a press: small charts and tables, without script."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def block(title: str, note: str, parts: Sequence[str]) -> str:
 
 
 def table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
-    """Lay text out as a table; the first column to the left, the others to the right. All cells are escaped."""
+    """Lay text out as a table; the first column to the left, the others to the right. Cells are escaped."""
     style = "padding:1px 8px;text-align:{};background:none;color:inherit;font-weight:{}"
 
     def line(cells: Sequence[str], tag: str) -> str:
@@ -74,7 +74,9 @@ def _curves(model: FDVVModel) -> list[ChartLine]:
         on = model.nearest(stroke)
         if at is not None and on is not None:
             place = np.array([at])
-            lines.append(ChartLine(place, on.force_cN(place), name, 0 if name == "actuation" else 1, dots=True))
+            lines.append(
+                ChartLine(place, on.force_cN(place), name, 0 if name == "actuation" else 1, dots=True)
+            )
     return lines
 
 
@@ -93,7 +95,9 @@ def _facts(model: FDVVModel) -> list[tuple[str, str]]:
         rows += [_row(name, found[name]) for name in names if found[name] is not None]
     if model.provenance.licence:
         licence = model.provenance.licence
-        rows.append(("licence", licence if len(licence) <= LONGEST_LICENCE else f"{licence[:LONGEST_LICENCE]}…"))
+        rows.append(
+            ("licence", licence if len(licence) <= LONGEST_LICENCE else f"{licence[:LONGEST_LICENCE]}…")
+        )
     return rows
 
 
@@ -118,7 +122,10 @@ def press_html(press: Press) -> str:
     """Show a press: force over displacement, and displacement over time."""
     turn = int(np.argmax(press.displacement_mm)) + 1
     x, force = press.displacement_mm, press.force_cN
-    lines = [ChartLine(x[:turn], force[:turn], "press"), ChartLine(x[turn:], force[turn:], "release", 1, True)]
+    lines = [
+        ChartLine(x[:turn], force[:turn], "press"),
+        ChartLine(x[turn:], force[turn:], "release", 1, True),
+    ]
     if turn == x.size:
         lines = lines[:1]
     title = f"press at {press.velocity_mm_s:g} mm/s"

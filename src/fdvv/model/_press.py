@@ -56,6 +56,4 @@ class Press:
         """Show the press in a notebook; its plain text is one line, not every sample."""
         from fdvv.model._html import bundle
 
-        return bundle(
-            self._repr_html_(), f"Press({self.t_s.size} samples at {self.velocity_mm_s:g} mm/s)"
-        )
+        return bundle(self._repr_html_(), f"Press({self.t_s.size} samples at {self.velocity_mm_s:g} mm/s)")
