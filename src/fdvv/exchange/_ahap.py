@@ -144,7 +144,7 @@ def read_ahap(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pu
     """Read the haptic events of an AHAP file as one pulse; sounds are left out.
 
     scale_m_s2 : what intensity 1 stands for; by default what the file's description says. Where events
-    overlap the stronger one tells the frequency and their powers add. Raises InputError.
+        overlap the stronger one tells the frequency and their powers add. Raises InputError.
     """
     name = "AHAP" if isinstance(source, bytes) else str(source)
     found = read_json(source, Pattern, name, WHAT)
@@ -209,7 +209,7 @@ def _control(curves: list[Curve], name: str, t: FloatArray, default: float) -> F
     if not points:
         return np.full(t.size, default)
     at, value = (np.array(column) for column in zip(*points, strict=True))
-    return np.interp(t, at, value, left=default)
+    return np.asarray(np.interp(t, at, value, left=default))
 
 
 DURATIONS = ("HapticContinuous", "HapticTransient")

@@ -91,9 +91,9 @@ def switch_tester_json(
         record |= {f"{side}_x": x.tolist(), f"{side}_y": gf_from_cN(force).tolist()}
     for name, stroke in (("pressPoint", Stroke.PRESS), ("releasePoint", Stroke.RELEASE)):
         at = model.actuation_mm if stroke is Stroke.PRESS else model.reset_mm
-        curve = model.nearest(stroke, velocity_mm_s)
-        if at is not None and curve is not None:
-            record[name] = [at, gf_from_cN(float(curve.force_cN(at)))]
+        on = model.nearest(stroke, velocity_mm_s)
+        if at is not None and on is not None:
+            record[name] = [at, gf_from_cN(float(on.force_cN(at)))]
     data = (json.dumps(record, allow_nan=False) + "\n").encode()
     return Exported("tester-json", data, ("one press and its release", *_points(model)), _of_one(model))
 

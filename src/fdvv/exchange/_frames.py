@@ -123,9 +123,9 @@ def _take(take: Take) -> xr.Dataset:
             shape = (time, f"axis_{name}")
             coordinates[shape[1]] = _axes(stream.raw.shape[1])
         unit = UNITS[stream.quantity]
-        told = {"units": CF.get(unit, unit), "long_name": stream.name, "quantity": str(stream.quantity)}
-        told |= {"clock": stream.clock, "scale": stream.scale, "zero": stream.zero}
-        variables[name] = (shape, stream.values, told)
+        told: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
+        told |= {"quantity": str(stream.quantity), "clock": stream.clock}
+        variables[name] = (shape, stream.values, {**told, "scale": stream.scale, "zero": stream.zero})
     attributes: dict[str, Any] = {"number": take.number, "stage": str(take.stage), "remark": take.remark}
     attributes |= {"made": take.made, "velocity_units": "mm s-1"}
     attributes["velocity"] = np.nan if take.velocity_mm_s is None else take.velocity_mm_s

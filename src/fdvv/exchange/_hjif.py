@@ -81,7 +81,7 @@ def hjif(vibration: Vibration, date: str, name: str = "vibration") -> Exported:
     """Write a vibration as an HJIF file of the main profile.
 
     date : ISO 8601, that of the file. Raises ModelError if the vibration is silent, longer than 30 s or has a
-    mode above 24 kHz.
+        mode above 24 kHz.
     """
     scale = sum(abs(mode.amplitude_m_s2) for mode in vibration.modes)
     if not scale:

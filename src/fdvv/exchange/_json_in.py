@@ -20,7 +20,7 @@ def read_json(source: Path | str | bytes, record: type[Record], name: str, what:
     """Read JSON into a typed record; fields it does not name are ignored, as the formats ask.
 
     source : a path, or the file's bytes; name : of the source in messages; what : the format with its
-    article. Raises InputError.
+        article. Raises InputError.
     """
     remedy = f"give {what}"
     data = source if isinstance(source, bytes) else read_limited(source, LARGEST_bytes, remedy)

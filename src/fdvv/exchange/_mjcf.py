@@ -61,12 +61,16 @@ class SpringButton:
 
 
 def spring_button(
-    model: FDVVModel, tolerance_cN: float = TOLERANCE_cN, follow: Follow = "press"
+    model: FDVVModel,
+    tolerance_cN: float = TOLERANCE_cN,
+    follow: Follow = "press",
+    velocity_mm_s: float | None = None,
 ) -> SpringButton:
     """Fit line, friction and damping to a model. Raises ModelError if it has no press curve.
 
     Friction and damping are the least squares of half the difference of press and release over speed, neither
-    below 0; the line is what then is left of the presses, the mean over velocities, or of both strokes.
+    below 0; the line is what then is left of the presses or of both strokes: at one velocity if one is given,
+    else the mean over the model's.
     """
     if not model.of(Stroke.PRESS):
         raise ModelError(f"model {model.name!r} has no press curve, MuJoCo's joint needs one")
@@ -74,6 +78,9 @@ def spring_button(
     speeds = np.array(model.velocities_mm_s(Stroke.PRESS) or (UNKNOWN_mm_s,))
     press, release = _strokes(model, x, speeds)
     friction, damping = _loop(speeds, np.median(press - release, axis=1) / 2)
+    if velocity_mm_s is not None:
+        speeds = np.array([velocity_mm_s])
+        press, release = _strokes(model, x, speeds)
     loop = friction + damping * speeds[:, np.newaxis]
     middle = np.mean(press - loop if follow == "press" else (press + release) / 2, axis=0)
     at = polyline(x, middle, tolerance_cN)
@@ -116,6 +123,7 @@ def mjcf(
     tolerance_cN: float = TOLERANCE_cN,
     cap_mass_g: float = CAP_g,
     follow: Follow = "press",
+    velocity_mm_s: float | None = None,
 ) -> Exported:
     """Write a button as an MJCF file of its own: body, slide joint, springs, sensors, points of the contact.
 
@@ -124,7 +132,7 @@ def mjcf(
     """
     if not (np.isfinite(cap_mass_g) and cap_mass_g > 0):
         raise ModelError(f"cap_mass_g must be positive, got {cap_mass_g}")
-    springs = spring_button(model, tolerance_cN, follow)
+    springs = spring_button(model, tolerance_cN, follow, velocity_mm_s)
     worst = max(error[3] for error in springs.errors)
     figures: dict[str, float | None] = {
         "pieces": float(springs.displacement_mm.size - 1),
@@ -160,7 +168,8 @@ def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None)
         if at is not None
     )
     return SCENE.format(
-        name=quoteattr(model.name),
+        # XML holds no control characters, whatever a file's name was
+        name=quoteattr("".join(c if c.isprintable() else "?" for c in model.name)),
         travel=f"{m_from_mm(model.travel_mm):.9g}",
         mass=f"{cap_mass_g / 1000:.9g}",
         joint=joint,
@@ -200,7 +209,8 @@ SCENE = """<mujoco model={name}>
   <option timestep="0.0001" integrator="implicitfast"/>
 {userdata}  <worldbody>
     <body name="button" gravcomp="1">
-      <joint name="button" type="slide" axis="0 0 -1" limited="true" range="0 {travel}" {joint}/>
+      <joint name="button" type="slide" axis="0 0 -1" limited="true" range="0 {travel}"
+        solreflimit="0.001 1" solimplimit="0.99 0.999 0.0001" {joint}/>
       <geom name="cap" type="box" size="0.006 0.006 0.002" mass="{mass}" contype="0" conaffinity="0"/>
     </body>
   </worldbody>

@@ -18,7 +18,8 @@ TURN_mm_s = 2.0
 
 
 class MujocoButton:
-    """A button that MuJoCo asks for its force: ``xml`` is the scene, ``attached()`` installs the callbacks.
+    """A button that MuJoCo asks for its force: ``xml`` is the scene, ``attached()`` installs the callbacks,
+    ``apply()`` does without.
 
     Attributes
     ----------
@@ -60,12 +61,26 @@ class MujocoButton:
 
     def passive(self, model: Any, data: Any) -> None:
         """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``."""
+        dof, force_N = self._ask(model, data)
+        data.qfrc_passive[dof] -= force_N
+
+    def apply(self, model: Any, data: Any) -> None:
+        """Set the joint's applied force for the next step: for loops that want no callback.
+
+        Call it before every ``mj_step``; the force then is that of the step's beginning. The contact is in
+        ``data.userdata[0]``.
+        """
+        dof, force_N = self._ask(model, data)
+        data.qfrc_applied[dof] = -force_N
+
+    def _ask(self, model: Any, data: Any) -> tuple[int, float]:
+        """Give the joint's degree of freedom and what pushes back, and keep the contact."""
         joint = model.joint(self.joint)
-        position, dof = joint.qposadr[0], joint.dofadr[0]
+        position, dof = int(joint.qposadr[0]), int(joint.dofadr[0])
         x_mm = 1000.0 * float(data.qpos[position])
-        data.qfrc_passive[dof] -= 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
         if data.userdata.size and self._close_mm is not None:
             data.userdata[0] = self._closed(x_mm, bool(data.userdata[0]))
+        return dof, 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
 
     def _closed(self, x_mm: float, before: bool) -> bool:
         assert self._close_mm is not None
@@ -82,8 +97,8 @@ class MujocoButton:
     def attached(self) -> Iterator[None]:
         """Install the callbacks while a block runs, and put back those that were there before.
 
-        Callbacks of MuJoCo are of the whole process: all models that step meanwhile must have the joint.
-        Raises BuildError without MuJoCo.
+        Callbacks of MuJoCo are of the whole process: all models that step meanwhile must have the joint, and
+        none can be compiled; make the model first. Raises BuildError without MuJoCo.
         """
         mujoco = require_mujoco()
         before = mujoco.get_mjcb_passive(), mujoco.get_mjcb_sensor()

@@ -11,7 +11,7 @@ def polyline(x: FloatArray, y: FloatArray, tolerance: float) -> np.ndarray[tuple
     """Choose samples whose straight joints stay within tolerance of all samples (Ramer, Douglas and Peucker).
 
     x : (n,) strictly rising; y : (n,). Gives the chosen indices, rising, both ends among them. Deviation is
-    measured along y, which is what a force's error is.
+        measured along y, which is what a force's error is.
     """
     chosen = {0, x.size - 1}
     spans = [(0, x.size - 1)]

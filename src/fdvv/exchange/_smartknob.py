@@ -123,7 +123,8 @@ def knob_detents(
         position_width_radians=width,
         detent_strength_unit=min(STRONGEST, press.drop_cN / FALL_cN),
         endstop_strength_unit=STRONGEST,
-        snap_point=(1 + snap_ratio - back_ratio) / 2,
+        # the firmware refuses less than a half, be it by the last bit
+        snap_point=max(0.5, (1 + snap_ratio - back_ratio) / 2),
         text=text,
         snap_point_bias=abs(middle - 0.5),
     )

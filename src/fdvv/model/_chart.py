@@ -59,6 +59,7 @@ def chart_svg(
 
     title : what the chart shows, for those who cannot see it. All words are escaped.
     """
+    title = "".join(c if c.isprintable() else "?" for c in title)
     x_range, y_range = (_range([getattr(line, axis) for line in lines]) for axis in "xy")
     longest = max((len(line.name) for line in lines), default=0)
     right = width - RIGHT

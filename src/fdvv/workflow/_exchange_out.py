@@ -40,8 +40,8 @@ class ExportSettings:
 
     Attributes
     ----------
-    stroke, velocity_mm_s : of the vibration, or of the press where a format holds one; the slowest by
-    default.
+    stroke, velocity_mm_s : of the vibration, or of the press where a format holds one: the slowest by
+        default, with MuJoCo the mean of all.
     step_mm : between the samples of a curve.
     follow : what MuJoCo's springs draw.
     cap_mass_g : of the body in MuJoCo.
@@ -85,7 +85,9 @@ _BUTTONS: dict[str, Callable[[FDVVModel, ExportSettings], Exported]] = {
     "bluepylons-csv": lambda model, s: bluepylons_csv(model, s.velocity_mm_s, s.step_mm),
     "haata": lambda model, s: haata_csv(model, s.step_mm),
     "tester-json": lambda model, s: switch_tester_json(model, s.velocity_mm_s, s.step_mm),
-    "mjcf": lambda model, s: mjcf(model, cap_mass_g=s.cap_mass_g, follow=s.follow),
+    "mjcf": lambda model, s: mjcf(
+        model, cap_mass_g=s.cap_mass_g, follow=s.follow, velocity_mm_s=s.velocity_mm_s
+    ),
     "smartknob": lambda model, s: smartknob(model, s.velocity_mm_s, s.degrees_per_mm),
 }
 
@@ -120,7 +122,7 @@ def export_button(
     """Make the file of another program for what spec names: a button, or a recording.
 
     spec : as open_model takes it, or a recording's file. to : the format, or None if output's ending tells
-    it. Nothing is written. Raises InputError.
+        it. Nothing is written. Raises InputError.
     """
     chosen = settings or ExportSettings()
     if is_recording(spec):
@@ -157,7 +159,8 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
     """Write a vibration as a sound or a haptic file; figures tell how alike what is read back is.
 
     date : of an HJIF file, ISO 8601; today by default. The figures compare acceleration at 48 kHz:
-    ``correlation`` at its best delay, ``spectral_similarity``, ``st_sim`` and ``spqi`` are 1 for the same.
+        ``correlation`` at its best delay, ``spectral_similarity``, ``st_sim`` and ``spqi`` are 1 for the
+        same.
     """
     if form == "wav":
         made = vibration_wav(vibration)
