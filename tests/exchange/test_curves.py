@@ -87,7 +87,7 @@ def test_what_is_lost_is_told() -> None:
     assert "contact points" in haata_csv(load_builtin("mx-red")).lost
 
 
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     speeds=st.lists(
         st.floats(0.001, 5000).map(lambda v: float(f"{v:.6g}")), min_size=1, max_size=3, unique=True

@@ -1,12 +1,13 @@
-"""AHAP, .haptic and HJIF: what is written is what the formats ask for, and reads back as far as they hold it."""
+"""AHAP, .haptic and HJIF: written as the formats ask, and read back as far as they hold it."""
 
 import json
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
@@ -37,6 +38,7 @@ def _pulse_of_file(made: Exported) -> Pulse:
     return (read_ahap if made.format == "ahap" else read_meta_haptic)(made.data)
 
 
+@settings(max_examples=25, deadline=None)
 @given(mode=modes, duration_s=st.floats(0.005, 0.5))
 def test_one_mode_comes_back_from_every_format_but_for_its_phase(mode: Mode, duration_s: float) -> None:
     vibration = Vibration(Stroke.PRESS, None, 1.0, duration_s, (mode,))
@@ -49,6 +51,7 @@ def test_one_mode_comes_back_from_every_format_but_for_its_phase(mode: Mode, dur
         assert np.abs(fall - wanted).max() < 0.02 * mode.amplitude_m_s2
 
 
+@settings(max_examples=25, deadline=None)
 @given(found=st.lists(modes, min_size=1, max_size=4), duration_s=st.floats(0.005, 0.5))
 def test_hjif_keeps_every_mode_to_a_whole_hertz(found: list[Mode], duration_s: float) -> None:
     vibration = Vibration(Stroke.RELEASE, None, 1.0, duration_s, tuple(found))
@@ -101,7 +104,7 @@ def test_ahap_pieces_of_a_curve_meet() -> None:
     pieces = [p["ParameterCurve"] for p in record["Pattern"][1:]]
     loud = [c for c in pieces if c["ParameterID"] == "HapticIntensityControl"]
     assert len(loud) > 1
-    for one, following in zip(loud, loud[1:], strict=False):
+    for one, following in pairwise(loud):
         last = one["ParameterCurveControlPoints"][-1]
         assert one["Time"] + last["Time"] == pytest.approx(following["Time"])
         first = following["ParameterCurveControlPoints"][0]

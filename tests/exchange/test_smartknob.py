@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
@@ -16,7 +16,7 @@ from fdvv.model import FDVVModel, ForceCurve, Stroke, find_bump, load_builtin
 def _snapped(detents: KnobDetents, way: list[float]) -> list[float]:
     """Turn a knob as its firmware does and tell at which places the position changes (independent of ours).
 
-    way : places from released (0) to pressed (1) and back. The firmware's angle rises towards lower positions.
+    way : places from released (0) to pressed (1) and back; the firmware's angle rises to lower positions.
     """
     width, position = detents.position_width_radians, detents.position
     sign = 1 if position == 0 else -1
@@ -54,6 +54,7 @@ def test_the_firmwares_law_snaps_at_the_peak_and_returns_at_the_releases(name: s
     assert home * model.travel_mm == pytest.approx(min(back.peak_mm, peak.peak_mm), abs=0.01)
 
 
+@settings(max_examples=25, deadline=None)
 @given(
     peak=st.floats(0.3, 3.7),
     back=st.floats(0.3, 3.7),

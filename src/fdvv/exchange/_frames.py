@@ -113,8 +113,6 @@ def _take(take: Take) -> xr.Dataset:
     for stream in take.streams:
         # a slash would be a node of the tree
         name = stream.name.replace("/", "_")
-        if name in variables:
-            raise ModelError(f"take {take.number}: two streams are called {name!r}")
         time = f"t_{name}"
         about = {"units": "s", "long_name": f"time of {stream.name}", "clock": stream.clock}
         coordinates[time] = (time, stream.t_s, about)
@@ -126,6 +124,9 @@ def _take(take: Take) -> xr.Dataset:
         told: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
         told |= {"quantity": str(stream.quantity), "clock": stream.clock}
         variables[name] = (shape, stream.values, {**told, "scale": stream.scale, "zero": stream.zero})
+    if len(variables) < len(take.streams) or set(variables) & set(coordinates):
+        names = ", ".join(stream.name for stream in take.streams)
+        raise ModelError(f"take {take.number}: rename one of the streams {names}, they would share a name")
     attributes: dict[str, Any] = {"number": take.number, "stage": str(take.stage), "remark": take.remark}
     attributes |= {"made": take.made, "velocity_units": "mm s-1"}
     attributes["velocity"] = np.nan if take.velocity_mm_s is None else take.velocity_mm_s

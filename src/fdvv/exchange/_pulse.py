@@ -21,7 +21,10 @@ from fdvv.units import FloatArray
 SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
 TOLERANCE_ratio = 0.01
-EXACT = 1e-3
+EXACT, HEARD_ratio = 1e-3, 1e-4
+PIECE = 16
+"""Samples of a straight piece."""
+FAINT_ratio = 1e-6
 RATE_Hz = 8000.0
 _SCALE = re.compile(r"\b1 is (\d[\d.e+-]*) m/s2")
 
@@ -67,7 +70,10 @@ def pulse_of(vibration: Vibration) -> Pulse:
         weighted += each**2 * mode.frequency_Hz
     amplitude = np.abs(total)
     mean_Hz = float(np.mean([mode.frequency_Hz for mode in vibration.modes]))
+    # what has died away has no pitch; that of the last that is heard holds
+    heard = max(1, int(np.count_nonzero(power > FAINT_ratio**2 * power[0])))
     frequency = np.divide(weighted, power, out=np.full(t.size, mean_Hz), where=power > 0)
+    frequency[heard:] = frequency[heard - 1]
     at = polyline(t, amplitude, TOLERANCE_ratio * (float(amplitude.max()) or 1.0))
     return Pulse(t[at], amplitude[at], frequency[at])
 
@@ -78,22 +84,31 @@ def mode_of(pulse: Pulse, phase_rad: float = 0.0) -> Mode:
     Where the corners lie on an exponential they are samples of one, and it is taken; between them a file can
     only draw straight lines. Raises ModelError if the pulse is silent.
     """
-    t = np.linspace(0.0, float(pulse.t_s[-1]), 400)
+    t = _times(pulse)
     amplitude = np.interp(t, pulse.t_s, pulse.amplitude_m_s2)
-    power = float(amplitude @ amplitude)
+    power = float(np.trapezoid(amplitude**2, t))
     if not power:
         raise ModelError("the pulse is silent")
-    frequency = float(amplitude**2 @ np.interp(t, pulse.t_s, pulse.frequency_Hz)) / power
+    pitch = np.interp(t, pulse.t_s, pulse.frequency_Hz)
+    frequency = float(np.trapezoid(amplitude**2 * pitch, t)) / power
     strength, decay = _through_corners(pulse) or _nearest(t, amplitude)
     return Mode(frequency, strength, decay, phase_rad)
+
+
+def _times(pulse: Pulse) -> FloatArray:
+    """Give times that follow every piece of the pulse, however short it is beside the others."""
+    between = np.linspace(pulse.t_s[:-1], pulse.t_s[1:], PIECE, endpoint=False).T.ravel()
+    even = np.linspace(0.0, pulse.t_s[-1], 50)
+    return np.unique(np.concatenate([between, pulse.t_s, even]))
 
 
 def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
     """Give amplitude and decay of the exponential that all corners lie on; None if they do not."""
     amplitude = pulse.amplitude_m_s2
-    if amplitude.size < 3 or np.any(amplitude <= 0):
+    heard = amplitude > HEARD_ratio * amplitude.max()
+    if heard.sum() < 3:
         return None
-    slope, start = np.polyfit(pulse.t_s, np.log(amplitude), 1, w=amplitude)
+    slope, start = np.polyfit(pulse.t_s[heard], np.log(amplitude[heard]), 1, w=amplitude[heard])
     off = np.abs(np.exp(start + slope * pulse.t_s) - amplitude)
     return (
         (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
@@ -101,19 +116,25 @@ def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
 
 
 def _nearest(t: FloatArray, amplitude: FloatArray) -> tuple[float, float]:
-    """Give amplitude and decay of the exponential nearest to an amplitude on equal times."""
+    """Give amplitude and decay of the exponential nearest to an amplitude that is sampled at times."""
     from scipy.optimize import minimize_scalar
+
+    weight = np.gradient(t)
 
     def strength(decay: float) -> float:
         shape = np.exp(-decay * t)
-        return float(amplitude @ shape / (shape @ shape))
+        return float(np.sum(weight * amplitude * shape) / np.sum(weight * shape**2))
 
-    def off(decay: float) -> float:
-        return float(np.sum((amplitude - strength(decay) * np.exp(-decay * t)) ** 2))
+    def off(log_decay: float) -> float:
+        decay = float(np.exp(log_decay))
+        return float(np.sum(weight * (amplitude - strength(decay) * np.exp(-decay * t)) ** 2))
 
-    # what falls to a thousandth within a tenth of the pulse is the fastest that can be told
-    bounds = (0.0, 70.0 / float(t[-1]))
-    decay = max(float(minimize_scalar(off, bounds=bounds, method="bounded").x), 0.0)
+    # from a fall that nobody notices to one within the shortest piece
+    bounds = (np.log(1e-3 / t[-1]), np.log(10.0 / np.diff(t).min()))
+    places = np.linspace(*bounds, 40)
+    best = int(np.argmin([off(place) for place in places]))
+    near = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
+    decay = float(np.exp(minimize_scalar(off, bounds=near, method="bounded", options={"xatol": 1e-7}).x))
     return strength(decay), decay
 
 
