@@ -47,6 +47,11 @@ class ChartLine:
     dots: bool = False
 
 
+def words(text: str) -> str:
+    """Make text from a file fit for markup: escaped, and nothing that cannot be printed."""
+    return escape("".join(c if c.isprintable() else "?" for c in text))
+
+
 def chart_svg(
     lines: Sequence[ChartLine],
     x_label: str,
@@ -59,7 +64,6 @@ def chart_svg(
 
     title : what the chart shows, for those who cannot see it. All words are escaped.
     """
-    title = "".join(c if c.isprintable() else "?" for c in title)
     x_range, y_range = (_range([getattr(line, axis) for line in lines]) for axis in "xy")
     longest = max((len(line.name) for line in lines), default=0)
     right = width - RIGHT
@@ -69,8 +73,8 @@ def chart_svg(
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
         f'height="{height:g}" role="img" '
-        f'aria-label="{escape(title)}" font-family="sans-serif" font-size="11">',
-        f"<title>{escape(title)}</title>",
+        f'aria-label="{words(title)}" font-family="sans-serif" font-size="11">',
+        f"<title>{words(title)}</title>",
         *_axes(x_range, y_range, x_label, y_label, right, height - BOTTOM),
     ]
     for line in lines:
@@ -109,22 +113,22 @@ def _axes(
     bottom: float,
 ) -> list[str]:
     made = [f'<g stroke="currentColor" fill="none"><path d="M{LEFT} {TOP}V{bottom}H{right}" opacity="0.6"/>']
-    words = ['<g fill="currentColor" opacity="0.85">']
+    labels = ['<g fill="currentColor" opacity="0.85">']
     for value in _steps(*x_range):
         at = LEFT + (right - LEFT) * (value - x_range[0]) / (x_range[1] - x_range[0])
         made.append(f'<path d="M{at:.1f} {TOP}V{bottom}" opacity="0.12"/>')
-        words.append(f'<text x="{at:.1f}" y="{bottom + 14:g}" text-anchor="middle">{value:g}</text>')
+        labels.append(f'<text x="{at:.1f}" y="{bottom + 14:g}" text-anchor="middle">{value:g}</text>')
     for value in _steps(*y_range):
         at = TOP + (bottom - TOP) * (1 - (value - y_range[0]) / (y_range[1] - y_range[0]))
         made.append(f'<path d="M{LEFT} {at:.1f}H{right}" opacity="0.12"/>')
-        words.append(f'<text x="{LEFT - 5}" y="{at + 4:.1f}" text-anchor="end">{value:g}</text>')
+        labels.append(f'<text x="{LEFT - 5}" y="{at + 4:.1f}" text-anchor="end">{value:g}</text>')
     middle = (LEFT + right) / 2, (TOP + bottom) / 2
-    words.append(
-        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{escape(x_label)}</text>'
+    labels.append(
+        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{words(x_label)}</text>'
     )
     turned = f'transform="translate(11 {middle[1]:.1f}) rotate(-90)"'
-    words.append(f'<text {turned} text-anchor="middle">{escape(y_label)}</text>')
-    return [*made, "</g>", *words, "</g>"]
+    labels.append(f'<text {turned} text-anchor="middle">{words(y_label)}</text>')
+    return [*made, "</g>", *labels, "</g>"]
 
 
 def _thinned(line: ChartLine) -> tuple[FloatArray, FloatArray]:
@@ -177,6 +181,6 @@ def _legend(lines: Sequence[ChartLine], right: float) -> list[str]:
             if line.dots
             else _path(line, np.array([start, start + 18]), np.array([y, y]))
         )
-        text = f'<text x="{start + 24:g}" y="{y + 4:g}" fill="currentColor">{escape(line.name)}</text>'
+        text = f'<text x="{start + 24:g}" y="{y + 4:g}" fill="currentColor">{words(line.name)}</text>'
         made += [sign, text]
     return made

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fdvv.model._chart import ChartLine, chart_svg
+from fdvv.model._chart import ChartLine, chart_svg, words
 from fdvv.model._curve import ForceCurve, Stroke
 
 if TYPE_CHECKING:
@@ -28,7 +27,7 @@ def block(title: str, note: str, parts: Sequence[str]) -> str:
 
     title and note are escaped, parts are HTML already.
     """
-    head = f"<strong>{escape(title)}</strong>" + (f" <span>{escape(note)}</span>" if note else "")
+    head = f"<strong>{words(title)}</strong>" + (f" <span>{words(note)}</span>" if note else "")
     body = "".join(f'<div style="flex:none">{part}</div>' for part in parts)
     style = "display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start"
     return f'<div style="color:inherit"><div>{head}</div><div style="{style}">{body}</div></div>'
@@ -41,7 +40,7 @@ def table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
     def line(cells: Sequence[str], tag: str) -> str:
         weight = "600" if tag == "th" else "normal"
         made = [
-            f'<{tag} style="{style.format("right" if i else "left", weight)}">{escape(cell)}</{tag}>'
+            f'<{tag} style="{style.format("right" if i else "left", weight)}">{words(cell)}</{tag}>'
             for i, cell in enumerate(cells)
         ]
         return f'<tr style="background:none">{"".join(made)}</tr>'
