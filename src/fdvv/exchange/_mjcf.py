@@ -204,13 +204,16 @@ def _springs(springs: SpringButton) -> tuple[str, str]:
     return f"{-start:.9g} {-slope:.9g} 0", "".join(rows)
 
 
+# limits and friction are constraints whose stiffness goes with the mass: with MuJoCo's defaults a cap of a
+# gram would sink into its stops, and friction would only be full at speeds of metres a second
 SCENE = """<mujoco model={name}>
   <!-- SI units; the joint's position is the displacement into the button -->
   <option timestep="0.0001" integrator="implicitfast"/>
 {userdata}  <worldbody>
     <body name="button" gravcomp="1">
       <joint name="button" type="slide" axis="0 0 -1" limited="true" range="0 {travel}"
-        solreflimit="0.001 1" solimplimit="0.99 0.999 0.0001" {joint}/>
+        solreflimit="0.001 1" solimplimit="0.99 0.999 0.0001"
+        solreffriction="0.0002 1" solimpfriction="0.99 0.999 0.0001" {joint}/>
       <geom name="cap" type="box" size="0.006 0.006 0.002" mass="{mass}" contype="0" conaffinity="0"/>
     </body>
   </worldbody>
