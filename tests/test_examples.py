@@ -21,9 +21,13 @@ def cells(notebook: Path) -> list[dict[str, Any]]:
 def run_cell(source: str, names: dict[str, Any]) -> object:
     """Run a cell as a notebook does and give the value of its last line, if it is one."""
     tree = ast.parse(source)
-    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    last = tree.body[-1] if tree.body else None
+    if not isinstance(last, ast.Expr):
+        exec(compile(tree, "cell", "exec"), names)
+        return None
+    del tree.body[-1]
     exec(compile(tree, "cell", "exec"), names)
-    return eval(compile(ast.Expression(last.value), "cell", "eval"), names) if last else None
+    return eval(compile(ast.Expression(last.value), "cell", "eval"), names)
 
 
 @pytest.mark.slow

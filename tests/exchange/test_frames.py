@@ -103,9 +103,10 @@ def presses(draw: st.DrawFn) -> Press:
     column = hnp.arrays(np.float64, count, elements=finite)
     flags = hnp.arrays(np.bool_, count)
     t = np.cumsum(draw(hnp.arrays(np.float64, count, elements=st.floats(1e-4, 1))))
-    rig = [draw(st.one_of(st.none(), column)) for _ in range(3)]
-    told = [draw(st.one_of(st.none(), flags)) for _ in range(2)]
-    return Press(t, draw(column), draw(column), draw(st.floats(1, 300)), *rig, *told, draw(st.booleans()))
+    rig = {n: draw(st.one_of(st.none(), column)) for n in ("sensed_mm", "sensed_cN", "commanded_cN")}
+    told = {n: draw(st.one_of(st.none(), flags)) for n in ("saturated", "tick")}
+    speed, simulated = draw(st.floats(1, 300)), draw(st.booleans())
+    return Press(t, draw(column), draw(column), speed, **rig, **told, simulated=simulated)
 
 
 @settings(max_examples=12, deadline=None)

@@ -1,12 +1,13 @@
 """A button in MuJoCo: its springs draw the curve, its callback is the model, both in the real simulator."""
 
+import sys
 from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fdvv.errors import ModelError
+from fdvv.errors import BuildError, ModelError
 from fdvv.exchange import MujocoButton, mjcf, mujoco_button, spring_button
 from fdvv.exchange._polyline import polyline
 from fdvv.model import FDVVModel, Stroke, builtin_names, load_builtin
@@ -123,10 +124,10 @@ def test_without_callbacks_the_force_is_applied_before_each_step() -> None:
     data.qpos[0], data.qvel[0] = 0.0015, 0.1
     made.apply(model, data)
     assert data.qfrc_applied[0] == pytest.approx(-0.01 * float(button.force_cN(1.5, 100, "press")), abs=1e-4)
-    assert data.userdata[0] == 0
+    assert not made.closed
     data.qpos[0] = 0.0025
     made.apply(model, data)
-    assert data.userdata[0] == 1
+    assert made.closed
 
 
 def test_a_released_cap_comes_back_to_the_top() -> None:
@@ -141,25 +142,73 @@ def test_a_released_cap_comes_back_to_the_top() -> None:
 def test_the_contact_closes_and_opens_with_its_hysteresis() -> None:
     button = load_builtin("mx-blue")
     made = mujoco_button(button)
-    model, data = _loaded(made.xml)
-    seen = []
-    with made.attached():
-        for x in (1.0, 2.1, 2.2, 1.9, 1.7, 1.6, 2.0):
-            data.qpos[0] = x / 1000
-            mujoco.mj_forward(model, data)
-            seen.append(float(data.sensor("button_closed").data[0]))
     assert (button.actuation_mm, button.reset_mm) == (2.13, 1.675)
-    assert seen == [0, 0, 1, 1, 1, 0, 0]
+    # without userdata the button remembers it itself
+    for xml in (made.xml, made.xml.replace('<size nuserdata="1"/>', "")):
+        model, data = _loaded(xml)
+        seen = []
+        with made.attached():
+            for x in (1.0, 2.1, 2.2, 1.9, 1.7, 1.6, 2.0):
+                data.qpos[0] = x / 1000
+                mujoco.mj_forward(model, data)
+                seen.append(float(data.sensor("button_closed").data[0]))
+        assert seen == [0, 0, 1, 1, 1, 0, 0]
 
 
-def test_the_callbacks_of_others_are_put_back() -> None:
-    def mine(_model: Any, _data: Any) -> None:
+@pytest.mark.filterwarnings("ignore:Attach conflict")
+def test_two_buttons_share_a_scene_without_sharing_force_or_contact() -> None:
+    names = {"a_": "mx-blue", "b_": "mx-red"}
+    scene = mujoco.MjSpec()
+    scene.option.timestep = 0.0001
+    for prefix, name in names.items():
+        part = mujoco.MjSpec.from_string(mujoco_button(load_builtin(name)).xml)
+        scene.attach(part, prefix=prefix, frame=scene.worldbody.add_frame())
+    model = scene.compile()
+    data = mujoco.MjData(model)
+    buttons = [MujocoButton(load_builtin(name), joint=f"{p}button") for p, name in names.items()]
+    data.qpos[:] = 0.0018
+    with buttons[0].attached(), buttons[1].attached():
+        mujoco.mj_forward(model, data)
+    for i, (prefix, name) in enumerate(names.items()):
+        press, release = (float(load_builtin(name).force_cN(1.8, 1, s)) for s in Stroke)
+        # at rest press and release are mixed
+        weight = 100 * data.qfrc_gravcomp[i]
+        assert weight - 100 * data.qfrc_passive[i] == pytest.approx((press + release) / 2, abs=0.1)
+        assert data.sensor(f"{prefix}button_closed").data[0] == (name == "mx-red")
+
+
+def test_a_scene_without_the_sensor_still_has_the_force() -> None:
+    made = mujoco_button(load_builtin("mx-red"))
+    line = next(row for row in made.xml.splitlines(keepends=True) if "button_closed" in row)
+    model, data = _loaded(made.xml.replace(line, ""))
+    data.qpos[0] = 0.003
+    with made.attached():
+        mujoco.mj_forward(model, data)
+    assert data.qfrc_passive[0] < -0.3
+
+
+def test_without_mujoco_the_way_to_get_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with (
+        pytest.raises(BuildError, match="pip install mujoco"),
+        mujoco_button(load_builtin("mx-red")).attached(),
+    ):
         pass
 
+
+def test_the_callbacks_of_others_run_and_are_put_back() -> None:
+    ran = []
+
+    def mine(_model: Any, _data: Any) -> None:
+        ran.append(1)
+
+    made = mujoco_button(load_builtin("mx-red"))
+    model, data = _loaded(made.xml)
     mujoco.set_mjcb_passive(mine)
     try:
-        with pytest.raises(ZeroDivisionError), mujoco_button(load_builtin("mx-red")).attached():
-            raise ZeroDivisionError
+        with made.attached():
+            mujoco.mj_forward(model, data)
+        assert ran
         assert mujoco.get_mjcb_passive() is mine
         assert mujoco.get_mjcb_sensor() is None
     finally:
@@ -184,7 +233,7 @@ def test_a_model_without_a_press_is_refused() -> None:
     only = FDVVModel("back", whole.travel_mm, whole.of("release"))
     for make in (spring_button, mujoco_button):
         with pytest.raises(ModelError, match="no press curve"):
-            make(only)  # type: ignore[operator]
+            make(only)
 
 
 def test_a_cap_needs_a_mass() -> None:

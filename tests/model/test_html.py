@@ -114,7 +114,7 @@ def test_landmarks_are_a_table_with_units_and_dashes() -> None:
 def test_a_long_line_keeps_its_highest_and_lowest_point() -> None:
     y = np.zeros(100_000)
     y[12_345], y[54_321] = 7.0, -3.0
-    drawing = ET.fromstring(chart_svg([ChartLine(np.arange(y.size), y)], "t", "y", "spikes"))
+    drawing = ET.fromstring(chart_svg([ChartLine(np.arange(float(y.size)), y)], "t", "y", "spikes"))
     (path,) = _lines(drawing)
     heights = [float(v) for v in re.findall(r"[ML][\d.]+ ([\d.]+)", path.attrib["d"])]
     assert len(heights) <= 400
@@ -124,7 +124,7 @@ def test_a_long_line_keeps_its_highest_and_lowest_point() -> None:
 
 
 def test_a_gap_in_a_line_is_a_gap() -> None:
-    line = ChartLine(np.arange(5.0), np.array([1, 2, np.nan, 3, 4]))
+    line = ChartLine(np.arange(5.0), np.array([1.0, 2.0, np.nan, 3.0, 4.0]))
     (path,) = _lines(ET.fromstring(chart_svg([line], "x", "y", "gap")))
     assert path.attrib["d"].count("M") == 2
 

@@ -177,7 +177,9 @@ def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None)
         tendons=f"  <tendon>\n{tendons}  </tendon>\n" if tendons else "",
         custom=f"  <custom>\n{points}  </custom>\n" if points else "",
         userdata="" if springs else '  <size nuserdata="1"/>\n',
-        closed="" if springs else '    <user name="button_closed" dim="1"/>\n',
+        closed=""
+        if springs
+        else '    <user name="button_closed" dim="1" needstage="pos" datatype="positive"/>\n',
     )
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from fdvv.errors import BuildError, ModelError
@@ -13,26 +13,32 @@ from fdvv.model import FDVVModel, Stroke
 
 TABLE_mm = 0.002
 TABLE_SPEEDS = 21
+POSITION_STAGE = 1
+"""mjSTAGE_POS: the sensor needs positions only."""
 TURN_mm_s = 2.0
 """Below this speed press and release are mixed: a jump of force at rest would make the cap chatter."""
 
 
 class MujocoButton:
-    """A button that MuJoCo asks for its force: ``xml`` is the scene, ``attached()`` installs the callbacks,
-    ``apply()`` does without.
+    """A button that MuJoCo asks for its force: with callbacks in ``attached()``, or with ``apply()``.
 
     Attributes
     ----------
-    xml : body, slide joint ``button`` and sensors ``button_displacement`` (m), ``button_velocity`` (m/s) and
-        ``button_closed`` (1 while the contact is closed, with its hysteresis, kept in the data's userdata).
-    joint : name of the joint the callbacks act on; in a scene of one's own it may be another.
+    xml : a scene of its own: body, slide joint ``button`` and sensors ``button_displacement`` (m),
+        ``button_velocity`` (m/s) and ``button_closed``: 1 while the contact is closed, with its hysteresis.
+    joint : name of the joint it acts on; its contact's sensor is called that and ``_closed``.
+    slot : of the data's userdata, where the contact is remembered; in a scene that has no userdata the button
+        remembers it itself, and then serves one simulation.
+    closed : whether the contact was closed when last asked.
     """
 
-    def __init__(self, model: FDVVModel, cap_mass_g: float = CAP_g, joint: str = "button") -> None:
+    def __init__(
+        self, model: FDVVModel, cap_mass_g: float = CAP_g, joint: str = "button", slot: int = 0
+    ) -> None:
         if not model.of(Stroke.PRESS):
             raise ModelError(f"model {model.name!r} has no press curve, MuJoCo's joint needs one")
         self.xml = scene_xml(model, cap_mass_g, None)
-        self.joint = joint
+        self.joint, self.slot, self.closed = joint, slot, False
         self._close_mm = model.actuation_mm
         self._open_mm = model.reset_mm if model.reset_mm is not None else model.actuation_mm
         table = fine_surface(model, TABLE_mm, TABLE_SPEEDS)
@@ -67,48 +73,66 @@ class MujocoButton:
     def apply(self, model: Any, data: Any) -> None:
         """Set the joint's applied force for the next step: for loops that want no callback.
 
-        Call it before every ``mj_step``; the force then is that of the step's beginning. The contact is in
-        ``data.userdata[0]``.
+        Call it before every ``mj_step``; force and ``closed`` then are those of the step's beginning. MuJoCo
+        clears the contact's sensor in the step, as it does without a callback.
         """
         dof, force_N = self._ask(model, data)
         data.qfrc_applied[dof] = -force_N
-
-    def _ask(self, model: Any, data: Any) -> tuple[int, float]:
-        """Give the joint's degree of freedom and what pushes back, and keep the contact."""
-        joint = model.joint(self.joint)
-        position, dof = int(joint.qposadr[0]), int(joint.dofadr[0])
-        x_mm = 1000.0 * float(data.qpos[position])
-        if data.userdata.size and self._close_mm is not None:
-            data.userdata[0] = self._closed(x_mm, bool(data.userdata[0]))
-        return dof, 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
-
-    def _closed(self, x_mm: float, before: bool) -> bool:
-        assert self._close_mm is not None
-        assert self._open_mm is not None
-        return x_mm >= self._close_mm or (before and x_mm > self._open_mm)
+        self._switch(model, data)
 
     def sense(self, model: Any, data: Any, stage: int) -> None:
-        """Write the contact into sensor ``button_closed``: MuJoCo's ``mjcb_sensor``."""
-        sensor = model.sensor("button_closed")
-        if stage == sensor.needstage[0]:
-            data.sensordata[sensor.adr[0]] = data.userdata[0]
+        """Write whether the contact is closed into its sensor: MuJoCo's ``mjcb_sensor``."""
+        if stage == POSITION_STAGE:
+            self._switch(model, data)
+
+    def _ask(self, model: Any, data: Any) -> tuple[int, float]:
+        """Give the joint's degree of freedom and what pushes back."""
+        joint = model.joint(self.joint)
+        dof = int(joint.dofadr[0])
+        x_mm = 1000.0 * float(data.qpos[joint.qposadr[0]])
+        return dof, 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
+
+    def _switch(self, model: Any, data: Any) -> None:
+        """Close or open the contact, remember it, and tell its sensor if there is one."""
+        if self._close_mm is None or self._open_mm is None:
+            return
+        remembered = data.userdata.size > self.slot
+        before = bool(data.userdata[self.slot]) if remembered else self.closed
+        x_mm = 1000.0 * float(data.qpos[model.joint(self.joint).qposadr[0]])
+        self.closed = x_mm >= self._close_mm or (before and x_mm > self._open_mm)
+        if remembered:
+            data.userdata[self.slot] = self.closed
+        with suppress(KeyError):
+            data.sensordata[model.sensor(f"{self.joint}_closed").adr[0]] = self.closed
 
     @contextmanager
     def attached(self) -> Iterator[None]:
-        """Install the callbacks while a block runs, and put back those that were there before.
+        """Install the callbacks while a block runs, beside those that are there, which are put back.
 
         Callbacks of MuJoCo are of the whole process: all models that step meanwhile must have the joint, and
-        none can be compiled; make the model first. Raises BuildError without MuJoCo.
+        none can be compiled; make the model first. Several buttons of one scene are attached one within the
+        other. Raises BuildError without MuJoCo.
         """
         mujoco = require_mujoco()
-        before = mujoco.get_mjcb_passive(), mujoco.get_mjcb_sensor()
-        mujoco.set_mjcb_passive(self.passive)
-        mujoco.set_mjcb_sensor(self.sense)
+        passive, sense = mujoco.get_mjcb_passive(), mujoco.get_mjcb_sensor()
+        mujoco.set_mjcb_passive(_both(passive, self.passive))
+        mujoco.set_mjcb_sensor(_both(sense, self.sense))
         try:
             yield
         finally:
-            mujoco.set_mjcb_passive(before[0])
-            mujoco.set_mjcb_sensor(before[1])
+            mujoco.set_mjcb_passive(passive)
+            mujoco.set_mjcb_sensor(sense)
+
+
+def _both(first: Callable[..., None] | None, then: Callable[..., None]) -> Callable[..., None]:
+    """Call what was there before, if there was something, and then ours."""
+
+    def call(*arguments: Any) -> None:
+        if first:
+            first(*arguments)
+        then(*arguments)
+
+    return call
 
 
 def mujoco_button(model: FDVVModel, cap_mass_g: float = CAP_g) -> MujocoButton:

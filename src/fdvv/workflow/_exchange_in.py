@@ -123,8 +123,15 @@ def _format(path: Path) -> str | None:
 
 
 def _curves(path: Path, settings: ImportSettings) -> Imported:
-    if settings.into is not None:
-        raise InputError(path, "whole file", "holds curves, no vibration", "leave --into out")
+    asked = {
+        "--into": settings.into,
+        "--velocity": settings.velocity_mm_s,
+        "--onset-mm": settings.onset_mm,
+        "--full-scale-m-s2": settings.full_scale_m_s2,
+    }
+    for option, value in asked.items():
+        if value is not None:
+            raise InputError(path, "whole file", "holds curves, no vibration", f"leave {option} out")
     found = fit_file(path, settings.fit)
     model = found.model if settings.name is None else found.model.renamed(_name(settings.name))
     source = model.provenance.source
