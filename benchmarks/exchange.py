@@ -8,13 +8,16 @@ Each is written, read back by our reader and compared as acceleration at 48 kHz.
 
 from __future__ import annotations
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from fdvv.exchange import mjcf, mujoco_button, smartknob
 from fdvv.model import FDVVModel, Mode, Stroke, Vibration, builtin_names, load_builtin
-from fdvv.workflow import export_vibration
+from fdvv.vibration import LISTEN_Hz, correlation, spectral_similarity, spqi, st_sim, vibration_samples
+from fdvv.workflow import ImportSettings, export_vibration, import_file
 
 DRAWS, SEED = 200, 1
 MEASURES = ("correlation", "spectral_similarity", "st_sim", "spqi")
@@ -32,23 +35,36 @@ def drawn(random: np.random.Generator, count: int) -> Vibration:
     return Vibration(Stroke.PRESS, None, 1.0, float(np.log(100) / decay.min()), modes)
 
 
+def compared(vibration: Vibration, form: str, folder: Path) -> dict[str, float]:
+    """Write a vibration, read it back and give the measures."""
+    made = export_vibration(vibration, form, "drawn", "2026-01-01")
+    if form != "wav":
+        return {m: float(made.figures[m] or 0.0) for m in MEASURES}
+    made.save(folder / "drawn.wav")
+    asked = ImportSettings(into="mx-red", full_scale_m_s2=made.figures["full_scale_m_s2"])
+    (found,) = import_file(folder / "drawn.wav", asked).model.vibrations
+    a, b = vibration_samples(found), vibration_samples(vibration)
+    return {
+        "correlation": correlation(a, b),
+        "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
+        "st_sim": st_sim(a, b, LISTEN_Hz),
+        "spqi": spqi(a, b, LISTEN_Hz),
+    }
+
+
 def likeness(form: str, count: int) -> list[tuple[float, float]]:
     """Give the median and the tenth percentile of each measure over the draws."""
     random = np.random.default_rng(SEED)
-    figures = [
-        export_vibration(drawn(random, count), form, "drawn", "2026-01-01").figures for _ in range(DRAWS)
-    ]
-    found = []
-    for measure in MEASURES:
-        values = [f[measure] for f in figures]
-        found.append((float(np.median(values)), float(np.percentile(values, 10))))  # type: ignore[arg-type]
-    return found
+    with TemporaryDirectory() as folder:
+        figures = [compared(drawn(random, count), form, Path(folder)) for _ in range(DRAWS)]
+    columns = [[f[measure] for f in figures] for measure in MEASURES]
+    return [(float(np.median(c)), float(np.percentile(c, 10))) for c in columns]
 
 
 def haptics() -> None:
     print(f"vibrations, {DRAWS} draws each: median (tenth percentile); 1 is the same")
     print(f"{'format':<8}{'modes':>6}" + "".join(f"{m:>24}" for m in MEASURES))
-    for form in ("ahap", "haptic", "hjif"):
+    for form in ("ahap", "haptic", "hjif", "wav"):
         for count in (1, 2, 3):
             cells = [f"{median:.3f} ({low:.3f})" for median, low in likeness(form, count)]
             print(f"{form:<8}{count:>6}" + "".join(f"{cell:>24}" for cell in cells))

@@ -23,6 +23,8 @@ HEAD_bytes = 4096
 LARGEST_bytes = 20_000_000
 ONSET_ratio = 0.02
 """A sound begins where it first passes this part of its peak: below lies what a converter adds."""
+END_ratio = 0.002
+"""It ends where it falls for good below this part."""
 LONGEST_s = 1.0
 MODES_Hz = 8000.0
 """Sounds are brought to this rate before modes are found: above 1 kHz fingers feel nothing."""
@@ -175,7 +177,8 @@ def _wav(path: Path, scale: float | None) -> Read:
     if not samples.size or not np.abs(samples).max():
         raise InputError(path, "samples", "it is silent", "give one that is not")
     first = int(np.argmax(np.abs(samples) > ONSET_ratio * np.abs(samples).max()))
-    last = samples.size - int(np.argmax(np.abs(samples[::-1]) > ONSET_ratio * np.abs(samples).max()))
+    last = samples.size - int(np.argmax(np.abs(samples[::-1]) > END_ratio * np.abs(samples).max()))
+    # the last sample before is the onset: what begins there has just left zero
     heard = samples[max(0, first - 1) : last]
     if heard.size > LONGEST_s * sound.rate_Hz:
         raise InputError(path, "samples", f"it rings for more than {LONGEST_s:g} s", "cut one snap out of it")
