@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import nullcontext
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,12 @@ from fdvv.model import FDVVModel, Stroke, builtin_names, load_builtin
 from fdvv.units import FloatArray
 
 mujoco: Any = pytest.importorskip("mujoco")
+
+
+@pytest.fixture(autouse=True)
+def _log_beside_the_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo writes its log of warnings into the folder it runs in."""
+    monkeypatch.chdir(tmp_path)
 
 
 def _loaded(text: str) -> tuple[Any, Any]:
@@ -155,24 +162,24 @@ def test_the_contact_closes_and_opens_with_its_hysteresis() -> None:
         assert seen == [0, 0, 1, 1, 1, 0, 0]
 
 
-@pytest.mark.filterwarnings("ignore:Attach conflict")
 def test_two_buttons_share_a_scene_without_sharing_force_or_contact() -> None:
-    names = {"a_": "mx-blue", "b_": "mx-red"}
-    scene = mujoco.MjSpec()
-    scene.option.timestep = 0.0001
-    for prefix, name in names.items():
-        part = mujoco.MjSpec.from_string(mujoco_button(load_builtin(name)).xml)
-        scene.attach(part, prefix=prefix, frame=scene.worldbody.add_frame())
-    model = scene.compile()
+    names = {"": "mx-blue", "b_": "mx-red"}
+    first, second = (mujoco.MjSpec.from_string(mujoco_button(load_builtin(n)).xml) for n in names.values())
+    first.attach(second, prefix="b_", frame=first.worldbody.add_frame(pos=[0.02, 0, 0]))
+    model = first.compile()
     data = mujoco.MjData(model)
-    buttons = [MujocoButton(load_builtin(name), joint=f"{p}button") for p, name in names.items()]
+    # the scene has one slot of userdata; who has none remembers the contact itself
+    buttons = [
+        MujocoButton(load_builtin(name), joint=f"{prefix}button", slot=slot)
+        for slot, (prefix, name) in enumerate(names.items())
+    ]
     data.qpos[:] = 0.0018
     with buttons[0].attached(), buttons[1].attached():
         mujoco.mj_forward(model, data)
     for i, (prefix, name) in enumerate(names.items()):
         press, release = (float(load_builtin(name).force_cN(1.8, 1, s)) for s in Stroke)
-        # at rest press and release are mixed
         weight = 100 * data.qfrc_gravcomp[i]
+        # at rest press and release are mixed
         assert weight - 100 * data.qfrc_passive[i] == pytest.approx((press + release) / 2, abs=0.1)
         assert data.sensor(f"{prefix}button_closed").data[0] == (name == "mx-red")
 
