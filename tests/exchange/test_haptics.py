@@ -83,7 +83,7 @@ def test_the_envelope_of_two_modes_beats() -> None:
     assert 180 <= pulse.frequency_Hz.min() <= pulse.frequency_Hz.max() <= 260
 
 
-def test_ahap_has_the_keys_and_the_limits_that_apple_documents() -> None:
+def test_ahap_has_the_keys_and_ranges_that_apple_documents_in_short_curves() -> None:
     record = json.loads(ahap(TWO, "a").text)
     assert record["Version"] == 1.0
     assert record["Pattern"][0]["Event"]["EventType"] == "HapticContinuous"

@@ -32,7 +32,7 @@ from fdvv.units import FloatArray
 
 WHAT = "an AHAP file with at least one haptic event"
 POINTS_per_curve = 16
-"""Core Haptics takes at most this many control points in one curve; longer ones are cut into several."""
+"""Longer curves are cut into several. Apple states no limit; writers of AHAP are said to keep to this one."""
 TRANSIENT_s = 0.03
 """How long a transient is heard: Apple gives none; it is a click of a few tens of milliseconds."""
 LONGEST_s = 30.0
