@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import keyword
 import os
 import sys
 from typing import Any, NoReturn
@@ -24,6 +25,7 @@ COMMANDS = {
         "fdvv.cli._device",
         "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
     ),
+    "export": ("fdvv.cli._exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (
         "fdvv.cli._feasible",
         "Tell whether a rig can render a button, and why not, before any upload.",
@@ -33,6 +35,7 @@ COMMANDS = {
         "fdvv.cli._hardware",
         "Build a rig: what to print and buy, how to wire it, which part is wrong.",
     ),
+    "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
@@ -61,7 +64,9 @@ class LazyGroup(click.Group):
         """Import and give one command."""
         if cmd_name not in COMMANDS:
             return None
-        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), cmd_name)
+        # a function cannot be called import
+        name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), name)
         assert isinstance(found, click.Command)
         return found
 

@@ -57,6 +57,17 @@ if TYPE_CHECKING:
     )
     from fdvv.workflow._draft_template import ModelTemplate, new_model
     from fdvv.workflow._drafts import DraftFile, Drafts
+    from fdvv.workflow._exchange_in import Imported, ImportSettings, import_file
+    from fdvv.workflow._exchange_out import (
+        EXPORT_FORMATS,
+        ExportFormat,
+        ExportSettings,
+        export_button,
+        export_format,
+        export_vibration,
+        is_recording,
+        read_back,
+    )
     from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
     from fdvv.workflow._executor import Executor, chunks_of, open_executor
     from fdvv.workflow._experiment import ExperimentResult, Stage, run_experiment
@@ -275,6 +286,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "EXPORT_FORMATS",
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
@@ -324,6 +336,8 @@ __all__ = [
     "ExperimentResult",
     "ExperimentSetup",
     "ExperimentVerdict",
+    "ExportFormat",
+    "ExportSettings",
     "FORCE_JND_ratio",
     "FeasibilityReport",
     "FeltPress",
@@ -336,6 +350,8 @@ __all__ = [
     "Guide",
     "Hands",
     "HeardStroke",
+    "ImportSettings",
+    "Imported",
     "Keeper",
     "KeptProgram",
     "KeyHand",
@@ -501,6 +517,9 @@ __all__ = [
     "expected_ms",
     "experiment_html",
     "experiment_report",
+    "export_button",
+    "export_format",
+    "export_vibration",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -513,8 +532,10 @@ __all__ = [
     "fit_paper",
     "force_spread_ratio",
     "identify_exciter",
+    "import_file",
     "intended_press",
     "inverse_patch",
+    "is_recording",
     "join_logs",
     "judge_experiment",
     "light_strip",
@@ -582,6 +603,7 @@ __all__ = [
     "quick_look",
     "random_design",
     "read_answers",
+    "read_back",
     "read_chained",
     "read_code_book",
     "read_experiment_setup",
