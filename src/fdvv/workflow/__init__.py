@@ -114,6 +114,11 @@ if TYPE_CHECKING:
     )
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
+    from fdvv.workflow._library import By as LikeBy
+    from fdvv.workflow._library import Library, LibraryHit, write_hits
+    from fdvv.workflow._library_build import LibraryBuilt, LibraryManifest, build_library
+    from fdvv.workflow._library_columns import COLUMNS as LIBRARY_COLUMNS
+    from fdvv.workflow._library_query import library_query
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
@@ -250,6 +255,11 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
     from fdvv.workflow._study_stage_person import PersonStage
     from fdvv.workflow._study_standing import PersonStanding, people_standing
+    from fdvv.workflow._sweep import SweepPreview, SweepResult, preview_sweep, run_sweep
+    from fdvv.workflow._sweep_columns import sweep_schema
+    from fdvv.workflow._sweep_measure import MEASURES as SWEEP_MEASURES
+    from fdvv.workflow._sweep_plan import SweepPlan, read_sweep_plan
+    from fdvv.workflow._sweep_summary import sweep_summary
     from fdvv.workflow._tap_forces import force_spread_ratio, tap_peaks
     from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
     from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
@@ -267,6 +277,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "LIBRARY_COLUMNS",
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
@@ -274,6 +285,7 @@ __all__ = [
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
     "SOUND",
+    "SWEEP_MEASURES",
     "AchievableCurve",
     "Ask",
     "AskedHands",
@@ -330,6 +342,11 @@ __all__ = [
     "Keeper",
     "KeptProgram",
     "KeyHand",
+    "Library",
+    "LibraryBuilt",
+    "LibraryHit",
+    "LibraryManifest",
+    "LikeBy",
     "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
@@ -426,6 +443,9 @@ __all__ = [
     "StudyPower",
     "StudyStage",
     "SurfaceSize",
+    "SweepPlan",
+    "SweepPreview",
+    "SweepResult",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
@@ -461,6 +481,7 @@ __all__ = [
     "begin_run",
     "best_of",
     "blocks_of",
+    "build_library",
     "builtin_rows",
     "button_choices",
     "button_files",
@@ -503,6 +524,7 @@ __all__ = [
     "inverse_patch",
     "join_logs",
     "judge_experiment",
+    "library_query",
     "light_strip",
     "load_actuation",
     "lock_with_code",
@@ -555,6 +577,7 @@ __all__ = [
     "preview_html",
     "preview_sections",
     "preview_summary",
+    "preview_sweep",
     "preview_title",
     "probe",
     "process_recording",
@@ -574,6 +597,7 @@ __all__ = [
     "read_selftest",
     "read_session",
     "read_setup",
+    "read_sweep_plan",
     "record_of",
     "recorded_vibrations",
     "recording_of",
@@ -591,6 +615,7 @@ __all__ = [
     "run_on_any_strip",
     "run_on_strip",
     "run_population",
+    "run_sweep",
     "sample_strokes",
     "save_actuation",
     "score_design",
@@ -605,6 +630,8 @@ __all__ = [
     "study_power",
     "study_summary",
     "summarise",
+    "sweep_schema",
+    "sweep_summary",
     "tap_peaks",
     "task_named",
     "tone_image",
@@ -623,6 +650,7 @@ __all__ = [
     "write_answers",
     "write_experiment",
     "write_selftest",
+    "write_hits",
     "write_study_report",
 ]
 
