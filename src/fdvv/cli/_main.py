@@ -39,6 +39,10 @@ COMMANDS = {
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
+    "library": (
+        "fdvv.cli._library",
+        "List the built-in buttons; build and search libraries of measured ones.",
+    ),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "optimize": ("fdvv.cli._optimize", "Find the button that makes a person perform best."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),
@@ -48,6 +52,7 @@ COMMANDS = {
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
     "studio": ("fdvv.cli._studio", "See, edit, press and tune buttons in the browser."),
     "study": ("fdvv.cli._study", "Compare buttons blind, with people, and analyse what they said."),
+    "sweep": ("fdvv.cli._sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
     "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
     "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }

@@ -22,6 +22,13 @@ from fdvv.errors import InputError
     help="Folder that keeps your buttons and programs; made when needed.",
 )
 @click.option(
+    "--library",
+    "libraries",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="A library of the folders (fdvv library build): they need not be read again.",
+)
+@click.option(
     "--port",
     type=click.IntRange(0, 65535),
     default=8377,
@@ -32,7 +39,13 @@ from fdvv.errors import InputError
 @click.option("--share", is_flag=True, help="Allow a --host that other machines can reach.")
 @click.option("--no-browser", is_flag=True, help="Only print the address.")
 def studio(
-    folders: tuple[Path, ...], project: Path, port: int, host: str, share: bool, no_browser: bool
+    folders: tuple[Path, ...],
+    project: Path,
+    libraries: tuple[Path, ...],
+    port: int,
+    host: str,
+    share: bool,
+    no_browser: bool,
 ) -> None:
     """See, edit, press and tune buttons in the browser.
 
@@ -40,6 +53,7 @@ def studio(
     The address holds a token: whoever has it can use the studio. Ctrl-C ends it; everything is kept.
     """
     _check_host(host, share)
+    _check_libraries(libraries)
     from fdvv.studio import Studio, serve
 
     def ready(address: str) -> None:
@@ -48,7 +62,7 @@ def studio(
         if not no_browser:
             _show(address)
 
-    serve(Studio(project, folders), host, port, ready)
+    serve(Studio(project, folders, libraries), host, port, ready)
     click.echo("the studio is closed; everything is kept", err=True)
 
 
@@ -61,6 +75,14 @@ def _check_host(host: str, share: bool) -> None:
     if not loopback and not share:
         reason = "other machines could reach it, and what passes is not encrypted"
         raise InputError("--host", host, reason, "add --share if that is wanted")
+
+
+def _check_libraries(folders: tuple[Path, ...]) -> None:
+    """Refuse at once what the background could not read. InputError, BuildError."""
+    from fdvv.workflow import Library
+
+    for folder in folders:
+        Library(folder)
 
 
 def _show(address: str) -> None:

@@ -125,6 +125,11 @@ if TYPE_CHECKING:
     )
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
+    from fdvv.workflow._library import By as LikeBy
+    from fdvv.workflow._library import Library, LibraryHit, write_hits
+    from fdvv.workflow._library_build import LibraryBuilt, LibraryManifest, build_library
+    from fdvv.workflow._library_columns import COLUMNS as LIBRARY_COLUMNS
+    from fdvv.workflow._library_query import library_query
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
@@ -269,6 +274,11 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
     from fdvv.workflow._study_stage_person import PersonStage
     from fdvv.workflow._study_standing import PersonStanding, people_standing
+    from fdvv.workflow._sweep import SweepPreview, SweepResult, preview_sweep, run_sweep
+    from fdvv.workflow._sweep_columns import sweep_schema
+    from fdvv.workflow._sweep_measure import MEASURES as SWEEP_MEASURES
+    from fdvv.workflow._sweep_plan import SweepPlan, read_sweep_plan
+    from fdvv.workflow._sweep_summary import sweep_summary
     from fdvv.workflow._tap_forces import force_spread_ratio, tap_peaks
     from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
     from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
@@ -287,6 +297,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXPORT_FORMATS",
+    "LIBRARY_COLUMNS",
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
@@ -294,6 +305,7 @@ __all__ = [
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
     "SOUND",
+    "SWEEP_MEASURES",
     "AchievableCurve",
     "Ask",
     "AskedHands",
@@ -355,6 +367,11 @@ __all__ = [
     "Keeper",
     "KeptProgram",
     "KeyHand",
+    "Library",
+    "LibraryBuilt",
+    "LibraryHit",
+    "LibraryManifest",
+    "LikeBy",
     "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
@@ -453,6 +470,9 @@ __all__ = [
     "StudyPower",
     "StudyStage",
     "SurfaceSize",
+    "SweepPlan",
+    "SweepPreview",
+    "SweepResult",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
@@ -488,6 +508,7 @@ __all__ = [
     "begin_run",
     "best_of",
     "blocks_of",
+    "build_library",
     "builtin_rows",
     "button_choices",
     "button_files",
@@ -538,6 +559,7 @@ __all__ = [
     "is_recording",
     "join_logs",
     "judge_experiment",
+    "library_query",
     "light_strip",
     "load_actuation",
     "lock_with_code",
@@ -593,6 +615,7 @@ __all__ = [
     "preview_html",
     "preview_sections",
     "preview_summary",
+    "preview_sweep",
     "preview_title",
     "probe",
     "process_recording",
@@ -613,6 +636,7 @@ __all__ = [
     "read_selftest",
     "read_session",
     "read_setup",
+    "read_sweep_plan",
     "record_of",
     "recorded_vibrations",
     "recording_of",
@@ -630,6 +654,7 @@ __all__ = [
     "run_on_any_strip",
     "run_on_strip",
     "run_population",
+    "run_sweep",
     "sample_strokes",
     "save_actuation",
     "score_design",
@@ -644,6 +669,8 @@ __all__ = [
     "study_power",
     "study_summary",
     "summarise",
+    "sweep_schema",
+    "sweep_summary",
     "tap_peaks",
     "task_named",
     "tone_image",
@@ -661,6 +688,7 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_hits",
     "write_mechanism",
     "write_selftest",
     "write_study_report",
