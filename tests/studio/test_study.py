@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, names_in, plan_text
-from tests.studio.conftest import LIVE
+from tests.studio.conftest import HOST, LIVE, ORIGIN, PORT, TOKEN
 
-from fdvv.studio import Studio
+from fdvv.studio import Studio, create_app, door_of
 from fdvv.studio._studies import Studies
 from fdvv.workflow import Study
 
@@ -189,6 +189,29 @@ def test_a_pause_holds_every_answer_back_until_it_is_over(
         assert screen.hear("paused")["on"]
 
 
+def test_a_pause_outlives_the_studio_and_is_on_record(
+    study: Study, ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    with client.websocket_connect(LIVE) as socket:
+        card = Screen(socket).sit(ask("seat")["seat"])
+    ask("pause", person=None, on=True)
+    again = TestClient(
+        create_app(Studio(own_studio.project), door_of(HOST, PORT, TOKEN)),
+        base_url=ORIGIN,
+        headers={"authorization": f"Bearer {TOKEN}"},
+    )
+    with again as other, other.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        screen.resume(card)
+        assert {"type": "paused", "on": True} in screen.heard
+        screen.show()
+        assert "pauses" in screen.answer()["error"]
+        found = other.post("/api/studies.detail", json={"study": NAME}).json()
+        assert found["paused"]
+        assert found["history"][-1].endswith("paused")
+    assert study.verify() == ()
+
+
 def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
     study: Study, ask: Callable[..., Any], client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -219,6 +242,8 @@ def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
     study: Study, ask: Callable[..., Any], client: TestClient, own_studio: Studio
 ) -> None:
     assert ask("detail")["device"] == "twin"
+    there = client.post("/api/studies.devices", json={}).json()["devices"]
+    assert [one["name"] for one in there][:2] == ["twin", "host"]
     refused = client.post("/api/studies.use", json={"study": NAME, "device": "/dev/null"}).json()
     assert "there is no" in refused["error"]
     assert ask("use", device="host")["device"] == "host"

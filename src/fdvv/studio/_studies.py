@@ -17,7 +17,7 @@ from fdvv.files import write_atomic
 from fdvv.studio._messages_studies import StudiesChanged, StudyState
 from fdvv.studio._studio import Studio
 from fdvv.studio._watchers import Watchers
-from fdvv.workflow import Study, device_problems
+from fdvv.workflow import EVERYBODY, Study, device_problems
 
 FOLDER, DEVICE_SUFFIX = "studies", ".device"
 TWIN = "twin"
@@ -59,7 +59,6 @@ class Studies:
         self.watchers = Watchers[Struct]()
         self._seats: dict[str, Seat] = {}
         self._screens: dict[tuple[str, str], Screen] = {}
-        self._paused: set[tuple[str, str | None]] = set()
         # held for a look only: whoever is at a screen may ask for it
         self._lock = RLock()
 
@@ -149,19 +148,17 @@ class Studies:
             return self._screens.get((name, person))
 
     def pause(self, name: str, person: str | None, on: bool) -> None:
-        """Have all screens of a study wait, or one."""
+        """Have all screens of a study wait, or one; kept with the study. InputError."""
+        self.study(name).pause(person or EVERYBODY, on)
         with self._lock:
-            change = self._paused.add if on else self._paused.discard
-            change((name, person))
-            screens = [(who, screen) for (study, who), screen in self._screens.items() if study == name]
+            screens = [(who, screen) for (of, who), screen in self._screens.items() if of == name]
         for who, screen in screens:
             screen.pause(self.paused(name, who))
         self.announce(name)
 
     def paused(self, name: str, person: str | None = None) -> bool:
         """Tell whether a study waits, or one person of it."""
-        with self._lock:
-            return not self._paused.isdisjoint({(name, None), (name, person)})
+        return not self.study(name).paused.isdisjoint({EVERYBODY, person or EVERYBODY})
 
     def withdraw(self, name: str, person: str, delete: bool) -> None:
         """Take a person out of a study, wherever they are. InputError."""

@@ -170,8 +170,11 @@ class StudyScreen:
             self._release()
             self._leases.take(device, f"the study {study.folder.name}")
             self._leased = device
-        broke = lambda _line: self._tell(m.StudyBroke())  # noqa: E731
-        return open_screen_stage(device, study.folder, self._show, broke, study.plan.switch_s)
+        return open_screen_stage(device, study.folder, self._show, self._broke, study.plan.switch_s)
+
+    def _broke(self, _line: str) -> None:
+        """Tell that the button is set up anew; why could tell what was rendered."""
+        self._tell(m.StudyBroke())
 
     def _first_stage(self, study: Study) -> ScreenStage:
         """Open a stage for somebody who sits down. InputError where it cannot be had."""

@@ -206,6 +206,7 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_files import Frozen
     from fdvv.workflow._study_log import ChainedLog
     from fdvv.workflow._study_look import StudyLook, look_at_study
+    from fdvv.workflow._study_pause import EVERYBODY
     from fdvv.workflow._study_people import Person, Schedule, SealedTrial
     from fdvv.workflow._study_person_frame import PersonClick, PersonFrame
     from fdvv.workflow._study_power import StudyPower, open_plan, study_power
@@ -237,7 +238,6 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_stage_finger import SimulatedFingerStage
     from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
     from fdvv.workflow._study_stage_person import PersonStage
-    from fdvv.workflow._study_standing import PersonStanding, people_standing
     from fdvv.workflow._tap_forces import force_spread_ratio, tap_peaks
     from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
     from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
@@ -255,6 +255,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "EVERYBODY",
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
@@ -340,7 +341,6 @@ __all__ = [
     "PersonClick",
     "PersonFrame",
     "PersonStage",
-    "PersonStanding",
     "PersonView",
     "PinMade",
     "PlacedFinding",
@@ -516,7 +516,6 @@ __all__ = [
     "paper_design_like",
     "patch_between",
     "people_csv",
-    "people_standing",
     "play",
     "play_on_strip",
     "play_seed",

@@ -64,6 +64,7 @@ export interface Calls {
   readonly "program.surface": { readonly ask: SurfaceAsk; readonly answer: ProgramSurface };
   readonly "studies.create": { readonly ask: StudiesCreate; readonly answer: StudiesAsk };
   readonly "studies.detail": { readonly ask: StudiesAsk; readonly answer: StudiesDetail };
+  readonly "studies.devices": { readonly ask: StudiesDevicesAsk; readonly answer: StudiesDevices };
   readonly "studies.freeze": { readonly ask: StudiesFreeze; readonly answer: StudiesDetail };
   readonly "studies.list": { readonly ask: StudiesListAsk; readonly answer: StudiesRows };
   readonly "studies.offers": { readonly ask: StudiesOffersAsk; readonly answer: StudiesOffers };
@@ -1031,7 +1032,6 @@ export interface StudiesDetail {
   readonly paused: boolean;
   readonly history: readonly string[];
   readonly device: string;
-  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesRow {
@@ -1053,6 +1053,13 @@ export interface StudiesPerson {
   readonly here: boolean;
   readonly paused: boolean;
   readonly told: string;
+}
+
+export interface StudiesDevicesAsk {
+}
+
+export interface StudiesDevices {
+  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesDevice {

@@ -2,9 +2,11 @@
 
 import { address } from "../../app/route";
 import { call } from "../../net";
-import type { StudiesPerson } from "../../net/messages";
+import type { StudiesDevice, StudiesPerson } from "../../net/messages";
 import { button, choice, empty, h, signal, tell, toast, toggle, type Child } from "../../ui";
 import type { StudyStore } from "./store";
+
+const TWIN = "twin";
 
 export function peopleView(store: StudyStore, toPlan: () => void): HTMLElement {
   const state = store.detail.peek()?.row.state ?? "draft";
@@ -33,10 +35,18 @@ function seats(store: StudyStore): HTMLElement {
 }
 
 /** What is pressed: the twin on the screen, or a device on the table; from the next trial on. */
-function deviceChoice(store: StudyStore): Child {
-  const options = (store.detail.peek()?.devices ?? []).map((one) => [one.name, one.about] as const);
+function deviceChoice(store: StudyStore): HTMLElement {
+  const there = signal<readonly StudiesDevice[]>([]);
+  // asked once: serial ports are looked for
+  void call("studies.devices", {}).then((told) => there.set(told.devices), tell);
   const use = (device: string) => void store.act(() => call("studies.use", { study: store.study, device }));
-  return choice({ label: "Rendered by", options, value: () => store.detail()?.device ?? "twin", set: use });
+  const value = () => store.detail()?.device ?? TWIN;
+  return h("span", { class: "field" }, () => choice({ label: "Rendered by", options: known(there(), value()).map((one) => [one.name, one.about] as const), value, set: use }));
+}
+
+/** What there is, and what was chosen before though it is not there now. */
+function known(there: readonly StudiesDevice[], chosen: string): readonly StudiesDevice[] {
+  return there.some((one) => one.name === chosen) ? there : [...there, { name: chosen, about: there.length ? `${chosen} (not there now)` : chosen }];
 }
 
 function waitingText(store: StudyStore): string {
