@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -14,14 +15,22 @@ from .conftest import Run
 WORDS = ("--passphrase-file", "words.txt")
 
 
-@pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
-    """Give a frozen study in s, with one person who is done, and the passphrase in words.txt."""
-    monkeypatch.setattr("os.fsync", lambda _file: None)
-    study = Study.declare(tmp_path / "s", plan_file(tmp_path / "desk"))
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of a frozen study with one person who is done; to be copied."""
+    folder = tmp_path_factory.mktemp("begun")
+    study = Study.declare(folder / "s", plan_file(folder / "desk"))
     study.freeze(PASSPHRASE, CHEAP)
     person, code = study.enrol(cost=CHEAP)
     answered(study, person, code, chosen("FDVV"))
+    return study.folder
+
+
+@pytest.fixture
+def study(begun: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
+    """Give that study in s, and the passphrase in words.txt."""
+    monkeypatch.setattr("os.fsync", lambda _file: None)
+    study = Study.open(shutil.copytree(begun, tmp_path / "s"))
     (tmp_path / "words.txt").write_text(PASSPHRASE + "\n")
     (tmp_path / "wrong.txt").write_text("other words of no sense")
     return study

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, names_in, plan_text
-from tests.studio.conftest import HOST, LIVE, ORIGIN, PORT, TOKEN
+from tests.studio.conftest import LIVE
 
-from fdvv.studio import Studio, create_app, door_of
+from fdvv.studio import Studio
 from fdvv.studio._studies import Studies
 from fdvv.workflow import Study
 
@@ -195,20 +195,15 @@ def test_a_pause_outlives_the_studio_and_is_on_record(
     with client.websocket_connect(LIVE) as socket:
         card = Screen(socket).sit(ask("seat")["seat"])
     ask("pause", person=None, on=True)
-    again = TestClient(
-        create_app(Studio(own_studio.project), door_of(HOST, PORT, TOKEN)),
-        base_url=ORIGIN,
-        headers={"authorization": f"Bearer {TOKEN}"},
-    )
-    with again as other, other.websocket_connect(LIVE) as socket:
+    own_studio.close()  # and what it knew with it
+    with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         screen.resume(card)
         assert {"type": "paused", "on": True} in screen.heard
         screen.show()
         assert "pauses" in screen.answer()["error"]
-        found = other.post("/api/studies.detail", json={"study": NAME}).json()
-        assert found["paused"]
-        assert found["history"][-1].endswith("paused")
+    assert ask("detail")["paused"]
+    assert ask("detail")["history"][-1].endswith("paused")
     assert study.verify() == ()
 
 
@@ -307,11 +302,10 @@ def test_nothing_is_told_of_the_results_before_the_seal_is_opened_on_record(
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         screen.sit(ask("seat")["seat"])
-        for _ in range(4):
-            screen.show()
-            for label in "XAB":
-                screen.feel(label)
-            screen.answer("B")
+        screen.show()
+        for label in "XAB":
+            screen.feel(label)
+        screen.answer("B")
     sealed = client.post("/api/studies.report", json={"study": NAME}).json()
     assert "is sealed" in sealed["error"]
     opening = {"study": NAME, "who": "the keeper", "why": "the last person is done"}

@@ -154,6 +154,7 @@ def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
     return witness
 
 
+@pytest.mark.slow
 def test_a_killed_session_loses_no_answer_and_meets_no_trial_again(tmp_path: Path) -> None:
     witness = check_kills(tmp_path / "study", kills=4, seed=1, rounds=3)
     assert witness.person

@@ -80,6 +80,7 @@ def test_breaks_take_no_real_time(tmp_path: Path) -> None:
     assert session.minutes > 30 * session.breaks
 
 
+@pytest.mark.slow
 def test_people_who_feel_much_choose_what_is_close(tmp_path: Path) -> None:
     sharp = ProxySettings().changed("weber_ratio", 0.005).changed("lapse_ratio", 0.0)
     study = simulated(tmp_path / "s", settings=sharp.changed("taste_ratio", 0.0))
@@ -133,6 +134,7 @@ def stopping(at: int) -> Callable[[int, int], None]:
     return tell
 
 
+@pytest.mark.slow
 def test_the_claim_is_analysed_by_the_very_test_that_planned_it(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s", rounds=1, practice=0)
     simulate_study(study, 6, pressed=False, settings=ProxySettings().changed("weber_ratio", 0.02))
