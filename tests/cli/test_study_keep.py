@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, answered, chosen, plan_file
+from tests.workflow.studies import CHEAP, PASSPHRASE, answered, chosen, in_haste, plan_file
 
 from fdvv.workflow import Study
 
@@ -19,10 +19,11 @@ WORDS = ("--passphrase-file", "words.txt")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the folder of a frozen study with one person who is done; to be copied."""
     folder = tmp_path_factory.mktemp("begun")
-    study = Study.declare(folder / "s", plan_file(folder / "desk"))
-    study.freeze(PASSPHRASE, CHEAP)
-    person, code = study.enrol(cost=CHEAP)
-    answered(study, person, code, chosen("FDVV"))
+    with in_haste():
+        study = Study.declare(folder / "s", plan_file(folder / "desk"))
+        study.freeze(PASSPHRASE, CHEAP)
+        person, code = study.enrol(cost=CHEAP)
+        answered(study, person, code, chosen("FDVV"))
     return study.folder
 
 

@@ -74,8 +74,9 @@ class Screen:
 
 
 @pytest.fixture(autouse=True)
-def _cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Codes of these tests need not be slow to guess."""
+def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Codes of these tests need not be slow to guess, nor their answers outlive a power cut."""
+    monkeypatch.setattr("os.fsync", lambda _file: None)
     monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
 
 

@@ -20,6 +20,8 @@ from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.study import TrialAnswer
 from fdvv.workflow import Participant, Study, operator_view
 
+pytestmark = pytest.mark.usefixtures("hasty_disk")
+
 
 class Clock:
     """Wall time that passes when it is told to."""

@@ -7,7 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, Killed, all_files, kill_at, plan_file, small_study
+from tests.workflow.studies import (
+    CHEAP,
+    PASSPHRASE,
+    Killed,
+    all_files,
+    in_haste,
+    kill_at,
+    plan_file,
+    small_study,
+)
 
 from fdvv.errors import InputError
 from fdvv.files import write_atomic
@@ -21,7 +30,8 @@ pytestmark = pytest.mark.usefixtures("hasty_disk")
 @pytest.fixture(scope="module")
 def frozen(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """Give a frozen study; tests enrol in it."""
-    return small_study(tmp_path_factory.mktemp("frozen"))
+    with in_haste():
+        return small_study(tmp_path_factory.mktemp("frozen"))
 
 
 def test_a_declared_study_holds_its_plan_and_every_file_that_it_names(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import contextlib
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, Killed, kill_at, small_study
+from tests.workflow.studies import CHEAP, Killed, in_haste, kill_at, small_study
 
 from fdvv.errors import InputError
 from fdvv.workflow import EVERYBODY, Study
@@ -57,7 +57,8 @@ def test_nobody_is_paused_who_is_not_there_and_nothing_before_it_is_frozen(
 def test_a_pause_that_is_killed_is_in_force_or_not_and_the_record_whole(
     tmp_path: Path, step: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    study = small_study(tmp_path)
+    with in_haste():
+        study = small_study(tmp_path)
     with contextlib.suppress(Killed), kill_at(step, monkeypatch):
         study.pause()
     assert study.verify() == ()

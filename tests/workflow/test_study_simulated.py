@@ -16,6 +16,8 @@ from fdvv.study import Claim, ProxySettings, claim_p, claim_scores
 from fdvv.workflow import Study, _study_people, analyse, simulate_study
 from fdvv.workflow._study_seal import lock_with_code
 
+pytestmark = pytest.mark.usefixtures("hasty_disk")
+
 
 @pytest.fixture(autouse=True)
 def cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from tests.workflow.studies import (
     all_files,
     answered,
     chosen,
+    in_haste,
     kill_at,
     small_study,
 )
@@ -30,10 +31,11 @@ TRACES = (b"87.5", b"Oulu")
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the folder of a study with two people, the first of an age that nothing else says."""
-    study = small_study(tmp_path_factory.mktemp("begun"))
-    for age, place in ((AGE, "Oulu"), (40.0, "Tampere")):
-        person, code = study.enrol(consent=f"on paper in {place}", cost=CHEAP)
-        answered(study, person, code, chosen("FDVV"), trials=2, age=age)
+    with in_haste():
+        study = small_study(tmp_path_factory.mktemp("begun"))
+        for age, place in ((AGE, "Oulu"), (40.0, "Tampere")):
+            person, code = study.enrol(consent=f"on paper in {place}", cost=CHEAP)
+            answered(study, person, code, chosen("FDVV"), trials=2, age=age)
     return study.folder
 
 
