@@ -88,7 +88,7 @@ class Taker:
                 self._say("resume", study=study, person=person, code=code)
             else:
                 seat = self.call("seat", study=study)["seat"]
-                self._say("sit", study=study, seat=seat, language="en")
+                self._say("sit", study=study, seat=seat, holder=self._token, language="en")
             card = self._hear("card")
             self._person = card["person"]
             if card["code"]:

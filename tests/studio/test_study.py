@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 from collections.abc import Callable
 from functools import partialmethod
 from typing import Any
@@ -23,7 +24,7 @@ class Screen:
     """One page on the participant's channel. heard : all of it but frames."""
 
     def __init__(self, socket: WebSocketTestSession) -> None:
-        self._socket = socket
+        self._socket, self.holder = socket, secrets.token_hex(8)
         self.heard: list[dict[str, Any]] = []
 
     def say(self, kind: str, **more: Any) -> None:
@@ -42,7 +43,7 @@ class Screen:
 
     def sit(self, seat: str) -> dict[str, Any]:
         """Sit down; give the card."""
-        self.say("sit", study=NAME, seat=seat, language="en")
+        self.say("sit", study=NAME, seat=seat, holder=self.holder, language="en")
         card = self.hear("card")
         self.step = self.hear("step")
         return card
@@ -109,16 +110,26 @@ def test_a_seat_is_taken_once_and_its_code_is_forgotten_when_the_person_goes_on(
     seat = ask("seat")["seat"]
     assert ask("detail")["waiting"] == 1
     with client.websocket_connect(LIVE) as socket:
-        card = Screen(socket).sit(seat)
+        screen = Screen(socket)
+        first = screen.holder
+        card = screen.sit(seat)
     assert ask("detail")["waiting"] == 0
     with client.websocket_connect(LIVE) as socket:
-        again = Screen(socket)
+        again, somebody = Screen(socket), secrets.token_hex(8)
+        # who else has the link can neither sit down nor be told who does
+        again.say("look", study=NAME, seat=seat, holder=somebody)
+        assert not again.hear("about")["seat"]
+        again.say("sit", study=NAME, seat=seat, holder=somebody, language="en")
+        assert "is taken" in again.hear("card")["error"]
+        again.holder = first
+        again.say("look", study=NAME, seat=seat, holder=first)
+        assert again.hear("about")["seat"]
         # the page was loaded again before anybody could write down the code
         assert again.sit(seat) == card
         again.show()
     with client.websocket_connect(LIVE) as socket:
         late = Screen(socket)
-        late.say("sit", study=NAME, seat=seat, language="en")
+        late.say("sit", study=NAME, seat=seat, holder=first, language="en")
         assert "is taken" in late.hear("card")["error"]
         assert late.resume(card)["task"]["number"] == 0
     assert [one.name for one in study.people()] == ["P01"]
@@ -248,7 +259,7 @@ def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
         screen.sit(ask("seat")["seat"])
         # nothing is drawn of what lies on the table
         assert (screen.show()["travel_mm"], screen.heard[-1]["signals"]) == (0.0, [])
-        late.say("sit", study=NAME, seat=ask("seat")["seat"], language="en")
+        late.say("sit", study=NAME, seat=ask("seat")["seat"], holder=late.holder, language="en")
         assert "is used by the study" in late.hear("card")["error"]
         for label in "XAB":
             assert screen.feel(label)["label"] == label

@@ -26,10 +26,15 @@ NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 
 @dataclass(eq=False)
 class Seat:
-    """A free seat of a study, taken once; person, code : whose it is until their screen knows."""
+    """A seat of a study, taken once.
+
+    holder : the page that took it, by a word that it alone has; empty while it is free.
+    person, code : whose it is until their screen knows.
+    """
 
     study: str
     word: str
+    holder: str = ""
     person: str = ""
     code: str = ""
     lock: Lock = field(default_factory=Lock)
@@ -110,11 +115,12 @@ class Studies:
         self.announce(name)
         return seat
 
-    def seat(self, name: str, word: str) -> Seat | None:
-        """Find a seat that is still to be had."""
+    def seat(self, name: str, word: str, holder: str) -> Seat | None:
+        """Find a seat that a page may take: a free one, or its own."""
         with self._lock:
             seat = self._seats.get(word)
-        return seat if seat and seat.study == name else None
+        mine = seat and seat.study == name and seat.holder in ("", holder)
+        return seat if mine else None
 
     def taken(self, seat: Seat) -> None:
         """Forget a seat, and the code with it: its person's screen knows."""

@@ -1669,12 +1669,14 @@ export interface StudyLook {
   readonly type: "look";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
 }
 
 export interface StudySit {
   readonly type: "sit";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
   readonly language: string;
 }
 
