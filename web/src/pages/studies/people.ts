@@ -29,7 +29,7 @@ function seats(store: StudyStore): HTMLElement {
   const copy = () => void navigator.clipboard.writeText(made.peek()).then(() => toast("Copied", "done"), tell);
   const shown = (link: string) => [
     h("div", { class: "row sts-link" }, h("a", { href: link, target: "_blank", rel: "noopener", "data-seat": "" }, link), button({ label: "Copy", act: copy })),
-    h("p", { class: "muted" }, "Open it on the participant's screen; it serves one person. On another machine, open the address that fdvv studio printed there first. Who has a card goes on there too, with number and code."),
+    h("p", { class: "muted" }, "Open it on the participant's screen: the page that begins there holds the seat, and no other. On another machine, open the address that fdvv studio printed there first; with --keep-address that is needed once. Who has a card goes on there too, with number and code."),
   ];
   return h("section", { class: "panel", "aria-label": "Seat" }, h("h2", {}, "The next person"), deviceChoice(store), h("div", { class: "row" }, button({ label: "Prepare a seat", kind: "main", act: () => void make() }), h("span", { class: "muted" }, () => waitingText(store))), h("div", { class: "sts-page" }, () => (made() && store.detail()?.waiting ? shown(made()) : null)));
 }
@@ -41,7 +41,7 @@ function deviceChoice(store: StudyStore): HTMLElement {
   void call("studies.devices", {}).then((told) => there.set(told.devices), tell);
   const use = (device: string) => void store.act(() => call("studies.use", { study: store.study, device }));
   const value = () => store.detail()?.device ?? TWIN;
-  return h("span", { class: "field" }, () => choice({ label: "Rendered by", options: known(there(), value()).map((one) => [one.name, one.about] as const), value, set: use }));
+  return h("div", { class: "sts-device" }, () => choice({ label: "Rendered by", options: known(there(), value()).map((one) => [one.name, one.about] as const), value, set: use }));
 }
 
 /** What there is, and what was chosen before though it is not there now. */
