@@ -80,6 +80,13 @@ class Taker:
                 self.call("write", study=study, text=self._text, keep=True)
             self._tell(["frozen", self.call("freeze", study=study, passphrase=PASSPHRASE)["fingerprint"]])
 
+    def wait_for_nobody(self, study: str) -> None:
+        """Wait until the studio has noticed that every page is gone."""
+        until = time.monotonic() + PATIENCE_s
+        while any(one["here"] for one in self.call("detail", study=study)["people"]):
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
     def take_part(self, study: str, person: str, code: str) -> None:
         """Go on as somebody, or begin as somebody new, to the end of the session."""
         headers = {"authorization": f"Bearer {self._token}"}

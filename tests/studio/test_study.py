@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import secrets
+import time
 from collections.abc import Callable
 from functools import partialmethod
 from typing import Any
@@ -14,7 +15,9 @@ from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, n
 from tests.studio.conftest import LIVE
 
 from fdvv.studio import Studio
+from fdvv.studio._messages_study import StudyResume
 from fdvv.studio._studies import Studies
+from fdvv.studio._study_screen import StudyScreen
 from fdvv.workflow import Study
 
 SAME = ("about", "card", "step", "ready", "felt", "broke", "paused", "stopped", "error")
@@ -181,6 +184,38 @@ def test_a_wrong_code_takes_nobodys_screen_away_and_the_right_one_does(
         assert "another screen" in first.hear("stopped")["reason"]
         second.show()
         assert second.answer()["task"]["number"] == 1
+
+
+def test_who_comes_back_while_a_lost_page_still_takes_them_up_waits_for_it(
+    study: Study,
+    ask: Callable[..., Any],
+    client: TestClient,
+    own_studio: Studio,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    studies = own_studio.part(Studies)
+    with client.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        card = screen.sit(ask("seat")["seat"])
+        with studies.place(NAME, card["person"]):
+            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 0.05)
+            assert "taken up elsewhere" in screen.resume(card)["error"]
+            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 10.0)
+            screen.say("resume", study=NAME, person=card["person"], code=card["code"])
+            time.sleep(0.05)
+        assert screen.hear("step")["task"]["number"] == 0
+
+
+def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
+    study: Study, own_studio: Studio
+) -> None:
+    person, code = study.enrol()
+    told: list[Any] = []
+    screen = StudyScreen(own_studio, told.append)
+    screen.close()
+    screen.receive(StudyResume(NAME, person, code))
+    assert told == []
+    assert own_studio.part(Studies).screen(NAME, person) is None
 
 
 def test_a_pause_holds_every_answer_back_until_it_is_over(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import secrets
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock, RLock
@@ -21,6 +22,7 @@ from fdvv.workflow import EVERYBODY, Study, device_problems
 
 FOLDER, DEVICE_SUFFIX = "studies", ".device"
 TWIN = "twin"
+PATIENCE_s = 10.0
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 
 
@@ -64,6 +66,7 @@ class Studies:
         self.watchers = Watchers[Struct]()
         self._seats: dict[str, Seat] = {}
         self._screens: dict[tuple[str, str], Screen] = {}
+        self._places: dict[tuple[str, str], Lock] = {}
         # held for a look only: whoever is at a screen may ask for it
         self._lock = RLock()
 
@@ -147,6 +150,21 @@ class Studies:
             if self._screens.get((name, person)) is screen:
                 del self._screens[name, person]
         self.announce(name)
+
+    @contextmanager
+    def place(self, name: str, person: str) -> Iterator[None]:
+        """Take a person up alone: a page that is gone may still be at it when they come back on another.
+
+        InputError where that takes too long.
+        """
+        with self._lock:
+            lock = self._places.setdefault((name, person), Lock())
+        if not lock.acquire(timeout=PATIENCE_s):
+            raise InputError("study", "screen", "is taken up elsewhere at this moment", "try again")
+        try:
+            yield
+        finally:
+            lock.release()
 
     def screen(self, name: str, person: str) -> Screen | None:
         """Find a person's screen."""

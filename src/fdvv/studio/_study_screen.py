@@ -33,7 +33,7 @@ class StudyScreen:
         self._stage: ScreenStage | None = None
         self._seat: Seat | None = None
         # the operator may use it while the page's own thread does
-        self._lock = RLock()
+        self._lock, self._gone = RLock(), False
 
     def receive(self, ask: Any) -> None:
         """Do what the page asks; without a participant most asks have come too late and do nothing."""
@@ -41,6 +41,8 @@ class StudyScreen:
             self._hand(ask)
             return
         with self._lock:
+            if self._gone:  # the page was closed while this waited for its turn
+                return
             try:
                 self._do(ask)
             except DeviceError:
@@ -51,6 +53,12 @@ class StudyScreen:
 
     def close(self) -> None:
         """The page is gone: the session waits to be resumed."""
+        with self._lock:
+            self._gone = True
+            self._rise()
+
+    def _rise(self) -> None:
+        """Serve nobody any more."""
         with self._lock:
             participant, self._participant, self._stage = self._participant, None, None
             if participant:
@@ -67,7 +75,7 @@ class StudyScreen:
 
     def leave(self, reason: str) -> None:
         """Serve nobody any more, and say why."""
-        self.close()
+        self._rise()
         self._tell(m.StudyStopped(reason))
 
     def withdraw(self, delete: bool) -> None:
@@ -91,7 +99,7 @@ class StudyScreen:
         seat = self._studies.seat(ask.study, ask.seat, ask.holder)
         if seat is None:
             raise taken()
-        self.close()
+        self._rise()
         study = self._studies.study(ask.study)
         with seat.lock:
             if seat.holder not in ("", ask.holder):  # two began at once
@@ -108,7 +116,7 @@ class StudyScreen:
 
     @_do.register
     def _(self, ask: m.StudyResume) -> None:
-        self.close()
+        self._rise()
         self._sit(self._studies.study(ask.study), ask.study, ask.person, ask.code)
         self._begin("")
 
@@ -171,13 +179,14 @@ class StudyScreen:
             stage.lift()
 
     def _sit(self, study: Study, name: str, person: str, code: str) -> None:
-        """Go on as somebody; a screen that serves them lets go first."""
-        other = self._studies.screen(name, person)
-        if other:
-            study.schedule(person, code)  # a wrong code must not take anybody's screen away
-            other.leave("this study goes on at another screen")
-        stage = self._stages.first(study)
-        self._take(name, Participant.resume(study, person, code, stage), stage)
+        """Go on as somebody; a screen that serves them, or is about to, lets go first."""
+        with self._studies.place(name, person):
+            other = self._studies.screen(name, person)
+            if other:
+                study.schedule(person, code)  # a wrong code must not take anybody's screen away
+                other.leave("this study goes on at another screen")
+            stage = self._stages.first(study)
+            self._take(name, Participant.resume(study, person, code, stage), stage)
 
     def _take(self, name: str, participant: Participant, stage: ScreenStage) -> None:
         self._name, self._participant, self._stage = name, participant, stage
@@ -205,7 +214,7 @@ class StudyScreen:
         """Tell what comes next; an end is an end for the operator too."""
         self._tell_step(step)
         if self._participant and step.kind in ENDS:
-            self.close()
+            self._rise()
         else:
             self._studies.announce(self._name)
 
