@@ -21,6 +21,7 @@ def test_a_token_is_drawn_once_and_for_its_owner_alone(tmp_path: Path) -> None:
     assert kept_token(tmp_path / "other") != token
     mode = (tmp_path / "project" / ".studio-token").stat().st_mode
     assert stat.S_IMODE(mode) == 0o600
+    assert (tmp_path / "project" / ".gitignore").read_text() == ".studio-token\n"
 
 
 def test_a_token_that_others_can_read_or_that_is_none_is_refused(tmp_path: Path) -> None:

@@ -13,12 +13,14 @@ class Witness:
         self.study, self.person, self.code = study, "", ""
         self.answers: dict[tuple[str, str], str] = {}
         self.labels: dict[tuple[str, str], list[str]] = {}
+        self.people: list[str] = []
         self.done: set[str] = set()
 
     def hear(self, words: list[str]) -> None:
         kind, person, *rest = words
         if kind == "enrolled":
             self.person, self.code = person, rest[0]
+            self.people.append(person)
         elif kind == "met":
             assert (person, rest[1]) not in self.answers, f"{words} was answered before"
             assert person not in self.done
@@ -32,19 +34,24 @@ class Witness:
             self.code = ""
 
     def check(self, under_way: int = 1) -> None:
-        """See that everything acknowledged of the person who is there now is kept as it was.
+        """See that everything acknowledged is kept as it was.
 
         under_way : answers that may be kept though nobody was told so: one of every life since the last look.
         """
-        assert study_problems(self.study.folder, people=(self.person,)) == ()
-        state = read_session(self.study.person_folder(self.person) / "session.jsonl", self.study.plan)
+        unheard = sum(self._unheard(person) for person in self.people)
+        assert unheard <= under_way
+
+    def _unheard(self, person: str) -> int:
+        """Look at one person; count, and note, what is kept of them that was not acknowledged."""
+        assert study_problems(self.study.folder, people=(person,)) == ()
+        state = read_session(self.study.person_folder(person) / "session.jsonl", self.study.plan)
         kept = {} if state is None else {str(n): one.answer.choice for n, one in state.answers.items()}
-        said = {n: choice for (person, n), choice in self.answers.items() if person == self.person}
+        said = {n: choice for (who, n), choice in self.answers.items() if who == person}
         assert said.items() <= kept.items()
         # in the order that was drawn
         assert list(kept) == sorted(kept, key=int)
-        assert len(kept) <= len(said) + under_way
-        self.answers |= {(self.person, n): choice for n, choice in kept.items()}
+        self.answers |= {(person, n): choice for n, choice in kept.items()}
+        return len(kept) - len(said)
 
 
 def check_labels(study: Study, witness: Witness, passphrase: str) -> None:

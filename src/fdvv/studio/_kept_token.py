@@ -9,9 +9,9 @@ import stat
 from pathlib import Path
 
 from fdvv.errors import InputError
-from fdvv.files import sync_folder
+from fdvv.files import sync_folder, write_atomic
 
-TOKEN_FILE = ".studio-token"
+TOKEN_FILE, IGNORE_FILE = ".studio-token", ".gitignore"
 TOKEN = re.compile(r"[A-Za-z0-9_-]{32,64}")
 REMEDY = "delete it: the next start draws another, and the old address opens nothing"
 
@@ -37,6 +37,9 @@ def kept_token(project: Path) -> str:
         stream.write(token := new_token())
         stream.flush()
         os.fsync(stream.fileno())
+    if not (project / IGNORE_FILE).exists():
+        # projects are put under version control
+        write_atomic(project / IGNORE_FILE, f"{TOKEN_FILE}\n")
     sync_folder(project)
     return token
 
