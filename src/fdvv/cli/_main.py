@@ -37,7 +37,6 @@ COMMANDS = {
     ),
     "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
-    "library": ("fdvv.cli._models", "List the built-in buttons."),
     "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
     "library": (
         "fdvv.cli._library",

@@ -37,6 +37,11 @@ from fdvv.errors import InputError
 )
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option("--share", is_flag=True, help="Allow a --host that other machines can reach.")
+@click.option(
+    "--keep-address",
+    is_flag=True,
+    help="Keep the address over restarts, for tablets that stand on it: its token is kept in the project.",
+)
 @click.option("--no-browser", is_flag=True, help="Only print the address.")
 def studio(
     folders: tuple[Path, ...],
@@ -45,16 +50,18 @@ def studio(
     port: int,
     host: str,
     share: bool,
+    keep_address: bool,
     no_browser: bool,
 ) -> None:
     """See, edit, press and tune buttons in the browser.
 
     Serves a page on this machine and opens it. FOLDER: measured switches to search, any number of folders.
-    The address holds a token: whoever has it can use the studio. Ctrl-C ends it; everything is kept.
+    The address holds a token, a new one at each start: whoever has it can use the studio. Ctrl-C ends it;
+    everything is kept.
     """
     _check_host(host, share)
     _check_libraries(libraries)
-    from fdvv.studio import Studio, serve
+    from fdvv.studio import Studio, kept_token, serve
 
     def ready(address: str) -> None:
         click.echo(f"the studio is open at {address}")
@@ -62,7 +69,8 @@ def studio(
         if not no_browser:
             _show(address)
 
-    serve(Studio(project, folders, libraries), host, port, ready)
+    token = kept_token(project) if keep_address else ""
+    serve(Studio(project, folders, libraries), host, port, ready, token)
     click.echo("the studio is closed; everything is kept", err=True)
 
 

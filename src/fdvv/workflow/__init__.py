@@ -242,6 +242,7 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_files import Frozen
     from fdvv.workflow._study_log import ChainedLog
     from fdvv.workflow._study_look import StudyLook, look_at_study
+    from fdvv.workflow._study_pause import EVERYBODY
     from fdvv.workflow._study_people import Person, Schedule, SealedTrial
     from fdvv.workflow._study_person_frame import PersonClick, PersonFrame
     from fdvv.workflow._study_power import StudyPower, open_plan, study_power
@@ -296,6 +297,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "EVERYBODY",
     "EXPORT_FORMATS",
     "LIBRARY_COLUMNS",
     "PLAY_RIGS",
@@ -400,7 +402,6 @@ __all__ = [
     "PersonClick",
     "PersonFrame",
     "PersonStage",
-    "PersonStanding",
     "PersonView",
     "PinMade",
     "PlacedFinding",
@@ -599,7 +600,6 @@ __all__ = [
     "paper_design_like",
     "patch_between",
     "people_csv",
-    "people_standing",
     "play",
     "play_on_strip",
     "play_seed",
