@@ -26,7 +26,7 @@ HOST = ROOT / "firmware" / "boards" / "host"
 FLAGS = [
     "-std=c99",
     "-O3",
-    "-g0", # nothing of the folder it was built in
+    "-g0",  # nothing of the folder it was built in
     "-ffp-contract=off",
     "-fno-strict-aliasing",
     "-Wall",
@@ -45,8 +45,8 @@ NO_COMPILER = (
 class System(NamedTuple):
     """What a system calls the library, and what its compilers want.
 
-    library : its name. shared : flags of a library. maths : where the C library keeps them apart. program : the
-    firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get one.
+    library : its name. shared : flags of a library. maths : where the C library keeps them apart. program :
+    the firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get one.
     """
 
     library: str
@@ -79,7 +79,7 @@ def system_of(name: str = sys.platform) -> System:
 
 
 def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path]:
-    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give their paths."""
+    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give the paths."""
     system, core = system_of(name), sorted(CORE.glob("*.c"))
     kernels = [*sorted(NATIVE.glob("*.c")), *core, HOST / "board.c"]
     flags = [*FLAGS, *STRICT, *_architectures(name)]
@@ -91,7 +91,7 @@ def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path
 
 
 def compiler(system: System) -> list[str] | None:
-    """Give the command of CC, else the system's own compiler, else of the one that pip installs; None without."""
+    """Give CC, else the system's own compiler, else the one that pip installs, as a command; None without."""
     if named := os.environ.get("CC"):
         return shlex.split(named, posix=os.name != "nt")
     if found := next(filter(None, map(shutil.which, system.compilers)), None):
