@@ -46,7 +46,8 @@ class System(NamedTuple):
     """What a system calls the library, and what its compilers want.
 
     library : its name. shared : flags of a library. maths : where the C library keeps them apart. program :
-    the firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get one.
+    the firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get
+    one.
     """
 
     library: str
@@ -79,7 +80,7 @@ def system_of(name: str = sys.platform) -> System:
 
 
 def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path]:
-    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give the paths."""
+    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give paths."""
     system, core = system_of(name), sorted(CORE.glob("*.c"))
     kernels = [*sorted(NATIVE.glob("*.c")), *core, HOST / "board.c"]
     flags = [*FLAGS, *STRICT, *_architectures(name)]

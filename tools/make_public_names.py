@@ -1,7 +1,7 @@
 """Write docs/reference/public-names.txt: every name that a room exports, with its signature.
 
-``--check`` only tells whether it is stale. ``--since FILE`` tells what went or changed since an older one, and
-ends with status 1 if CHANGELOG.md does not name it.
+``--check`` only tells whether it is stale. ``--since FILE`` tells what went or changed since an older one,
+and ends with status 1 if CHANGELOG.md does not name it.
 """
 
 from __future__ import annotations

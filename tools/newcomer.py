@@ -1,7 +1,7 @@
 """Type what the README says, in a folder of its sources; tools/newcomer.sh calls it.
 
-usage: python -m tools.newcomer FOLDER install|use. The commands are read out of the README, so that neither can
-leave the other.
+usage: python -m tools.newcomer FOLDER install|use. The commands are read out of the README, so that neither
+can leave the other.
 """
 
 from __future__ import annotations

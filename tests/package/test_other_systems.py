@@ -42,8 +42,8 @@ for name in ("pthread_sigmask", "pause", "SIGKILL", "SIGUSR1", "SIGALRM"):
     delattr(signal, name)
 sys.platform = "win32"
 '''
-"""What an import of fdvv finds on Windows, as far as another system can show it; what the standard library and
-the dependencies load of this one stays."""
+"""What an import of fdvv finds on Windows, as far as another system can show it; what the standard library
+and the dependencies load of this one stays."""
 IMPORTS = """
 import importlib, pkgutil, fdvv
 names = [m.name for m in pkgutil.walk_packages(fdvv.__path__, "fdvv.")]
