@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -64,7 +65,9 @@ SYSTEMS = {
         "Install one (Debian: apt-get install gcc libc6-dev)",
     ),
     "darwin": System(
-        *("libfdvv.dylib", ("-fPIC", "-dynamiclib"), (), "fdvv-host", ("cc", "clang", "gcc")),
+        "libfdvv.dylib",
+        ("-fPIC", "-dynamiclib", "-Wl,-install_name,@rpath/libfdvv.dylib"),
+        *((), "fdvv-host", ("cc", "clang", "gcc")),
         "Install Apple's (xcode-select --install)",
     ),
     "win32": System(
@@ -107,15 +110,16 @@ def _compile(target: Path, sources: list[Path], flags: list[str], system: System
     command = compiler(system)
     if not command:
         raise SystemExit(NO_COMPILER.format(system.remedy))
-    # a process may have the old one mapped: write beside it, then rename
-    fresh = target.with_name(f"{target.stem}.{os.getpid()}.tmp{target.suffix}")
-    try:
-        subprocess.run([*command, *flags, "-o", str(fresh), *map(str, sources), *system.maths], check=True)
-        fresh.replace(target)
-    except (OSError, subprocess.CalledProcessError) as error:
-        raise SystemExit(f"fdvv: {target.name} cannot be built: {error}") from error
-    finally:
-        fresh.unlink(missing_ok=True)
+    # a process may have the old one mapped: write beside it, then rename; a library keeps its first name
+    with tempfile.TemporaryDirectory(prefix=".", suffix=".tmp", dir=target.parent) as folder:
+        fresh = Path(folder) / target.name
+        try:
+            subprocess.run(
+                [*command, *flags, "-o", str(fresh), *map(str, sources), *system.maths], check=True
+            )
+            fresh.replace(target)
+        except (OSError, subprocess.CalledProcessError) as error:
+            raise SystemExit(f"fdvv: {target.name} cannot be built: {error}") from error
     return target
 
 

@@ -154,6 +154,9 @@ def test_the_c_compiles_without_a_warning_for_every_system(
     assert content.startswith(first)
     for name in (b"fdvv_spline_free_knots", b"fdvv_rig_step", b"fdvv_host_tick"):
         assert name in content
+    # nothing of where it was built
+    assert str(tmp_path).encode() not in content
+    assert str(REPOSITORY).encode() not in content
 
 
 @pytest.mark.slow

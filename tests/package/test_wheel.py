@@ -137,6 +137,19 @@ def test_without_a_compiler_a_build_asks_pip_for_one(
     assert "pip install ziglang" in said[0]
 
 
+def test_without_a_compiler_pip_fetches_one_and_the_wheel_is_whole(
+    packages: Packages, zig: list[str], tmp_path: Path
+) -> None:
+    # where zig-tools are, pip has been able to fetch it once
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "-q", "wheel", "--no-deps"]
+    environment = clean_environment(PATH=str(tmp_path))
+    subprocess.run([*pip, "-w", str(tmp_path), str(packages.sdist)], env=environment, check=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    names = zipfile.ZipFile(wheel).namelist()
+    assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
+
+
+@pytest.mark.timeout(1800)  # installs all that a newcomer gets
 def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packages: Packages) -> None:
     script = REPOSITORY / "tools" / "newcomer.sh"
     # a newcomer's Python is not the one of this environment
