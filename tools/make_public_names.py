@@ -13,6 +13,7 @@ import inspect
 import pkgutil
 import re
 import sys
+import typing
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -59,7 +60,9 @@ def head(value: Any) -> str:
         if issubclass(value, enum.Enum):
             return "{" + ", ".join(value.__members__) + "}"
         return signature(value) if callable_class(value) else ""
-    return signature(value) if callable(value) else f": {type(value).__name__}"
+    if inspect.isroutine(value):
+        return signature(value)
+    return ": alias" if typing.get_origin(value) else f": {type(value).__name__}"
 
 
 def callable_class(kind: type) -> bool:
