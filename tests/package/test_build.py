@@ -28,17 +28,21 @@ import ctypes, hashlib, sys
 import fdvv._native as native
 other = ctypes.CDLL(sys.argv[1])
 native.library = lambda: other
-import fdvv.model._fit as fit
-fit.library = native.library
+import fdvv.model._fit as fit, fdvv.twin._kernel as kernel
+fit.library = kernel.library = native.library
 import numpy as np
-from fdvv.device import LibraryBoard, LinkedDevice, ScriptedPerson
-from fdvv.model import MeasuredCurve, Stroke, fit_curve
+from fdvv.device import TwinDevice
+from fdvv.model import ForceSurface, MeasuredCurve, Stroke, fit_curve, load_builtin
 rng = np.random.default_rng(1)
 found = hashlib.sha256()
 for count in (40, 400):
     curve = MeasuredCurve(np.cumsum(rng.uniform(1e-6, 0.02, count)), rng.normal(50, 30, count), Stroke.PRESS)
     found.update(fit_curve(curve).curve.control_points_cN.tobytes())
-LinkedDevice(LibraryBoard(), ScriptedPerson()).close()
+button, device = load_builtin("mx-clear"), TwinDevice(seed=1)
+device.upload(ForceSurface.of_model(button, [50.0, 200.0]), button.travel_mm)
+for velocity in (5.0, 100.0, 500.0):
+    press = device.press(velocity)
+    found.update(press.force_cN.tobytes() + press.displacement_mm.tobytes())
 print(found.hexdigest())
 """
 
@@ -161,7 +165,7 @@ def test_the_c_compiles_without_a_warning_for_every_system(
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-def test_fits_and_firmware_of_pips_compiler_are_those_of_the_systems(
+def test_fits_and_presses_of_pips_compiler_are_those_of_the_systems(
     build: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, zig: list[str]
 ) -> None:
     from fdvv import _native

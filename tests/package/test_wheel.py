@@ -160,6 +160,6 @@ def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packag
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    steps = [line.split("  ")[1] for line in ran.stdout.splitlines() if " s  " in line]
+    steps = re.findall(r"^ *[\d.]+ s  (.+?)  ", ran.stdout, flags=re.MULTILINE)
     for step in ("make demo", "fdvv studio", "fdvv study preview realism", "python"):
         assert step in steps
