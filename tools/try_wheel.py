@@ -10,6 +10,7 @@ import importlib
 import importlib.metadata
 import importlib.util
 import json
+import os
 import pkgutil
 import subprocess
 import sys
@@ -32,8 +33,9 @@ EXTRAS = {
 
 def fdvv(folder: Path, *words: str, status: int = 0) -> tuple[str, str]:
     """Run the command in a folder; give what it prints and says."""
+    command, environment = [*FDVV, *words], {**os.environ, "PYTHONUTF8": "1"}
     ran = subprocess.run(
-        [*FDVV, *words], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False
+        command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8", check=False
     )
     if ran.returncode != status:
         raise SystemExit(f"fdvv {' '.join(words)} ended with {ran.returncode}:\n{ran.stdout}{ran.stderr}")

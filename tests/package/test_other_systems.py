@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 import subprocess
 import sys
@@ -128,3 +129,21 @@ def test_text_is_read_and_written_in_a_named_encoding() -> None:
     }
     assert wrong == {}
     assert unnamed(ast.parse('p.read_text()\nopen(p, "w")\np.read_text("utf-8")\np.open("rb")')) == [1, 2]
+
+
+@pytest.mark.slow
+def test_a_pipe_that_knows_few_signs_gets_the_rest(tmp_path: Path) -> None:
+    fdvv = [sys.executable, "-m", "fdvv", "study"]
+    subprocess.run([*fdvv, "new", "realism"], cwd=tmp_path, check=True, capture_output=True)
+    shown = [
+        subprocess.run(
+            [*fdvv, "preview", "realism"],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONIOENCODING": encoding},
+            capture_output=True,
+            check=True,
+        ).stdout.decode()
+        for encoding in ("utf-8", "ascii")
+    ]
+    assert "näher" in shown[0]
+    assert "n?her" in shown[1]
