@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import io
 import keyword
 import os
 import sys
@@ -109,6 +110,9 @@ def main() -> NoReturn:
     """Run the command line; exit 0 done, 1 missed a bound or failed, 2 unusable input, 130 interrupted."""
     # matrices here are small: threads of BLAS would only wait for each other. NumPy is not yet imported
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # a pipe of Windows does not know every sign: a question mark is better than none of the rest
+        sys.stdout.reconfigure(errors="replace")
     try:
         # click gives the status of an Exit, and None or whatever a command returns otherwise
         status = cli.main(prog_name="fdvv", standalone_mode=False)

@@ -90,7 +90,7 @@ class Studies:
     def device(self, name: str) -> str:
         """Tell what renders a study: the twin, or a device by what `fdvv.device` calls it."""
         path = self.path(name).with_suffix(DEVICE_SUFFIX)
-        return path.read_text().strip() if path.is_file() else TWIN
+        return path.read_text(encoding="utf-8").strip() if path.is_file() else TWIN
 
     def use_device(self, name: str, device: str, known: Sequence[str]) -> None:
         """Have a study rendered by another device of those that are known, from the next trial on.

@@ -274,7 +274,6 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_stage_finger import SimulatedFingerStage
     from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
     from fdvv.workflow._study_stage_person import PersonStage
-    from fdvv.workflow._study_standing import PersonStanding, people_standing
     from fdvv.workflow._sweep import SweepPreview, SweepResult, preview_sweep, run_sweep
     from fdvv.workflow._sweep_columns import sweep_schema
     from fdvv.workflow._sweep_measure import MEASURES as SWEEP_MEASURES
