@@ -1,4 +1,4 @@
-"""Docstrings in the way of this house: a sentence, paragraphs, and ``name : what it is`` of what they are about."""
+"""Docstrings in the way of this house: a sentence, paragraphs, and entries ``name : what it is``."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _split(text: str, names: tuple[str, ...]) -> tuple[str, dict[str, str]]:
     ends = [*(mark.start() for mark in marks[1:]), len(line)][: len(marks)]
     entries = {
         name.strip("* "): line[mark.end() : end].strip().rstrip(";.")
-    for mark, end in zip(marks, ends, strict=True)
+        for mark, end in zip(marks, ends, strict=True)
         for name in mark[1].split(",")
     }
     return line[: marks[0].start()].strip() if marks else line, entries

@@ -1,4 +1,4 @@
-"""What every room of the package offers, and what is said of it: names, signatures, fields, meanings, units."""
+"""What every room of the package offers, and what is said of it: signatures, fields, meanings, units."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from types import ModuleType
 from typing import Any, Literal
 
 import msgspec
-
-import fdvv
 from tools.api_docstrings import Said, named, read
 from tools.api_signatures import annotation, call, default, parameters, plain, returned, short, unit_of
 from tools.api_source import Assigned, class_body, constants, home
+
+import fdvv
 
 WORDS_FILE = Path(__file__).with_name("api_words.toml")
 WORDS: dict[str, dict[str, str]] = tomllib.loads(WORDS_FILE.read_text(encoding="utf-8"))
@@ -106,7 +106,7 @@ def _type_variables(module: ModuleType) -> list[str]:
 
 def _thing(name: str, room: str, found: Any) -> Thing:
     if inspect.isclass(found) and found.__module__.startswith("fdvv"):
-        return _class(name, room, found)
+        return class_thing(name, room, found)
     if inspect.isroutine(found) or hasattr(found, "__wrapped__"):
         return _function(name, room, found)
     there, own_name = home(room, name)
@@ -114,14 +114,17 @@ def _thing(name: str, room: str, found: Any) -> Thing:
     return Thing(name, room, "value", f"{name} = {short(told.value)}", read(told.text, ())[0])
 
 
-def _class(name: str, room: str, found: type[Any]) -> Thing:
+def class_thing(name: str, room: str, found: type[Any]) -> Thing:
+    """Read a class of the package, whether it is offered to everybody or not."""
     made = (found.__doc__ or "").startswith(f"{found.__name__}(")  # by dataclass, where there is none
     doc = "" if made else inspect.cleandoc(found.__doc__ or "")
     kind = _kind(found)
     said, parts = (_members if kind == "enumeration" else _fields)(room, found, doc)
     shown = f"class {name}" + (call(found, "") if kind in ("record", "class") else "")
     fields = {part.name for part in parts}
-    own = [key for key, value in vars(found).items() if key[0] != "_" and _is_own(value) and key not in fields]
+    own = [
+        key for key, value in vars(found).items() if key[0] != "_" and _is_own(value) and key not in fields
+    ]
     methods = tuple(_function(key, room, vars(found)[key], parts, doc) for key in own)
     return Thing(name, room, kind, shown, said, parts, methods)
 
@@ -169,15 +172,13 @@ def _fields(room: str, found: type[Any], doc: str) -> tuple[Said | None, tuple[P
 
 def _part(room: str, p: inspect.Parameter, own: dict[str, str], text: str) -> Part:
     type_ = annotation(p.annotation)
-    meaning, told = own.get(p.name, ""), True
-    if not meaning and not named(p.name, text):
-        meaning = word(room, p.name)
-        told = bool(meaning or classes_in(type_))
+    meaning = own.get(p.name) or word(room, p.name)
+    told = bool(meaning or classes_in(type_)) or named(p.name, text)
     return Part(p.name, type_, default(p.default), meaning, told)
 
 
 def _field_texts(found: type[Any]) -> dict[str, str]:
-    """Give what stands at the fields themselves: text below, metadata of the twin, descriptions of schemas."""
+    """Give what stands at the fields themselves: text below, the twin's metadata, descriptions of schemas."""
     texts: dict[str, str] = {}
     for base in reversed(found.__mro__):
         if base.__module__.startswith("fdvv"):
@@ -204,10 +205,9 @@ def _members(room: str, found: type[enum.Enum], doc: str) -> tuple[Said | None, 
     body = class_body(found)
     parts = []
     for name, value in values.items():
-        meaning = entries.get(name) or entries.get(value) or body.get(name, Assigned()).text
         spoken = named(name, doc) or named(value, doc) or " " in value
-        if not meaning and not spoken:
-            meaning = word(room, name)
+        meaning = entries.get(name) or entries.get(value) or body.get(name, Assigned()).text
+        meaning = meaning or ("" if spoken else word(room, name))
         parts.append(Part(name, repr(found[name].value), "", meaning, bool(meaning) or spoken))
     return said, tuple(parts)
 

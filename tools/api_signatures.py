@@ -38,8 +38,14 @@ UNITS = {
     "ohm": "Ω",
     "degC": "°C",
     "usd": "US$",
-    **{unit: unit for unit in ("mm", "m", "cN", "N", "gf", "s", "ms", "Hz", "kHz", "kg", "g", "K", "W", "V", "mV")},
-    **{unit: unit for unit in ("A", "J", "mJ", "dB", "rad", "lx", "Pa", "px", "percent", "kB", "bytes", "JND")},
+    **{
+        unit: unit
+        for unit in ("mm", "m", "cN", "N", "gf", "s", "ms", "Hz", "kHz", "kg", "g", "K", "W", "V", "mV")
+    },
+    **{
+        unit: unit
+        for unit in ("A", "J", "mJ", "dB", "rad", "lx", "Pa", "px", "percent", "kB", "bytes", "JND")
+    },
 }
 """A unit by the last part of a name."""
 
