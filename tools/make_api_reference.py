@@ -28,8 +28,8 @@ default. A room is a module that people import from; which room may import which
 - The unit is the last part of a name: `travel_mm`, `force_cN`, `velocity_mm_s`; a `_ratio` has none.
 - An array is one-dimensional, (n,), and arrays of one call or record go together sample by sample, unless the
   text gives another shape. Where a plain number will do, so will an array of any shape (`ArrayLike`).
-- Displacement is positive into the button and 0 at first contact, force positive against the finger, velocity the
-  mean speed of a stroke and always positive ([frames](../../../ARCHITECTURE.md#coordinates-signs-clocks)).
+- Displacement is positive into the button and 0 at first contact, force positive against the finger, velocity
+  always positive: the mean speed of a stroke ([frames](../../../ARCHITECTURE.md#coordinates-signs-clocks)).
 - Records are frozen: make another with `dataclasses.replace`. What is wrong raises when it is made.
 - What a person did wrong raises [`InputError`](errors.md#inputerror) with place, reason and remedy; the other
   errors are in [fdvv.errors](errors.md).

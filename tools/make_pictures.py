@@ -37,7 +37,7 @@ from fdvv.units import cN_from_gf
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "docs" / "images"
-SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared" / "data"))
+SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared")) / "data"
 RAW = SHARED / "bluepylons-parsed" / "Cherry-MX-Hyperglide-Brown.csv"
 CREDIT = "data: bluepylons, CC BY 4.0"
 LARGEST_PNG = 150_000

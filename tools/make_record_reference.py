@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import json
 import tomllib
 import typing
 from dataclasses import dataclass, replace
+from inspect import isclass
 from pathlib import Path
 from typing import Any
 
-from msgspec import inspect
+from msgspec import NODEFAULT, inspect, to_builtins
 from tools.api_reading import Part, Thing, class_thing
+from tools.api_signatures import LONGEST_VALUE
 from tools.markdown import escaped, table
 from tools.record_types import fields, in_words, reached, records_in
 
@@ -68,9 +71,10 @@ FILES_HEAD = f"""# Files, field by field
 
 Made from the records that check them, by `{COMMAND}`; do not edit.
 
-Every file that this package writes for people or for itself, and every field of it. A field that is not named
-here is refused when a file is read. A field without a default must be there. Units are the last part of a
-name. Numbers are finite. An array in JSON is a [column](recording-file.md#a-column): exact to the bit.
+Every file that this package writes for people or for itself, and every field of it. What is not named
+here belongs in no file, and most readers refuse it by its name. A field without a default must be there.
+Units are the last part of a name. Numbers are finite. An array in JSON is a
+[column](recording-file.md#a-column): exact to the bit.
 
 Files of people's own numbers are told elsewhere: [rig and finger](rig.md), [real button](button.md),
 [force files](force-files.md), [logs](log-files.md).
@@ -86,11 +90,11 @@ MESSAGES_HEAD = f"""# Messages of the studio
 
 Made from their types by `{COMMAND}`; do not edit. The same types make `web/src/net/messages.ts`.
 
-The page and `fdvv studio` speak JSON. A **call** is `POST /api/NAME` with one message and is answered with one,
-or with a status of 400 or above and a line of text. A **channel** is part of the one WebSocket of a page:
-messages come and go, each tagged by `type`. Whatever is not named here is refused. Nothing is answered without
-the token of the address that was printed ([what else is refused](../explanation/studio.md)). These messages may
-change with any version: page and server come from one package.
+The page and `fdvv studio` speak JSON. A **call** is `POST /api/NAME` with one message and is answered with
+one, or with a status of 400 or above and a line of text. A **channel** is part of the one WebSocket of a
+page: messages come and go, each tagged by `type`. Whatever is not named here is refused. Nothing is answered
+without the token of the address that was printed ([what else is refused](../explanation/studio.md)). These
+messages may change with any version: page and server come from one package.
 """
 
 
@@ -164,8 +168,19 @@ def _section(record: type[Any], mark: str) -> str:
 
 
 def _row(field: inspect.Field, part: Part) -> tuple[str, str, str, str, str]:
-    default = f"`{part.default}`" if part.default and not field.required else ""
-    return f"`{field.encode_name}`", in_words(field.type), default, part.unit, escaped(part.meaning)
+    shown = f"`{_default(field)}`" if not field.required else ""
+    return f"`{field.encode_name}`", in_words(field.type), shown, part.unit, escaped(part.meaning)
+
+
+def _default(field: inspect.Field) -> str:
+    """Give what stands for a field that is left out, as JSON."""
+    made = field.default
+    if made is NODEFAULT:
+        if not isclass(field.default_factory):
+            return "…"  # made anew each time, as a date is
+        made = field.default_factory()
+    text = json.dumps(to_builtins(made), ensure_ascii=False)
+    return text if len(text) <= LONGEST_VALUE else "…"
 
 
 def _linked(record: type[Any]) -> str:

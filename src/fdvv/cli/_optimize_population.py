@@ -19,8 +19,10 @@ def add_population(group: click.Group) -> None:
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--people", type=click.IntRange(1, 1_000_000), default=100, show_default=True)
-@click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True)
+@click.option("--people", type=click.IntRange(1, 1_000_000), default=100, show_default=True,
+              help="How many are simulated.")  # fmt: skip
+@click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True,
+              help="How fast the bullet is.")  # fmt: skip
 @click.option("--engine", default="tpe", show_default=True, help="Of every person's run.")
 @click.option(
     "--budget", type=click.IntRange(1, 1000), default=30, show_default=True, help="Trials of each person."
