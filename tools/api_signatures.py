@@ -100,6 +100,7 @@ def default(found: Any) -> str:
 def short(text: str) -> str:
     """Give code in one line; ``...`` where it is long or tells an address."""
     line = " ".join(text.split())
+    line = line if '"' in line else line.replace("'", '"')  # as the formatter has it
     return "..." if len(line) > LONGEST_VALUE or "<" in line else line
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.docs.pages import API
 from tools import api_docstrings, api_signatures, make_api_reference
 from tools.api_reading import EVERYWHERE, WORDS, Part, Thing, rooms, things
-
-from tests.docs.pages import API
 
 ANEW = f"run {make_api_reference.COMMAND}"
 
@@ -23,16 +22,16 @@ def everything() -> list[tuple[str, Thing]]:
 def test_every_public_name_has_a_docstring() -> None:
     bare = [name for name, thing in everything() if thing.said is None]
     assert bare == [], (
-        f"write a docstring for each: a sentence in the imperative, then meaning, shapes, units, errors; below a "
-        f'constant a """sentence.""": {bare}'
+        f"write a docstring for each: a sentence in the imperative, then meaning, shapes, units, errors; "
+        f'below a constant a """sentence.""": {bare}'
     )
 
 
 def test_every_parameter_field_and_member_is_told() -> None:
     silent = [f"{name}: {part.name}" for name, thing in everything() for part in thing.parts if not part.told]
     assert silent == [], (
-        f"{len(silent)} are not told: write `name : what it is` into the docstring of each, or, if the name means "
-        f"the same everywhere in its room, into tools/api_words.toml: {silent}"
+        f"{len(silent)} are not told: write `name : what it is` into the docstring of each, or, if the name "
+        f"means the same everywhere in its room, into tools/api_words.toml: {silent}"
     )
 
 

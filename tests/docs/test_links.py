@@ -8,9 +8,8 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from tools.markdown import anchors, links, slug, slugs
-
 from tests.docs.pages import API, DOCS, PAGES, name_of
+from tools.markdown import anchors, links, slug, slugs
 
 CONTENTS = DOCS / "README.md"
 

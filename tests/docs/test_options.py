@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import click
 import pytest
+from tests.docs.pages import DOCS, REPOSITORY
 
 from fdvv.cli import cli
-from tests.docs.pages import DOCS, REPOSITORY
 
 ENVIRONMENT = DOCS / "reference" / "environment.md"
 VARIABLE = re.compile(

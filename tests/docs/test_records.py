@@ -1,4 +1,4 @@
-"""Every field of every file, every message of the studio and every parameter of the twin is told where people look."""
+"""Every field of every file, message of the studio and parameter of the twin is told where people look."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import msgspec
 import pytest
+from tests.docs.pages import DOCS
 from tools import make_record_reference, record_types
 from tools.make_record_reference import FILES, fields, is_told, messages, thing_of
 from tools.record_types import reached
@@ -17,7 +18,6 @@ from tools.record_types import reached
 import fdvv
 from fdvv.twin import ButtonPhysics, Finger, Rig
 from fdvv.twin._quantity import about
-from tests.docs.pages import DOCS
 
 REFERENCE = DOCS / "reference"
 ANEW = f"run {make_record_reference.COMMAND}"
@@ -31,7 +31,7 @@ TOLD_BY_HAND = {
     "study-file.md": ("Study",),
     "answers-file.md": ("Code book",),
 }
-"""Pages that people read, each with the kinds of file that it tells; files.md has every field of every kind."""
+"""Pages that people read, each with the kinds of file it tells; files.md has every field of every kind."""
 
 
 @pytest.mark.parametrize("name", make_record_reference.PAGES)

@@ -32,7 +32,8 @@ def add_population(group: click.Group) -> None:
     type=click.IntRange(1, 100_000),
     help="No runs: everybody scores so many designs of an even net.",
 )
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True)
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True,
+              help="Of people, engines and presses.")  # fmt: skip
 @click.option(
     "--shift", "shifts", multiple=True, metavar="NAME=RATIO", help="Other people, as pace_mm_s=1.3."
 )

@@ -73,7 +73,7 @@ def verify(
     keeper: Path | None,
     as_json: bool,
 ) -> None:
-    """Tell whether the study in FOLDER is as it was frozen, its logs as they were written; status 1 if not."""
+    """Tell whether the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
     from fdvv.workflow import Study
 
     study = Study.open(folder)
