@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 FENCE = re.compile(r"^(`{3,})(\w*)\n(.*?)^\1$", flags=re.MULTILINE | re.DOTALL)
 SPAN = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", flags=re.DOTALL)
+NAMED = re.compile(r"`([\w.-]+\.\w+)`:\s*\Z")
 HEADING = re.compile(r"^#{1,6} +(.+?)\s*$", flags=re.MULTILINE)
 LINK = re.compile(r"\]\(([^()\s]+(?:\([^()\s]*\))?)\)")
 
@@ -19,17 +20,24 @@ class Block:
     Attributes
     ----------
     language : after the fence; "" if none is named. text : what stands in it. line : of its fence, from 1.
+    name : of the file that it shows, if the words before it end with that name and a colon; else "".
     """
 
     language: str
     text: str
     line: int
+    name: str = ""
 
 
 def blocks(text: str) -> list[Block]:
     """Give the fenced blocks of a page, in their order."""
-    found = FENCE.finditer(text)
-    return [Block(m[2], m[3], text.count("\n", 0, m.start()) + 1) for m in found]
+    return [_block(text, mark) for mark in FENCE.finditer(text)]
+
+
+def _block(text: str, mark: re.Match[str]) -> Block:
+    before = text[: mark.start()]
+    named = NAMED.search(before)
+    return Block(mark[2], mark[3], before.count("\n") + 1, named[1] if named else "")
 
 
 def prose(text: str) -> str:

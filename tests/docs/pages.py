@@ -74,6 +74,8 @@ def follow(page: Path, folder: Path, environment: Mapping[str, str]) -> None:
         elif block.language == "console":
             for step in steps(block.text):
                 check(step, where, folder, environment)
+        elif block.name:
+            (folder / block.name).write_text(block.text, encoding="utf-8")
         elif block.language == "" and printed:
             assert block.text == printed, f"{where}: the program above prints {printed!r}"
             printed = ""
