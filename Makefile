@@ -10,7 +10,7 @@ NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/board
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test check format bench setup firmware firmware-tools web web-check web-tools test-browser clean
+.PHONY: help demo test check format bench setup firmware firmware-tools docs web web-check web-tools test-browser clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -47,6 +47,9 @@ format: setup ## Format the code in place
 
 bench: setup ## Time fits, scans and the twin beside plain SciPy
 	$(BIN)/python -m benchmarks
+
+docs: setup ## Build the site of the documents into build/site
+	$(BIN)/python -m tools.make_site
 
 firmware-tools: ## Install the cross compilers and the emulator of the boards
 	bash tools/firmware_tools.sh build

@@ -99,9 +99,7 @@ def test_the_contents_are_ordered_by_what_people_want() -> None:
     assert all((REPOSITORY / page).is_file() for page in pages)
     kinds = dict(make_site.sections())
     for title, folder in (("Learn", "tutorials"), ("Do", "how-to"), ("Understand", "explanation")):
-        assert {Path(page).parts[1] for page in kinds[title]} == {folder}, (
-            f"{title} holds pages of docs/{folder}"
-        )
+        assert {Path(page).parts[1] for page in kinds[title]} == {folder}, f"{title}: pages of docs/{folder}"
 
 
 def test_a_staged_front_page_leads_where_it_did(tmp_path: Path) -> None:
