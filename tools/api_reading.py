@@ -172,7 +172,7 @@ def _fields(room: str, found: type[Any], doc: str) -> tuple[Said | None, tuple[P
 
 def _part(room: str, p: inspect.Parameter, own: dict[str, str], text: str) -> Part:
     type_ = annotation(p.annotation)
-    meaning = own.get(p.name) or word(room, p.name)
+    meaning = own.get(p.name) or word(room, p.name, type_)
     told = bool(meaning or classes_in(type_)) or named(p.name, text)
     return Part(p.name, type_, default(p.default), meaning, told)
 
@@ -212,9 +212,13 @@ def _members(room: str, found: type[enum.Enum], doc: str) -> tuple[Said | None, 
     return said, tuple(parts)
 
 
-def word(room: str, name: str) -> str:
-    """Give what a name means in a room where nothing else is said of it, "" if that is nowhere written."""
-    return WORDS.get(room, {}).get(name) or WORDS[EVERYWHERE].get(name, "")
+def word(room: str, name: str, type_: str = "") -> str:
+    """Give what a name means where nothing else is said of it, "" if that is nowhere written.
+
+    type_ : a record of the package tells more than a word that holds everywhere.
+    """
+    everywhere = "" if classes_in(type_) else WORDS[EVERYWHERE].get(name, "")
+    return WORDS.get(room, {}).get(name) or everywhere
 
 
 @cache

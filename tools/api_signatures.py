@@ -116,7 +116,7 @@ def call(found: Any, end: str) -> str:
     for p in parameters(found):
         if p.kind is p.KEYWORD_ONLY and not any(text.startswith("*") for text in shown):
             shown.append("*")
-        star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
+        star = "*" if p.kind is p.VAR_POSITIONAL else "**" if p.kind is p.VAR_KEYWORD else ""
         type_ = f": {annotation(p.annotation)}" if annotation(p.annotation) else ""
         given = f" = {default(p.default)}" if default(p.default) else ""
         shown.append(f"{star}{p.name}{type_}{given}")

@@ -12,8 +12,8 @@ import msgspec
 import pytest
 from tests.docs.pages import DOCS
 from tools import make_record_reference, record_types
-from tools.make_record_reference import FILES, fields, is_told, messages, thing_of
-from tools.record_types import reached
+from tools.make_record_reference import FILES, is_told, messages, thing_of
+from tools.record_types import fields, reached
 
 import fdvv
 from fdvv.twin import ButtonPhysics, Finger, Rig
