@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
     from fdvv.workflow._demo import DemoResult, Rendering, SwitchFit, demo
     from fdvv.workflow._demo_report import demo_report
+    from fdvv.workflow._device_key import DeviceKey
     from fdvv.workflow._devices import open_device
     from fdvv.workflow._draft import DraftKept, DraftStale, DraftState
     from fdvv.workflow._draft_history import (
@@ -282,6 +283,7 @@ __all__ = [
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
+    "DeviceKey",
     "DeviceStage",
     "Difference",
     "DraftChange",

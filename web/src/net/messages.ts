@@ -41,6 +41,7 @@ export interface Calls {
   readonly "optimize.best": { readonly ask: OptimizeAsk; readonly answer: OptimizeBest };
   readonly "optimize.create": { readonly ask: OptimizeCreate; readonly answer: OptimizeAsk };
   readonly "optimize.detail": { readonly ask: OptimizeAsk; readonly answer: OptimizeDetail };
+  readonly "optimize.devices": { readonly ask: OptimizeDevicesAsk; readonly answer: OptimizeDevices };
   readonly "optimize.edit": { readonly ask: OptimizeEdit; readonly answer: OptimizeTrialAsk };
   readonly "optimize.halt": { readonly ask: OptimizeAsk; readonly answer: OptimizeAsk };
   readonly "optimize.list": { readonly ask: OptimizeListAsk; readonly answer: OptimizeRows };
@@ -795,6 +796,18 @@ export interface OptimizeSimulated {
   readonly fault: string;
 }
 
+export interface OptimizeDevicesAsk {
+}
+
+export interface OptimizeDevices {
+  readonly devices: readonly OptimizeOffer[];
+}
+
+export interface OptimizeOffer {
+  readonly name: string;
+  readonly told: string;
+}
+
 export interface OptimizeEdit {
   readonly run: number;
   readonly trial: number;
@@ -829,11 +842,6 @@ export interface OptimizeOffers {
   readonly levels: readonly OptimizeOffer[];
   readonly objectives: readonly OptimizeOffer[];
   readonly starts: readonly OptimizeOffer[];
-}
-
-export interface OptimizeOffer {
-  readonly name: string;
-  readonly told: string;
 }
 
 export interface OptimizeSimulate {
@@ -1392,6 +1400,7 @@ export interface PlayOpen {
   readonly type: "open";
   readonly run: number;
   readonly trial: number;
+  readonly device?: string;
 }
 
 export interface PlayPing {
@@ -1415,7 +1424,7 @@ export interface PlayRound {
   readonly start_ms: number;
   readonly target_ms: number;
   readonly end_ms: number;
-  readonly hand: "key" | "mouse" | "pen" | "touch";
+  readonly hand: "button" | "key" | "mouse" | "pen" | "touch";
   readonly display: PlayDelay;
   readonly input: PlayDelay;
   readonly clock_ms: number | null;
