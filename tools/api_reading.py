@@ -184,13 +184,21 @@ def _field_texts(found: type[Any]) -> dict[str, str]:
         if base.__module__.startswith("fdvv"):
             texts |= {name: told.text for name, told in class_body(base).items() if told.text}
     if dataclasses.is_dataclass(found):
-        abouts = {field.name: field.metadata.get("about") for field in dataclasses.fields(found)}
-        texts |= {name: f"{it.text} (source: {it.source})" for name, it in abouts.items() if it}
+        texts |= {field.name: told for field in dataclasses.fields(found) if (told := _told_beside(field))}
     if issubclass(found, msgspec.Struct):
         texts |= _described(found)
     return texts
 
 
+def _told_beside(field: dataclasses.Field[Any]) -> str:
+    """Give meaning and source that a field carries: a parameter of the twin, or a dimension."""
+    about = field.metadata.get("about")
+    meaning = about.text if about else field.metadata.get("meaning", "")
+    source = about.source if about else field.metadata.get("source", "")
+    return f"{meaning} (source: {source})" if source else str(meaning)
+
+
+@cache
 def _described(found: type[msgspec.Struct]) -> dict[str, str]:
     info = msgspec.inspect.type_info(found)
     assert isinstance(info, msgspec.inspect.StructType)

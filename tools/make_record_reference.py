@@ -7,6 +7,7 @@ import json
 import tomllib
 import typing
 from dataclasses import dataclass, replace
+from functools import cache
 from inspect import isclass
 from pathlib import Path
 from typing import Any
@@ -127,6 +128,7 @@ def messages_page() -> str:
     return "\n".join([*parts, *(_section(record, "###") for record in messages())])
 
 
+@cache
 def messages() -> list[type[Any]]:
     """Give every record of the studio's messages, by name."""
     found = load_parts()
@@ -135,6 +137,7 @@ def messages() -> list[type[Any]]:
     return sorted(reached(tuple(roots)), key=lambda cls: (cls.__name__.lower(), cls.__name__))
 
 
+@cache
 def thing_of(record: type[Any]) -> Thing:
     """Read a record with what is said of it."""
     room = ".".join(record.__module__.split(".")[:2])

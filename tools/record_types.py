@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from msgspec import inspect
@@ -62,6 +63,7 @@ def _length(kind: inspect.Type) -> str:
     return f" (at least {low} long)" if low else ""
 
 
+@cache
 def fields(record: type[Any]) -> tuple[inspect.Field, ...]:
     """Give the fields of a record."""
     info = inspect.type_info(record)

@@ -39,8 +39,6 @@ RUN_ELSEWHERE = {
 """Pages whose examples have a test of their own."""
 NOT_RUN: dict[str, str] = {}
 """Pages whose examples no test runs, and why."""
-QUICK = ("docs/how-to/read-a-curve-file.md",)
-"""Pages that run by default; the others are slow."""
 EXTRAS = {"docs/how-to/work-in-a-notebook.md": ("matplotlib", "pandas")}
 """Optional packages that a page needs."""
 NOT_SEEN = {"py", "python3", "pycon", "bash", "shell", "shell-session"}
@@ -52,7 +50,9 @@ def runs(page: Path) -> bool:
     return any(block.language in ("console", "python") for block in blocks_of(page))
 
 
-SHOWING = [page for page in PAGES if page.parent != API and runs(page)]
+WRITTEN = [page for page in PAGES if page.parent != API and page != DOCS / "reference" / "cli.md"]
+"""Pages that are not made from the code."""
+SHOWING = [page for page in WRITTEN if runs(page)]
 HERE = [page for page in SHOWING if name_of(page) not in {**RUN_ELSEWHERE, **NOT_RUN}]
 
 
@@ -61,15 +61,10 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONUTF8": "1", "COLUMNS": "100", "MPLBACKEND": "agg"}
 
 
-@pytest.mark.parametrize("page", [p for p in HERE if name_of(p) in QUICK], ids=name_of)
-def test_a_page_goes_as_it_shows(page: Path, tmp_path: Path, environment: dict[str, str]) -> None:
-    follow(page, tmp_path, environment)
-
-
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("page", [p for p in HERE if name_of(p) not in QUICK], ids=name_of)
-def test_a_long_page_goes_as_it_shows(page: Path, tmp_path: Path, environment: dict[str, str]) -> None:
+@pytest.mark.parametrize("page", HERE, ids=name_of)
+def test_a_page_goes_as_it_shows(page: Path, tmp_path: Path, environment: dict[str, str]) -> None:
     for package in EXTRAS.get(name_of(page), ()):
         pytest.importorskip(package)
     follow(page, tmp_path, environment)
@@ -78,13 +73,12 @@ def test_a_long_page_goes_as_it_shows(page: Path, tmp_path: Path, environment: d
 def test_pages_that_are_not_run_here_are_named_with_their_test_or_reason() -> None:
     names = {name_of(page) for page in SHOWING}
     assert set(RUN_ELSEWHERE) | set(NOT_RUN) <= names, "take pages off the lists that show nothing to run"
-    assert set(QUICK) <= {name_of(page) for page in HERE}
     for name, test in RUN_ELSEWHERE.items():
         assert Path(name).name in (REPOSITORY / "tests" / test).read_text(encoding="utf-8"), (name, test)
     assert all(NOT_RUN.values())
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", WRITTEN, ids=name_of)
 def test_blocks_say_what_they_are(page: Path) -> None:
     for block in blocks_of(page):
         where = f"{name_of(page)}:{block.line}"
@@ -94,10 +88,8 @@ def test_blocks_say_what_they_are(page: Path) -> None:
             assert steps(block.text)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", WRITTEN, ids=name_of)
 def test_commands_that_are_shown_have_these_options(page: Path) -> None:
-    if page == DOCS / "reference" / "cli.md":
-        pytest.skip("made from the commands themselves")
     for line in shown(page.read_text(encoding="utf-8")):
         told = problem(line)
         assert not told, f"{name_of(page)} shows {line!r}: {told}"
