@@ -137,9 +137,17 @@ def messages() -> list[type[Any]]:
     return sorted(reached(tuple(roots)), key=lambda cls: (cls.__name__.lower(), cls.__name__))
 
 
-@cache
 def thing_of(record: type[Any]) -> Thing:
     """Read a record with what is said of it."""
+    if record not in _THINGS:
+        _THINGS[record] = _thing(record)
+    return _THINGS[record]
+
+
+_THINGS: dict[type[Any], Thing] = {}
+
+
+def _thing(record: type[Any]) -> Thing:
     room = ".".join(record.__module__.split(".")[:2])
     found = class_thing(record.__name__, room, record)
     twin = SAME.get(f"{record.__module__.removeprefix('fdvv.')}:{record.__name__}")

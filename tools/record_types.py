@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from typing import Any
 
 from msgspec import inspect
@@ -63,12 +62,16 @@ def _length(kind: inspect.Type) -> str:
     return f" (at least {low} long)" if low else ""
 
 
-@cache
 def fields(record: type[Any]) -> tuple[inspect.Field, ...]:
     """Give the fields of a record."""
-    info = inspect.type_info(record)
-    assert isinstance(info, RECORDS), record
-    return info.fields
+    if record not in _FIELDS:
+        info = inspect.type_info(record)
+        assert isinstance(info, RECORDS), record
+        _FIELDS[record] = info.fields
+    return _FIELDS[record]
+
+
+_FIELDS: dict[type[Any], tuple[inspect.Field, ...]] = {}
 
 
 def reached(records: tuple[type[Any], ...]) -> list[type[Any]]:
