@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from tools.markdown import LINK, links
@@ -98,18 +99,27 @@ def _moved(page: str, link: str) -> str:
 
 
 def build(output: Path) -> None:
-    """Build the site; whatever Sphinx warns of ends it (CalledProcessError)."""
+    """Build the site, whole or not at all; whatever Sphinx warns of ends it (CalledProcessError)."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "source"
         stage(source)
         shutil.copytree(DOCS / "_static", source / "_static")
-        shutil.rmtree(output, ignore_errors=True)
+        made = Path(folder) / "site"
         command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-j", "2", "-b", "html"]
-        where = ["-c", str(DOCS), "-d", str(Path(folder) / "trees"), str(source), str(output)]
+        where = ["-c", str(DOCS), "-d", str(Path(folder) / "trees"), str(source), str(made)]
         subprocess.run([*command, *where], check=True)
+        shutil.rmtree(output, ignore_errors=True)
+        shutil.copytree(made, output)
+
+
+def missing() -> list[str]:
+    """Give what the site needs and is not installed."""
+    return [name for name in ("sphinx", "myst_parser", "furo") if find_spec(name) is None]
 
 
 if __name__ == "__main__":
+    if missing():
+        sys.exit(f'the site needs {", ".join(missing())}: pip install "fdvv[docs]"')
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUTPUT
     build(folder)
     print(folder / "index.html")

@@ -40,8 +40,8 @@ def is_outside(address: str) -> bool:
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    pytest.importorskip("furo")
-    pytest.importorskip("myst_parser")
+    if make_site.missing():
+        pytest.skip(f"the site needs {make_site.missing()}")
     folder = tmp_path_factory.mktemp("site") / "html"
     make_site.build(folder)
     return folder
