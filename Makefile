@@ -12,7 +12,7 @@ LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test check format bench setup firmware firmware-tools web web-check web-tools test-browser sdist wheel zig-tools newcomer clean
+.PHONY: help demo test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -49,6 +49,9 @@ format: setup ## Format the code in place
 
 bench: setup ## Time fits, scans and the twin beside plain SciPy
 	$(BIN)/python -m benchmarks
+
+docs: setup ## Build the site of the documents into build/site
+	$(BIN)/python -m tools.make_site
 
 firmware-tools: ## Install the cross compilers and the emulator of the boards
 	bash tools/firmware_tools.sh build

@@ -41,7 +41,7 @@ from fdvv.workflow import design_mechanism, designed_strokes, drawn_parts
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "docs" / "images"
-SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared" / "data"))
+SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared")) / "data"
 RAW = SHARED / "bluepylons-parsed" / "Cherry-MX-Hyperglide-Brown.csv"
 CREDIT = "data: bluepylons, CC BY 4.0"
 LARGEST_PNG = 150_000

@@ -18,8 +18,10 @@ def add_population(group: click.Group) -> None:
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--people", type=click.IntRange(1, 1_000_000), default=100, show_default=True)
-@click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True)
+@click.option("--people", type=click.IntRange(1, 1_000_000), default=100, show_default=True,
+              help="How many are simulated.")  # fmt: skip
+@click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True,
+              help="How fast the bullet is.")  # fmt: skip
 @click.option("--engine", default="tpe", show_default=True, help="Of every person's run.")
 @click.option(
     "--budget", type=click.IntRange(1, 1000), default=30, show_default=True, help="Trials of each person."
@@ -29,7 +31,8 @@ def add_population(group: click.Group) -> None:
     type=click.IntRange(1, 100_000),
     help="No runs: everybody scores so many designs of an even net.",
 )
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True)
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True,
+              help="Of people, engines and presses.")  # fmt: skip
 @click.option(
     "--shift", "shifts", multiple=True, metavar="NAME=RATIO", help="Other people, as pace_mm_s=1.3."
 )

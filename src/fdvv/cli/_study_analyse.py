@@ -62,8 +62,9 @@ plan_option = click.option(
 @click.option("--report", type=click.Path(path_type=Path), help="Write an HTML report here.")
 @json_option
 def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool, **table: Any) -> None:
-    """Analyse answers: of an unsealed study's folder, of answers.csv, or of any CSV whose columns are mapped.
+    """Analyse answers: shares, tests, distances felt, thresholds, and the main claim.
 
+    SOURCE is the folder of an unsealed study, an answers.csv, or any CSV whose columns are mapped.
     Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
     thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
     """
@@ -92,6 +93,7 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
 def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table: Any) -> None:
     """Write answers as plain tables for R, JASP or pandas, and everything the analysis found as JSON.
 
+    SOURCE is as for fdvv study analyse.
     answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
     analysis.json holds every figure.
     """

@@ -35,7 +35,7 @@ keeper_option = click.option(
 @passphrase_option
 @json_option
 def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
-    """Freeze a study before the first person: from now on every change is noticed.
+    """Freeze the study in FOLDER before the first person: from now on every change is noticed.
 
     Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
     hide; nobody can restore it. The fingerprint goes into the preregistration.
@@ -74,7 +74,7 @@ def verify(
     keeper: Path | None,
     as_json: bool,
 ) -> None:
-    """Tell whether a study is as it was frozen, and every log as it was written. Exit status 1 if not."""
+    """Tell whether the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
     from fdvv.workflow import Study
 
     study = Study.open(folder)
@@ -101,7 +101,7 @@ def verify(
 @folder_argument
 @json_option
 def status(folder: Path, as_json: bool) -> None:
-    """Tell how far a study is and what was done with it; nothing here tells what a label hid."""
+    """Tell how far the study in FOLDER is and what was done with it; nothing here tells what a label hid."""
     from fdvv.workflow import Study, operator_view
 
     study = Study.open(folder)
@@ -168,6 +168,7 @@ def unseal(
 def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) -> None:
     """Take a person out and delete all that is kept of them; that they were there stays on record.
 
+    FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
     from fdvv.workflow import Study

@@ -28,6 +28,7 @@ KINDS = {
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
 }
+"""Devices that a word opens, and what each is."""
 
 
 def pressed_by_person(spec: str) -> bool:
