@@ -13,6 +13,9 @@ M2_HEAD_mm = (3.8, 1.8)
 
 M3_HEAD_HEIGHT_mm = 3.0
 WASHER_mm = (7.0, 0.5)
+LENGTHS_mm = (8.0, 10.0, 12.0, 16.0)
+TIP_mm = 0.4
+"""What stays between the stop screw's tip and the coil's pocket."""
 
 
 def screws(d: Dimensions) -> tuple[Envelope, ...]:
