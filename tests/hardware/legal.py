@@ -10,7 +10,7 @@ from fdvv.hardware import Dimensions, misses
 
 RANGES = {
     "travel_mm": (2.0, 6.4),
-    "coil_diameter_mm": (20.0, 30.0),
+    "coil_diameter_mm": (25.0, 30.0),
     "coil_length_mm": (18.0, 28.0),
     "rod_diameter_mm": (2.0, 3.0),
     "bushing_length_mm": (4.0, 8.0),
@@ -24,14 +24,16 @@ RANGES = {
     "exciter_height_mm": (4.0, 8.0),
     "keycap_width_mm": (17.0, 19.0),
     "slide_gap_mm": (0.15, 0.4),
-    "fit_gap_mm": (0.05, 0.2),
+    "fit_gap_mm": (0.05, 0.12),
     "limiter_large_mm": (16.8, 17.6),
     "wall_mm": (3.0, 5.0),
 }
 
 
 def _made(values: dict[str, float]) -> Dimensions:
-    return dataclasses.replace(Dimensions(), **values)
+    rod_mm = values["rod_diameter_mm"]
+    bores = {"bushing_bore_mm": rod_mm + 0.04, "coil_bore_mm": rod_mm + 0.1}
+    return dataclasses.replace(Dimensions(), **values, **bores)
 
 
 legal_dimensions = (

@@ -123,9 +123,8 @@ def test_the_sensor_cone_is_the_papers_frustum_less_a_dimple(meshes: dict[str, M
     )
 
 
-@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
-def test_no_two_parts_meet(rig: Assembly, share: float) -> None:
-    travel_mm = share * (D.travel_mm - 0.02)
+def test_no_two_parts_meet_at_the_end_of_the_travel(rig: Assembly) -> None:
+    travel_mm = D.travel_mm - 0.02
     assert meetings(rig, State(travel_mm, min(travel_mm + 0.05, D.travel_mm))) == []
 
 
@@ -160,7 +159,7 @@ def test_parts_that_stand_wrong_are_seen_to_meet(rig: Assembly) -> None:
     assert any("limiter-bracket" in pair for pair in met)
 
 
-@pytest.mark.parametrize("stop_mm", [0.5, 3.1, 6.0])
+@pytest.mark.parametrize("stop_mm", [0.5, 6.0])
 def test_the_foot_meets_the_limiter_where_its_law_says(rig: Assembly, stop_mm: float) -> None:
     # stand still, let the limiter be set for a stop: the gap that is left is the rest of the way
     for left_mm in (0.3, 0.1):
@@ -219,6 +218,7 @@ def copied(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_changed_file_is_named(tmp_path: Path) -> None:
     folder = copied(tmp_path)
     path = folder / "parts" / "base.stl"

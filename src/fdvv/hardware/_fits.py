@@ -8,6 +8,7 @@ from fdvv.errors import InputError
 from fdvv.hardware._dimensions import Dimensions
 from fdvv.hardware._layout import Layout
 from fdvv.hardware._limiter import HOLD_RATIO, Limiter
+from fdvv.hardware._screws import WASHER_mm
 from fdvv.hardware._tolerance import core_stack
 
 Miss = tuple[str, str, str]
@@ -59,6 +60,10 @@ def _sensor(d: Dimensions) -> Iterator[Miss]:
         yield "lvdt_sink_mm", reason, f"stay under {d.base_height_mm - 4.0:g} mm, or make the base higher"
     if Layout(d).core_rod_length_mm < 2.0:
         yield "lvdt_length_mm", "leaves no rod between core and coupling", "measure sensor and core"
+    beside_mm = Layout(d).lvdt_screw_mm - WASHER_mm[0] / 2 - d.lvdt_diameter_mm / 2
+    if beside_mm < d.slide_gap_mm:
+        reason = f"{d.coil_diameter_mm:g} mm makes a tower too narrow for the sensor's mount and its screws"
+        yield "coil_diameter_mm", reason, "take a thinner displacement sensor, or a wider coil"
     worst_mm, room_mm = core_stack(d).worst_mm, (d.lvdt_bore_mm - d.lvdt_core_diameter_mm) / 2
     if d.float_mm < worst_mm - room_mm:
         reason = f"{d.float_mm:g} mm cannot take up {worst_mm - room_mm:.2f} mm of tolerances"

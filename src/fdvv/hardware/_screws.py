@@ -13,6 +13,9 @@ M2_HEAD_mm = (3.8, 1.8)
 
 M3_HEAD_HEIGHT_mm = 3.0
 WASHER_mm = (7.0, 0.5)
+LENGTHS_mm = (8.0, 10.0, 12.0, 16.0)
+TIP_mm = 0.4
+"""What stays between the stop screw's tip and the coil's pocket."""
 
 
 def screws(d: Dimensions) -> tuple[Envelope, ...]:
@@ -48,10 +51,12 @@ def _pin(d: Dimensions) -> Envelope:
     """Give the screw that runs in the tongue's slot; its head stays clear of the tongue."""
     layout = Layout(d)
     seat = -(layout.tongue_out_mm + d.tongue_thickness_mm + 2 * d.slide_gap_mm)
-    made = _screw("x", (seat, 0.0, layout.pin_height_mm), 1, 12.0, 3.0, _m3(d))
-    return Envelope(
-        "pin", "M3 × 12 stop screw", Moves.FIXED, made, (), frozenset(), frozenset({"coil-mount"})
-    )
+    # the longest that one can buy and that does not reach the coil
+    room_mm = -seat - layout.tower_bore_mm / 2 - TIP_mm
+    length_mm = max((length for length in LENGTHS_mm if length <= room_mm), default=LENGTHS_mm[0])
+    made = _screw("x", (seat, 0.0, layout.pin_height_mm), 1, length_mm, 3.0, _m3(d))
+    title, enters = f"M3 × {length_mm:g} stop screw", frozenset({"coil-mount"})
+    return Envelope("pin", title, Moves.FIXED, made, (), frozenset(), enters)
 
 
 def _onto_base(d: Dimensions) -> tuple[Envelope, Envelope]:
