@@ -104,3 +104,10 @@ def test_where_nothing_can_be_made_every_reason_is_told() -> None:
     model: FDVVModel = load_builtin("mx-red")
     with pytest.raises(InputError, match="spring: no spring of"):
         design_mechanism(model, "spring", tiny)
+
+
+def test_a_model_without_release_is_refused_and_named_once() -> None:
+    model = load_builtin("mx-red")
+    with pytest.raises(InputError, match="no release") as told:
+        design_mechanism(replace(model, curves=model.of("press")))
+    assert str(told.value).count("mx-red") == 1

@@ -131,7 +131,8 @@ def design_mechanism(
     try:
         target = target_of(model)
     except ModelError as error:
-        raise InputError(model.name, "curves", str(error), "choose a model with press and release") from error
+        reason = str(error).removeprefix(f"{model.name}: ")
+        raise InputError(model.name, "curves", reason, "choose a model with press and release") from error
     asked = KINDS if kind == AUTO else (kind,)
     kinds = []
     for done, one in enumerate(asked):
