@@ -29,7 +29,10 @@ COMMANDS = {
         "Tell whether a rig can render a button, and why not, before any upload.",
     ),
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
-    "hardware": ("fdvv.cli._hardware", "Make the rig: list its printed parts, export them, check that they go together."),
+    "hardware": (
+        "fdvv.cli._hardware",
+        "Make the rig: list its printed parts, export them, check that they go together.",
+    ),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "library": ("fdvv.cli._models", "List the built-in buttons."),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
