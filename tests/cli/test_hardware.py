@@ -2,6 +2,7 @@
 
 import importlib.util
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -81,3 +82,12 @@ def test_an_open_part_gives_status_1(fdvv: Run, tmp_path: Path) -> None:
     ran = fdvv("hardware", "check", str(folder))
     assert ran.status == 1
     assert "open at 3 edges" in ran.out
+
+
+def test_without_manifold3d_check_says_in_one_line_what_to_install(
+    fdvv: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    ran = fdvv("hardware", "check", str(HARDWARE))
+    assert ran.status == 1
+    assert 'pip install "fdvv[hardware]"' in ran.err
