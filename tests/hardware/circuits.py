@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fdvv.hardware import Circuit, Part, Pin, load_circuit
+from fdvv.hardware import Circuit, Component, Pin, load_circuit
 
 CIRCUIT = load_circuit()
 
@@ -26,7 +26,7 @@ def with_pin(ref: str, pin: str, circuit: Circuit = CIRCUIT, **changes: object) 
     part = circuit.parts[ref]
     changed: Pin = replace(part.kind.pins[pin], **changes)  # type: ignore[arg-type]
     kind = replace(part.kind, pins={**part.kind.pins, pin: changed})
-    made: Part = replace(part, kind=kind)
+    made: Component = replace(part, kind=kind)
     return replace(circuit, parts={**circuit.parts, ref: made})
 
 

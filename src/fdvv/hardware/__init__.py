@@ -2,7 +2,7 @@
 
 from fdvv.hardware._bill import PAPER_USD, Bill, BillLine, group_totals, load_bill, read_bill, to_csv
 from fdvv.hardware._bill_page import bill_page, summary
-from fdvv.hardware._circuit import Circuit, Filter, Kind, Part, Pin, Sheet
+from fdvv.hardware._circuit import Circuit, Component, Filter, Kind, Pin, Sheet
 from fdvv.hardware._circuit_file import load_circuit, read_circuit
 from fdvv.hardware._circuit_report import circuit_files, circuit_report, values_page, wiring_page
 from fdvv.hardware._diagnosis import Bounds, Diagnosis, Finding, Verdict, diagnose
@@ -16,7 +16,7 @@ from fdvv.hardware._filters import (
     paper_cutoff_Hz,
     rig_settings,
 )
-from fdvv.hardware._levels import Level, State, levels
+from fdvv.hardware._levels import Drives, Level, levels
 from fdvv.hardware._netlist import to_document, to_kicad, wiring_rows
 from fdvv.hardware._power import CoilDrive, Rail, coil_drive, power_budget
 from fdvv.hardware._rules import Violation, check_circuit, require_sound, undrawn
@@ -28,7 +28,9 @@ __all__ = [
     "Bounds",
     "Circuit",
     "CoilDrive",
+    "Component",
     "Diagnosis",
+    "Drives",
     "Evidence",
     "Filter",
     "FilterValues",
@@ -38,11 +40,9 @@ __all__ = [
     "Latched",
     "Level",
     "Lift",
-    "Part",
     "Pin",
     "Rail",
     "Sheet",
-    "State",
     "Step",
     "Verdict",
     "Violation",

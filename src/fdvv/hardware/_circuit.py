@@ -73,7 +73,7 @@ class Kind:
 
 
 @dataclass(frozen=True)
-class Part:
+class Component:
     """One part: reference, kind, role in the bill, value in SI units; a plug may be pulled out."""
 
     ref: str
@@ -117,7 +117,7 @@ class Circuit:
 
     title: str
     kinds: dict[str, Kind]
-    parts: dict[str, Part]
+    parts: dict[str, Component]
     nets: dict[str, tuple[str, ...]]
     sheets: tuple[Sheet, ...] = ()
     filters: tuple[Filter, ...] = ()
@@ -133,7 +133,7 @@ class Circuit:
         ref, _, pin = name.partition(".")
         return self.parts[ref].kind.pins[pin]
 
-    def part_of(self, name: str) -> Part:
+    def part_of(self, name: str) -> Component:
         """Give the part that a pin "U1.A0" belongs to."""
         return self.parts[name.partition(".")[0]]
 
@@ -141,7 +141,7 @@ class Circuit:
         """List all pins of all parts."""
         return [f"{part.ref}.{pin}" for part in self.parts.values() for pin in part.kind.pins]
 
-    def between(self, kind: str) -> list[tuple[Part, str, str]]:
+    def between(self, kind: str) -> list[tuple[Component, str, str]]:
         """List the parts of a kind with two pins, and the nets they join."""
         found = [part for part in self.parts.values() if part.kind.name == kind]
         return [(p, self.net_of.get(f"{p.ref}.1", ""), self.net_of.get(f"{p.ref}.2", "")) for p in found]

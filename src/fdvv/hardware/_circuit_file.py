@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fdvv.errors import InputError, ModelError
-from fdvv.hardware._circuit import TWO, UNITS, Circuit, Filter, Kind, Part, Pin, Sheet
+from fdvv.hardware._circuit import TWO, UNITS, Circuit, Component, Filter, Kind, Pin, Sheet
 
 FORMAT, VERSION = "fdvv-circuit", 1
 TOP = ("format", "version", "title", "kinds", "parts", "nets", "sheets", "filters", "facts")
@@ -83,7 +83,7 @@ class _Reader:
         except (TypeError, ModelError) as error:
             raise InputError(self._source, place, str(error), "see the head of circuit.toml") from None
 
-    def _part(self, ref: str, raw: dict[str, Any], kinds: dict[str, Kind]) -> Part:
+    def _part(self, ref: str, raw: dict[str, Any], kinds: dict[str, Kind]) -> Component:
         place = f"parts.{ref}"
         self._known(place, raw, ("kind", "value", "unit", "bill", "plug"))
         if raw.get("kind") not in kinds:
@@ -93,9 +93,9 @@ class _Reader:
         value = raw.get("value")
         if value is not None and (value <= 0 or raw.get("unit") not in UNITS):
             self._refuse(place, f"value {value} {raw.get('unit')}", f"a value above 0 in {', '.join(UNITS)}")
-        return Part(ref, **{**raw, "kind": kinds[raw["kind"]]})
+        return Component(ref, **{**raw, "kind": kinds[raw["kind"]]})
 
-    def _nets(self, parts: dict[str, Part]) -> dict[str, tuple[str, ...]]:
+    def _nets(self, parts: dict[str, Component]) -> dict[str, tuple[str, ...]]:
         found = {}
         for net, pins in self._document.get("nets", {}).items():
             for pin in pins:
@@ -110,7 +110,7 @@ class _Reader:
             raw["name"], raw["title"], tuple(map(tuple, raw["paths"])), tuple(raw.get("grounds", ()))
         )
 
-    def _filter(self, raw: dict[str, Any], parts: dict[str, Part]) -> Filter:
+    def _filter(self, raw: dict[str, Any], parts: dict[str, Component]) -> Filter:
         if raw["capacitor"] not in parts:
             self._refuse("filters", f"there is no part {raw['capacitor']}", "name a capacitor")
         return Filter(**{**raw, "paper_Hz": tuple(raw.get("paper_Hz", ()))})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fdvv.errors import BuildError
-from fdvv.hardware._circuit import TWO, Circuit, Part, Sheet
+from fdvv.hardware._circuit import TWO, Circuit, Component, Sheet
 from fdvv.hardware._rules import path_nets
 
 STEP, SERIES, SHUNT, TAG = 1.7, 3.0, 2.2, 3.4
@@ -78,7 +78,7 @@ class _Drawer:
     def _is_rail(self, net: str) -> bool:
         return any(self._circuit.pin(pin).type in ("ground", "source") for pin in self._circuit.nets[net])
 
-    def _hanging(self, net: str) -> list[tuple[Part, str]]:
+    def _hanging(self, net: str) -> list[tuple[Component, str]]:
         """List the parts of two pins from a net to a rail that stand in no path, and that rail."""
         found = []
         for kind in TWO:
@@ -140,7 +140,7 @@ class _Drawer:
             self._text(drawing, (0, y - 0.5 * i), text + "  ".join(line), 10, "left")
         return y - 0.5 * len(lines) - 0.4
 
-    def _hang(self, drawing: Any, part: Part, net: str, rail: str, at: tuple[float, float]) -> None:
+    def _hang(self, drawing: Any, part: Component, net: str, rail: str, at: tuple[float, float]) -> None:
         x, y = at
         drawing.add(self._elements.Dot().at(at))
         if self._is_ground(rail):
@@ -151,7 +151,7 @@ class _Drawer:
             drawing.add(self._elements.Vdd().at((x, y + 2.0)).label(rail, fontsize=8))
 
     def _part(
-        self, drawing: Any, part: Part, net: str, a: tuple[float, float], b: tuple[float, float]
+        self, drawing: Any, part: Component, net: str, a: tuple[float, float], b: tuple[float, float]
     ) -> None:
         """Draw a part from a, where it meets the net, to b."""
         name = ELEMENTS[part.kind.name]
