@@ -7,21 +7,23 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/boards/host/*.[ch])
 
+LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
+
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test check format bench setup firmware firmware-tools web web-check web-tools test-browser clean
+.PHONY: help demo test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
-setup: $(VENV)/.ready src/fdvv/_native/libfdvv.so ## Make the virtual environment and build the C kernels
+setup: $(VENV)/.ready src/fdvv/_native/$(LIBRARY) ## Make the virtual environment and build the C kernels
 
 $(VENV)/.ready: pyproject.toml constraints.txt hatch_build.py tools/setup.sh
 	bash tools/setup.sh "$(PYTHON)" "$(VENV)"
 	@touch $@
 
-src/fdvv/_native/libfdvv.so: $(VENV)/.ready $(NATIVE) hatch_build.py
+src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) hatch_build.py
 	$(BIN)/python hatch_build.py
 
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
@@ -36,7 +38,7 @@ test: check ## Every check and every test of the default run
 	$(BIN)/pytest -n 2 -m "not slow and not browser"
 
 test-slow: setup ## The long tests
-	$(BIN)/pytest -n 2 -m "slow and not browser"
+	$(BIN)/pytest -n 2 --timeout 300 -m "slow and not browser"
 
 test-browser: setup web-tools ## Drive the studio in a real browser
 	$(BIN)/pytest -n 2 --timeout 180 -m browser
@@ -47,6 +49,9 @@ format: setup ## Format the code in place
 
 bench: setup ## Time fits, scans and the twin beside plain SciPy
 	$(BIN)/python -m benchmarks
+
+docs: setup ## Build the site of the documents into build/site
+	$(BIN)/python -m tools.make_site
 
 firmware-tools: ## Install the cross compilers and the emulator of the boards
 	bash tools/firmware_tools.sh build
@@ -64,5 +69,26 @@ web-check: web ## The same, and the committed page must be that of the sources
 	git diff --exit-code --stat -- src/fdvv/studio/static
 	test -z "$$(git status --porcelain -- src/fdvv/studio/static)"
 
+# the same sources, the same bytes
+sdist wheel: export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/null || echo 1580601600)
+
+sdist: build/tools/.ready ## Build the sdist into dist/
+	build/tools/bin/python -m build --sdist --outdir dist .
+
+wheel: build/tools/.ready ## Build the sdist, and from it the wheel of this machine, into dist/
+	build/tools/bin/python -m build --outdir dist .
+
+build/tools/.ready:
+	$(PYTHON) -m venv build/tools
+	build/tools/bin/python -m pip install --quiet --disable-pip-version-check build
+	@touch $@
+
+zig-tools: ## Install the compiler that pip has, for builds on machines without one and for other systems
+	test -x build/zig/bin/python || $(PYTHON) -m venv build/zig
+	build/zig/bin/python -m pip install --quiet --disable-pip-version-check ziglang
+
+newcomer: ## Type what the README says, in an empty folder and a clean environment
+	PYTHON="$(PYTHON)" bash tools/newcomer.sh
+
 clean: ## Remove what was built
-	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/*.so
+	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY)

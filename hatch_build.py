@@ -1,16 +1,23 @@
 """Compile the C kernels and the firmware's portable core into one shared library.
 
-Run as a script to rebuild it in place.
+Run as a script to rebuild it in place. CC names another compiler, with its options; where a machine has none,
+the one that pip installs (ziglang) serves. docs/how-to/release.md tells what a wheel is built with.
 """
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import platform
+import re
+import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
+import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parent
 NATIVE = ROOT / "src" / "fdvv" / "_native"
@@ -20,33 +27,126 @@ HOST = ROOT / "firmware" / "boards" / "host"
 FLAGS = [
     "-std=c99",
     "-O3",
+    "-g0",  # nothing of the folder it was built in
     "-ffp-contract=off",
     "-fno-strict-aliasing",
     "-Wall",
     "-Wextra",
-    "-Werror",
     f"-I{CORE}",
 ]
+# whoever changes the C hears of every doubt; a compiler we never met must not break an installation by one
+STRICT = ["-Werror"] if (ROOT / ".git").exists() else []
+MACOS = "11.0"
+NO_COMPILER = (
+    "fdvv: no C compiler found. {}, or `pip install ziglang`,\n"
+    "fdvv: or name one in CC; pip then needs --no-build-isolation to see what was installed beside it."
+)
 
 
-def compile_native(folder: Path = NATIVE) -> tuple[Path, Path]:
-    """Build the library of all kernels, and the firmware as a program; give their paths."""
-    core = sorted(CORE.glob("*.c"))
+class System(NamedTuple):
+    """What a system calls the library, and what its compilers want.
+
+    library : its name. shared : flags of a library. maths : where the C library keeps them apart. program :
+    the firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get
+    one.
+    """
+
+    library: str
+    shared: tuple[str, ...]
+    maths: tuple[str, ...]
+    program: str | None
+    compilers: tuple[str, ...]
+    remedy: str
+
+
+SYSTEMS = {
+    "linux": System(
+        *("libfdvv.so", ("-fPIC", "-shared"), ("-lm",), "fdvv-host", ("cc", "gcc", "clang")),
+        "Install one (Debian: apt-get install gcc libc6-dev)",
+    ),
+    "darwin": System(
+        "libfdvv.dylib",
+        ("-fPIC", "-dynamiclib", "-Wl,-install_name,@rpath/libfdvv.dylib"),
+        *((), "fdvv-host", ("cc", "clang", "gcc")),
+        "Install Apple's (xcode-select --install)",
+    ),
+    "win32": System(
+        *("fdvv.dll", ("-shared",), (), None, ("gcc",)),
+        "Install GCC (MinGW-w64)",
+    ),
+}
+
+
+def system_of(name: str = sys.platform) -> System:
+    """Give what is known of a system; others are taken for a Linux."""
+    return SYSTEMS.get(name, SYSTEMS["linux"])
+
+
+def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path]:
+    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give paths."""
+    system, core = system_of(name), sorted(CORE.glob("*.c"))
     kernels = [*sorted(NATIVE.glob("*.c")), *core, HOST / "board.c"]
-    library = _compile(folder / "libfdvv.so", kernels, ["-fPIC", "-shared"])
-    program = _compile(folder / "fdvv-host", [HOST / "main.c", HOST / "board.c", *core], [])
-    return library, program
+    flags = [*FLAGS, *STRICT, *_architectures(name)]
+    made = [_compile(folder / system.library, kernels, [*flags, *system.shared], system)]
+    if system.program:
+        sources = [HOST / "main.c", HOST / "board.c", *core]
+        made.append(_compile(folder / system.program, sources, flags, system))
+    return made
 
 
-def _compile(target: Path, sources: list[Path], flags: list[str]) -> Path:
-    compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if not compiler:
-        raise SystemExit("fdvv: no C compiler found; install one (Debian: apt-get install gcc) or set CC")
-    # a process may have the old one mapped: write beside it, then rename
-    fresh = target.with_suffix(f".{os.getpid()}.tmp")
-    subprocess.run([compiler, *FLAGS, *flags, "-o", str(fresh), *map(str, sources), "-lm"], check=True)
-    fresh.replace(target)
+def compiler(system: System) -> list[str] | None:
+    """Give CC, else the system's own compiler, else the one that pip installs, as a command; None without."""
+    if named := os.environ.get("CC"):
+        return shlex.split(named, posix=os.name != "nt")
+    if found := next(filter(None, map(shutil.which, system.compilers)), None):
+        return [found]
+    if importlib.util.find_spec("ziglang"):
+        # left alone it compiles for this very processor
+        return [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
+    return None
+
+
+def _compile(target: Path, sources: list[Path], flags: list[str], system: System) -> Path:
+    command = compiler(system)
+    if not command:
+        raise SystemExit(NO_COMPILER.format(system.remedy))
+    # a process may have the old one mapped: write beside it, then rename; a library keeps its first name
+    with tempfile.TemporaryDirectory(prefix=".", suffix=".tmp", dir=target.parent) as folder:
+        fresh = Path(folder) / target.name
+        try:
+            subprocess.run(
+                [*command, *flags, "-o", str(fresh), *map(str, sources), *system.maths], check=True
+            )
+            fresh.replace(target)
+        except (OSError, subprocess.CalledProcessError) as error:
+            raise SystemExit(f"fdvv: {target.name} cannot be built: {error}") from error
     return target
+
+
+def _architectures(name: str) -> list[str]:
+    """Give what macOS is asked for: ARCHFLAGS may name two processors."""
+    if name != "darwin":
+        return []
+    version = os.environ.get("MACOSX_DEPLOYMENT_TARGET", MACOS)
+    return [*shlex.split(os.environ.get("ARCHFLAGS", "")), f"-mmacosx-version-min={version}"]
+
+
+def platform_tag(made: list[Path], name: str = sys.platform) -> str:
+    """Tell where a wheel with these files runs, in the words of PEP 425 and PEP 600."""
+    if name == "darwin":
+        version = os.environ.get("MACOSX_DEPLOYMENT_TARGET", MACOS).replace(".", "_")
+        asked = re.findall(r"-arch (\S+)", os.environ.get("ARCHFLAGS", ""))
+        processor = "universal2" if len(asked) > 1 else (asked or [platform.machine()])[0]
+        return f"macosx_{version}_{processor}"
+    plain = re.sub(r"[-.]", "_", sysconfig.get_platform())
+    if needed := [version for path in made for version in glibc_needs(path)]:
+        return plain.replace("linux", "manylinux_{}_{}".format(*max(needed)), 1)
+    return plain
+
+
+def glibc_needs(path: Path) -> set[tuple[int, int]]:
+    """Give the versions of glibc whose symbols a file asks for; the text of them stands in its tables."""
+    return {(int(a), int(b)) for a, b in re.findall(rb"\0GLIBC_(\d+)\.(\d+)", path.read_bytes())}
 
 
 try:
@@ -60,16 +160,15 @@ else:
 
         PLUGIN_NAME = "custom"
 
+        def dependencies(self) -> list[str]:
+            """Ask for a compiler where the machine has none."""
+            return [] if compiler(system_of()) else ["ziglang"]
+
         def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-            compile_native()
+            made = compile_native()
+            build_data["artifacts"] += [path.relative_to(ROOT).as_posix() for path in made]
             build_data["pure_python"] = False
-            build_data["tag"] = f"py3-none-{_platform_tag()}"
-
-
-def _platform_tag() -> str:
-    import sysconfig
-
-    return sysconfig.get_platform().replace("-", "_").replace(".", "_")
+            build_data["tag"] = f"py3-none-{platform_tag(made)}"
 
 
 if __name__ == "__main__":

@@ -129,6 +129,7 @@ def test_a_new_program_goes_as_the_tutorial_shows(tmp_path: Path, environment: d
 RIG = REPOSITORY / "docs" / "tutorials" / "compensate-a-rig.md"
 
 
+@pytest.mark.slow
 def test_compensating_a_rig_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
     printed, ran_here = "", list[str]()
     for language, text in blocks(RIG):

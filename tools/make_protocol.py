@@ -235,7 +235,9 @@ def tables(source: dict[str, Any]) -> str:
         "from fdvv.protocol._record import Limits, Record",
         "",
         f"{stem}VERSION = {source['version']}",
+        '"""Of the definition."""',
         f"{stem}HASH = 0x{meaning_hash(source):08X}",
+        '"""Of what the definition means; host and firmware compare it on connecting."""',
         "",
     ]
     for name, body in source["constants"].items():
@@ -280,7 +282,7 @@ def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> lis
         title = stem_of(source).upper() + ("REQUEST_BYTES" if key == "fields" else "REPLY_BYTES")
         lines += ["", f"{title} = {{"]
         lines += [f"    {named}.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
-        lines += ["}"]
+        lines += ["}", f'"""Bytes of every {"request" if key == "fields" else "reply"}."""']
     return lines
 
 

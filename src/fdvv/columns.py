@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 KINDS = ("?", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<i8", "<u8", "<f4", "<f8")
+"""Kinds of number that an array may hold, as NumPy writes them."""
 _HEAD = re.compile(r"([^\[:]+)(?:\[(\d+(?:,\d+)+)\])?\Z", re.ASCII)
 
 

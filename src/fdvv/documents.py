@@ -16,6 +16,7 @@ from fdvv.errors import InputError
 
 Read = TypeVar("Read")
 NEWLINE = b"\n"
+"""End of a line, on every system."""
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,16 @@
-"""Write files whole or not at all; read small ones."""
+"""Write files whole or not at all; open them alone; read small ones."""
 
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 from pathlib import Path
 
 from fdvv.errors import InputError
+
+FAR_byte = 1 << 40
+"""Where Windows is asked to lock: what it locks nobody else can read, and no file of ours grows so long."""
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -34,8 +38,47 @@ def write_atomic(path: Path, content: str | bytes) -> None:
         raise
 
 
+def open_alone(path: Path) -> int:
+    """Open a file to read and append for this process alone, made if it is not there; give its handle.
+
+    The system frees it however the process ends; others can still read it. Raises BlockingIOError if another
+    process has it so, OSError.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_APPEND
+    # Windows would turn line ends and hand the file on to what is started; elsewhere these are as wanted
+    flags |= getattr(os, "O_BINARY", 0) | getattr(os, "O_NOINHERIT", 0) | getattr(os, "O_CLOEXEC", 0)
+    file = os.open(path, flags, 0o666)
+    try:
+        _lock(file)
+    except BaseException:
+        os.close(file)
+        raise
+    return file
+
+
+def _lock(file: int) -> None:
+    """Take a file for this process, or raise BlockingIOError at once."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        os.lseek(file, FAR_byte, os.SEEK_SET)
+        try:
+            msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
+        except PermissionError as error:
+            raise BlockingIOError(error.errno, error.strerror) from error
+        return
+    import fcntl
+
+    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
 def sync_folder(folder: Path) -> None:
-    """Force the names in a folder to disk, so that a file made in it is still there after a power cut."""
+    """Force the names in a folder to disk, so that a file made in it is still there after a power cut.
+
+    Windows opens no folder; its file system keeps a journal of names.
+    """
+    if sys.platform == "win32":
+        return
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

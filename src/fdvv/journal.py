@@ -8,7 +8,6 @@ damaged line before it is refused: nothing false is read back.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import zlib
@@ -20,7 +19,7 @@ from typing import Any
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv.files import sync_folder
+from fdvv.files import open_alone, sync_folder
 
 
 @dataclass(frozen=True)
@@ -125,11 +124,9 @@ def _record(text: bytes, keys: frozenset[str]) -> dict[str, Any] | None:
 
 def _locked(path: Path, busy: InputError) -> int:
     """Open the file for this process alone; the system frees it however the process ends."""
-    file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o666)
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        file = open_alone(path)
     except BlockingIOError:
-        os.close(file)
         raise busy from None
     try:
         sync_folder(path.parent)

@@ -18,6 +18,7 @@ BINARY = {
     b"\x93NUMPY": "a NumPy array",
     b"\x89HDF": "an HDF5 file",
 }
+"""How files begin that are no text, and what each is."""
 
 
 def decode_lines(source: object, content: bytes, remedy: str) -> tuple[list[str], list[str]]:

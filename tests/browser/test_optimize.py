@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +13,18 @@ from benchmarks.studio_play import button_ms
 from playwright.sync_api import expect
 from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
+from tests.workflow.test_device_key import KeyedRig
 
 from fdvv.optimize import Answer, TrialState
 from fdvv.workflow import (
+    ClockSource,
     OptimizeSession,
     PlayedRound,
     PlayedRounds,
 )
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import BrowserContext, Page
 
 ROUNDS = 3
 CLOCK_ms = 0.2
@@ -202,6 +205,40 @@ def test_a_run_is_played_stopped_gone_on_with_compared_and_saved(
     page.get_by_role("link", name="Edit mine").click()
     page.wait_for_selector("main[data-page=edit]")
     assert (studio.project / "buttons" / "mine.fdvv.json").exists()
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Iterator[RunningStudio]:
+    """A studio beside which a board stands, on a real terminal line, that somebody presses now and then."""
+    rig = KeyedRig(presses=100)
+    listed = ((f"serial:{rig.path}", "a board"),), ""
+    first = f"from fdvv.studio import _play_device\n_play_device.devices = lambda: {listed!r}"
+    studio = RunningStudio(tmp_path / "project", first=first)
+    rig.start()
+    yield studio
+    studio.stop()
+    rig.end()
+
+
+def test_a_button_on_the_table_is_pressed_while_the_page_shows_the_bullet(
+    context: BrowserContext, table: RunningStudio
+) -> None:
+    page = context.new_page()
+    page.goto(table.address)
+    page.wait_for_selector("html[data-ready]")
+    begin(page)
+    page.get_by_label("Pressed is").select_option(index=1)
+    page.get_by_role("button", name="Play trial 1").click()
+    expect(page.get_by_text("Press the button on the table")).to_be_visible()
+    wait_for_bullet(page)
+    page.keyboard.press(" ", delay=80)  # what the hand does on the page is no press now
+    page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony/", timeout=40_000)
+    page.get_by_role("tab", name="Timing").click()
+    expect(page.get_by_text("told by the device's own clock")).to_be_visible()
+    kept = kept_rounds(table.project / "optimize" / "1")
+    assert len(kept) == ROUNDS
+    assert {(one.timing.source, one.timing.hand) for one in kept} == {(ClockSource.KEY, "button")}
+    assert any(one.activations_s for one in kept)
 
 
 def kept_rounds_of(page: Page, studio: RunningStudio) -> tuple[PlayedRound, ...]:

@@ -1,83 +1,83 @@
-"""fdvv hardware, as a person runs it."""
+"""fdvv hardware: what it lists, what it checks, what it says when it cannot."""
 
-from __future__ import annotations
-
-import csv
-import io
-from collections.abc import Callable
+import importlib.util
+import shutil
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Ran
 
-Run = Callable[..., Ran]
+from .conftest import Run
 
-
-def test_the_bill_has_a_total_beside_the_papers(fdvv: Run) -> None:
-    told = fdvv("hardware", "bill", "--json").json
-    assert told["total_USD"] == pytest.approx(
-        sum(line["packs"] * line["price_USD"] for line in told["lines"])
-    )
-    assert told["paper_USD"] == 550
-    shown = fdvv("hardware", "bill").out
-    assert "HVCM-025-022-003-01" in shown
-    assert "estimates" in shown
-    rows = list(csv.DictReader(io.StringIO(fdvv("hardware", "bill", "--csv").out)))
-    assert len(rows) == len(told["lines"])
-    ran = fdvv("hardware", "bill", "--csv", "--json")
-    assert (ran.status, ran.out) == (2, "")
+HARDWARE = Path(__file__).resolve().parents[2] / "hardware"
+WITHOUT_KERNEL = importlib.util.find_spec("build123d") is None
 
 
-def test_the_circuit_is_checked_and_told_with_units(fdvv: Run) -> None:
-    told = fdvv("hardware", "circuit", "--json").json
-    assert told["violations"] == []
-    assert told["paper_parts_cutoff_Hz"] == pytest.approx(477.94, abs=0.01)
-    assert len(told["netlist"]["parts"]) == told["parts"]
-    shown = fdvv("hardware", "circuit").out
-    assert "every rule holds" in shown
-    assert "479.5" in shown
+def test_the_parts_are_listed_with_what_they_weigh(fdvv: Run) -> None:
+    ran = fdvv("hardware", "parts")
+    assert ran.status == 0
+    assert "coil-mount" in ran.out
+    told = {part["name"]: part for part in fdvv("hardware", "parts", "--json").json["parts"]}
+    assert told["marker-post"]["count"] == 3
+    assert 20 < told["coil-mount"]["mass_g"] < 60
 
 
-def test_a_circuit_that_would_burn_a_pin_ends_with_status_1(fdvv: Run, tmp_path: Path) -> None:
-    source = Path(__file__).resolve().parents[2] / "src" / "fdvv" / "hardware" / "circuit.toml"
-    text = source.read_text().replace("V = 3.135, ohm = 1.0 }\npins.GND", "V = 4.75, ohm = 1.0 }\npins.GND")
+def test_dimensions_are_told_as_toml_that_reads_back(fdvv: Run, tmp_path: Path) -> None:
+    text = fdvv("hardware", "parts", "--dimensions", "--set", "coil_diameter_mm=25").out
     (tmp_path / "mine.toml").write_text(text)
-    ran = fdvv("hardware", "circuit", "--file", "mine.toml")
-    assert ran.status == 1
-    assert "U1.A4: is driven with 4.7" in ran.out
-    ran = fdvv("hardware", "circuit", "--file", "mine.toml", "-o", "drawn")
+    told = fdvv("hardware", "parts", "--dimensions", "--from", "mine.toml", "--json").json["dimensions"]
+    assert told["coil_diameter_mm"]["value"] == 25.0
+    assert told["travel_mm"]["source"] == "paper"
+
+
+def test_a_dimension_that_is_none_is_refused_with_the_nearest(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("hardware", "export", str(tmp_path / "out"), "--set", "coil_diametre_mm=25")
     assert ran.status == 2
-    assert not (tmp_path / "drawn").exists()
+    assert "did you mean coil_diameter_mm?" in ran.err
+    assert not (tmp_path / "out").exists()
 
 
-def test_a_file_that_is_no_circuit_is_refused(fdvv: Run, tmp_path: Path) -> None:
-    (tmp_path / "mine.toml").write_text("a = 1\n")
-    ran = fdvv("hardware", "circuit", "--file", "mine.toml")
-    assert (ran.status, ran.err.count("\n")) == (2, 1)
-    assert "mine.toml: format" in ran.err
+def test_dimensions_without_what_they_are_for_are_refused(fdvv: Run) -> None:
+    assert fdvv("hardware", "parts", "--set", "travel_mm=4").status == 2
 
 
-def test_a_failed_selftest_names_the_part_and_leaves_no_receipt(fdvv: Run, tmp_path: Path) -> None:
-    ran = fdvv("hardware", "selftest", "--fault", "position-off", "-o", "receipt.json")
+@pytest.mark.skipif(not WITHOUT_KERNEL, reason="the CAD kernel is installed")
+def test_without_the_kernel_export_says_in_one_line_what_to_install(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("hardware", "export", str(tmp_path / "out"))
     assert ran.status == 1
-    assert "fdvv: position sensor:" in ran.err
-    assert "(simulated)" in ran.out
-    assert list(tmp_path.iterdir()) == []
+    assert 'pip install "fdvv[cad]"' in ran.err
+    assert not (tmp_path / "out").exists()
 
 
-def test_faults_can_be_listed_and_a_wrong_one_is_refused(fdvv: Run) -> None:
-    assert "coil-reversed" in fdvv("hardware", "selftest", "--fault", "list").out
-    assert fdvv("hardware", "selftest", "--fault", "x").status == 2
-    assert fdvv("hardware", "selftest", "--device", "x").status == 2
-    assert fdvv("hardware", "selftest", "-o", "receipt.txt").status == 2
-    ran = fdvv("hardware", "selftest", "--device", "serial:none")
-    assert (ran.status, "run it in a terminal" in ran.err) == (2, True)
+def test_a_folder_without_parts_is_refused(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("hardware", "check", str(tmp_path))
+    assert ran.status == 2
+    assert "holds no manifest.json" in ran.err
 
 
 @pytest.mark.slow
-def test_a_sound_rig_leaves_a_receipt_and_its_calibration(fdvv: Run, tmp_path: Path) -> None:
-    ran = fdvv("hardware", "selftest", "--apply", "-o", "receipt.json", "--json")
-    assert ran.status == 0, ran.err
-    assert ran.json["passed"]
-    assert "duty_gain_q16" in ran.json["settings"]
-    assert (tmp_path / "receipt.json").is_file()
+def test_the_exported_parts_are_good_and_their_figures_told(fdvv: Run) -> None:
+    pytest.importorskip("manifold3d", reason="manifold3d is not installed (fdvv[hardware])")
+    ran = fdvv("hardware", "check", str(HARDWARE))
+    assert ran.status == 0
+    assert "nothing meets" in ran.out
+    told = fdvv("hardware", "check", str(HARDWARE), "--json").json
+    assert told["good"]
+    assert told["limiter"]["from_mm"] <= 0
+    assert told["limiter"]["to_mm"] >= 6.2
+    assert (
+        told["sensor_mount"]["float_mm"] + told["sensor_mount"]["room_mm"] >= told["sensor_mount"]["worst_mm"]
+    )
+    assert min(gap["gap_mm"] for gap in told["clearances"]) > 0.15
+
+
+def test_an_open_part_gives_status_1(fdvv: Run, tmp_path: Path) -> None:
+    pytest.importorskip("manifold3d", reason="manifold3d is not installed (fdvv[hardware])")
+    folder = tmp_path / "mine"
+    shutil.copytree(HARDWARE, folder, ignore=shutil.ignore_patterns("pictures"))
+    path = folder / "parts" / "limiter-arm.stl"
+    data = path.read_bytes()
+    count = int.from_bytes(data[80:84], "little") - 1
+    path.write_bytes(data[:80] + count.to_bytes(4, "little") + data[84 : 84 + 50 * count])
+    ran = fdvv("hardware", "check", str(folder))
+    assert ran.status == 1
+    assert "open at 3 edges" in ran.out

@@ -68,6 +68,7 @@ def shaken(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_vibrations_are_listed_and_missing_ones_told_or_scaled_if_asked(fdvv: Run, shaken: Path) -> None:
     plain, text = fdvv("process", shaken, "--json").json, fdvv("process", shaken).out
     told = plain["vibrations"]

@@ -91,6 +91,7 @@ def test_the_sensors_cone_and_filter_are_taken_off_as_the_data_sheet_tells() -> 
 NOISY = Plant(position_noise_mm=0.005, force_noise_cN=0.4, half_play_cN=1.5)
 
 
+@pytest.mark.slow
 def test_with_noise_the_standard_errors_hold() -> None:
     found = []
     for seed in range(4):

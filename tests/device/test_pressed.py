@@ -37,7 +37,14 @@ def opened(rig: Rig, patience_s: float = 20.0) -> PressedDevice:
 
 
 class Rig(threading.Thread):
-    """A board that runs in real time behind a pseudo-terminal, and someone who presses while it is armed."""
+    """A board that runs in real time behind a pseudo-terminal, and someone who presses while it is armed.
+
+    Attributes
+    ----------
+    between : ticks from the beginning of one press to that of the next.
+    """
+
+    between = 100
 
     def __init__(self, person: ScriptedPerson, presses: int) -> None:
         super().__init__(daemon=True)
@@ -55,9 +62,10 @@ class Rig(threading.Thread):
         while not self.over.wait(0.001):
             self.hear()
             # time that the machine had no time for is left out, so that the rig never runs ahead of its host
-            for _ in range(min(int((time.monotonic() - last_s) / 250e-6), 40)):
+            last_s = max(last_s, time.monotonic() - 0.01)
+            for _ in range(int((time.monotonic() - last_s) / 250e-6)):
                 self.tick()
-            last_s = time.monotonic()
+                last_s += 250e-6
 
     def hear(self) -> None:
         try:
@@ -71,7 +79,7 @@ class Rig(threading.Thread):
             os.write(self.line, self.board.read())
         except BlockingIOError:
             return
-        if out.enable and self.presses and len(self.port.ticks) > 100:
+        if out.enable and self.presses and len(self.port.ticks) > self.between:
             self.presses -= 1
             self.port.connect(self.person.press(surface_image(plain_surface(), 4.0), 100.0, SETTINGS))
 

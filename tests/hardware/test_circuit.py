@@ -12,7 +12,7 @@ from tests.hardware.circuits import CIRCUIT, with_nets, with_pin, with_value, wi
 
 from fdvv.errors import InputError
 from fdvv.hardware import (
-    Drives,
+    PowerState,
     check_circuit,
     levels,
     load_circuit,
@@ -67,7 +67,7 @@ def test_an_unos_pins_are_those_of_its_firmware(board: str, part: str, names: di
 def test_the_supplys_divider_is_the_one_the_firmware_reckons_with() -> None:
     text = (BOARDS / "itsybitsy_m0" / "acquire.c").read_text()
     gain = int(re.findall(r"SUPPLY_GAIN_Q13 = (\d+)", text)[0]) / 2**13
-    at = levels(CIRCUIT, Drives())
+    at = levels(CIRCUIT, PowerState())
     counts = at["SUPPLY"].V / 3.3 * 4096
     assert counts * gain == pytest.approx(1e3 * at["V12_COIL"].V, rel=1e-3)
 
@@ -130,7 +130,7 @@ def test_within_a_resistors_tolerance_every_rule_still_holds(ref: str, ratio: fl
 def test_no_output_may_lift_an_input_above_what_it_bears(pin: str, V: float) -> None:
     ref, _, name = pin.partition(".")
     changed = with_pin(ref, name, V=V)
-    at, broken = levels(changed, Drives()), check_circuit(changed)
+    at, broken = levels(changed, PowerState()), check_circuit(changed)
     for heard, net in changed.net_of.items():
         most = changed.pin(heard).max_V
         if most is not None and most < at[net].V:
@@ -141,7 +141,7 @@ def test_no_output_may_lift_an_input_above_what_it_bears(pin: str, V: float) -> 
 @given(top=st.floats(10.0, 1e5), low=st.floats(10.0, 1e5))
 def test_a_dividers_level_and_resistance_are_those_of_the_textbook(top: float, low: float) -> None:
     circuit = with_value("R4", low, with_value("R3", top))
-    level = levels(circuit, Drives())["SUPPLY"]
+    level = levels(circuit, PowerState())["SUPPLY"]
     assert pytest.approx(12 * low / (top + low), rel=5e-3) == level.V
     assert level.ohm == pytest.approx(top * low / (top + low), rel=5e-3, abs=0.2)
 

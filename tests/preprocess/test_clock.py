@@ -38,7 +38,7 @@ def lit(at_s: FloatArray, times: FloatArray, exposure_s: float) -> FloatArray:
     return part
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(
     st.integers(0, 2**32 - 1), st.floats(-50, 500), st.floats(-1e-2, 1e-2), st.sampled_from([0.0, EXPOSURE_s])
 )

@@ -123,6 +123,7 @@ def test_perfect_sensors_give_the_input_back() -> None:
     assert processed.travel_mm.value == pytest.approx(session.travel_mm, abs=0.02)
 
 
+@pytest.mark.slow
 def test_without_a_probe_the_slowest_pace_leads() -> None:
     session = captured_session("mx-clear", 7, probe=False)
 
@@ -149,6 +150,7 @@ def test_a_finger_that_comes_from_above_has_no_rest_to_take_off() -> None:
     assert process(session.recording).zero_mm < 0.01
 
 
+@pytest.mark.slow
 def test_the_wrong_mass_of_the_cap_hardly_matters(session: CapturedSession, processed: Processed) -> None:
     heavier = process(session.recording, Settings(cap_g=4.2))
 

@@ -107,6 +107,22 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
 
 
+@pytest.mark.slow
+def test_work_stops_by_itself_where_no_process_can_be_sent_ctrl_c(
+    jobs: Jobs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = begin(jobs, long_learning())
+    told.wait(pressed)
+    asked_s = time.monotonic()
+    with monkeypatch.context() as windows:
+        windows.setattr("sys.platform", "win32")
+        jobs.cancel("0001")
+    row = told.over()
+    assert time.monotonic() - asked_s < LETTING_GO_s
+    assert (row.state, row.resumable) == ("cancelled", True)
+    assert 0 < row.done < PRESSES
+
+
 def test_work_that_fails_says_why_and_a_damaged_job_hinders_no_other(tmp_path: Path) -> None:
     folder = tmp_path / "jobs" / "0007"
     folder.mkdir(parents=True)

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from tests.studio.conftest import LIVE
+from tests.workflow.test_device_key import KeyedRig
 
 from fdvv.model import load_builtin, model_from_json
 from fdvv.optimize import Score, TemporalPointing, TrialState
-from fdvv.studio import Studio
+from fdvv.studio import Studio, _play_device
 from fdvv.studio._optimizations import Optimizations
-from fdvv.workflow import OptimizeSession, PlayedRounds
+from fdvv.workflow import ClockSource, OptimizeSession, PlayedRounds
 
 CREATE = {
     "title": "mine",
@@ -66,20 +67,33 @@ class Player:
             self.say("up", at_ms=at_ms + 150.0)
             self.hear("click")
             time.sleep(0.35)  # until the finger is where it began
-        self.say(
-            "round",
-            number=number,
-            start_ms=start_ms,
-            target_ms=at_ms + 100.0,
-            end_ms=self.now_ms(),
-            hand="key",
-            display={"ms": 30.0, "error_ms": 17.0},
-            input={"ms": 10.0, "error_ms": 8.0},
-            clock_ms=-AHEAD_ms,
-            clock_error_ms=0.5,
-            frame_ms=16.7,
-        )
+        self.say("round", **self.shown(number, start_ms, at_ms + 100.0))
         return self.hear("kept")
+
+    def beside(self, number: int, rig: KeyedRig) -> tuple[dict[str, Any], float]:
+        """Wait for a press on the table; give what is told of it, and how late it was by the rig."""
+        start_ms, before = self.now_ms(), len(rig.pressed_s)
+        while len(rig.pressed_s) == before:
+            time.sleep(0.01)
+        time.sleep(0.1)
+        self.say("round", **self.shown(number, start_ms, start_ms + 100.0))
+        pressed_ms = 1e3 * rig.pressed_s[before] + AHEAD_ms
+        return self.hear("kept"), pressed_ms - start_ms - 100.0 - 30.0
+
+    def shown(self, number: int, start_ms: float, target_ms: float = 0.0) -> dict[str, Any]:
+        """Give a round that is over by now."""
+        return {
+            "number": number,
+            "start_ms": start_ms,
+            "target_ms": target_ms,
+            "end_ms": self.now_ms(),
+            "hand": "key",
+            "display": {"ms": 30.0, "error_ms": 17.0},
+            "input": {"ms": 10.0, "error_ms": 8.0},
+            "clock_ms": -AHEAD_ms,
+            "clock_error_ms": 0.5,
+            "frame_ms": 16.7,
+        }
 
 
 @pytest.fixture
@@ -203,6 +217,61 @@ def test_a_long_way_from_hand_to_simulation_moves_no_press(
         found = player.round(2)
     assert found["late_ms"] == pytest.approx(wanted["late_ms"], abs=2.0)
     assert found["transport_ms"] > way_ms
+
+
+@pytest.fixture
+def table(monkeypatch: pytest.MonkeyPatch) -> Iterator[KeyedRig]:
+    """Put a board on the table, on a real terminal line, that somebody presses now and then."""
+    rig = KeyedRig(presses=50)
+    monkeypatch.setattr(_play_device, "devices", lambda: (((f"serial:{rig.path}", "a board"),), ""))
+    rig.start()
+    yield rig
+    rig.end()
+
+
+def test_a_press_on_a_device_is_told_by_its_own_clock(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio, table: KeyedRig
+) -> None:
+    device = ask("devices")["devices"][0]["name"]
+    assert device == f"serial:{table.path}"
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0, device=device)
+        assert player.hear("ready")["told"].endswith("under your own finger")
+        kept = [player.beside(number, table) for number in (1, 2)]
+        # no other page gets the device while this one has it
+        with client.websocket_connect(LIVE) as second:
+            other = Player(second)
+            other.say("open", run=run, trial=0, device=device)
+            assert "the pointing task" in other.hear("ready")["error"]
+    for found, wanted_ms in kept:
+        assert found["late_ms"] == pytest.approx(wanted_ms, abs=20)
+        assert found["transport_ms"] is None
+    assert [found["finished"] for found, _ in kept] == [False, True]
+    assert not table.port.outputs.enable
+    rounds = PlayedRounds(own_studio.project / "optimize" / str(run))
+    timing = rounds.counting(0)[0].timing
+    rounds.close()
+    assert (timing.source, timing.hand, timing.input_ms) == (ClockSource.KEY, "button", 0.0)
+    assert 0 < timing.input_error_ms < 20
+
+
+def test_a_device_that_is_not_listed_is_not_opened(
+    ask: Callable[..., Any], client: TestClient, table: KeyedRig
+) -> None:
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        for device in ("serial:/dev/null", "host", "../etc"):
+            player.say("open", run=run, trial=0, device=device)
+            assert "choose one of the list" in player.hear("ready")["error"]
+        player.say("open", run=run, trial=0, device=f"serial:{table.path}")
+        player.hear("ready")
+        player.say("round", **{**player.shown(1, player.now_ms()), "clock_ms": None})
+        assert "is not yet joined" in player.hear("kept")["error"]
 
 
 def test_a_fault_at_the_stop_costs_no_press(ask: Callable[..., Any], client: TestClient) -> None:

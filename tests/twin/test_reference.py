@@ -58,6 +58,7 @@ def test_a_press_agrees_with_the_reference_within_a_tenth_of_a_centinewton(
     compare(Rig(), Finger(), tactile, speed, "DOP853")
 
 
+@pytest.mark.slow
 def test_a_current_driven_press_that_hits_the_cap_agrees_too(tactile: ForceSurface) -> None:
     rig = Rig(coil=Coil(drive="current"), controller=Controller(averaging="sliding", average_ticks=5))
     compare(rig, Finger(habit=Habit(lift_m=0.001)), tactile, 150.0, "DOP853")

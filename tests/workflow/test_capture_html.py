@@ -6,6 +6,7 @@ import functools
 import re
 from dataclasses import replace
 
+import pytest
 from tests.captures import SHORT_STROKE, capture, recorded
 
 from fdvv.recording import Stage
@@ -51,6 +52,7 @@ def test_the_report_tells_the_press_left_out_and_the_errors_of_landmarks() -> No
     assert "moves 3 g" in html
 
 
+@pytest.mark.slow
 def test_a_recording_whose_presses_had_no_pace_is_reported_too() -> None:
     presses = [t for t in capture().takes if t.stage is Stage.PRESS and t.velocity_mm_s == 50.0]
     takes = tuple(replace(t, number=i, velocity_mm_s=None) for i, t in enumerate(presses, 1))

@@ -63,6 +63,7 @@ def test_a_killed_process_costs_only_its_chunk(executor: Executor, tmp_path: Pat
     assert dict(found) == {seed: work(seed) for seed in SEEDS}
 
 
+@pytest.mark.slow
 def test_a_chunk_that_kills_every_process_ends_the_run(executor: Executor, tmp_path: Path) -> None:
     with pytest.raises(WorkerError, match="chunk 1: every process that took it ended"):
         list(executor.run(SeededSum(tmp_path, fatal=8, deaths=99), [7, 8, 9]))

@@ -66,6 +66,7 @@ def test_as_intended_a_slow_finger_feels_the_models_force(name: str) -> None:
         assert np.percentile(off, 95) < 1.0, stroke
 
 
+@pytest.mark.slow
 def test_a_rig_known_before_feels_nearer_to_the_model_than_one_left_alone() -> None:
     means = {}
     for mode in PressMode:

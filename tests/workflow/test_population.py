@@ -68,6 +68,7 @@ def test_every_person_has_trials_of_their_own_and_is_judged_on_others(people: Po
     assert not np.isin(columns["judged"], columns["values"]).all()
 
 
+@pytest.mark.slow
 def test_the_first_people_of_a_large_population_are_those_of_a_small_one(
     people: PopulationResult, tmp_path: Path
 ) -> None:

@@ -6,6 +6,7 @@ Foreign calls release the interpreter lock, so threads run them side by side.
 from __future__ import annotations
 
 import ctypes
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -14,11 +15,14 @@ import numpy.typing as npt
 
 from fdvv.errors import BuildError
 
+LIBRARY = {"darwin": "libfdvv.dylib", "win32": "fdvv.dll"}.get(sys.platform, "libfdvv.so")
+"""Its file, beside this one; hatch_build.py makes it."""
+
 
 @cache
 def library() -> ctypes.CDLL:
     """Load the compiled library once; raise BuildError with the way to build it if it is absent."""
-    path = Path(__file__).with_name("libfdvv.so")
+    path = Path(__file__).with_name(LIBRARY)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:

@@ -68,7 +68,8 @@ def optimize() -> None:
 @click.option("--task", default="temporal-pointing", show_default=True, help="What is played.")
 @level_option
 @engine_option("tpe")
-@click.option("--trials", type=click.IntRange(1, 100_000), default=30, show_default=True)
+@click.option("--trials", type=click.IntRange(1, 100_000), default=30, show_default=True,
+              help="How many designs are tried.")  # fmt: skip
 @click.option("--presses", type=click.IntRange(2, 1000), default=20, show_default=True, help="Of a trial.")
 @click.option("--person", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed that the simulated person is drawn with.")  # fmt: skip
@@ -94,7 +95,7 @@ def run(folder: Path, strip: str | None, device: str, as_json: bool, **asked: An
 @strip_options
 @json_option
 def resume(folder: Path, strip: str | None, device: str, as_json: bool) -> None:
-    """Go on with a run that was stopped or killed; it asks the same next design as if it had not been."""
+    """Go on with the run in FOLDER that was stopped or killed; the next design is as if it had not been."""
     from fdvv.workflow import OptimizeSession
 
     with on_strip(strip, device) as play, OptimizeSession.open(folder) as session:
@@ -132,7 +133,7 @@ def replay(folder: Path, as_json: bool) -> None:
 )
 @json_option
 def report(folder: Path, output: Path | None, as_json: bool) -> None:
-    """Write a run as a page: the design found, the scores, every trial."""
+    """Write the run in FOLDER as a page: the design found, the scores, every trial."""
     from fdvv.plot import write_report
     from fdvv.workflow import OptimizeSession, optimize_html, optimize_report
 

@@ -33,7 +33,8 @@ REPORT, MODEL, RESULT = "report.html", "winner.fdvv.json", "result.json"
 @click.command()
 @click.option("--folder", required=True, type=click.Path(path_type=Path),
               help="Folder of the experiment; name it again to go on where it stopped.")  # fmt: skip
-@click.option("--people", type=click.IntRange(3, 1000), default=10, show_default=True, help="Simulated.")
+@click.option("--people", type=click.IntRange(3, 1000), default=10, show_default=True,
+              help="How many simulated people take part.")  # fmt: skip
 @click.option("--trials", type=click.IntRange(1, 1000), default=27, show_default=True, help="Of a training.")
 @click.option("--presses", type=click.IntRange(2, 1000), default=20, show_default=True, help="Of a trial.")
 @click.option("--rounds", type=click.IntRange(1, 20), default=2, show_default=True,

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fdvv.workflow import StudyAnalysis
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-PLAN_FILE = "study.toml"
 
 
 def table_options(command: Command) -> Command:
@@ -63,8 +62,9 @@ plan_option = click.option(
 @click.option("--report", type=click.Path(path_type=Path), help="Write an HTML report here.")
 @json_option
 def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool, **table: Any) -> None:
-    """Analyse answers: of an unsealed study's folder, of answers.csv, or of any CSV whose columns are mapped.
+    """Analyse answers: shares, tests, distances felt, thresholds, and the main claim.
 
+    SOURCE is the folder of an unsealed study, an answers.csv, or any CSV whose columns are mapped.
     Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
     thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
     """
@@ -93,6 +93,7 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
 def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table: Any) -> None:
     """Write answers as plain tables for R, JASP or pandas, and everything the analysis found as JSON.
 
+    SOURCE is as for fdvv study analyse.
     answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
     analysis.json holds every figure.
     """
@@ -115,7 +116,7 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
 def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
     """Read answers, the plan they come from, if any, and a line that tells where they come from."""
     from fdvv.files import read_limited
-    from fdvv.study import read_plan_text
+    from fdvv.study import STUDY_FILE, read_plan_text
     from fdvv.workflow import ColumnMap, Study, read_answers
 
     asked = ColumnMap(
@@ -130,7 +131,7 @@ def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Ans
     if plan is not None:
         data = read_limited(plan, 4_000_000, "name the study's file")
         return answers, read_plan_text(data.decode(errors="replace"), plan), f"answers of {source.name}"
-    if (source / PLAN_FILE).is_file():
+    if (source / STUDY_FILE).is_file():
         study = Study.open(source)
         frozen = f", fingerprint {study.fingerprint}" if study.frozen else ", not frozen"
         return answers, study.plan, f"study {study.plan.name}{frozen}"

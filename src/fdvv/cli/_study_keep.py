@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ from fdvv.cli._output import counted, json_option, print_json, print_table, prin
 
 if TYPE_CHECKING:
     from fdvv.study import Answers
-    from fdvv.workflow import Study
+    from fdvv.workflow import OperatorView, Study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 folder_argument = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
@@ -34,7 +35,7 @@ keeper_option = click.option(
 @passphrase_option
 @json_option
 def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
-    """Freeze a study before the first person: from now on every change is noticed.
+    """Freeze the study in FOLDER before the first person: from now on every change is noticed.
 
     Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
     hide; nobody can restore it. The fingerprint goes into the preregistration.
@@ -73,7 +74,7 @@ def verify(
     keeper: Path | None,
     as_json: bool,
 ) -> None:
-    """Tell whether a study is as it was frozen, and every log as it was written. Exit status 1 if not."""
+    """Tell whether the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
     from fdvv.workflow import Study
 
     study = Study.open(folder)
@@ -81,12 +82,14 @@ def verify(
     problems = study.verify(fingerprint, passphrase, keeper, record)
     if as_json:
         whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
-        print_json({"folder": str(folder), **whole})
+        # of people whose record was tampered with nothing is sure
+        simulated = study.simulated if not problems else None
+        print_json({"folder": str(folder), **whole, "simulated": simulated})
     else:
         for problem in problems:
             click.echo(problem)
         if not problems:
-            click.echo(f"whole; people: {len(study.people())}")
+            click.echo(f"whole; people: {len(study.people())}{_simulated(study.simulated)}")
             click.echo(f"fingerprint: {study.fingerprint}")
             click.echo(f"the record ends in: {study.record_end}")
     if problems:
@@ -98,11 +101,11 @@ def verify(
 @folder_argument
 @json_option
 def status(folder: Path, as_json: bool) -> None:
-    """Tell how far a study is and what was done with it; nothing here tells what a label hid."""
-    from fdvv.workflow import Study, people_standing
+    """Tell how far the study in FOLDER is and what was done with it; nothing here tells what a label hid."""
+    from fdvv.workflow import Study, operator_view
 
     study = Study.open(folder)
-    document = _status(study, people_standing(study))
+    document = _status(study, operator_view(study, time.time()))
     if as_json:
         print_json(document)
         return
@@ -118,7 +121,9 @@ def status(folder: Path, as_json: bool) -> None:
     ]
     if rows:
         print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
-    click.echo(f"people: {len(rows)} of {document['planned']} planned")
+    if document["paused"]:
+        click.echo(f"paused: {', '.join(document['paused'])}")
+    click.echo(f"people: {len(rows)} of {document['planned']} planned{_simulated(document['simulated'])}")
     print_warnings([p["problem"] for p in document["people"] if p["problem"]])
 
 
@@ -163,6 +168,7 @@ def unseal(
 def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) -> None:
     """Take a person out and delete all that is kept of them; that they were there stays on record.
 
+    FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
     from fdvv.workflow import Study
@@ -190,19 +196,25 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
     return answer
 
 
-def _status(study: Study, people: Any) -> dict[str, Any]:
+def _simulated(simulated: bool) -> str:
+    """Say of simulated people what they are."""
+    return ", all simulated: a proxy, no evidence" if simulated else ""
+
+
+def _status(study: Study, view: OperatorView) -> dict[str, Any]:
     acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
     state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
     return {
         "name": study.plan.name, "kind": study.plan.kind, "state": state, "fingerprint": study.fingerprint,
-        "record": study.record_end, "planned": study.plan.people, "unsealed": acts,
+        "record": study.record_end, "planned": view.planned, "simulated": study.simulated,
+        "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts,
         "people": [
             {
-                "person": one.person.name, "language": one.person.language, "state": one.person.state,
-                "simulated": one.person.simulated, "answered": one.answered, "trials": one.trials,
-                "resumed": one.resumed, "interrupted": one.interrupted, "problem": one.problem,
+                "person": one.person, "language": one.language, "state": one.state,
+                "simulated": one.simulated, "answered": one.answered, "trials": one.trials,
+                "resumed": one.resumptions, "interrupted": one.interruptions, "problem": one.problem,
             }
-            for one in people
+            for one in view.people
         ],
     }  # fmt: skip
 

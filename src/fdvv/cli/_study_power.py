@@ -70,7 +70,8 @@ set_option = click.option(
     help="Assume one difference for all buttons, in just noticeable differences, not what proxies feel.",
 )
 @set_option
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True)
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True,
+              help="Repeats the simulated answers.")  # fmt: skip
 @json_option
 def power(
     file: Path,

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 @click.option("--people", type=click.IntRange(1, 500), help="That are to be done; by default as planned.")
 @click.option("--fast", is_flag=True, help="Press nothing: nothing is known of what was rendered then.")
 @set_option
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True)
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True,
+              help="Repeats the simulated participants.")  # fmt: skip
 @json_option
 def simulate(
     folder: Path, people: int | None, fast: bool, changes: tuple[str, ...], seed: int, as_json: bool

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from fdvv.protocol import Settings, UM16_PER_mm
 
 RecordArray = np.ndarray[Any, np.dtype[np.void]]
+"""Records of one kind, one for each tick (n,)."""
 
 INPUTS = np.dtype(
     [

@@ -13,6 +13,7 @@ BENCHES = {
     "twin": "a simulated bench with a simulated participant at a simulated button",
     "serial:PORT": "a bench on a serial port, with a person at it",
 }
+"""Benches that a word opens, and what each is."""
 
 
 def open_bench(

@@ -7,7 +7,7 @@ import os
 import select
 import struct
 import subprocess
-import tty
+import sys
 from pathlib import Path
 
 from fdvv import _native
@@ -98,9 +98,13 @@ class HostBoard:
     ticks = 0
 
     def __init__(self, program: Path | None = None) -> None:
+        if sys.platform == "win32":
+            raise BuildError("the board host needs the pseudo-terminals of a POSIX system; use LibraryBoard")
         program = program or Path(_native.__file__).with_name("fdvv-host")
         if not program.exists():
             raise BuildError(f"the program {program.name} is missing; reinstall fdvv with a C compiler")
+        import tty  # POSIX only
+
         self._link, slave = os.openpty()
         tty.setraw(slave)
         os.set_blocking(self._link, False)

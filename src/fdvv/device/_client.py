@@ -57,6 +57,7 @@ class Client:
     ----------
     hello : what the device said of itself.
     telemetry : records so far.
+    on_key, on_fault : as above; may be set later.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class Client:
         self.port = port
         self.telemetry = Telemetry()
         self._wire = Wire(port, self._notice)
-        self._on_key, self._on_fault = on_key, on_fault
+        self.on_key, self.on_fault = on_key, on_fault
         self._exchanges: deque[Exchange] = deque(maxlen=EXCHANGES)
         self._heard_s = port.now_s()
         self.hello = self.connect()
@@ -118,6 +119,11 @@ class Client:
     def clocks(self) -> ClockRelation:
         """Relate the device's clock to the port's, from the last pings; DeviceError without one."""
         return relate(tuple(self._exchanges))
+
+    def host_s(self, time_us: int) -> float:
+        """Give the port's time of a moment, not long ago, that a notice tells; DeviceError without a ping."""
+        clocks = self.clocks()
+        return 1e-6 * clocks.host_us(unwrap_us(time_us, self._exchanges[-1].device_us))
 
     def read_settings(self) -> Settings:
         """Read calibration and limits."""
@@ -189,10 +195,10 @@ class Client:
             self.telemetry.add(notice, records, sequence)
         else:
             self.telemetry.heard(sequence)
-        if isinstance(notice, KeyRequest) and self._on_key:
-            self._on_key(notice)
-        if isinstance(notice, FaultedRequest) and self._on_fault:
-            self._on_fault(notice)
+        if isinstance(notice, KeyRequest) and self.on_key:
+            self.on_key(notice)
+        if isinstance(notice, FaultedRequest) and self.on_fault:
+            self.on_fault(notice)
 
     def close(self) -> None:
         """Close the line."""

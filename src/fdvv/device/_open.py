@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
-from fdvv.device._boards import HostBoard
+from fdvv.device._boards import HostBoard, LibraryBoard
 from fdvv.device._contract import Device
 from fdvv.device._emulated import EmulatedBoard
 from fdvv.device._linked import LinkedDevice
@@ -27,6 +28,7 @@ KINDS = {
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
 }
+"""Devices that a word opens, and what each is."""
 
 
 def pressed_by_person(spec: str) -> bool:
@@ -48,7 +50,9 @@ def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None,
     if kind == "emulated":
         return LinkedDevice(EmulatedBoard(_elf(where)), SimulatedPerson(rig, finger, seed))
     if spec == "host":
-        return LinkedDevice(HostBoard(), SimulatedPerson(rig, finger, seed))
+        # where a program can have no pseudo-terminal, the same firmware runs in this process
+        board = LibraryBoard() if sys.platform == "win32" else HostBoard()
+        return LinkedDevice(board, SimulatedPerson(rig, finger, seed))
     if spec == "twin":
         return TwinDevice(rig, finger, seed)
     raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")

@@ -12,6 +12,7 @@ STRIPS = {
     "host": "the firmware's core in this process; nothing is seen, and no key is pressed",
     "serial:PORT": "a strip's board on a serial port, its key line on the rig's controller",
 }
+"""LED strips that a word opens, and what each is."""
 
 
 def strip_port(spec: str) -> Port:

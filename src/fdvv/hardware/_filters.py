@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from fdvv.hardware._circuit import Circuit, Filter
-from fdvv.hardware._levels import Drives, levels
+from fdvv.hardware._levels import PowerState, levels
 from fdvv.protocol import CN64_PER_cN, UM16_PER_mm
 
 
@@ -89,12 +89,12 @@ def _gain(ratio: float, low: bool) -> complex:
 def _seen_ohm(circuit: Circuit, one: Filter) -> float:
     """Give the resistance across the capacitor: of its net to ground, or in series with what loads it."""
     if one.kind == "low pass":
-        return levels(circuit, Drives())[one.net].ohm
+        return levels(circuit, PowerState())[one.net].ohm
     loads = [circuit.pin(p).load_ohm for p in circuit.nets[one.net]]
     before = [
         n for _, a, b in circuit.between("capacitor") for n in (a, b) if one.net in (a, b) and n != one.net
     ]
-    source = levels(circuit, Drives())[before[0]].ohm if before else 0.0
+    source = levels(circuit, PowerState())[before[0]].ohm if before else 0.0
     return source + sum(load for load in loads if load)
 
 
@@ -107,7 +107,7 @@ def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
     """Tell what a step of the controller's converter means on every analog net of it."""
     facts = circuit.facts
     count_V = facts["converter_V"] / 2 ** facts["converter_bits"]
-    at = levels(circuit, Drives())
+    at = levels(circuit, PowerState())
     span_V = at["POSITION"].V  # of a conditioner that gives 0 to its full 5 V
     mm_V = facts["position_range_mm"] / span_V
     force_V = (
@@ -137,7 +137,7 @@ def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
     position, force, _ = converter_steps(circuit)
     facts = circuit.facts
     counts = 2 ** facts["converter_bits"]
-    zero_V = levels(circuit, Drives())["FORCE"].V * facts["force_low_ratio"] / facts["force_high_ratio"]
+    zero_V = levels(circuit, PowerState())["FORCE"].V * facts["force_low_ratio"] / facts["force_high_ratio"]
     return {
         "position_gain_q14": round(position.value * 1e-3 * UM16_PER_mm * 2**14 / reads),
         "position_offset_um16": round(-facts["position_range_mm"] / 2 * UM16_PER_mm),

@@ -20,7 +20,7 @@ CONTACTS = ("fuse", "switch")
 
 
 @dataclass(frozen=True)
-class Drives:
+class PowerState:
     """What drives: outputs high or low, references whose outputs let go, parts pulled out, contacts open."""
 
     high: bool = True
@@ -42,7 +42,7 @@ class Level:
         return self.ohm > FLOATS_ohm
 
 
-def levels(circuit: Circuit, state: Drives) -> dict[str, Level]:
+def levels(circuit: Circuit, state: PowerState) -> dict[str, Level]:
     """Solve the nets' direct voltages: capacitors and diodes carry no current, coils are their resistance.
 
     An open pin lets go; what a pull-up makes of its net is then its level.
@@ -68,7 +68,7 @@ def _join(conductance: FloatArray, a: int, b: int, siemens: float) -> None:
     conductance[b, a] -= siemens
 
 
-def _links(circuit: Circuit, state: Drives) -> list[tuple[str, str, float]]:
+def _links(circuit: Circuit, state: PowerState) -> list[tuple[str, str, float]]:
     found = []
     for kind in (*LINKS, *CONTACTS):
         for part, a, b in circuit.between(kind):
@@ -78,7 +78,7 @@ def _links(circuit: Circuit, state: Drives) -> list[tuple[str, str, float]]:
     return found
 
 
-def _drives(circuit: Circuit, state: Drives) -> list[tuple[str, float, float]]:
+def _drives(circuit: Circuit, state: PowerState) -> list[tuple[str, float, float]]:
     found = []
     for name, net in circuit.net_of.items():
         pin, ref = circuit.pin(name), circuit.part_of(name).ref

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from fdvv.errors import InputError
 from fdvv.hardware._circuit import HEARS, TWO, Circuit
-from fdvv.hardware._levels import Drives, Level, levels
+from fdvv.hardware._levels import Level, PowerState, levels
 from fdvv.hardware._power import power_budget
 
 LOW_V = 0.4
@@ -80,7 +80,7 @@ def _sources(circuit: Circuit) -> Iterator[Violation]:
 
 
 def _supplies(circuit: Circuit) -> Iterator[Violation]:
-    at = levels(circuit, Drives())
+    at = levels(circuit, PowerState())
     for name, net in circuit.net_of.items():
         pin, V = circuit.pin(name), at[net].V
         if pin.type == "supply" and not (pin.low_V or 0.0) <= V <= (pin.high_V or 1e9):
@@ -101,7 +101,7 @@ def _overloads(circuit: Circuit) -> Iterator[Violation]:
 
 def _inputs(circuit: Circuit) -> Iterator[Violation]:
     """Nothing above what an input bears, and what drives it is high enough and strong enough."""
-    at = levels(circuit, Drives())
+    at = levels(circuit, PowerState())
     for name, net in circuit.net_of.items():
         pin, level = circuit.pin(name), at[net]
         if pin.type not in HEARS:
@@ -126,12 +126,12 @@ def _driven(circuit: Circuit, net: str) -> bool:
     return any(circuit.pin(p).type in ("output", "source") for end in ends if end for p in circuit.nets[end])
 
 
-def _states(circuit: Circuit) -> Iterator[tuple[str, Drives]]:
-    yield "", Drives()
-    yield " with contacts open", Drives(contacts_open=True)
+def _states(circuit: Circuit) -> Iterator[tuple[str, PowerState]]:
+    yield "", PowerState()
+    yield " with contacts open", PowerState(contacts_open=True)
     for part in circuit.parts.values():
         if part.plug:
-            yield f" with {part.ref} pulled out", Drives(absent=(part.ref,))
+            yield f" with {part.ref} pulled out", PowerState(absent=(part.ref,))
 
 
 def _floating(circuit: Circuit) -> Iterator[Violation]:
@@ -151,7 +151,7 @@ def _floating(circuit: Circuit) -> Iterator[Violation]:
 def _resting(circuit: Circuit) -> Iterator[Violation]:
     """What must be low while the controllers are in reset is low then."""
     controllers = [p.ref for p in circuit.parts.values() if any(pin.signal for pin in p.kind.pins.values())]
-    at: dict[str, Level] = levels(circuit, Drives(released=controllers))
+    at: dict[str, Level] = levels(circuit, PowerState(released=controllers))
     for name, net in circuit.net_of.items():
         if circuit.pin(name).rest == "low" and (at[net].floats or at[net].V > LOW_V):
             what = "floats" if at[net].floats else f"rests at {at[net].V:.2f} V"

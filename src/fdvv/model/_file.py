@@ -22,6 +22,7 @@ from fdvv.model._velocity import Interpolation
 from fdvv.model._vibration import Mode, Vibration
 
 SUFFIX = ".fdvv.json"
+"""How a model file's name ends."""
 LIMIT_bytes = 64_000_000
 """Far above any button (a curve takes some 400 bytes), far below what would fill a machine's memory."""
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from fdvv.units import FloatArray
 
 PAPER_BUTTONS = ("optimal", "clear", "brown", "black", "red", "random")
+"""Buttons of the paper's validation, in the order of its table."""
 PAPER_MEANS_ms: Mapping[str, tuple[float, ...]] = MappingProxyType(
     {
         "easy": (65.8, 83.6, 88.04, 81.65, 84.28, 100.78),

@@ -14,6 +14,7 @@ from fdvv.optimize._space import Constraint, Design, DesignSpace, Parameter
 from fdvv.units import FloatArray
 
 PAPER_TRAVEL_mm = 6.2
+"""How deep the paper's designs go."""
 LARGEST_cN, LARGEST_signal = 440.0, 255.0
 """What the paper's linear motor gives at full signal; force is taken as proportional to it."""
 SIGNALS = (20.0, 180.0)

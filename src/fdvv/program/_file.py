@@ -34,6 +34,7 @@ from fdvv.program._records import (
 from fdvv.program._surface import Surface
 
 SUFFIX = ".fdvv-program.json"
+"""How a program file's name ends."""
 LIMIT_bytes = 16_000_000
 """Far above any program (an image holds 7 kB), far below what would fill a machine's memory."""
 

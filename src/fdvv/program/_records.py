@@ -12,6 +12,7 @@ from fdvv.program._program import During, Velocity
 
 FORMAT = "fdvv-program"
 VERSION = 1
+"""Of the program file."""
 
 Name = Annotated[str, Meta(min_length=1, max_length=40)]
 Reference = Annotated[Name | None, Meta(description="a name, or null")]

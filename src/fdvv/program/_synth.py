@@ -16,8 +16,10 @@ import numpy.typing as npt
 from fdvv.errors import ModelError
 
 RATE_HZ = 16_000
+"""Samples per second of the vibration board."""
 BLOCK_SAMPLES = 32
 SILENCE_counts = 2048
+"""Middle of its converter's range."""
 AMPLITUDE_MAX_counts = 2047
 STEADY_Q16 = 65_535
 SLOTS = 16

@@ -11,7 +11,9 @@ from typing import ClassVar
 from fdvv.protocol._record import Limits, Record
 
 STRIP_VERSION = 1
+"""Of the definition."""
 STRIP_HASH = 0xFEAE5A1E
+"""Of what the definition means; host and firmware compare it on connecting."""
 
 STRIP_FRAME_BYTES = 64
 """Largest frame before stuffing: id, sequence, payload, checksum."""
@@ -88,6 +90,7 @@ STRIP_REQUEST_BYTES = {
     StripMessage.SHOW: 6,
     StripMessage.REFUSED: 0,
 }
+"""Bytes of every request."""
 
 STRIP_REPLY_BYTES = {
     StripMessage.HELLO: 28,
@@ -98,6 +101,7 @@ STRIP_REPLY_BYTES = {
     StripMessage.SHOW: 0,
     StripMessage.REFUSED: 4,
 }
+"""Bytes of every reply."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,9 @@ from typing import ClassVar
 from fdvv.protocol._record import Limits, Record
 
 VERSION = 1
+"""Of the definition."""
 HASH = 0xEF2D1201
+"""Of what the definition means; host and firmware compare it on connecting."""
 
 FRAME_BYTES = 232
 """Largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254."""
@@ -251,6 +253,7 @@ REQUEST_BYTES = {
     Message.FAULTED: 8,
     Message.KEY: 12,
 }
+"""Bytes of every request."""
 
 REPLY_BYTES = {
     Message.HELLO: 36,
@@ -276,6 +279,7 @@ REPLY_BYTES = {
     Message.FAULTED: 0,
     Message.KEY: 0,
 }
+"""Bytes of every reply."""
 
 
 @dataclass(frozen=True, kw_only=True)

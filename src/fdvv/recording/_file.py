@@ -25,6 +25,7 @@ from fdvv.recording._records import (
 from fdvv.recording._types import Recording, Take
 
 RECORDING_SUFFIX = ".recording.jsonl"
+"""How a recording's name ends."""
 REMEDY = "compare with docs/reference/recording-file.md"
 KIND = JournalKind(frozenset({"head", "take", "mend"}), REMEDY)
 CUT = "the last record is not whole and is left out"

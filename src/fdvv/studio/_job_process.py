@@ -7,6 +7,7 @@ come in as lines; when the studio is gone the input ends, and the work stops as 
 
 from __future__ import annotations
 
+import _thread
 import contextlib
 import os
 import queue
@@ -54,9 +55,17 @@ class Answers:
     def _listen(self) -> None:
         for line in self._source:
             self._lines.put(msgspec.json.decode(line, type=tuple[int, str]))
-        os.kill(os.getpid(), signal.SIGINT)
+        _interrupt()
         threading.Event().wait(PATIENCE_s)
         os._exit(1)
+
+
+def _interrupt() -> None:
+    """Do to this process what Ctrl-C does."""
+    if sys.platform == "win32":
+        _thread.interrupt_main()
+    else:
+        os.kill(os.getpid(), signal.SIGINT)  # breaks off what the main thread waits for, too
 
 
 def work_on(work: Work) -> None:

@@ -55,13 +55,18 @@ class JobStart:
         try:
             self._process.stdin.write(msgspec.json.encode((number, answer)) + b"\n")
             self._process.stdin.flush()
-        except BrokenPipeError:
+        except (OSError, ValueError):  # the pipe is broken, or stop() has closed it
             pass
 
     def stop(self) -> None:
         """Have the work stopped: what was made is kept, the device lets go. By force if that takes long."""
         self._stopped = True
-        self._process.send_signal(signal.SIGINT)
+        if sys.platform == "win32":
+            # no process can be sent Ctrl-C there by itself; the end of its input tells it the same
+            assert self._process.stdin
+            self._process.stdin.close()
+        else:
+            self._process.send_signal(signal.SIGINT)
         force = threading.Timer(PATIENCE_s, self._process.kill)
         force.daemon = True
         force.start()
@@ -89,6 +94,6 @@ class JobStart:
         """Tell of a process that ended without telling why."""
         if self._stopped:
             return JobEnded("cancelled", STOPPED)
-        said = self._errors.read_text(errors="replace").strip().splitlines()
+        said = self._errors.read_text(encoding="utf-8", errors="replace").strip().splitlines()
         why = f": {said[-1][:LARGEST_chars]}" if said else ""
         return JobEnded("failed", f"the work broke off with status {status}{why}; what was made is kept")

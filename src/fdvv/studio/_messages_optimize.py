@@ -41,6 +41,16 @@ class OptimizeOffers(Struct, frozen=True):
     starts: list[OptimizeOffer]
 
 
+class OptimizeDevicesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask what a person can press beside the page."""
+
+
+class OptimizeDevices(Struct, frozen=True):
+    """Devices that a person presses, as there are just now."""
+
+    devices: list[OptimizeOffer]
+
+
 class OptimizeCreate(Struct, frozen=True, forbid_unknown_fields=True):
     """Begin a run.
 

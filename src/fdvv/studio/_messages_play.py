@@ -14,14 +14,18 @@ from fdvv.studio._messages_press import ShakeSignal
 Count = Annotated[int, Meta(ge=0, le=2**31)]
 Time = Annotated[float, Meta(ge=0, le=1e12)]
 Delay = Annotated[float, Meta(ge=0, le=1000)]
-Hand = Literal["key", "mouse", "touch", "pen"]
+Hand = Literal["key", "mouse", "touch", "pen", "button"]
 
 
 class PlayOpen(Struct, frozen=True, forbid_unknown_fields=True, tag="open"):
-    """Begin a trial of a run, or begin it again: its rounds so far no longer count."""
+    """Begin a trial of a run, or begin it again: its rounds so far no longer count.
+
+    device : that is pressed, one of optimize.devices; empty: a simulated button under the page's hand.
+    """
 
     run: Count
     trial: Count
+    device: Annotated[str, Meta(max_length=300)] = ""
 
 
 class PlayPing(Struct, frozen=True, forbid_unknown_fields=True, tag="ping"):
@@ -55,7 +59,7 @@ class PlayRound(Struct, frozen=True, forbid_unknown_fields=True, tag="round"):
     start_ms, end_ms : presses between count. target_ms : when the target was drawn.
     display : from drawing to light. input : from finger to the browser's event.
     clock_ms, clock_error_ms : the server's clock less the page's; None where it is not known yet.
-    frame_ms : between two pictures.
+    frame_ms : between two pictures. hand, input : of a device's key "button" and nothing: it tells its own.
     """
 
     number: Count
@@ -104,7 +108,7 @@ class PlayKept(Struct, frozen=True, forbid_unknown_fields=True, tag="kept"):
     """A round is on the disk.
 
     late_ms : of the key against the target, None if it did not go down. transport_ms : from hand to
-    simulation, taken out; None without a press.
+    simulation, taken out; None without a press, and of a device.
     """
 
     number: int

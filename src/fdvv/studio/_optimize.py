@@ -9,8 +9,9 @@ from fdvv.studio import _optimize_told as t
 from fdvv.studio._contract import Call, ChannelKind, Tell
 from fdvv.studio._optimizations import Optimizations
 from fdvv.studio._play import CHANNEL as PLAY
+from fdvv.studio._play_device import pressed_devices
 from fdvv.studio._played_trial import open_trials
-from fdvv.studio._pointing import PRESSES, TASK, playable, pointing_of
+from fdvv.studio._pointing import TASK, playable, pointing_of
 from fdvv.studio._studio import Studio
 from fdvv.studio._told import told
 from fdvv.workflow import (
@@ -61,6 +62,11 @@ def offers(studio: Studio, _ask: m.OptimizeOffersAsk) -> m.OptimizeOffers:
     )
 
 
+def devices(_studio: Studio, _ask: m.OptimizeDevicesAsk) -> m.OptimizeDevices:
+    """Tell what a person can press beside the page."""
+    return m.OptimizeDevices([m.OptimizeOffer(name, about) for name, about in pressed_devices()])
+
+
 def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
     """Begin a run."""
     space, start = _space(studio, ask)
@@ -74,7 +80,7 @@ def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
         seed=ask.seed,
         budget=ask.budget,
         start=start,
-        about={t.TITLE: ask.title.strip(), t.START: ask.start, PRESSES: ask.task_presses},
+        about={t.TITLE: ask.title.strip(), t.START: ask.start, OptimizeSetup.PRESSES: ask.task_presses},
     )
     if playable(setup):
         try:
@@ -244,6 +250,7 @@ class OptimizeChannel:
 
 CALLS = (
     Call("optimize.offers", m.OptimizeOffersAsk, m.OptimizeOffers, offers),
+    Call("optimize.devices", m.OptimizeDevicesAsk, m.OptimizeDevices, devices),
     Call("optimize.create", m.OptimizeCreate, m.OptimizeAsk, create),
     Call("optimize.list", m.OptimizeListAsk, m.OptimizeRows, rows),
     Call("optimize.detail", m.OptimizeAsk, m.OptimizeDetail, detail),

@@ -7,8 +7,6 @@ from fdvv.optimize import TemporalPointing
 from fdvv.workflow import OptimizeSetup
 
 TASK = "temporal-pointing"
-PRESSES = "presses"
-"""Where a setup keeps how many presses make a score, among what else belongs to a run."""
 
 
 def playable(setup: OptimizeSetup) -> bool:
@@ -31,5 +29,4 @@ def pointing_of(setup: OptimizeSetup) -> TemporalPointing:
     if not playable(setup):
         raise InputError("optimise", setup.task, "is not played on the page", "use fdvv optimize")
     also = tuple(one.name for one in setup.objectives[1:])
-    rounds = int(setup.about.get(PRESSES, TemporalPointing.rounds))
-    return TemporalPointing(setup.level or "easy", rounds, quantised=False, also=also)
+    return TemporalPointing(setup.level or "easy", setup.presses, quantised=False, also=also)

@@ -138,6 +138,7 @@ Event = (
     | Resumed
     | Withdrawn
 )
+"""What can happen in a session, as its journal keeps it."""
 EVENTS: dict[str, type[Event]] = {
     "began": Began,
     "page": PageAnswered,

@@ -10,7 +10,9 @@ from fdvv.study._events import TrialFace
 from fdvv.study._session import SessionState
 
 StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
+"""What a step of a session can be."""
 ENDS: tuple[StepKind, ...] = ("done", "declined", "withdrawn")
+"""Steps after which nothing comes."""
 
 
 class Step(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -14,6 +14,7 @@ from fdvv.study._plan_check import is_file
 from fdvv.study._plan_file import read_plan_text
 
 STUDY_FILE = "study.toml"
+"""Name of the file that declares a study, in its folder."""
 SUFFIX = ".toml"
 LONGEST_NAME = 60
 NAME_LINE = re.compile(r'^name = "[^"]*"', re.MULTILINE)

@@ -13,6 +13,7 @@ from fdvv.twin import Exciter, Finger, Rig, RigPlant, Trace, image_of, plan, set
 from fdvv.units import FloatArray, m_from_mm
 
 SNAP_AT_mm, SNAP_Hz, SNAP_DURATION_s, DECAY_ratio = 2.0, 239.0, 0.016, 0.2
+"""The paper's snap: where it is, its frequency, its length, and what is left of it at its end."""
 LEAD_mm = 0.3
 """The paper starts the vibration this much early, whatever the speed."""
 RATE_Hz, BLOCK = 16000, 32

@@ -25,6 +25,7 @@ from fdvv.twin import (
 from fdvv.units import FloatArray
 
 AWAY = Finger(habit=Habit(lift_m=0.02).still())
+"""A finger that does not touch the cap."""
 MIDDLE_mm = 1.0
 
 

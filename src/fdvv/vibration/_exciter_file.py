@@ -14,6 +14,7 @@ from fdvv.files import read_limited, write_atomic
 from fdvv.vibration._exciter import KnownExciter
 
 EXCITER_SUFFIX = ".exciter.json"
+"""How the name of a known exciter's file ends."""
 LIMIT_bytes = 100_000
 _REMEDY = "identify the exciter again"
 _KIND = Kind("fdvv-exciter", 1, "a known exciter", _REMEDY)

@@ -55,6 +55,7 @@ class UnpinMade(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type
 
 
 DraftChange = EditMade | UndoMade | RedoMade | PinMade | UnpinMade
+"""What can happen to a draft, as its journal keeps it."""
 
 
 class DraftStep(Struct, frozen=True):

@@ -19,7 +19,7 @@ from fdvv.workflow._optimize_setup import ObjectiveSetup, OptimizeSetup, SpaceSe
 from fdvv.workflow._population_result import RESULT_FILE, read_population
 from fdvv.workflow._rig_shelf import SHIPPED_RIGS, SUFFIX
 
-PAPER, PRESSES = "paper", "presses"
+PAPER = "paper"
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def _space(asked: RunAsked, rig_id: str | None) -> tuple[SpaceSetup, dict[str, f
 def _about(asked: RunAsked) -> dict[str, Any]:
     """Give what is kept of who plays."""
     if asked.person is None:
-        return {PRESSES: asked.presses}
+        return {OptimizeSetup.PRESSES: asked.presses}
     return about_player(asked.person, asked.rig, asked.presses)
 
 

@@ -26,6 +26,7 @@ from fdvv.workflow._play import score_design
 from fdvv.workflow._play_bench import PLAY_RIGS, refusal_of
 
 POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
+"""Names of the tasks."""
 PLAYED_TASKS = (POINTING, TAPPING, ACCURACY)
 """Tasks that simulated people can play."""
 

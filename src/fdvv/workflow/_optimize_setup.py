@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Meta, Struct
@@ -20,6 +20,7 @@ from fdvv.optimize import (
     DesignSpace,
     Objective,
     Problem,
+    TemporalPointing,
     Trial,
     model_of,
     model_space,
@@ -69,8 +70,10 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     task, level : what a person does, as tasks are named; level None where there is one only.
     budget : trials, or comparisons, that may be asked; failed ones count, abandoned ones do not.
     start : a person's own design, tried first. prior : finished trials of others to begin from.
-    about : whatever else belongs to a run: who presses, on what.
+    about : whatever else belongs to a run: who presses, on what, and how many PRESSES make a score.
     """
+
+    PRESSES: ClassVar[str] = "presses"
 
     format: Literal["fdvv-optimize"] = "fdvv-optimize"
     version: Literal[1] = 1
@@ -93,6 +96,12 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     def preference(self) -> bool:
         """Tell whether designs are compared, not scored."""
         return self.task == "preference"
+
+    @property
+    def presses(self) -> int:
+        """Get how many presses of a person make a score; as in the paper unless it was said."""
+        told = self.about.get(self.PRESSES)
+        return told if isinstance(told, int) else TemporalPointing.rounds
 
 
 def read_setup(path: Path) -> OptimizeSetup:

@@ -27,10 +27,12 @@ class ClockSource(StrEnum):
     """Whose clock target and activations are on.
 
     page : the browser's; what its screen shows and its keys tell is late by delays, measured or stated.
+    key : the target is on the page's, whose screen shows it; the key is a device's, joined with that.
     device : a device's own, which shows the target and feels the button.
     """
 
     PAGE = "page"
+    KEY = "key"
     DEVICE = "device"
 
 
@@ -41,11 +43,12 @@ class RoundTiming(Struct, frozen=True, forbid_unknown_fields=True):
     ----------
     source : whose clock.
     display_ms, input_ms : from drawing to light, from finger to the browser's event; taken into account.
+        A device's key is told on its own clock: 0, and the error is the bound of that clock.
     display_error_ms, input_error_ms : how far they may be off, alike in all rounds.
     clock_ms, clock_error_ms : the server's clock less the source's, and its bound; None where not known.
     transport_ms : from the browser's event to the simulated finger; taken out.
     frame_ms : between two pictures of the screen.
-    hand : what the person pressed: "key", "mouse", "touch", "pen".
+    hand : what the person pressed: "key", "mouse", "touch", "pen"; "button" of a device.
     """
 
     source: ClockSource

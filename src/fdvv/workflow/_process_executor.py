@@ -5,12 +5,13 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import signal
+import sys
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
-from fdvv.workflow._executor import TRIES, answered, found_or_raised, lost
+from fdvv.workflow._executor import TRIES, ChunkLost, answered, found_or_raised
 
 Chunk = TypeVar("Chunk")
 Found = TypeVar("Found")
@@ -89,7 +90,7 @@ class _Pool:
     def _again(self, number: int) -> None:
         self._tries[number] += 1
         if self._tries[number] >= TRIES:
-            raise lost(number)
+            raise ChunkLost(number)
         self._waiting.appendleft(number)
 
 
@@ -100,13 +101,8 @@ class _Worker:
         context = multiprocessing.get_context("spawn")
         self.line, far = context.Pipe()
         self._process = context.Process(target=_serve, args=(far, work), daemon=True)
-        # Ctrl-C reaches every process of the terminal: it is this one's to answer. What is blocked here
-        # stays so in the process that is started
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
+        with _deaf_to_ctrl_c():
             self._process.start()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         far.close()
 
     def end(self) -> None:
@@ -117,8 +113,23 @@ class _Worker:
         self.line.close()
 
 
+@contextlib.contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Start processes that do not hear Ctrl-C: it reaches all of the terminal and is this one's to answer."""
+    if sys.platform == "win32":
+        yield  # nothing to block there; the process looks away itself once it runs
+        return
+    # what is blocked here stays so in what is started
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _serve(line: Connection, work: Callable[[Any], Any]) -> None:
     """Answer chunks until the other side has ended, however that came about."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         while True:
             line.send(answered(work, line.recv()))

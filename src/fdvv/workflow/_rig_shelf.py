@@ -20,6 +20,7 @@ SHIPPED_RIGS = {
     "paper": "one that could have been the paper's: current drive, 12 g",
     "light": "current drive, mover of 6 g, loop of 10 kHz",
 }
+"""Rigs that come with the package, and what each is."""
 OWN_ABOUT = "your rig file; limits of force and time are those of the shipped default rig"
 SUFFIX, SIMULATED = ".rig.json", ".simulated.rig.json"
 MET_ON, MET_AT_mm_s, MET_SEED = "mx-clear", (50.0, 100.0, 150.0, 200.0), 1

@@ -97,4 +97,5 @@ NUMBERS = (
     *("actuation_mm", "actuation_cN", "reset_mm", "preload_cN", "bottom_out_cN", "travel_mm"),
     *("pre_slope_cN_mm", "post_slope_cN_mm", "work_mJ", "loss_mJ"),
 )
+"""Figures of a row that can be searched by range and sorted by."""
 """The fields of a row that are ranges to filter by and columns to sort by."""

@@ -13,8 +13,6 @@ from fdvv.workflow._play import play
 from fdvv.workflow._strip import Heard, Presser, played_presser, try_on_strip
 
 TASK = "temporal-pointing"
-ROUNDS = 20
-"""Presses of a score (CHI 2020)."""
 
 
 def run_on_strip(
@@ -22,7 +20,7 @@ def run_on_strip(
     device: Remote,
     strip: StripTask,
     *,
-    rounds: int = ROUNDS,
+    rounds: int = TemporalPointing.rounds,
     order: StripRound | None = None,
     ready: Callable[[Trial], None] | None = None,
     presser: Presser | None = None,
@@ -51,8 +49,7 @@ def run_on_any_strip(
     """
     port = strip.port
     if not isinstance(port, LibraryStrip):
-        rounds = int(session.setup.about.get("presses", ROUNDS))
-        yield from run_on_strip(session, device, strip, rounds=rounds, ready=ready)
+        yield from run_on_strip(session, device, strip, rounds=session.setup.presses, ready=ready)
         return
     player = player_of(session.setup)
     task, presses = _task(session, player.task.rounds), list[TaskPress]()

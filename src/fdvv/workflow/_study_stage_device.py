@@ -16,8 +16,8 @@ from fdvv.program import Limits
 from fdvv.protocol import BoardFlag, Fault, Mode, TickFlag
 from fdvv.study import Rendered, Stimulus
 from fdvv.vibration import KnownExciter
+from fdvv.workflow._device_line import DeviceLine, RealLine, SimulatedLine
 from fdvv.workflow._session_run import clear_latched
-from fdvv.workflow._study_device_line import DeviceLine, RealLine, SimulatedLine
 from fdvv.workflow._study_program import TrialProgram, trial_program
 from fdvv.workflow._study_stage import EvenSwitch, check_label
 from fdvv.workflow._study_stage_evidence import StageEvidence, fault_name

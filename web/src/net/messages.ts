@@ -41,6 +41,7 @@ export interface Calls {
   readonly "optimize.best": { readonly ask: OptimizeAsk; readonly answer: OptimizeBest };
   readonly "optimize.create": { readonly ask: OptimizeCreate; readonly answer: OptimizeAsk };
   readonly "optimize.detail": { readonly ask: OptimizeAsk; readonly answer: OptimizeDetail };
+  readonly "optimize.devices": { readonly ask: OptimizeDevicesAsk; readonly answer: OptimizeDevices };
   readonly "optimize.edit": { readonly ask: OptimizeEdit; readonly answer: OptimizeTrialAsk };
   readonly "optimize.halt": { readonly ask: OptimizeAsk; readonly answer: OptimizeAsk };
   readonly "optimize.list": { readonly ask: OptimizeListAsk; readonly answer: OptimizeRows };
@@ -64,6 +65,7 @@ export interface Calls {
   readonly "program.surface": { readonly ask: SurfaceAsk; readonly answer: ProgramSurface };
   readonly "studies.create": { readonly ask: StudiesCreate; readonly answer: StudiesAsk };
   readonly "studies.detail": { readonly ask: StudiesAsk; readonly answer: StudiesDetail };
+  readonly "studies.devices": { readonly ask: StudiesDevicesAsk; readonly answer: StudiesDevices };
   readonly "studies.freeze": { readonly ask: StudiesFreeze; readonly answer: StudiesDetail };
   readonly "studies.list": { readonly ask: StudiesListAsk; readonly answer: StudiesRows };
   readonly "studies.offers": { readonly ask: StudiesOffersAsk; readonly answer: StudiesOffers };
@@ -795,6 +797,18 @@ export interface OptimizeSimulated {
   readonly fault: string;
 }
 
+export interface OptimizeDevicesAsk {
+}
+
+export interface OptimizeDevices {
+  readonly devices: readonly OptimizeOffer[];
+}
+
+export interface OptimizeOffer {
+  readonly name: string;
+  readonly told: string;
+}
+
 export interface OptimizeEdit {
   readonly run: number;
   readonly trial: number;
@@ -829,11 +843,6 @@ export interface OptimizeOffers {
   readonly levels: readonly OptimizeOffer[];
   readonly objectives: readonly OptimizeOffer[];
   readonly starts: readonly OptimizeOffer[];
-}
-
-export interface OptimizeOffer {
-  readonly name: string;
-  readonly told: string;
 }
 
 export interface OptimizeSimulate {
@@ -1031,7 +1040,6 @@ export interface StudiesDetail {
   readonly paused: boolean;
   readonly history: readonly string[];
   readonly device: string;
-  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesRow {
@@ -1053,6 +1061,13 @@ export interface StudiesPerson {
   readonly here: boolean;
   readonly paused: boolean;
   readonly told: string;
+}
+
+export interface StudiesDevicesAsk {
+}
+
+export interface StudiesDevices {
+  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesDevice {
@@ -1392,6 +1407,7 @@ export interface PlayOpen {
   readonly type: "open";
   readonly run: number;
   readonly trial: number;
+  readonly device?: string;
 }
 
 export interface PlayPing {
@@ -1415,7 +1431,7 @@ export interface PlayRound {
   readonly start_ms: number;
   readonly target_ms: number;
   readonly end_ms: number;
-  readonly hand: "key" | "mouse" | "pen" | "touch";
+  readonly hand: "button" | "key" | "mouse" | "pen" | "touch";
   readonly display: PlayDelay;
   readonly input: PlayDelay;
   readonly clock_ms: number | null;
@@ -1662,12 +1678,14 @@ export interface StudyLook {
   readonly type: "look";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
 }
 
 export interface StudySit {
   readonly type: "sit";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
   readonly language: string;
 }
 

@@ -7,6 +7,7 @@ import type { Hand } from "./game";
 import { Play } from "./play";
 import { named, scoreText, type RunStore } from "./store";
 import { stripView } from "./strip";
+import { SIMULATED, table } from "./table";
 
 const SCORES = "fdvv-scores-shown";
 
@@ -34,8 +35,10 @@ export function board(store: RunStore): Board {
     },
   });
   const busy = () => play.standing() !== "away";
-  const pad = h("div", { class: "opt-pad", hidden: () => !busy(), tabindex: 0, role: "application", "aria-label": "Press here, or the space bar" }, h("p", { "aria-hidden": "true" }, "Press here, or the space bar"));
-  const start = startButton(store, play, pad, last);
+  const beside = table(busy);
+  const where = () => (play.device() === SIMULATED ? "Press here, or the space bar" : "Press the button on the table");
+  const pad = h("div", { class: "opt-pad", hidden: () => !busy(), tabindex: 0, role: "application", "aria-label": where }, h("p", { "aria-hidden": "true" }, where));
+  const start = startButton(store, play, pad, last, beside.device);
   follow(play, pad);
   const setScores = (on: boolean) => {
     scores.set(on);
@@ -51,23 +54,24 @@ export function board(store: RunStore): Board {
       "div",
       { class: "row" },
       start,
+      beside.element,
       pauseButton(play, pad),
       () => (busy() ? button({ label: "Stop", act: () => play.close(), hint: "The presses so far are kept, but do not count" }) : abandonButton(store)),
-      soundToggle(play),
+      () => (beside.device() === SIMULATED ? soundToggle(play) : null),
       toggle({ label: "Show scores", value: scores, set: setScores, hint: "After each trial; without, nothing tells you how well you did" }),
     ),
   );
   return { element, play, busy, scores };
 }
 
-function startButton(store: RunStore, play: Play, pad: HTMLElement, last: Signal<number | null>): HTMLButtonElement {
+function startButton(store: RunStore, play: Play, pad: HTMLElement, last: Signal<number | null>, device: () => string): HTMLButtonElement {
   const asking = signal(false);
   const begin = async () => {
     asking.set(true);
     try {
       const { trial } = await call("optimize.next", { run: store.run });
       last.set(null);
-      play.open(store.run, trial);
+      play.open(store.run, trial, device());
       play.clicker.wake();
       pad.focus({ preventScroll: true });
     } catch (error) {

@@ -5,6 +5,7 @@ import type { Channels, PlayKept, PlayReady } from "../../net/messages";
 import { onCleanup, signal, type Signal } from "../../ui";
 import { Clicker } from "../press/stage";
 import { delays, displayDelay, FramePace } from "./delays";
+import { SIMULATED } from "./table";
 import { begun, drawn, kept, listens, lit_px, paused, pressed, resumed, round, type Game, type Hand, type Strip } from "./game";
 
 /** A clock that is not known yet is asked often, later now and then; this tells the server too that somebody is here. */
@@ -30,6 +31,8 @@ export class Play {
   readonly reason: Signal<string> = signal("");
   /** The rounds of this trial, in order, as the server keeps them. */
   readonly rounds: Signal<readonly PlayKept[]> = signal<readonly PlayKept[]>([]);
+  /** The device that is pressed; empty: what the hand does on the page is a press. */
+  readonly device: Signal<string> = signal(SIMULATED);
   readonly clock = new ClockSync();
   readonly pace = new FramePace();
   readonly clicker = new Clicker();
@@ -44,7 +47,11 @@ export class Play {
     this.channel = live().channel("play", {
       told: (message) => this.take(message),
       wrong: (line) => this.away(line),
-      opened: () => this.clock.reset(),
+      opened: () => {
+        this.clock.reset();
+        // asked for before there was a connection
+        if (this.standing.peek() === "opening") this.ask();
+      },
       lost: () => this.standing.peek() !== "away" && this.away("The connection was lost: this trial begins anew."),
     });
     const hidden = () => document.hidden && this.pause();
@@ -66,13 +73,18 @@ export class Play {
   }
 
   /** Put the button of a trial under the finger; its rounds begin with the first picture after that. */
-  open(run: number, trial: number): void {
+  open(run: number, trial: number, device: string): void {
     this.run = run;
+    this.device.set(device);
     this.trial.set(trial);
     this.rounds.set([]);
     this.reason.set("");
     this.standing.set("opening");
-    if (!this.channel.send({ type: "open", run, trial })) this.away("The studio does not answer.");
+    if (!this.ask() && live().state.peek() === "lost") this.away("The studio does not answer.");
+  }
+
+  private ask(): boolean {
+    return this.channel.send({ type: "open", run: this.run, trial: this.trial.peek() ?? 0, device: this.device.peek() });
   }
 
   /** Put the button away; rounds of an unfinished trial are kept and do not count. */
@@ -93,7 +105,7 @@ export class Play {
   /** The hand pressed, at an event's time. */
   press(at_ms: number, hand: Hand): void {
     const game = this.game.peek();
-    if (!game || !listens(game) || this.down) return;
+    if (!game || !listens(game) || this.down || this.device.peek() !== SIMULATED) return;
     this.down = true;
     this.channel.send({ type: "down", at_ms });
     this.game.set(pressed(game, { at_ms, hand }));
@@ -144,11 +156,13 @@ export class Play {
     this.release(performance.now());
     const frame_ms = this.pace.frame_ms();
     const clock = this.clock.at(performance.now());
+    const beside = this.device.peek() !== SIMULATED;
     this.channel.send({
       type: "round",
       ...over,
+      hand: beside ? "button" : over.hand,
       display: displayDelay(delays.peek(), frame_ms),
-      input: delays.peek().input[over.hand],
+      input: beside ? { ms: 0, error_ms: 0 } : delays.peek().input[over.hand],
       clock_ms: clock?.offset_ms ?? null,
       clock_error_ms: clock ? Math.min(1000, clock.error_ms) : null,
       frame_ms: Math.min(1000, frame_ms),

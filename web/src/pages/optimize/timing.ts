@@ -4,6 +4,7 @@ import { button, h, numberField, onCleanup, panel, shown, signal } from "../../u
 import { delays, displayDelay, setDelays, type Delay } from "./delays";
 import type { Hand } from "./game";
 import type { Play } from "./play";
+import { SIMULATED } from "./table";
 import { tapAlong } from "./tap_along";
 
 const HANDS: readonly (readonly [Hand, string])[] = [
@@ -33,7 +34,7 @@ export function timingPanel(play: Play): HTMLElement {
 function measured(play: Play, beat: () => number): HTMLElement {
   return panel(
     "Measured here",
-    h("p", {}, "The bullet is on the page's clock, the key on the simulation's. A press counts from the browser's event plus what the simulated button takes: the way between page and server is taken out."),
+    h("p", {}, "The bullet is on the page's clock, the key on the simulation's. A press counts from the browser's event plus what the simulated button takes: the way between page and server is taken out. A device on the table tells of its key on its own clock, joined with the page's."),
     () => (beat(), h("dl", { class: "opt-facts" }, facts(play))),
   );
 }
@@ -46,7 +47,9 @@ function facts(play: Play): HTMLElement[] {
     fact("between two pictures", `${shown(play.pace.frame_ms(), 2)} ms`),
     fact("clocks of page and server", clock ? `known to ± ${shown(clock.error_ms, 2)} ms` : "not yet known"),
     fact("question and answer", told ? `${shown(told.trip_ms, 2)} ms at best` : "–"),
-    fact("hand to simulation, taken out", way === undefined ? "after the first press" : `${shown(way, 1)} ms (median of ${ways.length})`),
+    play.device.peek() === SIMULATED
+      ? fact("hand to simulation, taken out", way === undefined ? "after the first press" : `${shown(way, 1)} ms (median of ${ways.length})`)
+      : fact("key", "told by the device's own clock"),
   ];
 }
 

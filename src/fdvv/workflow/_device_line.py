@@ -1,4 +1,4 @@
-"""Who moves a device on during a study: time itself on a real line, whoever waits on a simulated one."""
+"""Who moves a device on while somebody is at it: time itself on a line, whoever waits on a simulated one."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class RealLine:
         self._device, self._heard, self._watched, self._lost = device, heard, watched, lost
         self._asked: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._over, self._watch_s = False, time.monotonic()
-        self._thread = Thread(target=self._run, name="study device", daemon=True)
+        self._thread = Thread(target=self._run, name="device line", daemon=True)
         self._thread.start()
 
     def do(self, work: Callable[[], Found]) -> Found:

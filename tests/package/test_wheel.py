@@ -1,0 +1,165 @@
+"""What users install: the sdist, and the wheel that is built from it."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environment, new_environment, unpacked
+
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+
+NEEDED = (
+    "_native/libfdvv.so",
+    "_native/fdvv-host",
+    "model/builtin/mx-clear.fdvv.json",
+    "study/words.toml",
+    "study/templates/realism.toml",
+    "study/templates/buttons/mx-red.fdvv.json",
+    "studio/static/index.html",
+    "twin/rigs/default.toml",
+    "twin/rigs/light.toml",
+    "twin/rigs/paper.toml",
+    "twin/fingers/paper.toml",
+    "py.typed",
+)
+LARGEST_wheel_bytes = 6_000_000
+LARGEST_sdist_bytes = 20_000_000
+
+
+def test_the_wheel_holds_the_package_and_nothing_beside_it(packages: Packages) -> None:
+    names = zipfile.ZipFile(packages.wheel).namelist()
+    assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
+    version = packages.wheel.name.split("-")[1]
+    assert {name.split("/")[0] for name in names} == {"fdvv", f"fdvv-{version}.dist-info"}
+    assert [name for name in names if name.endswith((".c", ".h", ".tmp", ".pyc"))] == []
+    assert packages.wheel.stat().st_size < LARGEST_wheel_bytes
+
+
+def test_the_sdist_holds_all_sources_and_nothing_that_was_built(packages: Packages) -> None:
+    with tarfile.open(packages.sdist) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    for part in (
+        "README.md",
+        "tools/setup.sh",
+        "firmware/core/core.c",
+        "web/package.json",
+        "tests/conftest.py",
+    ):
+        assert part in names
+    built = re.compile(r"\.(so|dylib|dll|pyc|tmp)$|fdvv-host$|^build/|node_modules/|\.venv")
+    assert [name for name in names if built.search(name)] == []
+    assert packages.sdist.stat().st_size < LARGEST_sdist_bytes
+
+
+@pytest.mark.skipif(shutil.which("objdump") is None, reason="objdump is not installed")
+def test_the_tag_of_the_wheel_is_the_glibc_that_its_symbols_need(packages: Packages, tmp_path: Path) -> None:
+    zipfile.ZipFile(packages.wheel).extractall(tmp_path)
+    native = tmp_path / "fdvv" / "_native"
+    told = "".join(
+        subprocess.run(
+            ["objdump", "-T", str(native / name)], capture_output=True, text=True, check=True
+        ).stdout
+        for name in ("libfdvv.so", "fdvv-host")
+    )
+    needed = max((int(a), int(b)) for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", told))
+    tag = re.fullmatch(r"fdvv-.*-py3-none-manylinux_(\d+)_(\d+)_\w+\.whl", packages.wheel.name)
+    assert tag, packages.wheel.name
+    assert (int(tag[1]), int(tag[2])) == needed
+
+
+def test_the_wheel_works_alone_without_extras_and_without_the_repository(
+    packages: Packages, tmp_path: Path
+) -> None:
+    python = new_environment(tmp_path / "clean", str(packages.wheel))
+    tool = shutil.copy(REPOSITORY / "tools" / "try_wheel.py", tmp_path)
+    run = [str(python), "-P", str(tool)]
+    ran = subprocess.run(
+        run, cwd=tmp_path, env=clean_environment(), capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    # the extras are really away, else nothing was proven of them
+    assert "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial]" in ran.stdout
+    where = "import fdvv; print(fdvv.__file__)"
+    found = subprocess.run(
+        [str(python), "-P", "-c", where],
+        cwd=tmp_path,
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert Path(found.stdout.strip()).is_relative_to(tmp_path)
+    host = next((tmp_path / "clean").rglob("fdvv-host"))
+    assert os.access(host, os.X_OK)
+
+
+def test_two_builds_in_two_folders_give_the_same_bytes(
+    builder: Builder, packages: Packages, tmp_path: Path
+) -> None:
+    made = []
+    for place in ("here", "somewhere-else"):
+        sources = unpacked(packages.sdist, tmp_path / place)
+        wheel = builder.build("wheel", sources, tmp_path / place, SOURCE_DATE_EPOCH="1700000000")
+        made.append((wheel.name, wheel.read_bytes()))
+    assert made[0] == made[1]
+
+
+def test_without_a_compiler_a_build_asks_pip_for_one(
+    builder: Builder, packages: Packages, tmp_path: Path
+) -> None:
+    code = "import hatchling.build as build; print(build.get_requires_for_build_wheel())"
+    command = [str(builder.python), "-c", code]
+    asked = [
+        subprocess.run(
+            command,
+            cwd=packages.sources,
+            env=clean_environment(**path),
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip()
+        for path in ({}, {"PATH": str(tmp_path)})
+    ]
+    assert asked == ["[]", "['ziglang']"]
+    with pytest.raises(subprocess.CalledProcessError) as stop:
+        builder.build("wheel", packages.sources, tmp_path, PATH=str(tmp_path))
+    said = stop.value.stderr.strip().splitlines()
+    assert len(said) == 2, said
+    assert "no C compiler found" in said[0]
+    assert "pip install ziglang" in said[0]
+
+
+def test_without_a_compiler_pip_fetches_one_and_the_wheel_is_whole(
+    packages: Packages, zig: list[str], tmp_path: Path
+) -> None:
+    # where zig-tools are, pip has been able to fetch it once
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "-q", "wheel", "--no-deps"]
+    environment = clean_environment(PATH=str(tmp_path))
+    subprocess.run([*pip, "-w", str(tmp_path), str(packages.sdist)], env=environment, check=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    names = zipfile.ZipFile(wheel).namelist()
+    assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
+
+
+@pytest.mark.timeout(1800)  # installs all that a newcomer gets
+def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packages: Packages) -> None:
+    script = REPOSITORY / "tools" / "newcomer.sh"
+    # a newcomer's Python is not the one of this environment
+    python = Path(sys.base_prefix) / "bin" / "python3"
+    ran = subprocess.run(
+        ["bash", str(script), str(packages.sdist)],
+        env=clean_environment(PYTHON=str(python)),
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    steps = re.findall(r"^ *[\d.]+ s  (.+?)  ", ran.stdout, flags=re.MULTILINE)
+    for step in ("make demo", "fdvv studio", "fdvv study preview realism", "python"):
+        assert step in steps

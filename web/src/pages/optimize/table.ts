@@ -1,0 +1,26 @@
+/** What is pressed: a simulated button under the page's own hand, or a device on the table beside it. */
+
+import { call } from "../../net";
+import type { OptimizeOffer } from "../../net/messages";
+import { choice, h, signal, type Signal } from "../../ui";
+
+/** No device: the simulated button. */
+export const SIMULATED = "";
+const HERE = "a simulated button, by key, mouse or touch";
+
+export interface Table {
+  /** The device that is pressed; SIMULATED if none is. */
+  readonly device: Signal<string>;
+  /** Where one chooses; nothing where there is no device. */
+  readonly element: HTMLElement;
+}
+
+export function table(busy: () => boolean): Table {
+  const device = signal(SIMULATED);
+  const devices = signal<readonly OptimizeOffer[]>([]);
+  // without devices there is nothing to choose, whatever the reason
+  call("optimize.devices", {}).then((found) => devices.set(found.devices), () => undefined);
+  const options = () => [[SIMULATED, HERE] as const, ...devices().map((one) => [one.name, one.told ? `${one.name}, ${one.told}` : one.name] as const)];
+  const element = h("span", {}, () => (devices().length && !busy() ? choice({ label: "Pressed is", options: options(), value: device, set: device.set }) : null));
+  return { device, element };
+}
