@@ -7,6 +7,7 @@ import json
 import math
 import re
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from fdvv.hardware import (
     group_totals,
     load_bill,
     paper_cutoff_Hz,
+    printed_parts,
     read_bill,
     rig_settings,
     to_csv,
@@ -154,7 +156,13 @@ def test_the_bill_and_the_circuit_name_the_same_parts_in_the_same_numbers() -> N
     needed = Counter(part.bill for part in CIRCUIT.parts.values())
     lines = {line.role: line.count for line in load_bill(CIRCUIT).lines}
     assert {role: lines[role] for role in needed} == needed
-    assert set(lines) - set(needed) == {"board and wire", "screws", "filament"}
+    printed = {line.role for line in load_bill(CIRCUIT).lines if line.maker == "printed"}
+    assert "keycap-adapter" in printed
+    weighed = {line.role: line.count for line in load_bill(CIRCUIT, printed_parts()).lines}
+    assert {part.name: weighed[part.name] for part in printed_parts()} == {
+        part.name: part.count for part in printed_parts()
+    }
+    assert set(lines) - set(needed) - printed == {"board and wire", "screws"}
 
 
 def test_the_total_is_the_sum_of_its_lines_and_tells_of_estimates() -> None:
@@ -166,8 +174,15 @@ def test_the_total_is_the_sum_of_its_lines_and_tells_of_estimates() -> None:
 
 
 def test_printed_parts_are_paid_by_their_mass() -> None:
-    light, heavy = (load_bill(CIRCUIT, {"base": grams}) for grams in (100.0, 300.0))
-    assert heavy.total_USD - light.total_USD == pytest.approx(200 * 0.03)
+    @dataclass(frozen=True)
+    class Plastic:
+        name: str
+        mass_g: float
+        count: int = 2
+
+    light, heavy = (load_bill(CIRCUIT, [Plastic("base", grams)]) for grams in (100.0, 300.0))
+    assert heavy.total_USD - light.total_USD == pytest.approx(2 * 200 * 0.03)
+    assert [line.role for line in heavy.lines if line.maker == "printed"] == ["base"]
 
 
 def test_a_role_that_the_bill_lacks_and_one_that_the_circuit_lacks_are_refused() -> None:

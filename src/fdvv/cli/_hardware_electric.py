@@ -19,11 +19,19 @@ def bill(as_csv: bool, as_json: bool) -> None:
     Counts come from the circuit and the printed parts. Prices are estimates with their date.
     """
     from fdvv.errors import InputError
-    from fdvv.hardware import PAPER_USD, group_totals, load_bill, load_circuit, summary, to_csv
+    from fdvv.hardware import (
+        PAPER_USD,
+        group_totals,
+        load_bill,
+        load_circuit,
+        printed_parts,
+        summary,
+        to_csv,
+    )
 
     if as_csv and as_json:
         raise InputError("--csv", "with --json", "only one of them can be printed", "leave one out")
-    found = load_bill(load_circuit())
+    found = load_bill(load_circuit(), printed_parts())
     if as_csv:
         click.echo(to_csv(found), nl=False)
         return

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
-from typing import Any
+from typing import Any, Protocol
 
 from fdvv.errors import InputError, ModelError
 from fdvv.hardware._circuit import Circuit
@@ -102,33 +102,63 @@ class Bill:
         ]
 
 
-def load_bill(circuit: Circuit, printed_g: Mapping[str, float] | None = None) -> Bill:
+class Printed(Protocol):
+    """A printed part, as far as the bill needs it."""
+
+    @property
+    def name(self) -> str:
+        """Its name in files and bills."""
+
+    @property
+    def mass_g(self) -> float:
+        """Of one."""
+
+    @property
+    def count(self) -> int:
+        """How many a rig needs."""
+
+
+def load_bill(circuit: Circuit, printed: Iterable[Printed] | None = None) -> Bill:
     """Give the rig's bill: counts come from the circuit, the plastic from the printed parts.
 
-    printed_g : mass of every printed part by name; None leaves the filament of the file's own guess.
-    Raises InputError if the circuit asks for a role that bill.toml does not have.
+    printed : the parts; None takes the file's own guess of their masses.
+    Raises InputError if the circuit asks for a role that bill.toml does not have, or the other way round.
     """
     text = resources.files("fdvv.hardware").joinpath("bill.toml").read_text("utf-8")
-    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed_g)
+    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed)
 
 
-def read_bill(text: str, needed: Mapping[str, int], printed_g: Mapping[str, float] | None = None) -> Bill:
+def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] | None = None) -> Bill:
     """Read a bill from TOML text; needed : count of each electrical role."""
     document = tomllib.loads(text)
-    lines = [_line(raw, needed, printed_g) for raw in document["lines"]]
+    lines = [_line(raw, needed) for raw in document["lines"]]
     lacking = sorted(set(needed) - {line.role for line in lines})
     if lacking:
         reason = f"the circuit needs {', '.join(lacking)}"
         raise InputError("bill.toml", "lines", reason, "add a line for each")
-    return Bill(tuple(lines))
+    return Bill((*lines, *_printed(document.get("printed", {}), printed)))
 
 
-def _line(raw: dict[str, Any], needed: Mapping[str, int], printed_g: Mapping[str, float] | None) -> BillLine:
+def _printed(raw: dict[str, Any], printed: Iterable[Printed] | None) -> list[BillLine]:
+    masses = [(name, float(mass_g), 1) for name, mass_g in raw.get("guess_g", {}).items()]
+    if printed is not None:
+        masses = [(part.name, part.mass_g, part.count) for part in printed]
+    return [
+        BillLine(
+            role=name,
+            group=raw["group"],
+            maker="printed",
+            part_number=f"{raw['material']}, {mass_g:.0f} g",
+            count=count,
+            price_USD=round(mass_g * raw["price_USD_g"], 2),
+            priced=raw["priced"],
+        )
+        for name, mass_g, count in masses
+    ]
+
+
+def _line(raw: dict[str, Any], needed: Mapping[str, int]) -> BillLine:
     role, body = raw["role"], dict(raw)
-    if body.pop("printed", False):
-        grams = sum((printed_g or {}).values()) or body.pop("guess_g")
-        body.pop("guess_g", None)
-        return BillLine(**_checked({**body, "count": max(1, round(grams))}))
     if body.pop("circuit", True):
         if role not in needed:
             reason = f"{role} is not in the circuit"

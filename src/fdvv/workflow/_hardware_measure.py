@@ -79,6 +79,7 @@ class _Measuring:
                     step()
                 except RefusedError as refused:
                     self._notes.append(str(refused))
+                self._say(text, done + 1, len(steps))
                 if not self._cleared():
                     break  # a fault whose cause lasts: nothing more can be tried
         finally:
