@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from fdvv.files import write_atomic
+from fdvv.mechanism import WANTED_cN
 from fdvv.model import FitMethod, MeasuredCurve, Stroke, active_part, fit_curve, load_builtin, scan_sizes
 from fdvv.plot import (
     figure_of,
@@ -25,7 +26,9 @@ from fdvv.plot import (
     house_style,
     plot_averages,
     plot_fit,
+    plot_mechanism,
     plot_model,
+    plot_parts,
     plot_registration,
     plot_scan,
     plot_surface,
@@ -34,6 +37,7 @@ from fdvv.plot import (
 from fdvv.preprocess import process
 from fdvv.testing import captured_session
 from fdvv.units import cN_from_gf
+from fdvv.workflow import design_mechanism, designed_strokes, drawn_parts
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "docs" / "images"
@@ -106,6 +110,16 @@ def draw_capture_pictures() -> None:
     save_svg("averages", averages, "Averaged curves of four paces with their spread; simulated")
 
 
+def draw_mechanism_pictures() -> None:
+    """Draw a leaf switch and a dome that were designed for two shipped models."""
+    for name, kind in (("mx-clear", "leaf"), ("rubber-dome", "dome")):
+        result = design_mechanism(load_builtin(name), kind, speeds_mm_s=())
+        what = f"of a {kind} designed for the shipped model {name}; simulated"
+        grid = plot_mechanism(designed_strokes(result), WANTED_cN, f"a {kind} for {name}")
+        save_svg(f"mechanism-{kind}", grid, f"Target, design, tolerance band and residual {what}")
+        save_svg(f"mechanism-{kind}-parts", plot_parts(drawn_parts(result)), f"Parts {what}")
+
+
 def draw_fit_pictures(raw: Path) -> None:
     """Draw the overview and what the fit does to a raw switch."""
     measured, name = read_press(raw), raw.stem.replace("-", " ")
@@ -128,6 +142,7 @@ if __name__ == "__main__":
     raw_file = Path(sys.argv[1]) if len(sys.argv) > 1 else RAW
     draw_model_pictures()
     draw_capture_pictures()
+    draw_mechanism_pictures()
     if not raw_file.exists():
         raise SystemExit(f"{raw_file} is not there: pass a bench file to draw overview, fit and scan")
     draw_fit_pictures(raw_file)

@@ -50,6 +50,12 @@ comes from (curves: the button's own slow curves say it, or were drawn to say it
 [real buttons](../explanation/real-buttons.md); paper, class, rule, assumed: as for
 [rig and finger](rig.md)). An unknown name or a value out of range is refused with the bound.
 
+A leaf switch that was designed and not measured (`fdvv mechanism`) has a last section `[cam]`: `preload_N`
+of the leaf where it just reaches the fixed contact, and as many values as `press_N` of `elastic_N` (the
+coil, less what the top stop bears), `height_m` (the cam, 0 where the leaf just reaches the contact),
+`rail_N` (friction of the guide) and `friction_ratio` (cam on leaf). The twin then takes the switch as it is
+built; the two curves tell it nothing.
+
 ## Shipped
 
 `tools/make_buttons.py` makes them.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, answered, chosen, plan_file
+from tests.workflow.studies import CHEAP, PASSPHRASE, answered, chosen, in_haste, plan_file
 
 from fdvv.workflow import Study
 
@@ -14,14 +15,23 @@ from .conftest import Run
 WORDS = ("--passphrase-file", "words.txt")
 
 
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of a frozen study with one person who is done; to be copied."""
+    folder = tmp_path_factory.mktemp("begun")
+    with in_haste():
+        study = Study.declare(folder / "s", plan_file(folder / "desk"))
+        study.freeze(PASSPHRASE, CHEAP)
+        person, code = study.enrol(cost=CHEAP)
+        answered(study, person, code, chosen("FDVV"))
+    return study.folder
+
+
 @pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
-    """Give a frozen study in s, with one person who is done, and the passphrase in words.txt."""
+def study(begun: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
+    """Give that study in s, and the passphrase in words.txt."""
     monkeypatch.setattr("os.fsync", lambda _file: None)
-    study = Study.declare(tmp_path / "s", plan_file(tmp_path / "desk"))
-    study.freeze(PASSPHRASE, CHEAP)
-    person, code = study.enrol(cost=CHEAP)
-    answered(study, person, code, chosen("FDVV"))
+    study = Study.open(shutil.copytree(begun, tmp_path / "s"))
     (tmp_path / "words.txt").write_text(PASSPHRASE + "\n")
     (tmp_path / "wrong.txt").write_text("other words of no sense")
     return study
@@ -72,6 +82,7 @@ def test_a_whole_study_verifies(fdvv: Run, study: Study) -> None:
         "whole": True,
         "problems": [],
         "marks": False,
+        "simulated": False,
     }
 
 
@@ -112,6 +123,30 @@ def test_status_tells_how_far_everybody_is_and_nothing_that_is_hidden(fdvv: Run,
     document = fdvv("study", "status", "s", "--json")
     assert document.json["state"] == "frozen"
     assert "FDVV" not in ran.out + document.out
+
+
+def test_simulated_people_are_told_of_wherever_people_are(fdvv: Run, study: Study, tmp_path: Path) -> None:
+    assert "simulated" not in fdvv("study", "status", "s").out + fdvv("study", "verify", "s").out
+    assert not fdvv("study", "status", "s", "--json").json["simulated"]
+    other = Study.declare(tmp_path / "t", study.folder / "study.toml")
+    other.freeze(PASSPHRASE, CHEAP)
+    person, code = other.enrol(simulated=True, cost=CHEAP)
+    answered(other, person, code, chosen("FDVV"))
+    said = "1 of 4 planned, all simulated: a proxy, no evidence\n"
+    assert said in fdvv("study", "status", "t").out
+    assert fdvv("study", "status", "t", "--json").json["simulated"]
+    assert "whole; people: 1, all simulated: a proxy, no evidence\n" in fdvv("study", "verify", "t").out
+    assert fdvv("study", "verify", "t", "--json").json["simulated"]
+    assert "(simulated)" in fdvv("study", "unseal", "t", "--who", "A", "--why", "done", *WORDS).out
+
+
+def test_status_tells_who_is_paused(fdvv: Run, study: Study) -> None:
+    assert fdvv("study", "status", "s", "--json").json["paused"] == []
+    study.pause("P01")
+    study.pause()
+    assert "paused: P01, everybody\n" in fdvv("study", "status", "s").out
+    study.pause(on=False)
+    assert fdvv("study", "status", "s", "--json").json["paused"] == ["P01"]
 
 
 def test_unsealing_says_what_counts_and_stays_on_record(fdvv: Run, study: Study) -> None:

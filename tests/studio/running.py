@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 class RunningStudio:
-    """``fdvv studio`` on a port, a free one unless it is named.
+    """``fdvv studio`` on a port, a free one unless it is named. more : options.
 
     first : Python code that runs before it, such as to put something beside it that is not there.
 
@@ -19,12 +19,19 @@ class RunningStudio:
     address : to open, token included. base : without it. token : the secret of this run.
     """
 
-    def __init__(self, project: Path, sources: tuple[Path, ...] = (), port: int = 0, first: str = "") -> None:
+    def __init__(
+        self,
+        project: Path,
+        sources: tuple[Path, ...] = (),
+        port: int = 0,
+        more: tuple[str, ...] = (),
+        first: str = "",
+    ) -> None:
         begin = ["-c", f"{first}\nfrom fdvv.cli import main\nmain()"] if first else ["-m", "fdvv"]
         command = [sys.executable, *begin, "studio", *map(str, sources)]
         self.project = project
         self.process = subprocess.Popen(
-            [*command, "--project", str(project), "--port", str(port), "--no-browser"],
+            [*command, "--project", str(project), "--port", str(port), "--no-browser", *more],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import secrets
+import time
 from collections.abc import Callable
 from functools import partialmethod
 from typing import Any
@@ -13,7 +15,9 @@ from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, n
 from tests.studio.conftest import LIVE
 
 from fdvv.studio import Studio
+from fdvv.studio._messages_study import StudyResume
 from fdvv.studio._studies import Studies
+from fdvv.studio._study_screen import StudyScreen
 from fdvv.workflow import Study
 
 SAME = ("about", "card", "step", "ready", "felt", "broke", "paused", "stopped", "error")
@@ -23,7 +27,7 @@ class Screen:
     """One page on the participant's channel. heard : all of it but frames."""
 
     def __init__(self, socket: WebSocketTestSession) -> None:
-        self._socket = socket
+        self._socket, self.holder = socket, secrets.token_hex(8)
         self.heard: list[dict[str, Any]] = []
 
     def say(self, kind: str, **more: Any) -> None:
@@ -42,7 +46,7 @@ class Screen:
 
     def sit(self, seat: str) -> dict[str, Any]:
         """Sit down; give the card."""
-        self.say("sit", study=NAME, seat=seat, language="en")
+        self.say("sit", study=NAME, seat=seat, holder=self.holder, language="en")
         card = self.hear("card")
         self.step = self.hear("step")
         return card
@@ -74,8 +78,9 @@ class Screen:
 
 
 @pytest.fixture(autouse=True)
-def _cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Codes of these tests need not be slow to guess."""
+def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Codes of these tests need not be slow to guess, nor their answers outlive a power cut."""
+    monkeypatch.setattr("os.fsync", lambda _file: None)
     monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
 
 
@@ -108,16 +113,26 @@ def test_a_seat_is_taken_once_and_its_code_is_forgotten_when_the_person_goes_on(
     seat = ask("seat")["seat"]
     assert ask("detail")["waiting"] == 1
     with client.websocket_connect(LIVE) as socket:
-        card = Screen(socket).sit(seat)
+        screen = Screen(socket)
+        first = screen.holder
+        card = screen.sit(seat)
     assert ask("detail")["waiting"] == 0
     with client.websocket_connect(LIVE) as socket:
-        again = Screen(socket)
+        again, somebody = Screen(socket), secrets.token_hex(8)
+        # who else has the link can neither sit down nor be told who does
+        again.say("look", study=NAME, seat=seat, holder=somebody)
+        assert not again.hear("about")["seat"]
+        again.say("sit", study=NAME, seat=seat, holder=somebody, language="en")
+        assert "is taken" in again.hear("card")["error"]
+        again.holder = first
+        again.say("look", study=NAME, seat=seat, holder=first)
+        assert again.hear("about")["seat"]
         # the page was loaded again before anybody could write down the code
         assert again.sit(seat) == card
         again.show()
     with client.websocket_connect(LIVE) as socket:
         late = Screen(socket)
-        late.say("sit", study=NAME, seat=seat, language="en")
+        late.say("sit", study=NAME, seat=seat, holder=first, language="en")
         assert "is taken" in late.hear("card")["error"]
         assert late.resume(card)["task"]["number"] == 0
     assert [one.name for one in study.people()] == ["P01"]
@@ -171,6 +186,38 @@ def test_a_wrong_code_takes_nobodys_screen_away_and_the_right_one_does(
         assert second.answer()["task"]["number"] == 1
 
 
+def test_who_comes_back_while_a_lost_page_still_takes_them_up_waits_for_it(
+    study: Study,
+    ask: Callable[..., Any],
+    client: TestClient,
+    own_studio: Studio,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    studies = own_studio.part(Studies)
+    with client.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        card = screen.sit(ask("seat")["seat"])
+        with studies.place(NAME, card["person"]):
+            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 0.05)
+            assert "taken up elsewhere" in screen.resume(card)["error"]
+            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 10.0)
+            screen.say("resume", study=NAME, person=card["person"], code=card["code"])
+            time.sleep(0.05)
+        assert screen.hear("step")["task"]["number"] == 0
+
+
+def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
+    study: Study, own_studio: Studio
+) -> None:
+    person, code = study.enrol()
+    told: list[Any] = []
+    screen = StudyScreen(own_studio, told.append)
+    screen.close()
+    screen.receive(StudyResume(NAME, person, code))
+    assert told == []
+    assert own_studio.part(Studies).screen(NAME, person) is None
+
+
 def test_a_pause_holds_every_answer_back_until_it_is_over(
     study: Study, ask: Callable[..., Any], client: TestClient
 ) -> None:
@@ -187,6 +234,24 @@ def test_a_pause_holds_every_answer_back_until_it_is_over(
         assert screen.answer()["task"]["number"] == 1
         ask("pause", person=None, on=True)
         assert screen.hear("paused")["on"]
+
+
+def test_a_pause_outlives_the_studio_and_is_on_record(
+    study: Study, ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    with client.websocket_connect(LIVE) as socket:
+        card = Screen(socket).sit(ask("seat")["seat"])
+    ask("pause", person=None, on=True)
+    own_studio.close()  # and what it knew with it
+    with client.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        screen.resume(card)
+        assert {"type": "paused", "on": True} in screen.heard
+        screen.show()
+        assert "pauses" in screen.answer()["error"]
+    assert ask("detail")["paused"]
+    assert ask("detail")["history"][-1].endswith("paused")
+    assert study.verify() == ()
 
 
 def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
@@ -219,6 +284,8 @@ def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
     study: Study, ask: Callable[..., Any], client: TestClient, own_studio: Studio
 ) -> None:
     assert ask("detail")["device"] == "twin"
+    there = client.post("/api/studies.devices", json={}).json()["devices"]
+    assert [one["name"] for one in there][:2] == ["twin", "host"]
     refused = client.post("/api/studies.use", json={"study": NAME, "device": "/dev/null"}).json()
     assert "there is no" in refused["error"]
     assert ask("use", device="host")["device"] == "host"
@@ -227,7 +294,7 @@ def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
         screen.sit(ask("seat")["seat"])
         # nothing is drawn of what lies on the table
         assert (screen.show()["travel_mm"], screen.heard[-1]["signals"]) == (0.0, [])
-        late.say("sit", study=NAME, seat=ask("seat")["seat"], language="en")
+        late.say("sit", study=NAME, seat=ask("seat")["seat"], holder=late.holder, language="en")
         assert "is used by the study" in late.hear("card")["error"]
         for label in "XAB":
             assert screen.feel(label)["label"] == label
@@ -282,11 +349,10 @@ def test_nothing_is_told_of_the_results_before_the_seal_is_opened_on_record(
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         screen.sit(ask("seat")["seat"])
-        for _ in range(4):
-            screen.show()
-            for label in "XAB":
-                screen.feel(label)
-            screen.answer("B")
+        screen.show()
+        for label in "XAB":
+            screen.feel(label)
+        screen.answer("B")
     sealed = client.post("/api/studies.report", json={"study": NAME}).json()
     assert "is sealed" in sealed["error"]
     opening = {"study": NAME, "who": "the keeper", "why": "the last person is done"}

@@ -6,7 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 FILES = Path(__file__).parent / "files"
+EVERY = pytest.mark.parametrize("every", [10, pytest.param(1, marks=pytest.mark.slow)])
+"""Of what other people's programs say: a tenth by default, all of it in the slow run."""
 
 
 def golden(name: str, file: str = "answers", least: int = 200) -> list[Any]:

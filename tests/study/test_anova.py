@@ -46,6 +46,7 @@ def test_it_agrees_with_pingouin_on_every_column() -> None:
         assert (effect.sphericity.W is None) == (told["W_spher"][i] is None)
 
 
+@pytest.mark.slow
 def test_it_agrees_with_statsmodels_on_random_scores() -> None:
     import pandas  # type: ignore[import-untyped]
     from statsmodels.stats.anova import AnovaRM  # type: ignore[import-untyped]
@@ -99,6 +100,7 @@ def test_sphericity_of_one_factor_agrees_with_pingouin() -> None:
     assert found.epsilon == pytest.approx(GOLDEN["two_way"]["eps"][0], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_where_sphericity_holds_Mauchly_denies_it_as_rarely_as_it_says() -> None:
     from fdvv.study import sphericity
 
@@ -109,7 +111,7 @@ def test_where_sphericity_holds_Mauchly_denies_it_as_rarely_as_it_says() -> None
     assert abs(np.mean(p) - 0.5) < 0.023
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=30)
 @given(st.integers(0, 10_000), st.integers(3, 12), st.integers(2, 7))
 def test_epsilon_stays_between_its_bounds(seed: int, people: int, levels: int) -> None:
     scores = some_scores(seed, people, (levels, 2))

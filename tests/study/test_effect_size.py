@@ -28,6 +28,7 @@ def test_the_interval_of_dz_is_near_the_exact_one_of_the_noncentral_t() -> None:
     assert (found.low, found.high) == pytest.approx(exact, abs=0.08)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_about_as_often_as_they_say() -> None:
     random, hits = np.random.default_rng(3), 0
     for _ in range(60):

@@ -47,7 +47,7 @@ def compared(sets: list[Any]) -> None:
 
 
 def test_it_agrees_with_ordinals_clmm() -> None:
-    compared(golden("ordinal")[::25])
+    compared(golden("ordinal")[::50])
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
@@ -89,6 +89,7 @@ def test_all_problems_are_told_in_the_line_of_a_refusal() -> None:
     assert "mx-pink" in str(refused.value)
 
 
+@settings(max_examples=30)
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused_in_one_line(text: str) -> None:
     told = [refusal(tried) for tried in (text, SMALL + text)]

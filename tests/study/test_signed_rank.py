@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study.golden import golden
+from tests.study.golden import EVERY, golden
 
 from fdvv.errors import ModelError
 from fdvv.study import sign_test, signed_rank, signed_ranks
@@ -21,7 +21,7 @@ SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
 ZEROS: Any = (("wilcoxon", "wilcox"), ("pratt", "pratt"))
 """What we call each way with zeros, and what SciPy calls it."""
 
-SETS = pytest.mark.parametrize("sets", [40, pytest.param(200, marks=SLOW)])
+SETS = pytest.mark.parametrize("sets", [15, pytest.param(200, marks=SLOW)])
 
 
 def some_differences(sets: int = 200, most: int = 11) -> list[FloatArray]:
@@ -91,6 +91,7 @@ def test_the_exact_p_agrees_with_turning_all_signs_of_each_kind_of_zeros(sets: i
             assert signed_rank(x, zeros).p_exact == pytest.approx(share, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_exact_p_agrees_with_scipys_permutations() -> None:
     from scipy.stats import PermutationMethod, wilcoxon
 
@@ -100,8 +101,11 @@ def test_the_exact_p_agrees_with_scipys_permutations() -> None:
             assert signed_rank(x, ours).p_exact == pytest.approx(told.pvalue, abs=1e-12)
 
 
-def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_and_missing_people() -> None:
-    for one in golden("signed_rank"):
+@EVERY
+def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_and_missing_people(
+    every: int,
+) -> None:
+    for one in golden("signed_rank")[::every]:
         x = np.array(one["x"], dtype=np.float64)
         found, pratt = signed_rank(x), signed_rank(x, "pratt")
         assert found.w_plus == one["V"]
@@ -121,8 +125,9 @@ def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_an
             assert [found.shift, found.low, found.high] == pytest.approx([one["shift"], *one["interval"]])
 
 
-def test_the_effect_agrees_with_pingouin_on_200_sets() -> None:
-    for x, effect, statistic in golden("signed_rank", "answers_pingouin"):
+@EVERY
+def test_the_effect_agrees_with_pingouin_on_200_sets(every: int) -> None:
+    for x, effect, statistic in golden("signed_rank", "answers_pingouin")[::every]:
         found = signed_rank(x)
         assert found.effect == pytest.approx(effect)
         assert found.statistic == statistic
@@ -147,7 +152,7 @@ def test_studies_do_not_fit_in_one_chunk_and_agree_all_the_same(monkeypatch: pyt
     assert signed_ranks(many).p_exact.tolist() == pytest.approx(whole.tolist(), rel=1e-13)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=25)
 @given(st.lists(st.integers(-6, 6), min_size=1, max_size=14))
 def test_turning_everybody_around_changes_only_the_sign(x: list[int]) -> None:
     here, there = signed_rank(x), signed_rank([-one for one in x])
@@ -156,7 +161,7 @@ def test_turning_everybody_around_changes_only_the_sign(x: list[int]) -> None:
     assert here.shift == -there.shift
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=25)
 @given(st.lists(st.integers(-36, 36), min_size=2, max_size=14))
 def test_means_of_six_ratings_tie_as_their_sums_do(sums: list[int]) -> None:
     # 5 1/6 less 4 5/6 and 1/3 are the same difference, whatever rounding makes of them

@@ -90,7 +90,14 @@ def test_what_comes_next_follows_from_what_was_shown_and_never_leaves_its_range(
     assert run(staircase, "".join("cw"[not right] for _, right in history)) == history
 
 
-@pytest.mark.parametrize(("down", "share"), [(1, 0.5), (2, 0.7071), (3, 0.7937)])
+@pytest.mark.parametrize(
+    ("down", "share"),
+    [
+        (1, 0.5),
+        pytest.param(2, 0.7071, marks=pytest.mark.slow),
+        pytest.param(3, 0.7937, marks=pytest.mark.slow),
+    ],
+)
 def test_it_settles_where_the_rule_says(down: int, share: float) -> None:
     staircase = Staircase(down=down, reversals=40, dropped=4, trials=400, steps_ratio=(1.6, 1.1))
     assert target_share(staircase) == pytest.approx(share, abs=1e-4)

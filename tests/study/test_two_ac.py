@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study.golden import golden
+from tests.study.golden import EVERY, golden
 
 from fdvv.errors import ModelError
 from fdvv.study import d_prime_2afc, shares_2ac, two_ac, two_ac_people
 from fdvv.study._two_ac import _most_likely
 
 
-def test_it_agrees_with_ordinal_on_200_tables() -> None:
-    for one in golden("two_ac"):
+@EVERY
+def test_it_agrees_with_ordinal_on_200_tables(every: int) -> None:
+    for one in golden("two_ac")[::every]:
         found = two_ac(*one["counts"])
         assert found.d == pytest.approx(one["d"], abs=2e-5)
         assert found.tau == pytest.approx(one["tau"], abs=2e-5)
@@ -116,7 +117,7 @@ def compared_people(sets: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_over_people_it_agrees_with_ordinals_mixed_model(monkeypatch: pytest.MonkeyPatch) -> None:
-    compared_people(golden("two_ac_people")[::25], monkeypatch)
+    compared_people(golden("two_ac_people")[::50], monkeypatch)
 
 
 @pytest.mark.slow

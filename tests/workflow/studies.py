@@ -150,6 +150,14 @@ def kill_at(step: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         yield
 
 
+@contextmanager
+def in_haste() -> Iterator[None]:
+    """Have nobody wait until something is on the disk: for studies that several tests look at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda _file: None)
+        yield
+
+
 def all_files(folder: Path) -> list[Path]:
     """List every file below a folder."""
     return sorted(path for path in folder.rglob("*") if path.is_file())

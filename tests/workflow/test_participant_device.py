@@ -15,6 +15,8 @@ from fdvv.errors import DeviceError
 from fdvv.study import Stimulus
 from fdvv.workflow import DeviceStage, Participant
 
+pytestmark = pytest.mark.usefixtures("hasty_disk")
+
 ONE_BUTTON = PLAN[: PLAN.rindex("[[items]]")] + PLAN[PLAN.index("[[ratings]]") :]
 
 

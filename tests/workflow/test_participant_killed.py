@@ -24,11 +24,11 @@ from tests.workflow.study_people import (
     enrolled,
     frozen_study,
 )
+from tests.workflow.study_witness import Witness, check_labels
 
 from fdvv.errors import DeviceError
 from fdvv.study import ENDS, Step, Stimulus, TrialAnswer
-from fdvv.workflow import Participant, Study, read_session
-from fdvv.workflow._study_verify import study_problems
+from fdvv.workflow import Participant, Study
 
 HATCHERY = """
 from tests.workflow.test_participant_killed import hatch
@@ -137,44 +137,6 @@ class Hatchery:
         assert self.process.returncode == 0
 
 
-class Witness:
-    """What was acknowledged in all lives, held against what is kept."""
-
-    def __init__(self, study: Study) -> None:
-        self.study, self.person, self.code = study, "", ""
-        self.answers: dict[tuple[str, str], str] = {}
-        self.labels: dict[tuple[str, str], list[str]] = {}
-        self.done: set[str] = set()
-
-    def hear(self, words: list[str]) -> None:
-        kind, person, *rest = words
-        if kind == "enrolled":
-            self.person, self.code = person, rest[0]
-        elif kind == "met":
-            assert (person, rest[1]) not in self.answers, f"{words} was answered before"
-            assert person not in self.done
-        elif kind == "prepared":
-            assert self.labels.setdefault((person, rest[0]), rest[1:]) == rest[1:]
-        elif kind == "answered":
-            assert (person, rest[0]) not in self.answers
-            self.answers[person, rest[0]] = rest[1]
-        elif kind == "done":
-            self.done.add(person)
-            self.code = ""
-
-    def check(self) -> None:
-        """See that everything acknowledged of the person who is there now is kept as it was."""
-        assert study_problems(self.study.folder, people=(self.person,)) == ()
-        if self.code:
-            state = read_session(self.study.person_folder(self.person) / "session.jsonl", self.study.plan)
-            kept = {} if state is None else {str(n): one.answer.choice for n, one in state.answers.items()}
-            said = {n: choice for (person, n), choice in self.answers.items() if person == self.person}
-            assert said.items() <= kept.items()
-            # what was written, but not acknowledged: at most the answer that was on its way
-            assert len(kept) <= len(said) + 1
-            self.answers |= {(self.person, n): choice for n, choice in kept.items()}
-
-
 def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
     """Kill sessions again and again, and hold what they acknowledged against what is kept."""
     study = frozen_study(folder, tables=CONSENT, rounds=rounds, break_every_min=0.2, break_min=0.05)
@@ -188,30 +150,11 @@ def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
             witness.check()
     hatchery.close()
     assert study.verify(passphrase=PASSPHRASE) == ()
-    check_labels(study, witness)
+    check_labels(study, witness, PASSPHRASE)
     return witness
 
 
-def check_labels(study: Study, witness: Witness) -> None:
-    """See that what was prepared in any life is what was drawn, and that the answers are unsealed by it."""
-    keeper = study.keeper(PASSPHRASE)
-    drawn = {
-        (one.name, str(trial.number)): trial
-        for one in study.people()
-        for trial in study.schedule_by_keeper(one.name, keeper).trials
-    }
-    for key, labels in witness.labels.items():
-        assert labels == [f"{label}={name}" for label, name in sorted(drawn[key].labels.items())]
-    wanted = [
-        (key[0], drawn[key].item, drawn[key].labels.get(choice, choice))
-        for key, choice in witness.answers.items()
-        if not drawn[key].practice
-    ]
-    found = study.unseal(PASSPHRASE, "a test", "to see whether all is there")
-    rows = zip(found.person.tolist(), found.item.tolist(), found.choice.tolist(), strict=True)
-    assert sorted(row for row in rows if row[2]) == sorted(wanted)
-
-
+@pytest.mark.slow
 def test_a_killed_session_loses_no_answer_and_meets_no_trial_again(tmp_path: Path) -> None:
     witness = check_kills(tmp_path / "study", kills=4, seed=1, rounds=3)
     assert witness.person
@@ -266,6 +209,7 @@ def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Pa
     return one, lost
 
 
+@pytest.mark.usefixtures("hasty_disk")
 def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "study", rounds=3)
     one, lost = run_with_a_failing_device(study, 1, 0.2)

@@ -7,12 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, Killed, all_files, kill_at, plan_file, small_study
+from tests.workflow.studies import (
+    CHEAP,
+    PASSPHRASE,
+    Killed,
+    all_files,
+    in_haste,
+    kill_at,
+    plan_file,
+    small_study,
+)
 
 from fdvv.errors import InputError
 from fdvv.files import write_atomic
-from fdvv.model import load_builtin, model_to_json
-from fdvv.workflow import Keeper, Schedule, Study, new_keeper
+from fdvv.model import load_builtin, model_to_json, save_model
+from fdvv.workflow import Keeper, Schedule, Study, look_at_study, new_keeper, stimulus_model
 from fdvv.workflow._study_people import lock_schedule, room_bytes
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
@@ -21,7 +30,8 @@ pytestmark = pytest.mark.usefixtures("hasty_disk")
 @pytest.fixture(scope="module")
 def frozen(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """Give a frozen study; tests enrol in it."""
-    return small_study(tmp_path_factory.mktemp("frozen"))
+    with in_haste():
+        return small_study(tmp_path_factory.mktemp("frozen"))
 
 
 def test_a_declared_study_holds_its_plan_and_every_file_that_it_names(tmp_path: Path) -> None:
@@ -62,6 +72,29 @@ def test_a_folder_with_something_in_it_is_not_taken(tmp_path: Path) -> None:
         Study.declare(tmp_path / "desk", path)
 
 
+@pytest.mark.parametrize("step", range(5))
+def test_a_declaration_that_is_killed_leaves_the_folder_free(
+    tmp_path: Path, step: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = plan_file(tmp_path / "desk")
+    with contextlib.suppress(Killed), kill_at(step, monkeypatch):
+        Study.declare(tmp_path / "study", path)
+    if not (tmp_path / "study").exists():
+        Study.declare(tmp_path / "study", path)
+    assert Study.open(tmp_path / "study").plan.name == "small"
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["desk", "study"]
+
+
+def test_a_declaration_may_be_made_in_the_empty_folder_one_stands_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = plan_file(tmp_path / "desk")
+    (tmp_path / "study").mkdir()
+    monkeypatch.chdir(tmp_path / "study")
+    Study.declare(Path(), path)
+    assert Path("study.toml").is_file()
+
+
 def test_a_plan_may_be_changed_until_it_is_frozen(tmp_path: Path) -> None:
     path = plan_file(tmp_path / "desk")
     study = Study.declare(tmp_path / "study", path)
@@ -88,6 +121,49 @@ def test_a_plan_with_problems_is_not_frozen(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no text"):
         study.freeze(PASSPHRASE, CHEAP)
     assert study.frozen is None
+
+
+def written_beside(folder: Path) -> Path:
+    """Write a study as people do by hand: its plan in a folder, and the button beside it."""
+    plan_file(folder).rename(folder / "study.toml")
+    return folder
+
+
+def test_a_button_beside_the_plan_is_frozen_and_from_then_on_the_copy_is_played(tmp_path: Path) -> None:
+    folder = written_beside(tmp_path / "study")
+    assert look_at_study(folder).problems == ()
+    study = Study.open(folder)
+    study.freeze(PASSPHRASE, CHEAP)
+    assert (folder / "buttons" / "own.fdvv.json").read_bytes() == (folder / "own.fdvv.json").read_bytes()
+    stimulus = study.plan.items[1].stimuli[1]
+    before = stimulus_model(stimulus, folder)
+    save_model(load_builtin("mx-red"), folder / "own.fdvv.json")
+    assert stimulus_model(stimulus, folder) == before
+    assert study.verify() == ()
+    (note,) = look_at_study(folder).notes
+    assert "own.fdvv.json beside the study differs" in note
+    save_model(load_builtin("mx-red"), folder / "buttons" / "own.fdvv.json")
+    assert study.verify() == ("buttons/own.fdvv.json: was changed since the study was frozen",)
+
+
+def test_freezing_keeps_what_was_looked_at_where_both_are_there(tmp_path: Path) -> None:
+    study = Study.declare(tmp_path / "study", plan_file(tmp_path / "desk"))
+    kept = (study.folder / "buttons" / "own.fdvv.json").read_bytes()
+    save_model(load_builtin("mx-red"), study.folder / "own.fdvv.json")
+    study.freeze(PASSPHRASE, CHEAP)
+    assert (study.folder / "buttons" / "own.fdvv.json").read_bytes() == kept
+
+
+@pytest.mark.parametrize("name", ["../own.fdvv.json", "/etc/hostname"])
+def test_nothing_outside_the_folder_is_frozen(tmp_path: Path, name: str) -> None:
+    folder = written_beside(tmp_path / "study")
+    (folder / "own.fdvv.json").rename(tmp_path / "own.fdvv.json")
+    plan = folder / "study.toml"
+    plan.write_text(plan.read_text().replace("own.fdvv.json", name))
+    with pytest.raises(InputError, match="must lie beside the study"):
+        Study.open(folder).freeze(PASSPHRASE, CHEAP)
+    assert not (folder / "buttons").exists()
+    assert not (folder / "frozen.json").exists()
 
 
 def test_freezing_again_gives_another_fingerprint(tmp_path: Path) -> None:

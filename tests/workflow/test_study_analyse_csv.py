@@ -60,7 +60,7 @@ def assert_same(found: Answers, wanted: Answers) -> None:
         np.testing.assert_array_equal(found.time_s, wanted.time_s)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(answered())
 def test_answers_that_were_written_are_read_back_alike(answers: Answers) -> None:
     import tempfile

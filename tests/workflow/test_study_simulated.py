@@ -16,6 +16,8 @@ from fdvv.study import Claim, ProxySettings, claim_p, claim_scores
 from fdvv.workflow import Study, _study_people, analyse, simulate_study
 from fdvv.workflow._study_seal import lock_with_code
 
+pytestmark = pytest.mark.usefixtures("hasty_disk")
+
 
 @pytest.fixture(autouse=True)
 def cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,6 +82,7 @@ def test_breaks_take_no_real_time(tmp_path: Path) -> None:
     assert session.minutes > 30 * session.breaks
 
 
+@pytest.mark.slow
 def test_people_who_feel_much_choose_what_is_close(tmp_path: Path) -> None:
     sharp = ProxySettings().changed("weber_ratio", 0.005).changed("lapse_ratio", 0.0)
     study = simulated(tmp_path / "s", settings=sharp.changed("taste_ratio", 0.0))
@@ -133,6 +136,7 @@ def stopping(at: int) -> Callable[[int, int], None]:
     return tell
 
 
+@pytest.mark.slow
 def test_the_claim_is_analysed_by_the_very_test_that_planned_it(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s", rounds=1, practice=0)
     simulate_study(study, 6, pressed=False, settings=ProxySettings().changed("weber_ratio", 0.02))

@@ -300,7 +300,7 @@ def until(found: Callable[[], object]) -> None:
 def on_line(rig: Rig, **options: object) -> DeviceStage:
     device = PressedDevice(SerialPort(rig.path))
     device.configure(SETTINGS)
-    return DeviceStage(device, Path(), switch_s=0.2, limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
+    return DeviceStage(device, Path(), switch_s=0.1, limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
 
 
 def test_a_person_s_presses_on_a_line_count_for_the_label_the_device_renders(line: StudyRig) -> None:

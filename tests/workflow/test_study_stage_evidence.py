@@ -63,7 +63,7 @@ def test_the_error_is_what_was_added_to_the_intended_force(speed_mm_s: float, ad
     assert found.velocity_mm_s[0] == pytest.approx(speed_mm_s, rel=0.01)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=15)
 @given(st.lists(st.integers(1, 3500), max_size=60))
 def test_telemetry_may_come_in_any_pieces(cuts: list[int]) -> None:
     rows = joined(

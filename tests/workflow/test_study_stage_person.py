@@ -157,7 +157,10 @@ def test_a_fault_ends_force_and_stage_in_one_line_and_is_kept(
     assert not stage.rendered()[1].faults
 
 
-@pytest.mark.parametrize("button", ["mx-clear", "mx-blue", "rubber-dome"])
+@pytest.mark.parametrize(
+    "button",
+    ["mx-clear", *(pytest.param(name, marks=pytest.mark.slow) for name in ("mx-blue", "rubber-dome"))],
+)
 def test_no_hand_however_wild_makes_the_rig_fail(button: str) -> None:
     """As far, as fast and as hard as a page may say; without real time."""
     of = Stimulus(name="FDVV", button=button)

@@ -16,6 +16,7 @@ from tests.workflow.studies import (
     answered,
     chosen,
     felt,
+    in_haste,
     kill_at,
     small_study,
 )
@@ -36,11 +37,12 @@ def table(study: Study, name: str) -> list[dict[str, str]]:
 @pytest.fixture(scope="module")
 def unsealed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Answers]:
     """Give a study with one person who prefers FDVV and is done, and one who stopped early."""
-    study = small_study(tmp_path_factory.mktemp("unsealed"))
-    for name, trials in (("FDVV", None), ("FD", 3)):
-        person, code = study.enrol(cost=CHEAP)
-        answered(study, person, code, chosen(name), trials=trials)
-    return study, study.unseal(PASSPHRASE, "  The   keeper ", "all are done")
+    with in_haste():
+        study = small_study(tmp_path_factory.mktemp("unsealed"))
+        for name, trials in (("FDVV", None), ("FD", 3)):
+            person, code = study.enrol(cost=CHEAP)
+            answered(study, person, code, chosen(name), trials=trials)
+        return study, study.unseal(PASSPHRASE, "  The   keeper ", "all are done")
 
 
 def test_answers_by_label_become_answers_by_what_was_felt(unsealed: tuple[Study, Answers]) -> None:

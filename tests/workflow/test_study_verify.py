@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, small_study
+from tests.workflow.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
 
 from fdvv.errors import InputError
 from fdvv.workflow import Study
@@ -20,10 +20,11 @@ CODES: dict[str, str] = {}
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the folder of a study with one person who is done and one who is not; it is not changed."""
-    study = small_study(tmp_path_factory.mktemp("done"))
-    for trials in (None, 2):
-        person, CODES[person] = study.enrol(cost=CHEAP)
-        answered(study, person, CODES[person], chosen("FDVV"), trials=trials)
+    with in_haste():
+        study = small_study(tmp_path_factory.mktemp("done"))
+        for trials in (None, 2):
+            person, CODES[person] = study.enrol(cost=CHEAP)
+            answered(study, person, CODES[person], chosen("FDVV"), trials=trials)
     return study.folder
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from tests.workflow.studies import (
     all_files,
     answered,
     chosen,
+    in_haste,
     kill_at,
     small_study,
 )
@@ -26,14 +28,20 @@ AGE = 87.5
 TRACES = (b"87.5", b"Oulu")
 
 
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of a study with two people, the first of an age that nothing else says."""
+    with in_haste():
+        study = small_study(tmp_path_factory.mktemp("begun"))
+        for age, place in ((AGE, "Oulu"), (40.0, "Tampere")):
+            person, code = study.enrol(consent=f"on paper in {place}", cost=CHEAP)
+            answered(study, person, code, chosen("FDVV"), trials=2, age=age)
+    return study.folder
+
+
 @pytest.fixture
-def study(tmp_path: Path) -> Study:
-    """Give a study with two people, of whom the first is of an age that nothing else says."""
-    study = small_study(tmp_path)
-    for age, place in ((AGE, "Oulu"), (40.0, "Tampere")):
-        person, code = study.enrol(consent=f"on paper in {place}", cost=CHEAP)
-        answered(study, person, code, chosen("FDVV"), trials=2, age=age)
-    return study
+def study(begun: Path, tmp_path: Path) -> Study:
+    return Study.open(shutil.copytree(begun, tmp_path / "study"))
 
 
 def residue(study: Study, *words: bytes) -> list[Path]:

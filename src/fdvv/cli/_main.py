@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import keyword
 import os
 import sys
 from typing import Any, NoReturn
@@ -24,13 +25,23 @@ COMMANDS = {
         "fdvv.cli._device",
         "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
     ),
+    "export": ("fdvv.cli._exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (
         "fdvv.cli._feasible",
         "Tell whether a rig can render a button, and why not, before any upload.",
     ),
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
+    "hardware": (
+        "fdvv.cli._hardware",
+        "Build a rig: what to print and buy, how to wire it, which part is wrong.",
+    ),
+    "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
-    "library": ("fdvv.cli._models", "List the built-in buttons."),
+    "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
+    "library": (
+        "fdvv.cli._library",
+        "List the built-in buttons; build and search libraries of measured ones.",
+    ),
     "merge": ("fdvv.cli._models", "Merge force curves at several velocities into one FDVV model."),
     "optimize": ("fdvv.cli._optimize", "Find the button that makes a person perform best."),
     "press": ("fdvv.cli._press", "Press a real button; simulated."),
@@ -40,6 +51,7 @@ COMMANDS = {
     "show": ("fdvv.cli._show", "Show landmarks and curves of a button."),
     "studio": ("fdvv.cli._studio", "See, edit, press and tune buttons in the browser."),
     "study": ("fdvv.cli._study", "Compare buttons blind, with people, and analyse what they said."),
+    "sweep": ("fdvv.cli._sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
     "tune": ("fdvv.cli._tune", "Tune the vibration of a button's press with a person."),
     "vibration": ("fdvv.cli._vibration", "Show a button's vibrations, and write one as a sound."),
 }
@@ -56,7 +68,9 @@ class LazyGroup(click.Group):
         """Import and give one command."""
         if cmd_name not in COMMANDS:
             return None
-        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), cmd_name)
+        # a function cannot be called import
+        name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+        found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), name)
         assert isinstance(found, click.Command)
         return found
 

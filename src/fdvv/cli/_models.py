@@ -1,4 +1,4 @@
-"""fdvv merge, assign and library: make models out of models."""
+"""fdvv merge and assign: make models out of models."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fdvv.cli._output import Finite, check_output, counted, json_option, number, print_json, print_table
+from fdvv.cli._output import Finite, check_output, counted
 
 OUTPUT = click.option(
     "-o",
@@ -105,26 +105,3 @@ def assign(
     model = assign_curve(open_model(button), one_curve(curve), stroke, velocity_mm_s, segment_mm, blend_mm)
     save_model(model, output)
     click.echo(f"{output}: {counted(len(model.curves), 'curve')}")
-
-
-@click.command()
-@json_option
-def library(as_json: bool) -> None:
-    """List the built-in buttons."""
-    from fdvv.model import builtin_names, landmarks, load_builtin
-
-    models = [load_builtin(name) for name in builtin_names()]
-    marks = [landmarks(model).to_dict() for model in models]
-    if as_json:
-        entries = [
-            {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
-            for m, k in zip(models, marks, strict=True)
-        ]
-        print_json({"buttons": entries})
-        return
-    columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
-    rows = [
-        [m.name, m.provenance.source.partition(",")[0], *(number(k[c]) for c in columns)]
-        for m, k in zip(models, marks, strict=True)
-    ]
-    print_table(["button", "source", *columns], rows, left=2)

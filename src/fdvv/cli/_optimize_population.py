@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
 
+from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
 from fdvv.cli._output import json_option, print_json, print_table, progress
 
 
@@ -43,11 +42,7 @@ def add_population(group: click.Group) -> None:
     type=click.Path(path_type=Path, exists=True, file_okay=False),
     help="Finished --grid run of other people that every engine begins from.",
 )
-@click.option(
-    "--processes", type=click.IntRange(1, 1024), help="Of this machine; by default as many as it has."
-)
-@click.option("--workers", type=click.IntRange(1, 1024), help="Start so many dask workers instead.")
-@click.option("--cluster", metavar="ADDRESS", help="Use the dask cluster of this scheduler instead.")
+@executor_options
 @json_option
 def population(
     folder: Path,
@@ -72,12 +67,11 @@ def population(
     """
     from fdvv.workflow import open_executor, read_population, run_population
 
-    if sum(choice is not None for choice in (processes, workers, cluster)) > 1:
-        raise click.UsageError("--processes, --workers and --cluster exclude each other")
+    check_executor(processes, workers, cluster)
     plan = _plan(people, level, engine, budget, grid, seed, shifts, rig)
     trials = read_population(prior).prior() if prior else ()
     with (
-        _told(folder),
+        kept_on_interrupt(folder),
         open_executor(processes, workers, cluster) as executor,
         progress("people" if grid is None else "grid", plan.chunks) as tell,
     ):
@@ -119,17 +113,6 @@ def _shift(text: str) -> tuple[str, float]:
     if not 0 < value <= 100:
         raise click.BadParameter(f"{text!r} is no NAME=RATIO with a ratio above 0", param_hint="--shift")
     return name, value
-
-
-@contextmanager
-def _told(folder: Path) -> Iterator[None]:
-    """Say what Ctrl-C leaves."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            f"interrupted; what is done is kept in {folder}, the same command goes on"
-        ) from None
 
 
 def _show(summary: dict[str, Any], folder: Path, as_json: bool) -> None:

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fdvv.workflow import StudyAnalysis
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-PLAN_FILE = "study.toml"
 
 
 def table_options(command: Command) -> Command:
@@ -117,7 +116,7 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
 def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
     """Read answers, the plan they come from, if any, and a line that tells where they come from."""
     from fdvv.files import read_limited
-    from fdvv.study import read_plan_text
+    from fdvv.study import STUDY_FILE, read_plan_text
     from fdvv.workflow import ColumnMap, Study, read_answers
 
     asked = ColumnMap(
@@ -132,7 +131,7 @@ def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Ans
     if plan is not None:
         data = read_limited(plan, 4_000_000, "name the study's file")
         return answers, read_plan_text(data.decode(errors="replace"), plan), f"answers of {source.name}"
-    if (source / PLAN_FILE).is_file():
+    if (source / STUDY_FILE).is_file():
         study = Study.open(source)
         frozen = f", fingerprint {study.fingerprint}" if study.frozen else ", not frozen"
         return answers, study.plan, f"study {study.plan.name}{frozen}"

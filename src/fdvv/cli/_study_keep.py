@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ from fdvv.cli._output import counted, json_option, print_json, print_table, prin
 
 if TYPE_CHECKING:
     from fdvv.study import Answers
-    from fdvv.workflow import Study
+    from fdvv.workflow import OperatorView, Study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 folder_argument = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
@@ -81,12 +82,14 @@ def verify(
     problems = study.verify(fingerprint, passphrase, keeper, record)
     if as_json:
         whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
-        print_json({"folder": str(folder), **whole})
+        # of people whose record was tampered with nothing is sure
+        simulated = study.simulated if not problems else None
+        print_json({"folder": str(folder), **whole, "simulated": simulated})
     else:
         for problem in problems:
             click.echo(problem)
         if not problems:
-            click.echo(f"whole; people: {len(study.people())}")
+            click.echo(f"whole; people: {len(study.people())}{_simulated(study.simulated)}")
             click.echo(f"fingerprint: {study.fingerprint}")
             click.echo(f"the record ends in: {study.record_end}")
     if problems:
@@ -99,10 +102,10 @@ def verify(
 @json_option
 def status(folder: Path, as_json: bool) -> None:
     """Tell how far the study in FOLDER is and what was done with it; nothing here tells what a label hid."""
-    from fdvv.workflow import Study, people_standing
+    from fdvv.workflow import Study, operator_view
 
     study = Study.open(folder)
-    document = _status(study, people_standing(study))
+    document = _status(study, operator_view(study, time.time()))
     if as_json:
         print_json(document)
         return
@@ -118,7 +121,9 @@ def status(folder: Path, as_json: bool) -> None:
     ]
     if rows:
         print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
-    click.echo(f"people: {len(rows)} of {document['planned']} planned")
+    if document["paused"]:
+        click.echo(f"paused: {', '.join(document['paused'])}")
+    click.echo(f"people: {len(rows)} of {document['planned']} planned{_simulated(document['simulated'])}")
     print_warnings([p["problem"] for p in document["people"] if p["problem"]])
 
 
@@ -191,19 +196,25 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
     return answer
 
 
-def _status(study: Study, people: Any) -> dict[str, Any]:
+def _simulated(simulated: bool) -> str:
+    """Say of simulated people what they are."""
+    return ", all simulated: a proxy, no evidence" if simulated else ""
+
+
+def _status(study: Study, view: OperatorView) -> dict[str, Any]:
     acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
     state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
     return {
         "name": study.plan.name, "kind": study.plan.kind, "state": state, "fingerprint": study.fingerprint,
-        "record": study.record_end, "planned": study.plan.people, "unsealed": acts,
+        "record": study.record_end, "planned": view.planned, "simulated": study.simulated,
+        "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts,
         "people": [
             {
-                "person": one.person.name, "language": one.person.language, "state": one.person.state,
-                "simulated": one.person.simulated, "answered": one.answered, "trials": one.trials,
-                "resumed": one.resumed, "interrupted": one.interrupted, "problem": one.problem,
+                "person": one.person, "language": one.language, "state": one.state,
+                "simulated": one.simulated, "answered": one.answered, "trials": one.trials,
+                "resumed": one.resumptions, "interrupted": one.interruptions, "problem": one.problem,
             }
-            for one in people
+            for one in view.people
         ],
     }  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from fdvv.model._builtin import builtin_names, load_builtin
 from fdvv.model._bump import Bump, find_bump, running_mean
+from fdvv.model._chart import ChartLine, chart_svg
 from fdvv.model._curve import ForceCurve, MeasuredCurve, Stroke, reading_order
 from fdvv.model._edit import Conflict, assign, copy_curve, merge, remove_curve
 from fdvv.model._extent import find_bottom_out_mm, find_contact_mm, first_loaded
@@ -22,6 +23,9 @@ from fdvv.model._fit import (
     scan_sizes,
     smooth,
 )
+from fdvv.model._html import block as html_block
+from fdvv.model._html import bundle as html_bundle
+from fdvv.model._html import table as html_table
 from fdvv.model._landmark_errors import LandmarkError, landmark_errors
 from fdvv.model._landmarks import Landmarks, landmarks
 from fdvv.model._model import FDVVModel, Provenance
@@ -37,6 +41,7 @@ __all__ = [
     "VERSION",
     "BUMP_KEPT_ratio",
     "Bump",
+    "ChartLine",
     "Conflict",
     "CurveFit",
     "CurveSpread",
@@ -60,12 +65,16 @@ __all__ = [
     "assign",
     "bic_star",
     "builtin_names",
+    "chart_svg",
     "copy_curve",
     "find_bottom_out_mm",
     "find_bump",
     "find_contact_mm",
     "first_loaded",
     "fit_curve",
+    "html_block",
+    "html_bundle",
+    "html_table",
     "landmark_errors",
     "landmarks",
     "load_builtin",

@@ -75,6 +75,11 @@ class Landmarks:
         """Give the landmarks by name, units in the names."""
         return asdict(self)
 
+    def _repr_html_(self) -> str:
+        from fdvv.model._html import landmarks_html
+
+        return landmarks_html(self)
+
 
 def _contact_step_end(x: FloatArray, slope: FloatArray) -> int:
     """Find the index where the contact step has been climbed; 0 if the curve has none."""

@@ -166,6 +166,18 @@ class FDVVModel:
         """Copy the model under another name."""
         return replace(self, name=name)
 
+    def _repr_html_(self) -> str:
+        from fdvv.model._html import model_html
+
+        return model_html(self)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
+        """Show the model in a notebook; its plain text is one line, not every number."""
+        from fdvv.model._html import bundle
+
+        curves = f"{len(self.curves)} curves, {len(self.vibrations)} vibrations"
+        return bundle(self._repr_html_(), f"FDVVModel({self.name!r}, {self.travel_mm:g} mm, {curves})")
+
     def _key(self) -> tuple[object, ...]:
         curves = tuple(
             (

@@ -46,3 +46,14 @@ class Press:
                 raise ModelError(f"{name} must match t_s, got {column.shape} and {self.t_s.shape}")
         if self.t_s.size < 2 or np.any(np.diff(self.t_s) <= 0):
             raise ModelError("t_s must hold at least 2 strictly rising times")
+
+    def _repr_html_(self) -> str:
+        from fdvv.model._html import press_html
+
+        return press_html(self)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
+        """Show the press in a notebook; its plain text is one line, not every sample."""
+        from fdvv.model._html import bundle
+
+        return bundle(self._repr_html_(), f"Press({self.t_s.size} samples at {self.velocity_mm_s:g} mm/s)")

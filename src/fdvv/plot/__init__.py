@@ -13,6 +13,13 @@ from fdvv.plot._capture_figures import plot_clocks, plot_displacement, plot_forc
 from fdvv.plot._design_figures import DesignPanel, plot_designs
 from fdvv.plot._feasibility_figures import plot_feasibility
 from fdvv.plot._fit_figures import plot_fit, plot_scan
+from fdvv.plot._mechanism_figures import (
+    DesignedStroke,
+    DrawnLine,
+    DrawnPart,
+    plot_mechanism,
+    plot_parts,
+)
 from fdvv.plot._model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
 from fdvv.plot._records import ErrorHistory, FeasibleCurve, RenderedBand, RenderedCurve
 from fdvv.plot._rendering_figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
@@ -27,6 +34,9 @@ from fdvv.plot._vibration_figures import plot_heard
 __all__ = [
     "ChoiceRow",
     "DesignPanel",
+    "DesignedStroke",
+    "DrawnLine",
+    "DrawnPart",
     "ErrorHistory",
     "FeasibleCurve",
     "ForestRow",
@@ -56,8 +66,10 @@ __all__ = [
     "plot_force",
     "plot_forest",
     "plot_heard",
+    "plot_mechanism",
     "plot_model",
     "plot_paces",
+    "plot_parts",
     "plot_rating_bars",
     "plot_registration",
     "plot_rendering",

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
+from fdvv.model import html_bundle
 from fdvv.units import FloatArray
 
 
@@ -236,3 +237,12 @@ class Recording:
             raise ModelError(f"name must be text without spaces at its ends, got {self.name!r}")
         if [take.number for take in self.takes] != list(range(1, len(self.takes) + 1)):
             raise ModelError("the takes of a recording must be numbered from 1 in order")
+
+    def _repr_html_(self) -> str:
+        from fdvv.recording._html import recording_html
+
+        return recording_html(self)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
+        """Show the recording in a notebook; its plain text is one line, not every sample."""
+        return html_bundle(self._repr_html_(), f"Recording({self.name!r}, {len(self.takes)} takes)")

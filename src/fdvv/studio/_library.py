@@ -63,7 +63,7 @@ class Library:
         self._lock = Lock()
         self._search, self._epoch = ShelfSearch(), 0
         cache = studio.project / "cache" / "shelf.jsonl"
-        self.index = ShelfIndex(studio.shelf, cache, self._told)
+        self.index = ShelfIndex(studio.shelf, cache, self._told, libraries=studio.libraries)
         self.index.start()
 
     def close(self) -> None:

@@ -121,6 +121,10 @@ class StudiesPerson(Struct, frozen=True):
     told: str
 
 
+class StudiesDevicesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask what may render a study; serial ports are looked for."""
+
+
 class StudiesDevice(Struct, frozen=True):
     """Something that may render a study. name : as calls name it. about : for people."""
 
@@ -128,11 +132,17 @@ class StudiesDevice(Struct, frozen=True):
     about: str
 
 
+class StudiesDevices(Struct, frozen=True):
+    """All that may render a study now."""
+
+    devices: list[StudiesDevice]
+
+
 class StudiesDetail(Struct, frozen=True):
     """A study for the operator.
 
     history : what was done with it, one line each. waiting : free seats.
-    device : what renders it, one of devices.
+    device : what renders it, one of those that `studies.devices` tells.
     """
 
     row: StudiesRow
@@ -143,7 +153,6 @@ class StudiesDetail(Struct, frozen=True):
     paused: bool
     history: list[str]
     device: str
-    devices: list[StudiesDevice]
 
 
 class StudiesUse(Struct, frozen=True, forbid_unknown_fields=True):

@@ -10,21 +10,31 @@ from fdvv.studio._messages_press import Count, Number, ShakeSignal
 
 Short = Annotated[str, Meta(max_length=100)]
 Long = Annotated[str, Meta(max_length=4000)]
+Holder = Annotated[str, Meta(min_length=16, max_length=100)]
 StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
 
 
 class StudyLook(Struct, frozen=True, forbid_unknown_fields=True, tag="look"):
-    """Ask what the study is, before anybody sits down. seat : that the link holds, or empty."""
+    """Ask what the study is, before anybody sits down.
+
+    seat : that the link holds, or empty. holder : see StudySit.
+    """
 
     study: Short
     seat: Short
+    holder: Holder
 
 
 class StudySit(Struct, frozen=True, forbid_unknown_fields=True, tag="sit"):
-    """Sit down as a new person. seat : the one-time word that the operator's link holds."""
+    """Sit down as a new person.
+
+    seat : the one-time word that the operator's link holds. holder : a word that this page drew and tells
+        nobody else: whoever begins first holds the seat, and a link that others see gives it to none of them.
+    """
 
     study: Short
     seat: Short
+    holder: Holder
     language: Short
 
 
@@ -99,7 +109,7 @@ class StudyHere(Struct, frozen=True, forbid_unknown_fields=True, tag="here"):
 
 
 class StudyAbout(Struct, frozen=True, tag="about"):
-    """What the study is. seat : the link still has a free seat. titles : by language."""
+    """What the study is. seat : it can be taken by this page. titles : by language."""
 
     study: str
     titles: dict[str, str]

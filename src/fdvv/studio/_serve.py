@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 import socket
 from collections.abc import Callable
 from contextlib import suppress
@@ -10,6 +9,7 @@ from contextlib import suppress
 from fdvv.errors import InputError
 from fdvv.studio._app import create_app
 from fdvv.studio._guard import Door
+from fdvv.studio._kept_token import new_token
 from fdvv.studio._studio import Studio
 
 LARGEST_MESSAGE_bytes = 2_000_000
@@ -31,23 +31,22 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 def door_of(host: str, port: int, token: str | None = None) -> Door:
-    """Make the door of a studio at a port, with a fresh token."""
+    """Make the door of a studio at a port. token : that opens it; none: a fresh one."""
     names = {"127.0.0.1", "localhost", "[::1]", f"[{host}]" if ":" in host else host}
-    return Door(
-        frozenset(f"{name}:{port}" for name in names), token or secrets.token_urlsafe(24), f"fdvv-{port}"
-    )
+    return Door(frozenset(f"{name}:{port}" for name in names), token or new_token(), f"fdvv-{port}")
 
 
-def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None]) -> None:
+def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None], token: str = "") -> None:
     """Serve a studio until Ctrl-C or SIGTERM.
 
-    ready : called with the address to open, once it can be opened. Raises InputError, BuildError.
+    ready : called with the address to open, once it can be opened. token : that opens it; empty: a fresh
+    one. Raises InputError, BuildError.
     """
     import uvicorn
 
     taken = listen(host, port)
     port = taken.getsockname()[1]
-    door = door_of(host, port)
+    door = door_of(host, port, token)
     shown = f"[{host}]" if ":" in host else host
     config = uvicorn.Config(
         create_app(studio, door),

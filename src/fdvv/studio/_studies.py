@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import secrets
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock, RLock
@@ -17,19 +18,25 @@ from fdvv.files import write_atomic
 from fdvv.studio._messages_studies import StudiesChanged, StudyState
 from fdvv.studio._studio import Studio
 from fdvv.studio._watchers import Watchers
-from fdvv.workflow import Study, device_problems
+from fdvv.workflow import EVERYBODY, Study, device_problems
 
 FOLDER, DEVICE_SUFFIX = "studies", ".device"
 TWIN = "twin"
+PATIENCE_s = 10.0
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 
 
 @dataclass(eq=False)
 class Seat:
-    """A free seat of a study, taken once; person, code : whose it is until their screen knows."""
+    """A seat of a study, taken once.
+
+    holder : the page that took it, by a word that it alone has; empty while it is free.
+    person, code : whose it is until their screen knows.
+    """
 
     study: str
     word: str
+    holder: str = ""
     person: str = ""
     code: str = ""
     lock: Lock = field(default_factory=Lock)
@@ -59,7 +66,7 @@ class Studies:
         self.watchers = Watchers[Struct]()
         self._seats: dict[str, Seat] = {}
         self._screens: dict[tuple[str, str], Screen] = {}
-        self._paused: set[tuple[str, str | None]] = set()
+        self._places: dict[tuple[str, str], Lock] = {}
         # held for a look only: whoever is at a screen may ask for it
         self._lock = RLock()
 
@@ -111,11 +118,12 @@ class Studies:
         self.announce(name)
         return seat
 
-    def seat(self, name: str, word: str) -> Seat | None:
-        """Find a seat that is still to be had."""
+    def seat(self, name: str, word: str, holder: str) -> Seat | None:
+        """Find a seat that a page may take: a free one, or its own."""
         with self._lock:
             seat = self._seats.get(word)
-        return seat if seat and seat.study == name else None
+        mine = seat and seat.study == name and seat.holder in ("", holder)
+        return seat if mine else None
 
     def taken(self, seat: Seat) -> None:
         """Forget a seat, and the code with it: its person's screen knows."""
@@ -143,25 +151,38 @@ class Studies:
                 del self._screens[name, person]
         self.announce(name)
 
+    @contextmanager
+    def place(self, name: str, person: str) -> Iterator[None]:
+        """Take a person up alone: a page that is gone may still be at it when they come back on another.
+
+        InputError where that takes too long.
+        """
+        with self._lock:
+            lock = self._places.setdefault((name, person), Lock())
+        if not lock.acquire(timeout=PATIENCE_s):
+            raise InputError("study", "screen", "is taken up elsewhere at this moment", "try again")
+        try:
+            yield
+        finally:
+            lock.release()
+
     def screen(self, name: str, person: str) -> Screen | None:
         """Find a person's screen."""
         with self._lock:
             return self._screens.get((name, person))
 
     def pause(self, name: str, person: str | None, on: bool) -> None:
-        """Have all screens of a study wait, or one."""
+        """Have all screens of a study wait, or one; kept with the study. InputError."""
+        self.study(name).pause(person or EVERYBODY, on)
         with self._lock:
-            change = self._paused.add if on else self._paused.discard
-            change((name, person))
-            screens = [(who, screen) for (study, who), screen in self._screens.items() if study == name]
+            screens = [(who, screen) for (of, who), screen in self._screens.items() if of == name]
         for who, screen in screens:
             screen.pause(self.paused(name, who))
         self.announce(name)
 
     def paused(self, name: str, person: str | None = None) -> bool:
         """Tell whether a study waits, or one person of it."""
-        with self._lock:
-            return not self._paused.isdisjoint({(name, None), (name, person)})
+        return not self.study(name).paused.isdisjoint({EVERYBODY, person or EVERYBODY})
 
     def withdraw(self, name: str, person: str, delete: bool) -> None:
         """Take a person out of a study, wherever they are. InputError."""

@@ -132,10 +132,14 @@ def use(studio: Studio, ask: m.StudiesUse) -> m.StudiesDetail:
     return t.detail(studies, ask.study)
 
 
+def devices(_studio: Studio, _ask: m.StudiesDevicesAsk) -> m.StudiesDevices:
+    """Tell what may render a study."""
+    return m.StudiesDevices(t.all_devices())
+
+
 def pause(studio: Studio, ask: m.StudiesPause) -> m.StudiesDetail:
     """Have screens wait, or go on."""
     studies = studio.part(Studies)
-    studies.study(ask.study)
     studies.pause(ask.study, ask.person, ask.on)
     return t.detail(studies, ask.study)
 
@@ -195,6 +199,7 @@ CALLS = (
     Call("studies.freeze", m.StudiesFreeze, m.StudiesDetail, freeze),
     Call("studies.detail", m.StudiesAsk, m.StudiesDetail, detail),
     Call("studies.seat", m.StudiesAsk, m.StudiesSeat, seat),
+    Call("studies.devices", m.StudiesDevicesAsk, m.StudiesDevices, devices),
     Call("studies.use", m.StudiesUse, m.StudiesDetail, use),
     Call("studies.pause", m.StudiesPause, m.StudiesDetail, pause),
     Call("studies.withdraw", m.StudiesWithdraw, m.StudiesDetail, withdraw),

@@ -11,7 +11,7 @@ from fdvv.studio import _messages_studies as m
 from fdvv.studio._studies import TWIN, Studies, state_of
 from fdvv.studio._study_told import said
 from fdvv.studio._work_choices import devices
-from fdvv.workflow import PersonView, Study, operator_view
+from fdvv.workflow import EVERYBODY, PersonView, Study, operator_view
 
 SIMULATED = "simulated"
 ON_THE_TABLE = ("host", "serial:")
@@ -35,25 +35,28 @@ def detail(studies: Studies, name: str) -> m.StudiesDetail:
     study = studies.study(name)
     frozen = study.frozen
     people = operator_view(study, time.time()).people if frozen else ()
+    paused = study.paused
     return m.StudiesDetail(
         row(name, study),
         study.fingerprint,
         when(frozen.when) if frozen else "",
-        [_person(studies, name, one) for one in people],
+        [_person(one, studies.screen(name, one.person) is not None, one.person in paused) for one in people],
         studies.waiting(name),
-        studies.paused(name),
+        EVERYBODY in paused,
         [history_line(record) for record in study.history()],
         studies.device(name),
-        [m.StudiesDevice(TWIN, "the twin, under a hand on the screen"), *_devices()],
     )
 
 
-def _devices() -> list[m.StudiesDevice]:
-    """List what may stand on the table: what keeps the labels of a trial ready side by side."""
+def all_devices() -> list[m.StudiesDevice]:
+    """List what may render a study: the twin, and what keeps the labels of a trial ready side by side."""
     return [
-        m.StudiesDevice(name, f"{name}: {about}" if about else name)
-        for name, about in devices()[0]
-        if name.startswith(ON_THE_TABLE)
+        m.StudiesDevice(TWIN, "the twin, under a hand on the screen"),
+        *(
+            m.StudiesDevice(name, f"{name}: {about}" if about else name)
+            for name, about in devices()[0]
+            if name.startswith(ON_THE_TABLE)
+        ),
     ]
 
 
@@ -76,8 +79,7 @@ def when(stamp: str) -> str:
     return f"{stamp[:16].replace('T', ' ')} UTC" if stamp else ""
 
 
-def _person(studies: Studies, name: str, one: PersonView) -> m.StudiesPerson:
-    here = studies.screen(name, one.person) is not None
+def _person(one: PersonView, here: bool, paused: bool) -> m.StudiesPerson:
     return m.StudiesPerson(
         one.person,
         one.language,
@@ -85,13 +87,15 @@ def _person(studies: Studies, name: str, one: PersonView) -> m.StudiesPerson:
         one.answered,
         one.trials,
         here,
-        studies.paused(name, one.person),
+        paused,
         SIMULATED if one.simulated else "",
     )
 
 
 def place_of(one: PersonView) -> str:
     """Tell in a word where somebody is."""
+    if one.problem:
+        return "not to be read"
     if one.state in ("withdrawn", "deleted"):
         return one.state
     return f"page {one.page}" if one.kind == "page" else (one.kind or one.state)

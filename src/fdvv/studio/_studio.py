@@ -18,11 +18,13 @@ class Studio:
     Parameters
     ----------
     project : folder of the person's work; made when something is first kept in it.
-    sources : folders of measured switches.
+    sources : folders of measured switches. libraries : folders of libraries of them, which save reading.
     """
 
-    def __init__(self, project: Path, sources: tuple[Path, ...] = ()) -> None:
-        self.project, self.sources = project, sources
+    def __init__(
+        self, project: Path, sources: tuple[Path, ...] = (), libraries: tuple[Path, ...] = ()
+    ) -> None:
+        self.project, self.sources, self.libraries = project, sources, libraries
         self._parts: dict[type[Any], Any] = {}
         self._lock = RLock()
 

@@ -9,12 +9,17 @@ from typing import Any
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.studio import _messages_study as m
 from fdvv.studio._contract import ChannelKind, Tell
-from fdvv.studio._jobs import SharedLeases
-from fdvv.studio._studies import TWIN, Seat, Studies
+from fdvv.studio._studies import Seat, Studies
 from fdvv.studio._studio import Studio
-from fdvv.studio._study_told import frame_told, sound_told, step_told
+from fdvv.studio._study_stages import StudyStages
+from fdvv.studio._study_told import sound_told, step_told
 from fdvv.study import ENDS, Step, TrialAnswer
-from fdvv.workflow import Participant, PersonFrame, ScreenStage, Study, open_screen_stage
+from fdvv.workflow import Participant, ScreenStage, Study
+
+
+def taken() -> InputError:
+    """Make the error of a seat that somebody else has."""
+    return InputError("study", "seat", "is taken", "ask for another, or go on with your card")
 
 
 class StudyScreen:
@@ -22,13 +27,13 @@ class StudyScreen:
 
     def __init__(self, studio: Studio, tell: Tell) -> None:
         self._studies, self._tell = studio.part(Studies), tell
-        self._leases, self._leased = studio.part(SharedLeases), ""
+        self._stages = StudyStages(studio, tell)
         self._name = ""
         self._participant: Participant | None = None
         self._stage: ScreenStage | None = None
         self._seat: Seat | None = None
         # the operator may use it while the page's own thread does
-        self._lock = RLock()
+        self._lock, self._gone = RLock(), False
 
     def receive(self, ask: Any) -> None:
         """Do what the page asks; without a participant most asks have come too late and do nothing."""
@@ -36,6 +41,8 @@ class StudyScreen:
             self._hand(ask)
             return
         with self._lock:
+            if self._gone:  # the page was closed while this waited for its turn
+                return
             try:
                 self._do(ask)
             except DeviceError:
@@ -47,11 +54,17 @@ class StudyScreen:
     def close(self) -> None:
         """The page is gone: the session waits to be resumed."""
         with self._lock:
+            self._gone = True
+            self._rise()
+
+    def _rise(self) -> None:
+        """Serve nobody any more."""
+        with self._lock:
             participant, self._participant, self._stage = self._participant, None, None
             if participant:
                 participant.close()
                 self._studies.rise(self._name, participant.person, self)
-            self._release()
+            self._stages.release()
 
     def pause(self, on: bool) -> None:
         """Have it wait, or go on."""
@@ -62,7 +75,7 @@ class StudyScreen:
 
     def leave(self, reason: str) -> None:
         """Serve nobody any more, and say why."""
-        self.close()
+        self._rise()
         self._tell(m.StudyStopped(reason))
 
     def withdraw(self, delete: bool) -> None:
@@ -78,30 +91,32 @@ class StudyScreen:
     @_do.register
     def _(self, ask: m.StudyLook) -> None:
         plan = self._studies.study(ask.study).plan
-        free = self._studies.seat(ask.study, ask.seat) is not None
+        free = self._studies.seat(ask.study, ask.seat, ask.holder) is not None
         self._tell(m.StudyAbout(ask.study, plan.title, list(plan.languages), free))
 
     @_do.register
     def _(self, ask: m.StudySit) -> None:
-        seat = self._studies.seat(ask.study, ask.seat)
+        seat = self._studies.seat(ask.study, ask.seat, ask.holder)
         if seat is None:
-            raise InputError("study", "seat", "is taken", "ask for another, or go on with your card")
-        self.close()
+            raise taken()
+        self._rise()
         study = self._studies.study(ask.study)
         with seat.lock:
+            if seat.holder not in ("", ask.holder):  # two began at once
+                raise taken()
             if seat.person:  # the page went away before it heard the code
                 self._sit(study, ask.study, seat.person, seat.code)
             else:
-                stage = self._first_stage(study)
+                stage = self._stages.first(study)
                 participant, seat.code = Participant.enrol(study, ask.language, stage)
-                seat.person = participant.person
+                seat.person, seat.holder = participant.person, ask.holder
                 self._take(ask.study, participant, stage)
             self._seat = seat
         self._begin(seat.code)
 
     @_do.register
     def _(self, ask: m.StudyResume) -> None:
-        self.close()
+        self._rise()
         self._sit(self._studies.study(ask.study), ask.study, ask.person, ask.code)
         self._begin("")
 
@@ -123,7 +138,7 @@ class StudyScreen:
     @_do.register
     def _(self, _ask: m.StudyAgain) -> None:
         if self._participant:
-            self._stage = self._new_stage(self._participant.study)
+            self._stage = self._stages.open(self._participant.study)
             self._participant.take_stage(self._stage)
             self._tell_step()
 
@@ -163,42 +178,15 @@ class StudyScreen:
         else:
             stage.lift()
 
-    def _new_stage(self, study: Study) -> ScreenStage:
-        """Open what the operator chose. InputError where it is used elsewhere, DeviceError."""
-        device = self._studies.device(study.folder.name)
-        if device not in (TWIN, self._leased):
-            self._release()
-            self._leases.take(device, f"the study {study.folder.name}")
-            self._leased = device
-        broke = lambda _line: self._tell(m.StudyBroke())  # noqa: E731
-        return open_screen_stage(device, study.folder, self._show, broke, study.plan.switch_s)
-
-    def _first_stage(self, study: Study) -> ScreenStage:
-        """Open a stage for somebody who sits down. InputError where it cannot be had."""
-        try:
-            return self._new_stage(study)
-        except DeviceError as error:
-            self._release()
-            raise InputError("study", "device", str(error), "ask who leads the study") from error
-
-    def _release(self) -> None:
-        """Let others use the device."""
-        if self._leased:
-            self._leases.give_back(self._leased)
-            self._leased = ""
-
-    def _show(self, frame: PersonFrame) -> None:
-        if frame.t_s.size:  # else this machine was busy, and no time has passed
-            self._tell(frame_told(frame))
-
     def _sit(self, study: Study, name: str, person: str, code: str) -> None:
-        """Go on as somebody; a screen that serves them lets go first."""
-        other = self._studies.screen(name, person)
-        if other:
-            study.schedule(person, code)  # a wrong code must not take anybody's screen away
-            other.leave("this study goes on at another screen")
-        stage = self._first_stage(study)
-        self._take(name, Participant.resume(study, person, code, stage), stage)
+        """Go on as somebody; a screen that serves them, or is about to, lets go first."""
+        with self._studies.place(name, person):
+            other = self._studies.screen(name, person)
+            if other:
+                study.schedule(person, code)  # a wrong code must not take anybody's screen away
+                other.leave("this study goes on at another screen")
+            stage = self._stages.first(study)
+            self._take(name, Participant.resume(study, person, code, stage), stage)
 
     def _take(self, name: str, participant: Participant, stage: ScreenStage) -> None:
         self._name, self._participant, self._stage = name, participant, stage
@@ -226,7 +214,7 @@ class StudyScreen:
         """Tell what comes next; an end is an end for the operator too."""
         self._tell_step(step)
         if self._participant and step.kind in ENDS:
-            self.close()
+            self._rise()
         else:
             self._studies.announce(self._name)
 

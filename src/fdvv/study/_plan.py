@@ -50,6 +50,11 @@ class Item(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     stimuli: tuple[Stimulus, ...]
     reference: Stimulus | None = None
 
+    @property
+    def rendered(self) -> tuple[Stimulus, ...]:
+        """Get all that is rendered of it: what is compared, then the reference where that is rendered."""
+        return self.stimuli if self.reference is None else (*self.stimuli, self.reference)
+
 
 class Rating(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A scale on which every hidden rendering of a trial is rated.

@@ -12,6 +12,7 @@ from fdvv.testing._captured import (
 from fdvv.testing._chunk_work import SeededSum, refuse_three, wait_for_ever
 from fdvv.testing._closed_forms import coil_error_ratio, mean_response, ripple_N
 from fdvv.testing._conformance import DeviceConformance, ProgramConformance, plain_surface
+from fdvv.testing._deadly_work import DeadlyCells, DeadlyReader
 from fdvv.testing._felt import Felt, SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, press_with, snap, ways
 from fdvv.testing._held import held_swings_mm, swings_held
 from fdvv.testing._loop import (
@@ -33,6 +34,8 @@ __all__ = [
     "PERFECT_RIG",
     "PERFECT_SENSOR",
     "CapturedSession",
+    "DeadlyCells",
+    "DeadlyReader",
     "DeviceConformance",
     "Felt",
     "LinearLoop",

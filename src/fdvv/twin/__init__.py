@@ -1,7 +1,7 @@
 """Physics of finger, rig and real button: constants apart from state; compiled presses. Simulated."""
 
 from fdvv.twin._batch import RigPress, simulate_rig_batch
-from fdvv.twin._button import ButtonPhysics, Curve, Dome, Housing, Leaf, Slider
+from fdvv.twin._button import BuiltCam, ButtonPhysics, Curve, Dome, Housing, Leaf, Slider
 from fdvv.twin._button_file import button_names, button_to_toml, load_button
 from fdvv.twin._button_model import button_of_model
 from fdvv.twin._button_noise import ButtonNoise, draw_button_noise, no_button_noise
@@ -39,6 +39,7 @@ __all__ = [
     "BOARD",
     "PARTICIPANTS",
     "WILD",
+    "BuiltCam",
     "ButtonNoise",
     "ButtonPhysics",
     "ButtonReference",

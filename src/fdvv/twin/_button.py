@@ -15,6 +15,8 @@ from fdvv.twin._quantity import check, choice, quantity
 from fdvv.units import FloatArray
 
 FEWEST_FORCES = 8
+BUILT = ("elastic_N", "height_m", "rail_N", "friction_ratio")
+"""Columns of a BuiltCam."""
 
 
 @dataclass(frozen=True)
@@ -132,6 +134,37 @@ class Housing:
 
 
 @dataclass(frozen=True, eq=False)
+class BuiltCam:
+    """Coil, cam and friction of a leaf switch as it is built, in place of what its slow curves would tell.
+
+    Attributes
+    ----------
+    elastic_N, height_m, rail_N, friction_ratio : (n,) at the places of press_N: force of the coil less that
+        of the top stop, height of the cam, 0 where the leaf just reaches the fixed contact, friction of the
+        rails, coefficient between cam and leaf.
+    preload_N : of the leaf where it just reaches the fixed contact.
+    """
+
+    elastic_N: FloatArray
+    height_m: FloatArray
+    rail_N: FloatArray
+    friction_ratio: FloatArray
+    preload_N: float
+
+    def __post_init__(self) -> None:
+        for name in BUILT:
+            column = np.array(getattr(self, name), dtype=np.float64)
+            if column.ndim != 1 or not np.isfinite(column).all():
+                raise ModelError(f"{name} must be one column of finite numbers")
+            column.flags.writeable = False
+            object.__setattr__(self, name, column)
+        if len({getattr(self, name).size for name in BUILT}) != 1:
+            raise ModelError(f"{', '.join(BUILT)} must be equally long")
+        if not self.preload_N > 0 or min(self.rail_N.min(), self.friction_ratio.min()) < 0:
+            raise ModelError("a leaf's preload must be above 0, and no friction below it")
+
+
+@dataclass(frozen=True, eq=False)
 class ButtonPhysics:
     """One real button as the twin has it; nothing here changes during a press.
 
@@ -139,6 +172,7 @@ class ButtonPhysics:
     ----------
     name, source, licence : of the button and of the curves it is made from.
     press_N, release_N : (n,) slow force at 0, curve.step_m, ... up to the stop.
+    cam : what a designed leaf switch is built as; None lets the slow curves tell it. Only for kind "leaf".
     """
 
     name: str
@@ -151,6 +185,7 @@ class ButtonPhysics:
     leaf: Leaf = field(default_factory=Leaf)
     dome: Dome = field(default_factory=Dome)
     housing: Housing = field(default_factory=Housing)
+    cam: BuiltCam | None = None
 
     def __post_init__(self) -> None:
         for name in ("press_N", "release_N"):
@@ -162,6 +197,8 @@ class ButtonPhysics:
         if self.press_N.size != self.release_N.size:
             sizes = f"{self.press_N.size} and {self.release_N.size}"
             raise ModelError(f"press_N and release_N must be equally long, got {sizes}")
+        if self.cam and (self.curve.kind != "leaf" or self.cam.height_m.size != self.press_N.size):
+            raise ModelError("a built cam is for a leaf, and as long as press_N")
         self._check_places()
 
     def _check_places(self) -> None:

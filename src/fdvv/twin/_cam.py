@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.twin._button import ButtonPhysics, Leaf
+from fdvv.twin._button import BUILT, BuiltCam, ButtonPhysics, Leaf
 from fdvv.units import FloatArray
 
 CELL_m = 1e-5
@@ -53,7 +53,12 @@ class Cam:
 
 
 def identify(button: ButtonPhysics) -> Cam:
-    """Identify spring, cam and friction; ModelError if the curves cannot be a leaf's."""
+    """Identify spring, cam and friction; ModelError if the curves cannot be a leaf's.
+
+    A button with a built cam is taken as it is built.
+    """
+    if button.cam is not None:
+        return _built(button, button.cam)
     x, middle_N, half_N = _curves(button)
     if button.curve.kind == "dome":
         nothing = np.zeros_like(x)
@@ -67,8 +72,7 @@ def _curves(button: ButtonPhysics) -> tuple[FloatArray, FloatArray, FloatArray]:
 
     curve = button.curve
     given_m = curve.step_m * np.arange(button.press_N.size)
-    low, high = -math.ceil(MARGIN_m / CELL_m), math.ceil((curve.travel_m + MARGIN_m) / CELL_m)
-    x = np.asarray(CELL_m * np.arange(low, high + 1))
+    x = _places(curve.travel_m)
     inside = np.clip(x, 0.0, given_m[-1])
     press_N, release_N = (
         np.asarray(curve.force_ratio * PchipInterpolator(given_m, force)(inside))
@@ -76,6 +80,28 @@ def _curves(button: ButtonPhysics) -> tuple[FloatArray, FloatArray, FloatArray]:
     )
     # curves that cross show the bench's play, not friction that helps
     return x, 0.5 * (press_N + release_N), np.maximum(0.5 * (press_N - release_N), 0.0)
+
+
+def _built(button: ButtonPhysics, cam: BuiltCam) -> Cam:
+    """Lay a built cam over the table's places; its ends are held level."""
+    from scipy.interpolate import PchipInterpolator
+
+    given_m = button.curve.step_m * np.arange(cam.height_m.size)
+    x = _places(button.curve.travel_m)
+    inside = np.clip(x, 0.0, given_m[-1])
+    elastic_N, height_m, rail_N, ratio = (
+        np.asarray(PchipInterpolator(given_m, getattr(cam, name))(inside)) for name in BUILT
+    )
+    leaf = button.leaf
+    stiffness = np.where(height_m >= 0.0, 0.0, leaf.fixed_stiffness_N_m) + leaf.stiffness_N_m
+    normal_N = np.maximum(cam.preload_N + stiffness * height_m, 0.0)
+    return Cam(x, elastic_N, height_m, normal_N, rail_N, ratio, cam.preload_N)
+
+
+def _places(travel_m: float) -> FloatArray:
+    """Give the table's places, margins included."""
+    low, high = -math.ceil(MARGIN_m / CELL_m), math.ceil((travel_m + MARGIN_m) / CELL_m)
+    return np.asarray(CELL_m * np.arange(low, high + 1))
 
 
 def _arm(button: ButtonPhysics, middle_N: FloatArray, half_N: FloatArray) -> FloatArray:

@@ -26,6 +26,7 @@ from fdvv.twin._kernel import (
     doors,
     rig_bytes,
 )
+from fdvv.twin._led import Led, LIFTED_m, NEAR_1_s
 from fdvv.twin._noise import Noise, draw_ticks
 from fdvv.twin._rig import Rig
 from fdvv.twin._settings import settings_of
@@ -60,7 +61,7 @@ class RigPlant:
     ) -> None:
         self.rig, self.finger = rig or Rig(), finger or Finger()
         self._random = None if seed is None else np.random.default_rng(seed)
-        self._grid, self._settings = grid_of(self.rig), settings_of(self.rig)
+        self._grid = grid_of(self.rig)
         self._memory = np.zeros(rig_bytes() // 8 + 1, np.uint64)
         self._held = address(self._memory)
         self._told, self._inputs = np.zeros(TICK_COLUMNS), np.zeros(1, INPUTS)
@@ -118,6 +119,18 @@ class RigPlant:
             ctypes.c_double(0.0),
         )
 
+    def push(self, force_N: float) -> None:
+        """Let the finger push with a steady force from now on, as a weight that lies on the cap does."""
+        self._lead(Led.PUSH, force_N)
+
+    def lift(self, height_m: float = LIFTED_m) -> None:
+        """Let the finger wait above the cap from now on."""
+        self._lead(Led.PLACE, -height_m)
+
+    def _lead(self, led: Led, goal: float) -> None:
+        numbers = (ctypes.c_double(n) for n in (goal, 0.0, NEAR_1_s))
+        doors().fdvv_rig_lead(self._held, ctypes.c_int(led), *numbers)
+
     def load(self, image: bytes) -> None:
         """Give the vibration board the waveforms of a program; ModelError if it cannot hold them."""
         held = words(image)
@@ -161,7 +174,7 @@ class RigPlant:
 
     def _outputs(self, given: npt.NDArray[np.int64]) -> RecordArray:
         """Put sums of readings and a board's outputs, (n, 5), into records of OUTPUTS."""
-        told, out = self._settings, np.zeros(len(given), OUTPUTS)
+        told, out = settings_of(self.rig), np.zeros(len(given), OUTPUTS)
         sums, out["duty_q15"], out["enable"], out["stop_us"], out["slot"] = given.T
         out["displacement_um16"] = (sums * told.position_gain_q14 + 8192 >> 14) + told.position_offset_um16
         force = np.round(given[:, 1] * (65536 / told.duty_gain_q16))

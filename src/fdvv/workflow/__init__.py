@@ -57,6 +57,17 @@ if TYPE_CHECKING:
     )
     from fdvv.workflow._draft_template import ModelTemplate, new_model
     from fdvv.workflow._drafts import DraftFile, Drafts
+    from fdvv.workflow._exchange_in import Imported, ImportSettings, import_file
+    from fdvv.workflow._exchange_out import (
+        EXPORT_FORMATS,
+        ExportFormat,
+        ExportSettings,
+        export_button,
+        export_format,
+        export_vibration,
+        is_recording,
+        read_back,
+    )
     from fdvv.workflow._exciter import identify_exciter, prepare_exciter, tone_image, with_lead
     from fdvv.workflow._executor import Executor, chunks_of, open_executor
     from fdvv.workflow._experiment import ExperimentResult, Stage, run_experiment
@@ -101,12 +112,36 @@ if TYPE_CHECKING:
         measured_files,
         summarise,
     )
+    from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
+    from fdvv.workflow._hardware_hands import SOUND, AskedHands, Hands, SimulatedHands
+    from fdvv.workflow._hardware_measure import measure_rig
+    from fdvv.workflow._hardware_open import open_rig
+    from fdvv.workflow._hardware_receipt import (
+        SelftestReceipt,
+        calibrated,
+        changed,
+        read_selftest,
+        write_selftest,
+    )
     from fdvv.workflow._join_logs import join_logs
     from fdvv.workflow._key_hand import KeyHand
+    from fdvv.workflow._library import By as LikeBy
+    from fdvv.workflow._library import Library, LibraryHit, write_hits
+    from fdvv.workflow._library_build import LibraryBuilt, LibraryManifest, build_library
+    from fdvv.workflow._library_columns import COLUMNS as LIBRARY_COLUMNS
+    from fdvv.workflow._library_query import library_query
     from fdvv.workflow._live_event import LiveEvent, LiveEventKind
     from fdvv.workflow._live_press import LivePress
     from fdvv.workflow._live_run import LiveFrame, LiveRun
     from fdvv.workflow._measured_bands import MeasuredBand, MeasuredButton, measured_button
+    from fdvv.workflow._mechanism import DesignedKind, MechanismResult, design_mechanism
+    from fdvv.workflow._mechanism_files import write_mechanism
+    from fdvv.workflow._mechanism_report import designed_strokes, drawn_parts, mechanism_report
+    from fdvv.workflow._mechanism_twin import (
+        PressedDesign,
+        mechanism_button,
+        press_design,
+    )
     from fdvv.workflow._open import FolderButton, button_files, open_files, open_model, open_models
     from fdvv.workflow._open_program import make_program, open_program
     from fdvv.workflow._operator_view import OperatorView, PersonView, operator_view
@@ -207,6 +242,7 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_files import Frozen
     from fdvv.workflow._study_log import ChainedLog
     from fdvv.workflow._study_look import StudyLook, look_at_study
+    from fdvv.workflow._study_pause import EVERYBODY
     from fdvv.workflow._study_people import Person, Schedule, SealedTrial
     from fdvv.workflow._study_person_frame import PersonClick, PersonFrame
     from fdvv.workflow._study_power import StudyPower, open_plan, study_power
@@ -238,7 +274,11 @@ if TYPE_CHECKING:
     from fdvv.workflow._study_stage_finger import SimulatedFingerStage
     from fdvv.workflow._study_stage_open import ScreenStage, open_screen_stage
     from fdvv.workflow._study_stage_person import PersonStage
-    from fdvv.workflow._study_standing import PersonStanding, people_standing
+    from fdvv.workflow._sweep import SweepPreview, SweepResult, preview_sweep, run_sweep
+    from fdvv.workflow._sweep_columns import sweep_schema
+    from fdvv.workflow._sweep_measure import MEASURES as SWEEP_MEASURES
+    from fdvv.workflow._sweep_plan import SweepPlan, read_sweep_plan
+    from fdvv.workflow._sweep_summary import sweep_summary
     from fdvv.workflow._tap_forces import force_spread_ratio, tap_peaks
     from fdvv.workflow._tick_bins import TickBinner, TickBins, TickPiece
     from fdvv.workflow._tune_candidates import Candidates, acceleration_per_volt, candidates_for, tuned_model
@@ -256,13 +296,20 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "EVERYBODY",
+    "EXPORT_FORMATS",
+    "LIBRARY_COLUMNS",
     "PLAY_RIGS",
     "POINTING",
     "PRESS_RIGS",
+    "RIG_FAULTS",
     "SHELF_NUMBERS",
     "SHIPPED_RIGS",
+    "SOUND",
+    "SWEEP_MEASURES",
     "AchievableCurve",
     "Ask",
+    "AskedHands",
     "Block",
     "ButtonMean",
     "ButtonPress",
@@ -283,6 +330,7 @@ __all__ = [
     "CurveChange",
     "CurveFeasibility",
     "DemoResult",
+    "DesignedKind",
     "DeviceKey",
     "DeviceStage",
     "Difference",
@@ -301,6 +349,8 @@ __all__ = [
     "ExperimentResult",
     "ExperimentSetup",
     "ExperimentVerdict",
+    "ExportFormat",
+    "ExportSettings",
     "FORCE_JND_ratio",
     "FeasibilityReport",
     "FeltPress",
@@ -311,10 +361,18 @@ __all__ = [
     "FolderSummary",
     "Frozen",
     "Guide",
+    "Hands",
     "HeardStroke",
+    "ImportSettings",
+    "Imported",
     "Keeper",
     "KeptProgram",
     "KeyHand",
+    "Library",
+    "LibraryBuilt",
+    "LibraryHit",
+    "LibraryManifest",
+    "LikeBy",
     "LimitedRange",
     "LiveEvent",
     "LiveEventKind",
@@ -323,6 +381,7 @@ __all__ = [
     "LiveRun",
     "MeasuredBand",
     "MeasuredButton",
+    "MechanismResult",
     "ModelFit",
     "ModelTemplate",
     "ObjectiveSetup",
@@ -342,7 +401,6 @@ __all__ = [
     "PersonClick",
     "PersonFrame",
     "PersonStage",
-    "PersonStanding",
     "PersonView",
     "PinMade",
     "PlacedFinding",
@@ -359,6 +417,7 @@ __all__ = [
     "PressTable",
     "PressTimes",
     "PressTrace",
+    "PressedDesign",
     "Presses",
     "ProbeResult",
     "ProgramEntry",
@@ -373,6 +432,7 @@ __all__ = [
     "RenderedWinner",
     "Rendering",
     "RigEntry",
+    "RigFault",
     "RigOnShelf",
     "RigShelf",
     "RoundTiming",
@@ -382,6 +442,7 @@ __all__ = [
     "ScreenStage",
     "Seal",
     "SealedTrial",
+    "SelftestReceipt",
     "Session",
     "Shelf",
     "ShelfFound",
@@ -391,6 +452,7 @@ __all__ = [
     "ShelfSearch",
     "ShelfStand",
     "SimulatedFingerStage",
+    "SimulatedHands",
     "SimulatedParticipant",
     "SimulatedPlayer",
     "SimulatedSession",
@@ -408,6 +470,9 @@ __all__ = [
     "StudyPower",
     "StudyStage",
     "SurfaceSize",
+    "SweepPlan",
+    "SweepPreview",
+    "SweepResult",
     "SwitchFit",
     "TakeAsk",
     "TakeDone",
@@ -443,13 +508,16 @@ __all__ = [
     "begin_run",
     "best_of",
     "blocks_of",
+    "build_library",
     "builtin_rows",
     "button_choices",
     "button_files",
+    "calibrated",
     "candidates_for",
     "capture_html",
     "capture_report",
     "capture_session",
+    "changed",
     "check_file",
     "check_strip",
     "chunks_of",
@@ -461,12 +529,18 @@ __all__ = [
     "cue_length_s",
     "demo",
     "demo_report",
+    "design_mechanism",
+    "designed_strokes",
     "device_problems",
+    "drawn_parts",
     "drawn_trace",
     "drawn_traces",
     "expected_ms",
     "experiment_html",
     "experiment_report",
+    "export_button",
+    "export_format",
+    "export_vibration",
     "fd_only",
     "feasibility",
     "feasible_curves",
@@ -479,17 +553,23 @@ __all__ = [
     "fit_paper",
     "force_spread_ratio",
     "identify_exciter",
+    "import_file",
     "intended_press",
     "inverse_patch",
+    "is_recording",
     "join_logs",
     "judge_experiment",
+    "library_query",
     "light_strip",
     "load_actuation",
     "lock_with_code",
     "look_at_study",
     "make_program",
+    "measure_rig",
     "measured_button",
     "measured_files",
+    "mechanism_button",
+    "mechanism_report",
     "merge_parts",
     "model_of",
     "model_of_recording",
@@ -509,6 +589,7 @@ __all__ = [
     "open_plan",
     "open_program",
     "open_receipt",
+    "open_rig",
     "open_screen_stage",
     "open_winner_devices",
     "operator_view",
@@ -518,7 +599,6 @@ __all__ = [
     "paper_design_like",
     "patch_between",
     "people_csv",
-    "people_standing",
     "play",
     "play_on_strip",
     "play_seed",
@@ -527,12 +607,14 @@ __all__ = [
     "power_design",
     "prepare_exciter",
     "press_button",
+    "press_design",
     "press_of",
     "press_table",
     "preview_dict",
     "preview_html",
     "preview_sections",
     "preview_summary",
+    "preview_sweep",
     "preview_title",
     "probe",
     "process_recording",
@@ -543,14 +625,17 @@ __all__ = [
     "quick_look",
     "random_design",
     "read_answers",
+    "read_back",
     "read_chained",
     "read_code_book",
     "read_experiment_setup",
     "read_population",
     "read_press_trace",
     "read_program",
+    "read_selftest",
     "read_session",
     "read_setup",
+    "read_sweep_plan",
     "record_of",
     "recorded_vibrations",
     "recording_of",
@@ -568,6 +653,7 @@ __all__ = [
     "run_on_any_strip",
     "run_on_strip",
     "run_population",
+    "run_sweep",
     "sample_strokes",
     "save_actuation",
     "score_design",
@@ -582,6 +668,8 @@ __all__ = [
     "study_power",
     "study_summary",
     "summarise",
+    "sweep_schema",
+    "sweep_summary",
     "tap_peaks",
     "task_named",
     "tone_image",
@@ -599,6 +687,9 @@ __all__ = [
     "write_analysis",
     "write_answers",
     "write_experiment",
+    "write_hits",
+    "write_mechanism",
+    "write_selftest",
     "write_study_report",
 ]
 

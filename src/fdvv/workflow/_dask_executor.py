@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from fdvv import __version__
 from fdvv.errors import BuildError, InputError
-from fdvv.workflow._executor import TRIES, answered, found_or_raised, lost
+from fdvv.workflow._executor import TRIES, ChunkLost, answered, found_or_raised
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
@@ -60,7 +60,7 @@ class DaskExecutor:
                 try:
                     found = future.result()
                 except KilledWorker as error:
-                    raise lost(number) from error
+                    raise ChunkLost(number) from error
                 yield number, found_or_raised(number, found)
                 future.release()
         finally:

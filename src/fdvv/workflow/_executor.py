@@ -40,7 +40,7 @@ class Executor(Protocol):
         work is a function of a module, or a record that can be called; it, the chunks and what is found must
         be picklable. A process that is lost costs only the chunk it was at: that one is done again.
         Processes end when all is done, when the iterator is closed and when an error leaves it.
-        Raises WorkerError if work raised anything, or if a chunk lost every process that took it.
+        Raises WorkerError if work raised anything, ChunkLost if a chunk lost every process that took it.
         """
         ...
 
@@ -70,11 +70,14 @@ def found_or_raised(number: int, found: Any) -> Any:
     raise error
 
 
-def lost(number: int) -> WorkerError:
-    """Say that a chunk loses every process that works on it."""
-    return WorkerError(
-        f"chunk {number}: every process that took it ended before it was done; look for a lack of memory"
-    )
+class ChunkLost(WorkerError):  # noqa: N818 - what became of the chunk
+    """A chunk lost every process that worked on it; `number` is its place."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        super().__init__(
+            f"chunk {number}: every process that took it ended before it was done; look for a lack of memory"
+        )
 
 
 @contextmanager

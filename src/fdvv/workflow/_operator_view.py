@@ -5,12 +5,13 @@ It is read from plain files only, with no key: whoever shows it cannot know more
 
 from __future__ import annotations
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
+from fdvv.errors import InputError
 from fdvv.study import SessionState, Step, StepKind, next_step
 from fdvv.workflow._participant_log import read_session
-from fdvv.workflow._study import Study
-from fdvv.workflow._study_files import SESSION_FILE
+from fdvv.workflow._study_files import PEOPLE, SESSION_FILE
+from fdvv.workflow._study_folder import StudyFolder
 from fdvv.workflow._study_people import Person, PersonState
 
 
@@ -21,10 +22,12 @@ class PersonView(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     ----------
     person, language, simulated, state : see Person. kind, page, item : of what they meet now; "" where that
         cannot be told: nothing was begun, or nothing is kept. trial : which, from 0; -1: none.
-    left_s : of a break. answered, trials, progress : see Step.
+    left_s : of a break. answered, trials : of those that count; of a staircase trials is the most there can
+        be. progress : see Step.
     again : trials that had to be shown again. skipped : that were given up, for the device went away in them
         again and again. interruptions : of the device. resumptions : of the session.
     open : it was not closed in order since. last_s : when something happened last, seconds since 1970 UTC.
+    problem : why the journal cannot be read; empty if it can.
     """
 
     person: str
@@ -45,6 +48,7 @@ class PersonView(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     resumptions: int = 0
     open: bool = False
     last_s: float = 0.0
+    problem: str = ""
 
 
 class OperatorView(Struct, frozen=True, forbid_unknown_fields=True):
@@ -56,35 +60,39 @@ class OperatorView(Struct, frozen=True, forbid_unknown_fields=True):
     people: tuple[PersonView, ...]
 
 
-def operator_view(study: Study, now_s: float) -> OperatorView:
-    """Tell where everybody is. now_s : wall time. InputError on a study that was changed, OSError."""
+def operator_view(study: StudyFolder, now_s: float) -> OperatorView:
+    """Tell where everybody is, in the order of their enrolment. now_s : wall time.
+
+    InputError on a study that was changed, OSError.
+    """
     people = tuple(_person_view(study, person, now_s) for person in study.people())
     return OperatorView(study.plan.name, study.fingerprint, study.plan.people, people)
 
 
-def _person_view(study: Study, person: Person, now_s: float) -> PersonView:
-    kept = person.state != "deleted"
-    path = study.person_folder(person.name) / SESSION_FILE
-    state = read_session(path, study.plan) if kept else None
+def _person_view(study: StudyFolder, person: Person, now_s: float) -> PersonView:
     about = PersonView(
         person=person.name, language=person.language, simulated=person.simulated, state=person.state
     )
+    if person.state == "deleted":
+        return about
+    try:
+        state = read_session(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan)
+    except (InputError, OSError) as error:
+        return structs.replace(about, problem=str(error))
     return about if state is None else _with_state(about, state, next_step(state, now_s))
 
 
 def _with_state(about: PersonView, state: SessionState, step: Step) -> PersonView:
-    return PersonView(
-        person=about.person,
-        language=about.language,
-        simulated=about.simulated,
-        state=about.state,
+    counted = [trial.number for trial in state.began.trials if not trial.practice]
+    return structs.replace(
+        about,
         kind=step.kind,
         page=step.page,
         item=step.item,
         trial=step.number,
         left_s=step.left_s,
-        answered=step.answered,
-        trials=step.trials,
+        answered=sum(number in state.answers for number in counted),
+        trials=len(counted),
         progress=step.progress,
         again=sum(attempts - 1 for attempts in state.attempts.values()),
         skipped=len(state.skipped),

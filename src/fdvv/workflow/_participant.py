@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from types import TracebackType
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv.study import (
-    ENDS,
     MOST_FALLS,
     Answered,
     BreakEnded,
-    Event,
     Interrupted,
-    Left,
     PageAnswered,
-    SessionState,
-    Settled,
     Shown,
     Skipped,
     Step,
@@ -28,18 +22,17 @@ from fdvv.study import (
     Withdrawn,
     check_answer,
     checked_page,
-    next_step,
 )
-from fdvv.workflow._held_stage import GONE, HeldStage, StageGoneError
-from fdvv.workflow._participant_log import OpenedSession, open_session
+from fdvv.workflow._held_stage import GONE, StageGoneError
+from fdvv.workflow._participant_log import open_session
+from fdvv.workflow._participant_session import ParticipantSession
 from fdvv.workflow._study import Study
 from fdvv.workflow._study_seal import Keeper
 from fdvv.workflow._study_stage import StudyStage
-from fdvv.workflow._trial_stimuli import has_settled, with_ratio
-from fdvv.workflow._trial_watch import TrialWatch
+from fdvv.workflow._trial_stimuli import with_ratio
 
 
-class Participant:
+class Participant(ParticipantSession):
     """A person, or a simulated one, in a study; made by `enrol` or `resume`, for one process at a time.
 
     The schedule is in memory only. A context manager; not to be used from two threads at once.
@@ -48,18 +41,6 @@ class Participant:
     ----------
     study, person, language : who takes part in what.
     """
-
-    def __init__(
-        self, study: Study, opened: OpenedSession, stage: StudyStage, clock: Callable[[], float]
-    ) -> None:
-        self.study, self._plan, self._schedule = study, study.plan, opened.schedule.trials
-        self._log, self._sealed, self._state = opened.log, opened.sealed, opened.state
-        self._stage = HeldStage(self._plan, stage)
-        self._clock = clock
-        self._trial: StudyTrial | None = None
-        self._watch = TrialWatch(clock)
-        self._closed = False
-        self._go_on()
 
     @classmethod
     def enrol(
@@ -97,28 +78,9 @@ class Participant:
         return cls(study, open_session(study, person, code, round(clock(), 1)), stage, clock)
 
     @property
-    def state(self) -> SessionState:
-        """Get where the session stands; nothing in it is secret."""
-        return self._state
-
-    @property
-    def person(self) -> str:
-        """Get who it is: "P01"."""
-        return self._state.began.person
-
-    @property
-    def language(self) -> str:
-        """Get the language that the person chose."""
-        return self._state.began.language
-
-    @property
     def trial(self) -> TrialFace | None:
         """Get what may be seen of the trial that is shown, or None."""
         return None if self._state.open is None else self._state.began.trials[self._state.open]
-
-    def step(self, now_s: float | None = None) -> Step:
-        """Tell what the person meets now. now_s : wall time, as the session's clock tells it."""
-        return next_step(self._state, self._clock() if now_s is None else now_s)
 
     def shown(self, number: int) -> None:
         """Note that a trial is shown, and have it made ready; no label is felt yet.
@@ -193,29 +155,6 @@ class Participant:
         """Leave the study for good. delete : all that is kept of the person, but that they were there."""
         return self._leave_for_good(Withdrawn(self._now()), delete)
 
-    def close(self) -> None:
-        """Close the session in order: until it is resumed, time does not count as work. Twice is once."""
-        if self._closed:
-            return
-        if self.step().kind not in ENDS:
-            self._add(Left(self._now()))
-        self._let_go()
-
-    def __enter__(self) -> Participant:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    def _now(self) -> float:
-        """Tell wall time as it is written down: coarsely, for a finer one could tell what was worked on."""
-        return round(self._clock(), 1)
-
-    def _add(self, event: Event) -> None:
-        self._state = self._log.add(event)
-
     def _open(self, number: int | None = None) -> StudyTrial:
         """Give the trial that is shown. ModelError where it is another, or none."""
         if self._trial is None or self._state.open is None or number not in (None, self._state.open):
@@ -240,26 +179,3 @@ class Participant:
         if self._state.falls[trial.number] >= MOST_FALLS:
             self._add(Skipped(self._now(), trial.number))
             self._go_on()
-
-    def _go_on(self) -> Step:
-        """Pass over trials of staircases that have ended; note where all is done; give the next step."""
-        while trial := self._state.next_trial:
-            if not has_settled(self._plan, self._schedule, self._state, trial.number):
-                break
-            self._add(Settled(self._now(), trial.item, trial.round))
-        step = self.step()
-        if step.kind == "done" and self.study.person(self.person).state == "enrolled":
-            self.study.finished(self.person)
-        return step
-
-    def _leave_for_good(self, event: PageAnswered | Withdrawn, delete: bool = True) -> Step:
-        self._state = self._state.after(event)
-        self._let_go()
-        self.study.withdraw(self.person, delete=delete)
-        return self.step()
-
-    def _let_go(self) -> None:
-        self._closed = True
-        self._log.close()
-        self._sealed.close()
-        self._stage.drop()

@@ -10,6 +10,7 @@ import numpy as np
 
 from fdvv.files import write_atomic
 from fdvv.twin import (
+    ButtonPhysics,
     ButtonTrace,
     Finger,
     ForceSensor,
@@ -90,8 +91,17 @@ def press_button(
 
     Raises InputError on an unusable name, file or speed.
     """
-    speeds = check_speeds(speeds_mm_s)
     physics, person = load_button(button), load_finger(finger) if finger else Finger()
+    made = press_physics(physics, person, speeds_mm_s, presses, seed)
+    travel_mm = float(mm_from_m(physics.curve.travel_m))
+    return Presses(str(button), travel_mm, quasi_static_peak_cN(physics), made)
+
+
+def press_physics(
+    physics: ButtonPhysics, person: Finger, speeds_mm_s: Sequence[float], presses: int, seed: int = 0
+) -> tuple[ButtonPress, ...]:
+    """Have a finger press a simulated real button; see press_button. InputError on an unusable speed."""
+    speeds = check_speeds(speeds_mm_s)
     travel_mm = float(mm_from_m(physics.curve.travel_m))
     random, sensor = np.random.default_rng(seed), ForceSensor()
     made: list[ButtonPress] = []
@@ -101,9 +111,14 @@ def press_button(
             gesture = vary(person, physics.curve.travel_m, pace_s, float(m_from_mm(speed)), random)
             noise = draw_button_noise(person, gesture, random, sensor)
             made.append(_felt(simulate_button(physics, person, gesture, noise, sensor), speed, travel_mm))
+    return tuple(made)
+
+
+def quasi_static_peak_cN(physics: ButtonPhysics) -> float:
+    """Give the largest force of a press at 0.5 mm/s before the last 0.1 mm of the travel."""
     slow = probe_button(physics)
-    peak = float(slow.press_cN[slow.displacement_mm < travel_mm - 0.1].max())
-    return Presses(str(button), travel_mm, peak, tuple(made))
+    before = slow.displacement_mm < float(mm_from_m(physics.curve.travel_m)) - 0.1
+    return float(slow.press_cN[before].max())
 
 
 def _felt(trace: ButtonTrace, asked_mm_s: float, travel_mm: float) -> ButtonPress:

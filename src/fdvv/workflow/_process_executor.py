@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Sequence
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
-from fdvv.workflow._executor import TRIES, answered, found_or_raised, lost
+from fdvv.workflow._executor import TRIES, ChunkLost, answered, found_or_raised
 
 Chunk = TypeVar("Chunk")
 Found = TypeVar("Found")
@@ -89,7 +89,7 @@ class _Pool:
     def _again(self, number: int) -> None:
         self._tries[number] += 1
         if self._tries[number] >= TRIES:
-            raise lost(number)
+            raise ChunkLost(number)
         self._waiting.appendleft(number)
 
 

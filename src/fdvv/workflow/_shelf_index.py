@@ -12,7 +12,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
 
+from fdvv.errors import FdvvError
 from fdvv.model import builtin_names, load_builtin
+from fdvv.workflow._library import known_lines
 from fdvv.workflow._shelf import Shelf
 from fdvv.workflow._shelf_cache import CacheLine, add_to_cache, read_cache, write_cache
 from fdvv.workflow._shelf_files import ShelfFile
@@ -62,6 +64,7 @@ class ShelfIndex:
     cache : the file that survives a restart.
     tell : called from the background whenever something changed, at most ten times a second.
     workers : processes that read files, by default one for every core, at most four; 0 reads without any.
+    libraries : folders of libraries (fdvv library build) of the same files, which are not read again.
     """
 
     def __init__(
@@ -70,7 +73,9 @@ class ShelfIndex:
         cache: Path,
         tell: Callable[[ShelfStand], None] = lambda _: None,
         workers: int | None = None,
+        libraries: Sequence[Path] = (),
     ) -> None:
+        self._libraries = tuple(libraries)
         self.stand = ShelfStand(0, list(builtin_rows()))
         self._shelf, self._cache, self._tell = shelf, cache, tell
         self._workers = min(4, os.cpu_count() or 1) if workers is None else workers
@@ -106,11 +111,13 @@ class ShelfIndex:
         if content == self._content:
             self._tell(self.stand)
             return
-        cached = read_cache(self._cache)
+        trouble, cached = self._from_libraries()
+        cached |= read_cache(self._cache)
         known = [line for file in files if (line := cached.get(file.place)) and line.stamp == file.stamp]
         stand = ShelfStand(self.stand.epoch + 1, list(builtin_rows()), total=len(files))
         for line in known:
             _take(stand, line)
+        stand.trouble = trouble
         self.stand = stand
         self._tell(stand)
         read = {line.place for line in known}
@@ -121,6 +128,14 @@ class ShelfIndex:
         if not self._closing.is_set():
             stand.ended, self._content = True, content
         self._tell(stand)
+
+    def _from_libraries(self) -> tuple[str, dict[str, CacheLine]]:
+        """Give what libraries know, and what is wrong with them; without them all is read."""
+        try:
+            found = {line.place: line for folder in self._libraries for line in known_lines(folder)}
+        except FdvvError as error:
+            return str(error), {}
+        return "", found
 
     def _read(self, files: Sequence[ShelfFile], stand: ShelfStand) -> None:
         """Read files into the stand and, every now and then, into the cache."""

@@ -6,7 +6,7 @@ import re
 from datetime import UTC, datetime
 from pathlib import Path
 
-from fdvv.capture import read_force_file
+from fdvv.capture import ForceFile, read_force_file
 from fdvv.errors import FdvvError, InputError
 from fdvv.model import FDVVModel, Stroke, load_model
 from fdvv.workflow._fit import MeasuredParts, measured_parts, one_line
@@ -31,7 +31,11 @@ def row_of_file(path: Path, button_id: str, collection: str, origin: Origin = Or
 
 def measured_button(path: Path) -> tuple[FDVVModel, MeasuredParts]:
     """Read a measured file as the polylines of its active strokes, unfitted. Raises InputError."""
-    file = read_force_file(path)
+    return button_of_file(read_force_file(path), path)
+
+
+def button_of_file(file: ForceFile, path: Path) -> tuple[FDVVModel, MeasuredParts]:
+    """Give what a file that was read holds as the polylines of its active strokes. Raises InputError."""
     try:
         parts = measured_parts(file)
         name = one_line(file.name)[:LONGEST_name].strip() or "unnamed"

@@ -23,16 +23,12 @@ from fdvv.study import (
     signed_rank,
     usual_claim,
 )
+from fdvv.workflow._study_choice_records import ChoiceResult, ClaimResult
 from fdvv.workflow._study_choices import choice_results
 from fdvv.workflow._study_columns import TIMING
 from fdvv.workflow._study_levels import threshold_over_people, threshold_results, timing_results
 from fdvv.workflow._study_ratings import button_tests, names_of, rated_results
-from fdvv.workflow._study_records import (
-    ChoiceResult,
-    ClaimResult,
-    PersonResult,
-    StudyAnalysis,
-)
+from fdvv.workflow._study_records import PersonResult, StudyAnalysis
 from fdvv.workflow._study_scale import scale_results
 
 FEW_PEOPLE = 6

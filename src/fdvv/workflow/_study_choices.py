@@ -27,8 +27,9 @@ from fdvv.study import (
     two_ac_people,
 )
 from fdvv.units import FloatArray
+from fdvv.workflow._study_choice_records import ChoiceResult
 from fdvv.workflow._study_ratings import names_of
-from fdvv.workflow._study_records import ALL_BUTTONS, ChoiceResult
+from fdvv.workflow._study_records import ALL_BUTTONS
 
 RIGHT, WRONG = "right", "wrong"
 

@@ -8,13 +8,8 @@ from typing import Any
 import msgspec
 
 from fdvv.study import Multiverse
-from fdvv.workflow._study_records import (
-    ClaimResult,
-    RatedResult,
-    StudyAnalysis,
-    ThresholdResult,
-    TimingResult,
-)
+from fdvv.workflow._study_choice_records import ClaimResult
+from fdvv.workflow._study_records import RatedResult, StudyAnalysis, ThresholdResult, TimingResult
 
 PROXY = "simulated participants: a proxy, no evidence"
 """What stands wherever simulated answers are shown."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal
 
@@ -14,12 +13,13 @@ from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import InputError
 from fdvv.files import read_limited, write_atomic
 from fdvv.model import builtin_names, load_builtin, model_to_json
-from fdvv.study import Stimulus, StudyPlan
+from fdvv.study import StudyPlan
 
-PLAN_FILE, FROZEN_FILE, KEEPER_FILE, LOG_FILE = "study.toml", "frozen.json", "keeper.json", "study.jsonl"
+FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
 BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
 SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
 LARGEST_bytes = 64_000_000
+SMALLER = "name a smaller file"
 REMEDY = "take the study's folder from a backup, or declare a new study"
 FROZEN = Kind("fdvv-frozen", 1, "what is frozen of a study", REMEDY)
 
@@ -73,22 +73,15 @@ def builtin_digest(name: str) -> str:
     return digest(model_to_json(load_builtin(name))) if name in builtin_names() else ""
 
 
-def stimuli_of(plan: StudyPlan) -> Iterator[Stimulus]:
-    """Give everything that a plan renders."""
-    for item in plan.items:
-        yield from item.stimuli
-        if item.reference:
-            yield item.reference
-
-
 def named_builtins(plan: StudyPlan) -> tuple[str, ...]:
     """List the built-in buttons that a plan names."""
-    return tuple(sorted({one.button for one in stimuli_of(plan)} & set(builtin_names())))
+    return tuple(sorted({one.button for item in plan.items for one in item.rendered} & set(builtin_names())))
 
 
 def named_files(plan: StudyPlan) -> tuple[str, ...]:
     """List the files that a plan names, as it names them. InputError on one outside its folder."""
-    names = {name for one in stimuli_of(plan) for name in (one.button, one.actuation) if name}
+    rendered = [one for item in plan.items for one in item.rendered]
+    names = {name for one in rendered for name in (one.button, one.actuation) if name}
     found = tuple(sorted(names - set(builtin_names())))
     for name in found:
         _require_inside(name)
@@ -129,4 +122,16 @@ def copy_files(plan: StudyPlan, beside: Path, folder: Path) -> None:
             known = ", ".join(builtin_names())
             reason = f"no such file beside the plan in {beside}, and no built-in button"
             raise InputError(name, "name", reason, f"copy it there, or name one of {known}")
-        write_atomic(kept_path(folder, name), read_limited(source, LARGEST_bytes, "name a smaller file"))
+        write_atomic(kept_path(folder, name), read_limited(source, LARGEST_bytes, SMALLER))
+
+
+def keep_files(plan: StudyPlan, folder: Path) -> None:
+    """Copy the files that a plan names and that lie beside it to where the study keeps them.
+
+    What it keeps already stays, for that is what was looked at. InputError, OSError.
+    """
+    for name in named_files(plan):
+        if not kept_path(folder, name).is_file():
+            write_atomic(
+                kept_path(folder, name), read_limited(study_file(folder, name), LARGEST_bytes, SMALLER)
+            )

@@ -7,7 +7,7 @@ from pathlib import Path
 import fdvv
 from fdvv.errors import InputError
 from fdvv.files import read_limited, sync_folder, write_atomic
-from fdvv.study import StudyPlan, check_plan
+from fdvv.study import STUDY_FILE, StudyPlan, check_plan
 from fdvv.workflow._session_manifest import now
 from fdvv.workflow._study_chain import head_path
 from fdvv.workflow._study_files import (
@@ -15,19 +15,19 @@ from fdvv.workflow._study_files import (
     KEEPER_FILE,
     LOG_FILE,
     PEOPLE,
-    PLAN_FILE,
     REMEDY,
     Frozen,
     LARGEST_bytes,
     builtin_digest,
     digest,
     fingerprint_of,
+    keep_files,
     kept_path,
     named_builtins,
     named_files,
 )
 from fdvv.workflow._study_log import ChainedLog
-from fdvv.workflow._study_look import look_at_study
+from fdvv.workflow._study_look import look_at_plan
 from fdvv.workflow._study_renderable import twin_problems
 from fdvv.workflow._study_seal import PASSPHRASE_COST, Cost, new_keeper
 
@@ -35,14 +35,18 @@ from fdvv.workflow._study_seal import PASSPHRASE_COST, Cost, new_keeper
 def freeze_folder(folder: Path, plan: StudyPlan, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
     """Freeze a study; give its fingerprint. frozen.json is written last: before it, nothing is frozen.
 
+    Files beside the plan that it names are copied into the study first: what is frozen is what is played.
+
     InputError on a plan with problems, a frozen study, a short passphrase. BuildError: no PyNaCl. OSError.
     """
-    check_plan(plan, folder / PLAN_FILE)
-    for problem in (*look_at_study(folder).problems, *twin_problems(plan, folder)):
-        raise InputError(folder / PLAN_FILE, "plan", problem, "change it: it could not be run as it says")
+    check_plan(plan, folder / STUDY_FILE)
+    look = look_at_plan(plan, folder)
+    for problem in (*look.problems, *twin_problems(plan, folder, opened=look.models)):
+        raise InputError(folder / STUDY_FILE, "plan", problem, "change it: it could not be run as it says")
     if (folder / FROZEN_FILE).exists() or (folder / PEOPLE).exists():
         raise InputError(folder, "study", "was frozen before", "declare a new study in another folder")
-    files = {PLAN_FILE: digest(_content(folder / PLAN_FILE))}
+    keep_files(plan, folder)
+    files = {STUDY_FILE: digest(_content(folder / STUDY_FILE))}
     for name in named_files(plan):
         path = kept_path(folder, name)
         files[path.relative_to(folder).as_posix()] = digest(_content(path))

@@ -13,6 +13,7 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.files import read_limited
 from fdvv.model import FDVVModel, Stroke
 from fdvv.study import STUDY_FILE, Item, Stimulus, StudyPlan, plan_problems, read_plan_text
+from fdvv.workflow._study_files import BUTTONS, kept_path, named_files
 from fdvv.workflow._study_stage import stimulus_model
 from fdvv.workflow._study_stage_subject import stimulus_actuation
 
@@ -33,6 +34,7 @@ class StudyLook:
     problems : for which it cannot be run as it says. notes : what may not be meant.
     differences_cN : by item, how far apart its renderings are: rms of press and release over the paper's
         speeds, of the two that are nearest; none where they cannot be opened, or for staircases.
+    models : what of its stimuli could be opened.
     """
 
     plan: StudyPlan
@@ -40,6 +42,7 @@ class StudyLook:
     problems: tuple[str, ...]
     notes: tuple[str, ...]
     differences_cN: dict[str, float]
+    models: dict[Stimulus, FDVVModel]
 
 
 def look_at_study(path: Path) -> StudyLook:
@@ -53,22 +56,32 @@ def look_at_study(path: Path) -> StudyLook:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise InputError(path, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
-    plan = read_plan_text(text, path)
-    problems, notes, differences = list(plan_problems(plan)), list[str](), dict[str, float]()
+    return look_at_plan(read_plan_text(text, path), path.parent)
+
+
+def look_at_plan(plan: StudyPlan, folder: Path) -> StudyLook:
+    """Open everything that a plan names. folder : of the study, where its files are."""
+    problems, notes, differences = (
+        list(plan_problems(plan)),
+        list(_shadowed(plan, folder)),
+        dict[str, float](),
+    )
+    opened = dict[Stimulus, FDVVModel]()
     told = tuple(problems)
     for item in plan.items:
         if any(problem.startswith(f"items ({item.name!r})") for problem in told):
             continue
         try:
-            models = {s: _opened(s, path.parent) for s in _rendered(item)}
+            models = {s: opened.get(s) or _opened(s, folder) for s in item.rendered}
         except FdvvError as error:
             problems.append(f"items ({item.name!r}): {error}")
             continue
+        opened |= models
         if plan.kind != "staircase":
             problems += _alike(item, models)
             differences[item.name] = least_difference_cN([models[s] for s in item.stimuli])
         notes += _doubts(item, differences.get(item.name))
-    return StudyLook(plan, path.parent, tuple(dict.fromkeys(problems)), tuple(notes), differences)
+    return StudyLook(plan, folder, tuple(dict.fromkeys(problems)), tuple(notes), differences, opened)
 
 
 def least_difference_cN(models: list[FDVVModel]) -> float:
@@ -76,8 +89,21 @@ def least_difference_cN(models: list[FDVVModel]) -> float:
     return min((_difference_cN(*pair) for pair in combinations(models, 2)), default=0.0)
 
 
-def _rendered(item: Item) -> tuple[Stimulus, ...]:
-    return (*item.stimuli, *([item.reference] if item.reference else []))
+def _shadowed(plan: StudyPlan, folder: Path) -> Iterator[str]:
+    """Tell of files beside the plan that are not what is rendered: the study keeps others of that name."""
+    try:
+        names = named_files(plan)
+    except InputError:
+        return  # which is told of its item
+    for name in names:
+        beside, kept = folder / name, kept_path(folder, name)
+        if (
+            beside != kept
+            and beside.is_file()
+            and kept.is_file()
+            and beside.read_bytes() != kept.read_bytes()
+        ):
+            yield f"{name} beside the study differs from the one in {BUTTONS}/, and that one is rendered"
 
 
 def _opened(stimulus: Stimulus, folder: Path) -> FDVVModel:
@@ -102,7 +128,7 @@ def _doubts(item: Item, difference_cN: float | None) -> Iterator[str]:
             f"items ({item.name!r}): forces of two renderings differ by {difference_cN:.2f} cN only, rms; "
             "if vibration does not tell them apart, nothing does"
         )
-    if len({bool(stimulus.actuation) for stimulus in _rendered(item)}) > 1:
+    if len({bool(stimulus.actuation) for stimulus in item.rendered}) > 1:
         yield f"items ({item.name!r}): some renderings have an actuation and others none; on a rig that tells"
 
 

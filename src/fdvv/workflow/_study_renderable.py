@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from msgspec import structs
 
 from fdvv.errors import DeviceError, InputError
+from fdvv.model import FDVVModel
 from fdvv.program import Limits
 from fdvv.study import Item, LARGEST_ratio, Stimulus, StudyPlan
 from fdvv.workflow._press_subject import PRESS_RIGS
@@ -15,16 +17,22 @@ from fdvv.workflow._study_program import trial_program
 from fdvv.workflow._study_stage_subject import staged
 
 
-def twin_problems(plan: StudyPlan, folder: Path, rig_name: str = PRESS_RIGS[0]) -> tuple[str, ...]:
+def twin_problems(
+    plan: StudyPlan,
+    folder: Path,
+    rig_name: str = PRESS_RIGS[0],
+    opened: Mapping[Stimulus, FDVVModel] = MappingProxyType({}),
+) -> tuple[str, ...]:
     """List what of a study the twin cannot render, in one line each; empty if it renders all.
 
-    folder : of the study, where its files are. rig_name : for stimuli with an actuation.
+    folder : of the study, where its files are. rig_name : for stimuli with an actuation. opened : models
+        of stimuli that were opened before.
     """
     return tuple(
         problem
         for item in plan.items
-        for stimulus in stimuli_of(plan, item)
-        for problem in _tried(item, lambda: staged(stimulus, folder, rig_name))  # noqa: B023
+        for stimulus in _strongest(plan, item)
+        for problem in _tried(item, lambda: staged(stimulus, folder, rig_name, opened.get(stimulus)))  # noqa: B023
     )
 
 
@@ -44,20 +52,17 @@ def device_problems(plan: StudyPlan, folder: Path, limits: Limits | None = None)
     )
 
 
-def stimuli_of(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
-    """Give all that is rendered of an item: what is compared, and its reference where that is rendered.
-
-    The comparison of a staircase is the strongest one that it may come to.
-    """
-    stimuli = item.stimuli
-    if plan.kind == "staircase" and len(stimuli) > 1:
-        strongest = stimuli[1].force_ratio * (1.0 + LARGEST_ratio)
-        stimuli = (stimuli[0], structs.replace(stimuli[1], force_ratio=strongest), *stimuli[2:])
-    return stimuli if item.reference is None else (*stimuli, item.reference)
+def _strongest(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
+    """Give all that is rendered of an item, the comparison of a staircase as strong as it may become."""
+    rendered = item.rendered
+    if plan.kind == "staircase" and len(item.stimuli) > 1:
+        force_ratio = rendered[1].force_ratio * (1.0 + LARGEST_ratio)
+        rendered = (rendered[0], structs.replace(rendered[1], force_ratio=force_ratio), *rendered[2:])
+    return rendered
 
 
 def _labels(plan: StudyPlan, item: Item) -> dict[str, Stimulus]:
-    return {str(place): one for place, one in enumerate(stimuli_of(plan, item))}
+    return {str(place): one for place, one in enumerate(_strongest(plan, item))}
 
 
 def _tried(item: Item, work: Callable[[], object]) -> Iterator[str]:

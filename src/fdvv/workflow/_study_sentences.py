@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 from fdvv.workflow._experiment_words import listed
-from fdvv.workflow._study_records import (
-    ButtonTest,
-    ChoiceResult,
-    ClaimResult,
-    ScaleResult,
-    StudyAnalysis,
-)
+from fdvv.workflow._study_choice_records import ChoiceResult, ClaimResult
+from fdvv.workflow._study_records import ButtonTest, ScaleResult, StudyAnalysis
 from fdvv.workflow._study_words import (
     distance_text,
     exact_p,

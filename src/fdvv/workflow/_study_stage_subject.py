@@ -38,9 +38,14 @@ class StagedStimulus:
     audible: bool
 
 
-def staged(stimulus: Stimulus, folder: Path, rig_name: str = PRESS_RIGS[0]) -> StagedStimulus:
-    """Make a stimulus ready: ideally, or with its actuation on the rig that is named. Raises InputError."""
-    model = stimulus_model(stimulus, folder)
+def staged(
+    stimulus: Stimulus, folder: Path, rig_name: str = PRESS_RIGS[0], model: FDVVModel | None = None
+) -> StagedStimulus:
+    """Make a stimulus ready: ideally, or with its actuation on the rig that is named. Raises InputError.
+
+    model : what `stimulus_model` gave of it, if that was asked for before.
+    """
+    model = model or stimulus_model(stimulus, folder)
     if not stimulus.actuation:
         subject = _ideal(model)
     else:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from fdvv.study import DPrime, Share, SignedRank
 from fdvv.workflow._experiment_words import listed, p_text
-from fdvv.workflow._study_records import ALL_BUTTONS, ChoiceResult, Spread
+from fdvv.workflow._study_choice_records import ChoiceResult
+from fdvv.workflow._study_records import ALL_BUTTONS, Spread
 
 NBSP = "\N{NO-BREAK SPACE}"
 MINUS = "\N{MINUS SIGN}"

@@ -65,6 +65,7 @@ export interface Calls {
   readonly "program.surface": { readonly ask: SurfaceAsk; readonly answer: ProgramSurface };
   readonly "studies.create": { readonly ask: StudiesCreate; readonly answer: StudiesAsk };
   readonly "studies.detail": { readonly ask: StudiesAsk; readonly answer: StudiesDetail };
+  readonly "studies.devices": { readonly ask: StudiesDevicesAsk; readonly answer: StudiesDevices };
   readonly "studies.freeze": { readonly ask: StudiesFreeze; readonly answer: StudiesDetail };
   readonly "studies.list": { readonly ask: StudiesListAsk; readonly answer: StudiesRows };
   readonly "studies.offers": { readonly ask: StudiesOffersAsk; readonly answer: StudiesOffers };
@@ -1039,7 +1040,6 @@ export interface StudiesDetail {
   readonly paused: boolean;
   readonly history: readonly string[];
   readonly device: string;
-  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesRow {
@@ -1061,6 +1061,13 @@ export interface StudiesPerson {
   readonly here: boolean;
   readonly paused: boolean;
   readonly told: string;
+}
+
+export interface StudiesDevicesAsk {
+}
+
+export interface StudiesDevices {
+  readonly devices: readonly StudiesDevice[];
 }
 
 export interface StudiesDevice {
@@ -1671,12 +1678,14 @@ export interface StudyLook {
   readonly type: "look";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
 }
 
 export interface StudySit {
   readonly type: "sit";
   readonly study: string;
   readonly seat: string;
+  readonly holder: string;
   readonly language: string;
 }
 

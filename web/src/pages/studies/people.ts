@@ -2,9 +2,11 @@
 
 import { address } from "../../app/route";
 import { call } from "../../net";
-import type { StudiesPerson } from "../../net/messages";
+import type { StudiesDevice, StudiesPerson } from "../../net/messages";
 import { button, choice, empty, h, signal, tell, toast, toggle, type Child } from "../../ui";
 import type { StudyStore } from "./store";
+
+const TWIN = "twin";
 
 export function peopleView(store: StudyStore, toPlan: () => void): HTMLElement {
   const state = store.detail.peek()?.row.state ?? "draft";
@@ -27,16 +29,24 @@ function seats(store: StudyStore): HTMLElement {
   const copy = () => void navigator.clipboard.writeText(made.peek()).then(() => toast("Copied", "done"), tell);
   const shown = (link: string) => [
     h("div", { class: "row sts-link" }, h("a", { href: link, target: "_blank", rel: "noopener", "data-seat": "" }, link), button({ label: "Copy", act: copy })),
-    h("p", { class: "muted" }, "Open it on the participant's screen; it serves one person. On another machine, open the address that fdvv studio printed there first. Who has a card goes on there too, with number and code."),
+    h("p", { class: "muted" }, "Open it on the participant's screen: the page that begins there holds the seat, and no other. On another machine, open the address that fdvv studio printed there first; with --keep-address that is needed once. Who has a card goes on there too, with number and code."),
   ];
   return h("section", { class: "panel", "aria-label": "Seat" }, h("h2", {}, "The next person"), deviceChoice(store), h("div", { class: "row" }, button({ label: "Prepare a seat", kind: "main", act: () => void make() }), h("span", { class: "muted" }, () => waitingText(store))), h("div", { class: "sts-page" }, () => (made() && store.detail()?.waiting ? shown(made()) : null)));
 }
 
 /** What is pressed: the twin on the screen, or a device on the table; from the next trial on. */
-function deviceChoice(store: StudyStore): Child {
-  const options = (store.detail.peek()?.devices ?? []).map((one) => [one.name, one.about] as const);
+function deviceChoice(store: StudyStore): HTMLElement {
+  const there = signal<readonly StudiesDevice[]>([]);
+  // asked once: serial ports are looked for
+  void call("studies.devices", {}).then((told) => there.set(told.devices), tell);
   const use = (device: string) => void store.act(() => call("studies.use", { study: store.study, device }));
-  return choice({ label: "Rendered by", options, value: () => store.detail()?.device ?? "twin", set: use });
+  const value = () => store.detail()?.device ?? TWIN;
+  return h("div", { class: "sts-device" }, () => choice({ label: "Rendered by", options: known(there(), value()).map((one) => [one.name, one.about] as const), value, set: use }));
+}
+
+/** What there is, and what was chosen before though it is not there now. */
+function known(there: readonly StudiesDevice[], chosen: string): readonly StudiesDevice[] {
+  return there.some((one) => one.name === chosen) ? there : [...there, { name: chosen, about: there.length ? `${chosen} (not there now)` : chosen }];
 }
 
 function waitingText(store: StudyStore): string {

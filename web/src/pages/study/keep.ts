@@ -1,11 +1,23 @@
 /** The card of who sits here: in memory and in this tab's sessionStorage only, so that a reload finds the way back. */
 
+const HOLDER = "fdvv-holder";
+
 export interface Card {
   readonly person: string;
   readonly code: string;
   readonly language: string;
   /** The person has written it down. */
   readonly noted: boolean;
+}
+
+/** The word by which this tab alone holds a seat: who else sees the link cannot sit down on it. */
+export function holder(): string {
+  const known = sessionStorage.getItem(HOLDER);
+  if (known) return known;
+  // randomUUID is only there where a page came encrypted or from this machine
+  const drawn = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  sessionStorage.setItem(HOLDER, drawn);
+  return drawn;
 }
 
 /** Of a seat: another link in the same tab is another person. */

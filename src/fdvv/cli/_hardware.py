@@ -1,0 +1,280 @@
+"""fdvv hardware: what to print, check and export; bill, circuit and selftest come from beside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli._hardware_electric import bill, circuit
+from fdvv.cli._hardware_selftest import selftest
+from fdvv.cli._output import (
+    check_folder,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_wrapped,
+    stages,
+)
+
+if TYPE_CHECKING:
+    from fdvv.hardware import Dimensions, FolderCheck, PartCheck
+
+GAPS_TOLD = 10
+"""Clearances in the table; --json gives all."""
+
+dimensions_option = click.option(
+    "--from",
+    "source",
+    type=click.Path(path_type=Path),
+    help="Dimensions from a TOML file; see parts --dimensions.",
+)
+set_option = click.option(
+    "--set",
+    "words",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="One dimension, over those of the file; repeatable.",
+)
+
+
+@click.group()
+def hardware() -> None:
+    """Build a rig: what to print and to buy, how to wire it, and which part is wrong.
+
+    Dimensions of bought parts are assumed unless you measured yours; everything printed follows from them.
+    """
+
+
+@hardware.command()
+@click.option("--dimensions", "as_toml", is_flag=True, help="Print every dimension as TOML instead.")
+@dimensions_option
+@set_option
+@json_option
+def parts(as_toml: bool, source: Path | None, words: tuple[str, ...], as_json: bool) -> None:
+    """List the printed parts, or the dimensions they follow from.
+
+    Masses and times are estimates for the default dimensions: three lines about every face, a quarter of
+    infill.
+    """
+    from fdvv.hardware import dimensions_toml, load_dimensions, printed_parts
+
+    if as_toml:
+        d = load_dimensions(source, words)
+        if as_json:
+            print_json({"dimensions": _described(d)})
+        else:
+            click.echo(dimensions_toml(d), nl=False)
+        return
+    if source or words:
+        raise click.UsageError("--from and --set change dimensions: add --dimensions, or use export")
+    if as_json:
+        print_json({"parts": [_part(part) for part in printed_parts()]})
+        return
+    rows = [
+        [p.name, p.use, str(p.count), number(p.mass_g, 1), number(p.print_h, 1), _size(p.made.box_mm)]
+        for p in printed_parts()
+    ]
+    print_table(["part", "count", "g", "h", "mm"], [[row[0], *row[2:]] for row in rows])
+    click.echo("")
+    for name, use, *_ in rows:
+        print_wrapped(f"{name}: {use}")
+
+
+def _part(part: Any) -> dict[str, Any]:
+    return {
+        "name": part.name,
+        "title": part.title,
+        "use": part.use,
+        "lies": part.lies,
+        "material": part.material,
+        "count": part.count,
+        "mass_g": part.mass_g,
+        "print_h": part.print_h,
+        "volume_cm3": part.made.volume_cm3,
+        "box_mm": list(part.made.box_mm),
+    }
+
+
+def _described(d: Dimensions) -> dict[str, Any]:
+    import dataclasses
+
+    from fdvv.hardware import meaning_of, source_of
+
+    return {
+        name: {"value": value, "meaning": meaning_of(name), "source": source_of(name)}
+        for name, value in dataclasses.asdict(d).items()
+    }
+
+
+def _size(box_mm: tuple[float, float, float]) -> str:
+    return " x ".join(f"{side:.0f}" for side in box_mm)
+
+
+@hardware.command()
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
+@dimensions_option
+@set_option
+@json_option
+def export(folder: Path, source: Path | None, words: tuple[str, ...], as_json: bool) -> None:
+    """Make every printed part anew: STL, STEP and drawing into FOLDER.
+
+    Equal dimensions give equal bytes. Needs the extra cad; the parts of the default dimensions lie ready in
+    the source's hardware/.
+    """  # fmt: skip
+    from fdvv.hardware import load_dimensions
+    from fdvv.hardware.cad import export_parts
+
+    d = load_dimensions(source, words)
+    check_folder(folder)
+    with stages() as tell:
+        manifest = export_parts(folder, d, lambda name, done, total: tell(f"making {name}", done, total))
+    files = [name for made in manifest.parts.values() for name in made.files]
+    if as_json:
+        print_json({"folder": str(folder), "digest": manifest.digest, "files": files})
+        return
+    click.echo(f"{len(files)} files of {len(manifest.parts)} parts in {folder}; dimensions {manifest.digest}")
+
+
+@hardware.command()
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False), default="hardware")
+@json_option
+@click.pass_context
+def check(context: click.Context, folder: Path, as_json: bool) -> None:
+    """Check exported parts in FOLDER: closed, printable, and nothing meets in the rig at any travel.
+
+    Tells the smallest clearances, the limiter's reach, step and play, and what tolerances the sensor's mount
+    takes up. Exit status 1 where a part is wrong or two meet.
+    """  # fmt: skip
+    from fdvv.hardware import check_exported
+
+    with stages() as tell:
+        found = check_exported(folder, tell)
+    if as_json:
+        print_json(_document(found))
+    else:
+        _print(found)
+    context.exit(0 if found.good else 1)
+
+
+def _document(found: FolderCheck) -> dict[str, Any]:
+    return {
+        "good": found.good,
+        "parts": [_checked(part) for part in found.parts],
+        "meetings": [
+            {
+                "one": m.one,
+                "other": m.other,
+                "travel_mm": m.travel_mm,
+                "stop_mm": m.stop_mm,
+                "shared_mm3": m.shared_mm3,
+            }
+            for m in found.meetings
+        ],
+        "clearances": [
+            {"one": c.one, "other": c.other, "gap_mm": c.gap_mm, "travel_mm": c.travel_mm}
+            for c in found.clearances
+        ],
+        "limiter": _limiter(found.dimensions),
+        "slider": _slider(found.dimensions),
+        "sensor_mount": _mount(found.dimensions),
+    }
+
+
+def _checked(part: PartCheck) -> dict[str, Any]:
+    return {
+        "name": part.name,
+        "volume_cm3": part.volume_cm3,
+        "box_mm": list(part.box_mm),
+        "open_edges": part.open_edges,
+        "wrong": list(part.wrong),
+    }
+
+
+def _limiter(d: Dimensions) -> dict[str, float]:
+    from fdvv.hardware import Limiter
+
+    limiter = Limiter(d)
+    low_mm, high_mm = limiter.range_mm
+    return {
+        "from_mm": low_mm,
+        "to_mm": high_mm,
+        "step_mm_per_deg": limiter.mm_per_deg,
+        "play_mm": limiter.play_mm,
+        "torque_N_mm": limiter.torque_N_mm,
+        "torque_ratio": limiter.torque_ratio,
+    }
+
+
+def _slider(d: Dimensions) -> dict[str, float]:
+    from fdvv.hardware import Layout, tilt_deg, turn_deg
+
+    return {"turn_deg": turn_deg(d, Layout(d).tongue_out_mm), "tilt_deg": tilt_deg(d)}
+
+
+def _mount(d: Dimensions) -> dict[str, Any]:
+    from fdvv.hardware import core_stack
+
+    stack = core_stack(d)
+    causes = {cause.name: cause.either_way_mm for cause in stack.causes}
+    room_mm = (d.lvdt_bore_mm - d.lvdt_core_diameter_mm) / 2
+    return {
+        "causes_mm": causes,
+        "worst_mm": stack.worst_mm,
+        "likely_mm": stack.likely_mm,
+        "room_mm": room_mm,
+        "float_mm": d.float_mm,
+    }
+
+
+def _print(found: FolderCheck) -> None:
+    rows = [
+        [
+            p.name,
+            number(p.volume_cm3),
+            _size(p.box_mm),
+            "closed" if not p.open_edges else f"{p.open_edges} open edges",
+        ]
+        for p in found.parts
+    ]
+    print_table(["part", "cm³", "mm", "surface"], rows)
+    for part in found.parts:
+        for wrong in part.wrong:
+            click.echo(one_line(f"{part.name}: {wrong}"))
+    for m in found.meetings:
+        click.echo(f"{m.one} meets {m.other} at travel {m.travel_mm:.2f} mm: {m.shared_mm3:.2f} mm³")
+    if found.clearances:
+        click.echo("")
+        told = found.clearances[:GAPS_TOLD]
+        print_table(
+            ["closest, moving", "beside", "mm", "at travel mm"],
+            [[c.one, c.other, number(c.gap_mm), number(c.travel_mm)] for c in told],
+            left=2,
+        )
+    _print_figures(found.dimensions)
+    verdict = "every part is whole and nothing meets" if found.good else "the parts are not good"
+    click.echo(f"\n{verdict}; {len(found.parts)} parts")
+
+
+def _print_figures(d: Dimensions) -> None:
+    limiter, mount = _limiter(d), _mount(d)
+    click.echo("")
+    print_wrapped(
+        f"limiter: stops from {limiter['from_mm']:.2f} to {limiter['to_mm']:.2f} mm, "
+        f"{limiter['step_mm_per_deg']:.3f} mm a degree, play {limiter['play_mm']:.2f} mm, "
+        f"{100 * limiter['torque_ratio']:.0f} % of the stall torque under {d.finger_force_N:g} N"
+    )
+    turn_deg, tilt_deg = _slider(d).values()
+    print_wrapped(f"slider: turns {turn_deg:.2f}° and tilts {tilt_deg:.2f}° at most, either way")
+    print_wrapped(
+        f"sensor's mount: tolerances {mount['worst_mm']:.2f} mm at worst, {mount['likely_mm']:.2f} mm likely"
+        f"; the core has {mount['room_mm']:.2f} mm, the mount moves {mount['float_mm']:.2f} mm"
+    )
+
+
+hardware.add_command(bill)
+hardware.add_command(circuit)
+hardware.add_command(selftest)

@@ -1,0 +1,129 @@
+"""fdvv hardware bill and circuit: what to buy, and what is connected to what."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fdvv.cli._output import json_option, print_json, print_table, print_wrapped
+
+
+@click.command()
+@click.option("--csv", "as_csv", is_flag=True, help="Print the lines as CSV and nothing else.")
+@json_option
+def bill(as_csv: bool, as_json: bool) -> None:
+    """List what to buy: makers, part numbers, alternatives, counts, prices, beside the paper's cost.
+
+    Counts come from the circuit and the printed parts. Prices are estimates with their date.
+    """
+    from fdvv.errors import InputError
+    from fdvv.hardware import PAPER_USD, group_totals, load_bill, load_circuit, summary, to_csv
+
+    if as_csv and as_json:
+        raise InputError("--csv", "with --json", "only one of them can be printed", "leave one out")
+    found = load_bill(load_circuit())
+    if as_csv:
+        click.echo(to_csv(found), nl=False)
+        return
+    if as_json:
+        totals = {f"{group}_USD": total for group, total in group_totals(found).items()}
+        print_json({"lines": found.rows(), "total_USD": found.total_USD, "paper_USD": PAPER_USD} | totals)
+        return
+    print_table(
+        ["role", "maker", "part number", "count", "USD"],
+        [[b.role, b.maker, b.part_number[:34], str(b.count), f"{b.total_USD:.2f}"] for b in found.lines],
+        left=3,
+    )
+    print_wrapped(summary(found))
+
+
+@click.command()
+@click.option(
+    "--file",
+    "file",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Another circuit's TOML in place of the rig's own.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write diagrams (SVG), netlists (KiCad, JSON), wiring table and values into this folder.",
+)
+@json_option
+def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
+    """Check the circuit and tell what follows from its values; exit status 1 if a rule is broken.
+
+    Cut-offs of the filters, steps of the converters, power of every rail, the coil's current and warmth.
+    """
+    from fdvv.hardware import circuit_files, circuit_report, load_circuit, require_sound, to_document
+
+    found = load_circuit(file)
+    if output:
+        require_sound(found, file or "circuit.toml")
+        _write(output, circuit_files(found))
+    told = circuit_report(found)
+    if as_json:
+        print_json(told | {"netlist": to_document(found)})
+    else:
+        _print(told)
+        if output:
+            click.echo(f"written to {output}")
+    if told["violations"]:
+        raise click.exceptions.Exit(1)
+
+
+def _write(folder: Path, files: dict[str, str]) -> None:
+    from fdvv.cli._output import check_folder
+    from fdvv.files import write_atomic
+
+    check_folder(folder)
+    for name, text in files.items():
+        write_atomic(folder / name, text)
+
+
+def _print(told: dict[str, Any]) -> None:
+    click.echo(f"{told['title']}: {told['parts']} parts, {told['nets']} nets")
+    for one in told["violations"]:
+        print_wrapped(f"{one['place']}: {one['reason']}; {one['remedy']}")
+    if told["violations"]:
+        return
+    click.echo("every rule holds: pins, levels, floating inputs, rest levels, power")
+    click.echo("")
+    print_table(
+        ["filter", "cut-off Hz", "lowest", "highest", "time ms", "lag um", "paper Hz"],
+        [
+            [
+                f["name"],
+                *(f"{f[key]:.1f}" for key in ("cutoff_Hz", "lowest_Hz", "highest_Hz")),
+                *(f"{f[key]:.3f}" for key in ("time_ms", "lag_um")),
+                ", ".join(f"{value:g}" for value in f["paper_Hz"]) or "–",
+            ]
+            for f in told["filters"]
+        ],
+    )
+    click.echo(f"the paper's 333 ohm and 1 uF make {told['paper_parts_cutoff_Hz']:.1f} Hz")
+    click.echo("")
+    print_table(
+        ["step of the converter", "at the pin mV", "value", "unit"],
+        [
+            [s["name"], f"{s['volts_mV']:.3f}", f"{s['value']:.3f}", s["unit"]]
+            for s in told["converter_steps"]
+        ],
+    )
+    click.echo("")
+    print_table(
+        ["source", "V", "usual mA", "peak mA", "limit mA"],
+        [
+            [r["source"], *(f"{r[key]:g}" for key in ("V", "usual_mA", "peak_mA", "limit_mA"))]
+            for r in told["rails"]
+        ],
+    )
+    coil = told["coil"]
+    click.echo("")
+    print_wrapped(
+        f"coil at {coil['force_cN']:.0f} cN: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W, "
+        f"{coil['rise_K']:.0f} K warmer if held for ever; the bridge chops at {coil['chop_A']:.2f} A"
+    )

@@ -1,0 +1,214 @@
+"""fdvv library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, get_args
+
+import click
+
+from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
+from fdvv.cli._output import (
+    check_output,
+    counted,
+    json_option,
+    number,
+    one_line,
+    print_json,
+    print_table,
+    print_warnings,
+    progress,
+)
+
+FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
+COUNT = click.option(
+    "-n", "--count", type=click.IntRange(1), default=10, show_default=True, help="Show so many."
+)
+CSV = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Write every hit into this .csv too."
+)
+TOLD = ("travel_mm", "peak_cN", "drop_cN")
+NAME, PLACE = 28, 14
+"""Letters of a name and of a folder in a table."""
+
+
+@click.group(invoke_without_command=True)
+@json_option
+@click.pass_context
+def library(ctx: click.Context, as_json: bool) -> None:
+    """List the built-in buttons; build and search libraries of measured ones.
+
+    Without a subcommand the built-in buttons are listed.
+    """
+    if ctx.invoked_subcommand is None:
+        _list_builtins(as_json)
+
+
+@library.command(name="list")
+@json_option
+def list_(as_json: bool) -> None:
+    """List the built-in buttons."""
+    _list_builtins(as_json)
+
+
+@library.command()
+@click.argument("folders", nargs=-1, required=True, type=FOLDER)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path, file_okay=False), required=True,
+    help="The library's folder: new, or of the same folders.",
+)  # fmt: skip
+@executor_options
+@json_option
+def build(
+    folders: tuple[Path, ...],
+    output: Path,
+    processes: int | None,
+    workers: int | None,
+    cluster: str | None,
+    as_json: bool,
+) -> None:
+    """Read every measured file below folders into a library that can be searched.
+
+    Files of any layout that fdvv reads, thousands of them: landmarks, type and curves of each go into one
+    Parquet file (docs/reference/library-files.md); a file that cannot be used is kept with its reason.
+    Whatever ended a build, the same command goes on; files that did not change are not read again.
+    """
+    from fdvv.cli._output import check_folder
+    from fdvv.workflow import build_library, open_executor
+
+    check_executor(processes, workers, cluster)
+    check_folder(output)
+    with (
+        kept_on_interrupt(output),
+        open_executor(processes, workers, cluster) as executor,
+        progress("files", 1) as tell,
+    ):
+        found = build_library(folders, output, executor, tell)
+    if as_json:
+        print_json(found.to_dict())
+        return
+    click.echo(f"{output}: {counted(found.buttons, 'button')} of {counted(found.files, 'file')}")
+    click.echo(f"read {found.read}, not changed {found.kept}, no longer there {found.gone}")
+    if found.refused:
+        click.echo(f"refused {found.refused}; why: fdvv library refused {output}")
+
+
+@library.command()
+@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@click.argument("words", nargs=-1)
+@click.option(
+    "--sort", default="match", show_default=True, help="match, name, kind, date, or a figure's column."
+)
+@click.option("--descending", is_flag=True, help="Largest first.")
+@COUNT
+@CSV
+@json_option
+def search(
+    folder: Path,
+    words: tuple[str, ...],
+    sort: str,
+    descending: bool,
+    count: int,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Find buttons of a library by words and conditions.
+
+    WORDS must all match name, folder or what the maker states; a condition is a column with a bound, quoted
+    for the shell: 'peak_cN>=50' 'travel_mm=3..3.5' kind=tactile,dome. Without words all are found.
+    """
+    from fdvv.workflow import Library, library_query
+
+    check_output(output, ".csv")
+    query = library_query(" ".join(words), sort, descending)
+    opened = Library(folder)
+    hits, mended = opened.find(query)
+    print_warnings([f"nothing is called {word}; the nearest words were taken" for word in mended])
+    document = {"library": str(folder), "buttons": len(opened.rows), "found": len(hits)}
+    _told(hits, count, output, as_json, document)
+
+
+@library.command()
+@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@click.argument("button")
+@click.option(
+    "--by", type=click.Choice(["all", "curve", "landmarks"]), default="all", show_default=True,
+    help="What counts: force and shape of the curve, landmarks, or all.",
+)  # fmt: skip
+@COUNT
+@CSV
+@json_option
+def like(folder: Path, button: str, by: str, count: int, output: Path | None, as_json: bool) -> None:
+    """Find the buttons of a library that feel most like one.
+
+    BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
+    in just noticeable differences (docs/explanation/library.md); they are an estimate, not tried on people.
+    """
+    from fdvv.workflow import Library, LikeBy
+
+    check_output(output, ".csv")
+    assert by in get_args(LikeBy)
+    opened = Library(folder)
+    hits = opened.like(button, by, len(opened.rows))  # type: ignore[arg-type]
+    document = {"library": str(folder), "like": button, "by": by, "found": len(hits)}
+    _told(hits, count, output, as_json, document)
+
+
+@library.command()
+@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@json_option
+def refused(folder: Path, as_json: bool) -> None:
+    """Tell which files of a library's folders could not be used, and why."""
+    from fdvv.workflow import Library
+
+    found = list(Library(folder).refused())
+    if as_json:
+        print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
+        return
+    for place, reason in found:
+        click.echo(one_line(f"{place}: {reason}"))
+
+
+def _told(hits: list[Any], count: int, output: Path | None, as_json: bool, document: dict[str, Any]) -> None:
+    """Print what was found, the first of it in a table."""
+    if output:
+        from fdvv.workflow import write_hits
+
+        write_hits(output, hits)
+    if as_json:
+        print_json({**document, "hits": [hit.to_dict() for hit in hits[:count]]})
+        return
+    near = any(hit.distance_JND is not None for hit in hits)
+    rows = [
+        [
+            one_line(hit.row.name, NAME), one_line(hit.row.collection, PLACE), str(hit.row.kind),
+            *([number(hit.distance_JND)] if near else []), *(number(getattr(hit.row, c)) for c in TOLD),
+            hit.row.id,
+        ]
+        for hit in hits[:count]
+    ]  # fmt: skip
+    print_table(["button", "folder", "type", *(["JND"] if near else []), *TOLD, "id"], rows, left=3)
+    more = f", {len(hits) - count} more with -n" if len(hits) > count else ""
+    click.echo(f"{len(hits)} found{more}")
+    if output:
+        click.echo(f"written to {output}")
+
+
+def _list_builtins(as_json: bool) -> None:
+    from fdvv.model import builtin_names, landmarks, load_builtin
+
+    models = [load_builtin(name) for name in builtin_names()]
+    marks = [landmarks(model).to_dict() for model in models]
+    if as_json:
+        entries = [
+            {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
+            for m, k in zip(models, marks, strict=True)
+        ]
+        print_json({"buttons": entries})
+        return
+    columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
+    rows = [
+        [m.name, m.provenance.source.partition(",")[0], *(number(k[c]) for c in columns)]
+        for m, k in zip(models, marks, strict=True)
+    ]
+    print_table(["button", "source", *columns], rows, left=2)

@@ -1,0 +1,111 @@
+"""fdvv sweep."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
+from fdvv.cli._output import (
+    check_folder,
+    counted,
+    json_option,
+    number,
+    print_json,
+    print_table,
+    print_warnings,
+    progress,
+)
+
+
+@click.command()
+@click.argument("plan", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path, file_okay=False),
+    help="The folder of results: new, or that of the same sweep.",
+)  # fmt: skip
+@click.option("--preview", is_flag=True, help="Only count the cells and time a few of them.")
+@executor_options
+@json_option
+def sweep(
+    plan: Path,
+    output: Path | None,
+    preview: bool,
+    processes: int | None,
+    workers: int | None,
+    cluster: str | None,
+    as_json: bool,
+) -> None:
+    """Try every combination of rigs, fingers, buttons and methods; simulated.
+
+    PLAN is a *.toml file of lists and ranges (docs/reference/sweep-files.md). Every combination is a row of a
+    Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
+    ended a sweep, the same command goes on. The result is the same however many processes work on it.
+    """
+    from fdvv.workflow import read_sweep_plan
+
+    check_executor(processes, workers, cluster)
+    asked = read_sweep_plan(plan)
+    if preview:
+        _preview(asked, plan, output, processes or workers, as_json)
+        return
+    if output is None:
+        raise click.UsageError("a sweep needs --output FOLDER, or --preview")
+    check_folder(output)
+    _run(asked, plan, output, (processes, workers, cluster), as_json)
+
+
+def _run(asked: Any, plan: Path, output: Path, where: tuple[Any, Any, Any], as_json: bool) -> None:
+    from fdvv.workflow import open_executor, run_sweep, sweep_summary
+
+    with (
+        kept_on_interrupt(output),
+        open_executor(*where) as executor,
+        progress("cells", asked.count) as tell,
+    ):
+        result = run_sweep(asked, output, executor, tell, plan.parent)
+    document = {**result.to_dict(), "summary": sweep_summary(result)}
+    if as_json:
+        print_json(document)
+        return
+    click.echo(f"{asked.measure}: {counted(result.cells, 'cell')} (simulated), {result.failed} failed")
+    for part in document["summary"]:
+        figure, factor = part["figure"], part["factor"]
+        rows = [
+            [str(row["value"]), str(row["cells"]), *(number(row[k], 3) for k in ("median", "low", "high"))]
+            for row in part["rows"]
+        ]
+        print_table([f"{figure} by {factor}", "cells", "median", "5 %", "95 %"], rows)
+    if result.failed:
+        print_warnings([f"{counted(result.failed, 'cell')} failed; the first: {result.first_reason()}"])
+    click.echo(f"written to {result.path}")
+
+
+def _preview(asked: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
+    from fdvv.workflow import preview_sweep
+
+    found = preview_sweep(asked, output, plan.parent)
+    count = processes or len(os.sched_getaffinity(0))
+    print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])
+    if as_json:
+        print_json({
+            "cells": found.cells, "done": found.done, "cell_s": found.cell_s, "processes": count,
+            "estimated_s": found.seconds(count), "failed": list(found.failed),
+        })  # fmt: skip
+        return
+    for name, values in asked.levels().items():
+        told = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values[:6])
+        more = f" ... {values[-1]}" if len(values) > 6 else ""
+        click.echo(f"{name} ({len(values)}): {told}{more}")
+    each = f"{found.cell_s:.3g} s each"
+    click.echo(f"{counted(found.cells, 'cell')}, {found.done} done, about {each}")
+    click.echo(f"about {_duration(found.seconds(count))} with {counted(count, 'process')}; simulated")
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"

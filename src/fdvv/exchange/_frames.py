@@ -1,0 +1,203 @@
+"""Recordings and presses as tables of pandas and labelled arrays of xarray; units stand with every column."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv.errors import BuildError, ModelError
+from fdvv.model import Press
+from fdvv.recording import UNITS, Recording, Stream, Take
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+CF = {"m/s2": "m s-2"}
+"""Units as CF's conventions write them, where they differ from ours."""
+PRESS_UNITS = {"t_s": "s", "velocity_mm_s": "mm s-1", "displacement_mm": "mm", "force_cN": "cN"}
+RIG_UNITS = {"sensed_mm": "mm", "sensed_cN": "cN", "commanded_cN": "cN"}
+FLAGS = ("saturated", "tick")
+
+
+def require_frames() -> None:
+    """Raise BuildError that tells how to get pandas and xarray, unless they are there."""
+    try:
+        import pandas  # noqa: F401
+        import xarray  # noqa: F401
+    except ImportError as error:
+        raise BuildError(
+            'tables need pandas and xarray; install them with: pip install "fdvv[frames]"'
+        ) from error
+
+
+def recording_to_pandas(recording: Recording) -> pd.DataFrame:
+    """Give a recording as one long table, a row for each sample of each stream.
+
+    Columns: take, stage, velocity_mm_s (what was asked for), stream, axis (x, y, z of a marker, else empty),
+    quantity, unit, clock, t_s, value in that unit. ``attrs`` hold name, person, licence and whether it is
+    simulated. Times of different clocks cannot be compared. Raises BuildError without pandas.
+    """
+    require_frames()
+    import pandas as pd
+
+    rows = [_rows(take, stream) for take in recording.takes for stream in take.streams]
+    columns = [
+        "take",
+        "stage",
+        "velocity_mm_s",
+        "stream",
+        "axis",
+        "quantity",
+        "unit",
+        "clock",
+        "t_s",
+        "value",
+    ]
+    table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=columns)
+    table = table[columns].astype(
+        dict.fromkeys(("stage", "stream", "axis", "quantity", "unit", "clock"), "category")
+    )
+    table.attrs = {**_about(recording), "units": {"velocity_mm_s": "mm s-1", "t_s": "s"}}
+    return table
+
+
+def _rows(take: Take, stream: Stream) -> pd.DataFrame:
+    import pandas as pd
+
+    values = stream.values
+    axes = [""] if values.ndim == 1 else _axes(values.shape[1])
+    count = len(axes)
+    return pd.DataFrame(
+        {
+            "take": take.number,
+            "stage": str(take.stage),
+            "velocity_mm_s": np.nan if take.velocity_mm_s is None else take.velocity_mm_s,
+            "stream": stream.name,
+            "axis": np.repeat(axes, stream.t_s.size),
+            "quantity": str(stream.quantity),
+            "unit": UNITS[stream.quantity],
+            "clock": stream.clock,
+            "t_s": np.tile(stream.t_s, count),
+            "value": values.reshape(stream.t_s.size, count).T.ravel(),
+        }
+    )
+
+
+def _axes(count: int) -> list[str]:
+    return ["x", "y", "z"] if count == 3 else [str(i) for i in range(count)]
+
+
+def recording_to_xarray(recording: Recording) -> xr.DataTree:
+    """Give a recording as a tree: a node ``take_1`` … for each take, a variable for each stream.
+
+    Streams run on their own clocks, so each has a time dimension of its own, ``t_STREAM`` in s with its
+    clock in the attributes; a marker has a second one, ``axis_STREAM``. Values have their units in
+    ``attrs["units"]``; marks are in the node's attributes, ``mark_NAME`` with their times. Raises
+    BuildError without xarray, ModelError if two streams of a take would get one name.
+    """
+    require_frames()
+    import xarray as xr
+
+    takes = {f"take_{take.number}": _take(take) for take in recording.takes}
+    return xr.DataTree.from_dict({"/": xr.Dataset(attrs=_about(recording)), **takes})
+
+
+def _take(take: Take) -> xr.Dataset:
+    import xarray as xr
+
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {}
+    for stream in take.streams:
+        # a slash would be a node of the tree
+        name = stream.name.replace("/", "_")
+        time = f"t_{name}"
+        about = {"units": "s", "long_name": f"time of {stream.name}", "clock": stream.clock}
+        coordinates[time] = (time, stream.t_s, about)
+        shape: tuple[str, ...] = (time,)
+        if stream.raw.ndim == 2:
+            shape = (time, f"axis_{name}")
+            coordinates[shape[1]] = _axes(stream.raw.shape[1])
+        unit = UNITS[stream.quantity]
+        told: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
+        told |= {"quantity": str(stream.quantity), "clock": stream.clock}
+        variables[name] = (shape, stream.values, {**told, "scale": stream.scale, "zero": stream.zero})
+    if len(variables) < len(take.streams) or set(variables) & set(coordinates):
+        names = ", ".join(stream.name for stream in take.streams)
+        raise ModelError(f"take {take.number}: rename one of the streams {names}, they would share a name")
+    attributes: dict[str, Any] = {"number": take.number, "stage": str(take.stage), "remark": take.remark}
+    attributes |= {"made": take.made, "velocity_units": "mm s-1"}
+    attributes["velocity"] = np.nan if take.velocity_mm_s is None else take.velocity_mm_s
+    for mark in sorted({(mark.name, mark.clock) for mark in take.marks}):
+        times = [m.t_s for m in take.marks if (m.name, m.clock) == mark]
+        attributes[f"mark_{mark[0]} ({mark[1]}, s)"] = sorted(times)
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _about(recording: Recording) -> dict[str, Any]:
+    return {
+        "name": recording.name,
+        "person": recording.person,
+        "licence": recording.licence,
+        "simulated": int(recording.simulated),
+    }
+
+
+def presses_to_pandas(presses: Sequence[Press]) -> pd.DataFrame:
+    """Give presses as one table, a row for each sample, the press counted from 0 in column ``press``.
+
+    Columns are those of Press, units in their names and in ``attrs["units"]``; what a press has not (no
+    rig) is missing. Raises BuildError without pandas.
+    """
+    require_frames()
+    import pandas as pd
+
+    parts = []
+    for number, press in enumerate(presses):
+        part = pd.DataFrame({"press": number, "velocity_mm_s": press.velocity_mm_s, "t_s": press.t_s})
+        for name in ("displacement_mm", "force_cN", *RIG_UNITS):
+            column = getattr(press, name)
+            part[name] = np.nan if column is None else column
+        for name in FLAGS:
+            column = getattr(press, name)
+            part[name] = pd.array([pd.NA] * press.t_s.size if column is None else column, dtype="boolean")
+        part["simulated"] = press.simulated
+        parts.append(part)
+    columns = [
+        "press",
+        "velocity_mm_s",
+        "t_s",
+        "displacement_mm",
+        "force_cN",
+        *RIG_UNITS,
+        *FLAGS,
+        "simulated",
+    ]
+    table = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
+    table.attrs["units"] = PRESS_UNITS | RIG_UNITS
+    return table
+
+
+def presses_from_pandas(table: pd.DataFrame) -> tuple[Press, ...]:
+    """Make presses of a table that presses_to_pandas gave, or of one with its columns.
+
+    Columns of the rig may lack or be empty. Raises ModelError for a table without the others.
+    """
+    lacking = {"press", *PRESS_UNITS} - set(table.columns)
+    if lacking:
+        raise ModelError(f"the table lacks columns: {', '.join(sorted(lacking))}")
+    return tuple(_press(part) for _, part in table.groupby("press", sort=True))
+
+
+def _press(part: pd.DataFrame) -> Press:
+    optional: dict[str, Any] = {}
+    for name, kind in (*((n, np.float64) for n in RIG_UNITS), *((n, np.bool_) for n in FLAGS)):
+        if name in part.columns and (
+            part[name].notna().all() if kind is np.bool_ else part[name].notna().any()
+        ):
+            optional[name] = part[name].to_numpy(dtype=kind)
+    simulated = "simulated" in part.columns and bool(part["simulated"].iloc[0])
+    t_s, x, force = (part[n].to_numpy(dtype=np.float64) for n in ("t_s", "displacement_mm", "force_cN"))
+    return Press(t_s, x, force, float(part["velocity_mm_s"].iloc[0]), **optional, simulated=simulated)

@@ -1,0 +1,203 @@
+"""MPEG's haptics as JSON, HJIF of ISO/IEC 23090-31: every mode as a sine of its own with its fall.
+
+Fields and their limits: as the standard's reference software reads and checks them (MPEGGroup,
+HapticReferenceSoftware, IOJson.cpp). Times are whole ticks, frequencies whole Hz; amplitudes are joined by
+straight lines. Unlike AHAP and .haptic it holds phases, and several modes at once, each in a band of its own.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.exchange._json_in import check_points, read_json, refuse
+from fdvv.exchange._polyline import polyline
+from fdvv.exchange._pulse import Pulse, mode_of, read_scale
+from fdvv.exchange._types import Exported
+from fdvv.model import Mode, Vibration
+
+WHAT = "an HJIF file with sine effects of a vectorial band"
+TICKS_Hz = 48_000
+"""The finest timescale of the main profile: 21 µs."""
+TOLERANCE_ratio = 0.002
+BANDS_of_level_1 = 7
+HIGHEST_Hz = 24_000
+LONGEST_s = 30.0
+
+
+class Keyframe(msgspec.Struct):
+    """A corner: ticks after the effect's position, amplitude of -1 to 1, frequency in Hz."""
+
+    relative_position: int = 0
+    amplitude_modulation: float | None = None
+    frequency_modulation: float | None = None
+
+
+class Effect(msgspec.Struct):
+    """A base signal with its corners."""
+
+    position: int
+    effect_type: str = "Basis"
+    phase: float = 0.0
+    base_signal: str = "Sine"
+    keyframes: list[Keyframe] = []
+
+
+class Band(msgspec.Struct):
+    """Effects of one kind."""
+
+    band_type: str
+    effects: list[Effect]
+
+
+class Channel(msgspec.Struct):
+    """Bands that add up."""
+
+    bands: list[Band]
+    gain: float = 1.0
+
+
+class Perception(msgspec.Struct):
+    """Channels of one sense."""
+
+    perception_modality: str
+    channels: list[Channel]
+
+
+class Hjif(msgspec.Struct):
+    """An HJIF file."""
+
+    perceptions: list[Perception]
+    timescale: int = 1000
+    description: str = ""
+
+
+def hjif(vibration: Vibration, date: str, name: str = "vibration") -> Exported:
+    """Write a vibration as an HJIF file of the main profile.
+
+    date : ISO 8601, that of the file. Raises ModelError if the vibration is silent, longer than 30 s or has a
+        mode above 24 kHz.
+    """
+    scale = sum(abs(mode.amplitude_m_s2) for mode in vibration.modes)
+    if not scale:
+        raise ModelError("the vibration is silent, there is nothing to write")
+    if vibration.duration_s > LONGEST_s or any(m.frequency_Hz > HIGHEST_Hz for m in vibration.modes):
+        raise ModelError(f"at most {LONGEST_s:g} s and {HIGHEST_Hz} Hz can be written")
+    bands = [_band(mode, vibration.duration_s, scale) for mode in vibration.modes]
+    channel = {
+        "id": 0,
+        "description": name,
+        "gain": 1.0,
+        "mixing_coefficient": 1.0,
+        "body_part_mask": 0,
+        "bands": bands,
+    }
+    perception = {
+        "id": 0,
+        "avatar_id": 0,
+        "description": name,
+        "perception_modality": "Vibrotactile",
+        "reference_devices": [],
+        "effect_library": [],
+        "channels": [channel],
+    }
+    record = {
+        "version": "2025",
+        "profile": "Main",
+        "level": 1 if len(bands) <= BANDS_of_level_1 else 2,
+        "date": date,
+        "description": f"{name}; 1 is {scale!r} m/s2 of the cap",
+        "timescale": TICKS_Hz,
+        "avatars": [],
+        "perceptions": [perception],
+        "syncs": [],
+    }
+    return Exported(
+        "hjif",
+        (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode(),
+        ("every mode with its phase and fall",),
+        ("frequencies to a whole Hz", "the place of the onset and the stroke"),
+        {"full_scale_m_s2": scale},
+    )
+
+
+def _band(mode: Mode, duration_s: float, scale: float) -> dict[str, Any]:
+    """Draw one mode: whole ticks, the fall as few straight pieces; a negative amplitude is half a turn."""
+    ticks = np.unique(np.linspace(0, max(1, round(duration_s * TICKS_Hz)), 2000).round())
+    fall = abs(mode.amplitude_m_s2) / scale * np.exp(-mode.decay_1_s * ticks / TICKS_Hz)
+    at = polyline(ticks, fall, TOLERANCE_ratio)
+    pitch = max(1, round(mode.frequency_Hz))
+    frames = [
+        {"relative_position": int(t), "amplitude_modulation": float(a), "frequency_modulation": pitch}
+        for t, a in zip(ticks[at], fall[at], strict=True)
+    ]
+    turn = 0.0 if mode.amplitude_m_s2 >= 0 else np.pi
+    effect = {
+        "effect_type": "Basis",
+        "position": 0,
+        "phase": float((mode.phase_rad + turn) % (2 * np.pi)),
+        "base_signal": "Sine",
+        "keyframes": frames,
+    }
+    limits = {"lower_frequency_limit": 0, "upper_frequency_limit": max(1000, pitch)}
+    return {"band_type": "VectorialWave", **limits, "effects": [effect]}
+
+
+def read_hjif(source: Path | str | bytes, scale_m_s2: float | None = None) -> tuple[tuple[Mode, ...], float]:
+    """Read the sine effects of an HJIF file: one mode for each, and how long all together last, s.
+
+    All must begin together, as a snap's do. scale_m_s2 : what amplitude 1 stands for; by default what the
+    description says. Raises InputError.
+    """
+    name = "HJIF" if isinstance(source, bytes) else str(source)
+    found = read_json(source, Hjif, name, WHAT)
+    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(found.description)
+    if scale is None:
+        raise refuse(name, "amplitude", "the file does not say what 1 stands for", "the full scale in m/s2")
+    if not 0 < found.timescale <= TICKS_Hz:
+        raise refuse(name, "$.timescale", f"{found.timescale} is not 1 to {TICKS_Hz}", WHAT)
+    effects = [
+        (effect, channel.gain)
+        for perception in found.perceptions
+        if perception.perception_modality == "Vibrotactile"
+        for channel in perception.channels
+        for band in channel.bands
+        if band.band_type == "VectorialWave"
+        for effect in band.effects
+        if effect.base_signal == "Sine" and effect.effect_type == "Basis"
+    ]
+    check_points(name, "$.perceptions", sum(len(effect.keyframes) for effect, _ in effects), WHAT)
+    if not effects:
+        raise refuse(name, "$.perceptions", "no sine effect in it", WHAT)
+    if len({effect.position for effect, _ in effects}) > 1:
+        raise refuse(name, "$.perceptions", "its effects begin at different times", "the effects of one snap")
+    try:
+        modes = tuple(_mode(effect, gain * scale, found.timescale) for effect, gain in effects)
+    except (ModelError, OverflowError) as error:
+        raise refuse(name, "$.perceptions", str(error), WHAT) from error
+    return modes, max(effect.keyframes[-1].relative_position for effect, _ in effects) / found.timescale
+
+
+def _mode(effect: Effect, scale: float, timescale: int) -> Mode:
+    """Read one mode; corners without an amplitude or frequency take that of the last one that has it."""
+    t = np.array([k.relative_position for k in effect.keyframes], dtype=np.float64) / timescale
+    if t.size < 2 or t[0] != 0 or np.any(np.diff(t) <= 0) or t[-1] > LONGEST_s:
+        raise ModelError(f"an effect needs corners that rise from 0 to at most {LONGEST_s:g} s")
+    loud = _held([k.amplitude_modulation for k in effect.keyframes], 1.0)
+    pitch = _held([k.frequency_modulation for k in effect.keyframes], 0.0)
+    if np.any(np.abs(loud) > 1) or np.any((pitch <= 0) | (pitch > HIGHEST_Hz)):
+        raise ModelError(f"amplitudes lie within -1 to 1, frequencies above 0 and to {HIGHEST_Hz} Hz")
+    return mode_of(Pulse(t, scale * np.abs(loud), pitch), effect.phase)
+
+
+def _held(values: list[float | None], first: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    held = []
+    for value in values:
+        first = first if value is None else value
+        held.append(first)
+    return np.array(held, dtype=np.float64)

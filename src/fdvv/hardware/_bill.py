@@ -1,0 +1,167 @@
+"""The bill of materials: what to buy or print, how many, and what it costs."""
+
+from __future__ import annotations
+
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from datetime import date
+from importlib import resources
+from typing import Any
+
+from fdvv.errors import InputError, ModelError
+from fdvv.hardware._circuit import Circuit
+
+PAPER_USD = 550.0
+"""What the paper says the construction of its simulator costs, about."""
+GROUPS = ("rig", "vibration", "strip", "capture")
+"""The rig itself; what makes it vibrate; the pointing task's strip; the capture bench."""
+COLUMNS = (
+    "group",
+    "role",
+    "maker",
+    "part_number",
+    "count",
+    "pack",
+    "packs",
+    "price_USD",
+    "total_USD",
+    "alternatives",
+)
+
+
+@dataclass(frozen=True)
+class BillLine:
+    """One line: what, from whom, how many, for how much.
+
+    Attributes
+    ----------
+    role : what the circuit and the drawings call it. group : one of GROUPS.
+    count : how many are needed. pack : how many one price buys.
+    price_USD : of a pack; priced says when, price_source where from, or "estimate".
+    alternatives : other parts that serve. note : what to look out for.
+    """
+
+    role: str
+    group: str
+    maker: str
+    part_number: str
+    count: int
+    price_USD: float
+    priced: date
+    price_source: str = "estimate"
+    pack: int = 1
+    alternatives: tuple[str, ...] = ()
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        if self.group not in GROUPS:
+            raise ModelError(f"{self.role}: group must be one of {', '.join(GROUPS)}, got {self.group}")
+        if self.count < 1 or self.pack < 1 or self.price_USD < 0:
+            raise ModelError(f"{self.role}: count and pack from 1, price from 0; got {self}")
+
+    @property
+    def packs(self) -> int:
+        """How many packs to buy."""
+        return -(-self.count // self.pack)
+
+    @property
+    def total_USD(self) -> float:
+        """What they cost."""
+        return self.packs * self.price_USD
+
+    @property
+    def estimated(self) -> bool:
+        """Tell whether nobody quoted this price."""
+        return self.price_source == "estimate"
+
+
+@dataclass(frozen=True)
+class Bill:
+    """All lines, in the order in which they are bought."""
+
+    lines: tuple[BillLine, ...]
+
+    @property
+    def total_USD(self) -> float:
+        """What everything costs."""
+        return sum(line.total_USD for line in self.lines)
+
+    def of(self, *groups: str) -> Bill:
+        """Give the lines of some groups only."""
+        return Bill(tuple(line for line in self.lines if line.group in groups))
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Give every line as plain data with COLUMNS and what else is known."""
+        keys = [*COLUMNS[:-1], "price_source", "note"]
+        return [
+            {key: getattr(line, key) for key in keys}
+            | {"priced": line.priced.isoformat(), "alternatives": list(line.alternatives)}
+            for line in self.lines
+        ]
+
+
+def load_bill(circuit: Circuit, printed_g: Mapping[str, float] | None = None) -> Bill:
+    """Give the rig's bill: counts come from the circuit, the plastic from the printed parts.
+
+    printed_g : mass of every printed part by name; None leaves the filament of the file's own guess.
+    Raises InputError if the circuit asks for a role that bill.toml does not have.
+    """
+    text = resources.files("fdvv.hardware").joinpath("bill.toml").read_text("utf-8")
+    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed_g)
+
+
+def read_bill(text: str, needed: Mapping[str, int], printed_g: Mapping[str, float] | None = None) -> Bill:
+    """Read a bill from TOML text; needed : count of each electrical role."""
+    document = tomllib.loads(text)
+    lines = [_line(raw, needed, printed_g) for raw in document["lines"]]
+    lacking = sorted(set(needed) - {line.role for line in lines})
+    if lacking:
+        reason = f"the circuit needs {', '.join(lacking)}"
+        raise InputError("bill.toml", "lines", reason, "add a line for each")
+    return Bill(tuple(lines))
+
+
+def _line(raw: dict[str, Any], needed: Mapping[str, int], printed_g: Mapping[str, float] | None) -> BillLine:
+    role, body = raw["role"], dict(raw)
+    if body.pop("printed", False):
+        grams = sum((printed_g or {}).values()) or body.pop("guess_g")
+        body.pop("guess_g", None)
+        return BillLine(**_checked({**body, "count": max(1, round(grams))}))
+    if body.pop("circuit", True):
+        if role not in needed:
+            reason = f"{role} is not in the circuit"
+            raise InputError("bill.toml", "lines", reason, "take it out, or say circuit = false and a count")
+        body["count"] = needed[role]
+    return BillLine(**_checked(body))
+
+
+def _checked(raw: dict[str, Any]) -> dict[str, Any]:
+    return {**raw, "alternatives": tuple(raw.get("alternatives", ()))}
+
+
+def to_csv(bill: Bill) -> str:
+    """Write the lines as CSV with a header; alternatives are joined by semicolons."""
+    import csv
+    import io
+
+    out = io.StringIO()
+    writer = csv.DictWriter(
+        out, [*COLUMNS[:-1], "priced", "price_source", "alternatives", "note"], lineterminator="\n"
+    )
+    writer.writeheader()
+    for row in bill.rows():
+        writer.writerow(row | {"alternatives": "; ".join(row["alternatives"])})
+    return out.getvalue()
+
+
+def group_totals(bill: Bill) -> dict[str, float]:
+    """Give what every group costs."""
+    return {group: bill.of(group).total_USD for group in GROUPS}
+
+
+def dates(lines: Iterable[BillLine]) -> str:
+    """Write the span of the prices' dates."""
+    found = sorted({line.priced.isoformat() for line in lines})
+    return found[0] if len(found) == 1 else f"{found[0]} to {found[-1]}"

@@ -1,0 +1,44 @@
+"""Make a printed part by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fdvv.hardware._dimensions import Dimensions
+from fdvv.hardware._placement import on_bed
+from fdvv.hardware._pose import Pose
+from fdvv.hardware.cad._carrying import base, coil_mount, lvdt_mount
+from fdvv.hardware.cad._moving import keycap_adapter, limiter_arm, limiter_bracket, slider_yoke
+from fdvv.hardware.cad._shapes import Solid, kernel
+from fdvv.hardware.cad._standing import black_box, capture_jig, marker_post, sensor_cone
+
+BUILDERS: dict[str, Callable[[Dimensions], Solid]] = {
+    "base": base,
+    "coil-mount": coil_mount,
+    "lvdt-mount": lvdt_mount,
+    "slider-yoke": slider_yoke,
+    "keycap-adapter": keycap_adapter,
+    "limiter-arm": limiter_arm,
+    "limiter-bracket": limiter_bracket,
+    "sensor-cone": sensor_cone,
+    "capture-jig": capture_jig,
+    "marker-post": marker_post,
+    "black-box": black_box,
+}
+
+
+def build(name: str, d: Dimensions) -> Solid:
+    """Make a printed part as it lies on the bed, its lowest face at z = 0.
+
+    Raises BuildError without the kernel; KeyError for a name that no part has.
+    """
+    made = BUILDERS[name](d)
+    return _posed(made, on_bed(name, d))
+
+
+def _posed(solid: Solid, pose: Pose) -> Solid:
+    """Put a solid at a pose, and take its placement into its geometry."""
+    k = kernel()
+    right, _, up = zip(*pose.turn, strict=True)
+    plane = k.Plane(origin=pose.shift_mm, x_dir=right, z_dir=up)
+    return plane.location * solid

@@ -1,0 +1,65 @@
+"""From curves to a coil and the friction of its guide."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fdvv.mechanism._coil import Coil
+from fdvv.mechanism._coil_choice import choose_coil
+from fdvv.mechanism._guide import Guide
+from fdvv.mechanism._making import Making
+from fdvv.mechanism._solve import solve
+from fdvv.mechanism._spring import SpringMechanism
+from fdvv.mechanism._target import Target
+from fdvv.units import FloatArray
+
+TAIL = (0.65, 0.9)
+"""Part of the travel where a leaf has left its cam and the coil is alone."""
+SOFTEST_cN_mm, STIFFEST_cN_mm = 1.0, 100.0
+GUIDE_LOW, GUIDE_START, GUIDE_HIGH = (0.0, 0.0, 0.005), (1.0, 0.01, 0.03), (8.0, 0.15, 0.3)
+
+
+def tail_line(target: Target) -> tuple[float, float]:
+    """Give preload (cN) and rate (cN/mm) of the line through the elastic part near the end of the travel."""
+    x = target.displacement_mm
+    tail = (x >= TAIL[0] * target.travel_mm) & (x <= TAIL[1] * target.travel_mm)
+    line = np.polynomial.Polynomial.fit(x[tail], target.middle_cN[tail], 1).convert().coef
+    return float(line[0]), float(line[1])
+
+
+def coil_bounds(making: Making) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Give the least and the most of how far a coil is pressed in at rest (mm) and of its rate (cN/mm)."""
+    space = making.envelope
+    return (0.0, SOFTEST_cN_mm), (space.longest_mm - space.built_mm - 0.1, STIFFEST_cN_mm)
+
+
+def design_spring(target: Target, making: Making) -> SpringMechanism:
+    """Design the coil whose strokes miss the target least. Raises ModelError if none can be made."""
+    x = target.displacement_mm
+
+    def miss(p: FloatArray) -> FloatArray:
+        spring = p[1] * (p[0] + x)
+        press, release = Guide(p[2], p[3], p[4]).strokes_cN(x, spring, spring)
+        return np.concatenate([press - target.press_cN, release - target.release_cN])
+
+    line = np.polynomial.Polynomial.fit(x, target.middle_cN, 1).convert().coef
+    low, high = coil_bounds(making)
+    rate = max(float(line[1]), low[1])
+    start = np.array([max(float(line[0]), 0.0) / rate, rate, *GUIDE_START])
+    p, _ = solve(miss, start, np.array([*low, *GUIDE_LOW]), np.array([*high, *GUIDE_HIGH]))
+    coil = choose_coil(p[0] * p[1], p[1], target.travel_mm, making.envelope, making.wire)
+    return SpringMechanism(coil, guide_around(target, coil, Guide(p[2], p[3], p[4])))
+
+
+def guide_around(target: Target, coil: Coil, guide: Guide) -> Guide:
+    """Find the guide anew once the coil has its round sizes."""
+    x = target.displacement_mm
+    spring = coil.preload_cN + coil.rate_cN_mm * x
+
+    def miss(p: FloatArray) -> FloatArray:
+        press, release = Guide(p[0], p[1], p[2]).strokes_cN(x, spring, spring)
+        return np.concatenate([press - target.press_cN, release - target.release_cN])
+
+    start = np.array([guide.drag_cN, guide.load_ratio, guide.seat_mm])
+    p, _ = solve(miss, start, np.array(GUIDE_LOW), np.array(GUIDE_HIGH))
+    return Guide(float(p[0]), float(p[1]), float(p[2])).rounded()

@@ -1,0 +1,271 @@
+"""Take what other programs wrote into a model: measured curves, or a vibration into a button."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fdvv.errors import FitError, InputError, ModelError
+from fdvv.exchange import mode_of, read_ahap, read_hjif, read_meta_haptic
+from fdvv.files import read_limited
+from fdvv.model import FDVVModel, Mode, Provenance, Stroke, Vibration
+from fdvv.units import FloatArray
+from fdvv.vibration import fit_modes, read_wav
+from fdvv.workflow._fit import FitSettings, fit_file, one_line
+from fdvv.workflow._kind import own_kind
+from fdvv.workflow._open import open_model
+
+HEAD_bytes = 4096
+LARGEST_bytes = 20_000_000
+ONSET_ratio = 0.02
+"""A sound begins where it first passes this part of its peak: below lies what a converter adds."""
+END_ratio = 0.002
+"""It ends where it falls for good below this part."""
+LONGEST_s = 1.0
+MODES_Hz = 8000.0
+"""Sounds are brought to this rate before modes are found: above 1 kHz fingers feel nothing."""
+REMEDY = "give measured curves, *.ahap, *.haptic, *.hjif or *.wav"
+
+
+@dataclass(frozen=True)
+class ImportSettings:
+    """What an import may be told.
+
+    Attributes
+    ----------
+    name : of the model; by default the file's, or that of the button it goes into.
+    into : the button that a vibration is given to, as open_model takes it.
+    stroke, velocity_mm_s : whose vibration it becomes; None is every speed.
+    onset_mm : where it starts; by default at the button's peak, or where its contact closes.
+    full_scale_m_s2 : what 1 in the file stands for; by default what the file says.
+    fit : how curves are fitted.
+    """
+
+    name: str | None = None
+    into: str | None = None
+    stroke: Stroke = Stroke.PRESS
+    velocity_mm_s: float | None = None
+    onset_mm: float | None = None
+    full_scale_m_s2: float | None = None
+    fit: FitSettings = field(default_factory=FitSettings)
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A model, the format it came in, and what was repaired or assumed, one sentence each."""
+
+    model: FDVVModel
+    format: str
+    notes: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the report of ``fdvv import --json``."""
+        return {
+            "name": self.model.name,
+            "format": self.format,
+            "travel_mm": self.model.travel_mm,
+            "curves": [
+                {"stroke": str(c.stroke), "velocity_mm_s": c.velocity_mm_s} for c in self.model.curves
+            ],
+            "vibrations": [
+                {
+                    "stroke": str(v.stroke),
+                    "velocity_mm_s": v.velocity_mm_s,
+                    "onset_mm": v.onset_mm,
+                    "duration_s": v.duration_s,
+                    "modes": [vars(mode) for mode in v.modes],
+                }
+                for v in self.model.vibrations
+            ],
+            "notes": list(self.notes),
+        }
+
+
+def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imported:
+    """Read a file of another program, known by its content, into a model. Raises InputError.
+
+    Curves go the way of ``fdvv fit``; a vibration needs the button it is to be given to.
+    """
+    path, chosen = Path(path), settings or ImportSettings()
+    kind = own_kind(path)
+    if kind:
+        raise InputError(path, "whole file", f"holds {kind}, it needs no import", "use it as it is")
+    form = _format(path)
+    if form is None:
+        return _curves(path, chosen)
+    modes, duration_s, notes = _READERS[form](path, chosen.full_scale_m_s2)
+    return _given(path, chosen, form, modes, duration_s, notes)
+
+
+def _format(path: Path) -> str | None:
+    """Tell a vibration's format by what the file begins with; None for what may be curves."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(HEAD_bytes)
+    except OSError as error:
+        raise InputError(path, "whole file", error.strerror or str(error), "check the path") from error
+    if head.startswith(b"RIFF"):
+        return "wav"
+    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text.startswith(b"<"):
+        reason = "is XML; MuJoCo models and pages cannot be read back"
+        raise InputError(path, "whole file", reason, REMEDY)
+    if not text.startswith(b"{"):
+        return None
+    if b'"detent_strength_unit"' in head:
+        reason = "is a SmartKnobConfig, which holds no force curve"
+        raise InputError(path, "whole file", reason, REMEDY)
+    marks = {b'"perceptions"': "hjif", b'"Pattern"': "ahap", b'"signals"': "haptic"}
+    told = next((form for mark, form in marks.items() if mark in head), None)
+    return told or {".ahap": "ahap", ".haptic": "haptic", ".hjif": "hjif"}.get(path.suffix.lower())
+
+
+def _curves(path: Path, settings: ImportSettings) -> Imported:
+    asked = {
+        "--into": settings.into,
+        "--velocity": settings.velocity_mm_s,
+        "--onset-mm": settings.onset_mm,
+        "--full-scale-m-s2": settings.full_scale_m_s2,
+    }
+    for option, value in asked.items():
+        if value is not None:
+            raise InputError(path, "whole file", "holds curves, no vibration", f"leave {option} out")
+    found = fit_file(path, settings.fit)
+    model = found.model if settings.name is None else found.model.renamed(_name(settings.name))
+    source = model.provenance.source
+    return Imported(model, source.rpartition("(")[2].rstrip(")"), found.warnings)
+
+
+def _name(text: str) -> str:
+    name = one_line(text)
+    if not name:
+        raise InputError("--name", "text", "is empty", "give the button a name")
+    return name
+
+
+Read = tuple[tuple[Mode, ...], float, tuple[str, ...]]
+
+
+def _pulse(read: Callable[..., Any]) -> Callable[[Path, float | None], Read]:
+    def reader(path: Path, scale: float | None) -> Read:
+        pulse = read(path, scale)
+        try:
+            mode = mode_of(pulse)
+        except ModelError as error:
+            raise InputError(path, "whole file", str(error), "give one that is not") from error
+        note = "it tells no phase, which was taken for 0; of what beats one mode is kept"
+        return (mode,), float(pulse.t_s[-1]), (note,)
+
+    return reader
+
+
+def _hjif(path: Path, scale: float | None) -> Read:
+    modes, duration_s = read_hjif(path, scale)
+    return modes, duration_s, ()
+
+
+def _wav(path: Path, scale: float | None) -> Read:
+    """Find the damped modes of a sound from its onset on."""
+    if scale is None:
+        raise InputError(path, "samples", "a sound does not say what full scale is", "pass --full-scale-m-s2")
+    sound = read_wav(read_limited(path, LARGEST_bytes, "give a sound of a second or less"))
+    samples = sound.samples.astype(np.float64) / 32767 * scale
+    if not samples.size or not np.abs(samples).max():
+        raise InputError(path, "samples", "it is silent", "give one that is not")
+    first = int(np.argmax(np.abs(samples) > ONSET_ratio * np.abs(samples).max()))
+    last = samples.size - int(np.argmax(np.abs(samples[::-1]) > END_ratio * np.abs(samples).max()))
+    # the last sample before is the onset: what begins there has just left zero
+    heard = samples[max(0, first - 1) : last]
+    if heard.size > LONGEST_s * sound.rate_Hz:
+        raise InputError(path, "samples", f"it rings for more than {LONGEST_s:g} s", "cut one snap out of it")
+    thin, rate_Hz = _thinned(heard, sound.rate_Hz)
+    try:
+        fit = fit_modes(thin, rate_Hz)
+    except FitError as error:
+        raise InputError(path, "samples", str(error), "give a longer sound") from error
+    if not fit.modes:
+        raise InputError(path, "samples", "no damped mode in it", "give a snap's sound")
+    modes = tuple(Mode(m.frequency_Hz, m.amplitude, m.decay_1_s, m.phase_rad) for m in fit.modes)
+    note = f"{len(modes)} damped modes, {fit.noise:.3g} m/s2 of noise left per sample"
+    return modes, heard.size / sound.rate_Hz, (note,)
+
+
+def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
+    """Bring a sound near the rate modes are found at, without what lies above half of it."""
+    from scipy.signal import resample_poly
+
+    down = max(1, int(rate_Hz // MODES_Hz))
+    # ends held would ring; the sound is silent before and after
+    return (samples if down == 1 else np.asarray(resample_poly(samples, 1, down))), rate_Hz / down
+
+
+_READERS: dict[str, Callable[[Path, float | None], Read]] = {
+    "ahap": _pulse(read_ahap),
+    "haptic": _pulse(read_meta_haptic),
+    "hjif": _hjif,
+    "wav": _wav,
+}
+
+
+def _given(
+    path: Path,
+    settings: ImportSettings,
+    form: str,
+    modes: tuple[Mode, ...],
+    duration_s: float,
+    notes: tuple[str, ...],
+) -> Imported:
+    """Give a vibration to a button, in place of the one it has there."""
+    if settings.into is None:
+        raise InputError(path, "whole file", "holds a vibration, no button", "name the button with --into")
+    model = open_model(settings.into)
+    onset = settings.onset_mm
+    if onset is None:
+        onset, where = _onset(model, settings)
+        notes = (*notes, f"no file tells where it starts: put at {where}, {onset:.3f} mm")
+    try:
+        vibration = Vibration(settings.stroke, settings.velocity_mm_s, onset, duration_s, modes)
+        others = [
+            v
+            for v in model.vibrations
+            if v.stroke is not vibration.stroke
+            or (
+                v.velocity_mm_s != vibration.velocity_mm_s
+                and None not in (v.velocity_mm_s, vibration.velocity_mm_s)
+            )
+        ]
+        made = replace(
+            model,
+            name=model.name if settings.name is None else _name(settings.name),
+            vibrations=(*others, vibration),
+            provenance=_noted(model.provenance, path, form, notes),
+        )
+    except ModelError as error:
+        raise InputError(path, "vibration", str(error), "check stroke, velocity and onset") from error
+    if len(others) < len(model.vibrations):
+        notes = (*notes, f"{len(model.vibrations) - len(others)} vibrations of the button were replaced")
+    return Imported(made, form, notes)
+
+
+def _onset(model: FDVVModel, settings: ImportSettings) -> tuple[float, str]:
+    """Choose where a snap is heard: at the peak, else at the contact, else half way."""
+    from fdvv.model import find_bump
+
+    curve = model.nearest(settings.stroke, settings.velocity_mm_s)
+    if curve is not None:
+        x = np.linspace(curve.start_mm, model.travel_mm, 800)
+        bump = find_bump(x, curve.force_cN(x))
+        if bump:
+            return bump.peak_mm, f"the peak of the {settings.stroke}"
+    point = model.actuation_mm if settings.stroke is Stroke.PRESS else model.reset_mm
+    return (model.travel_mm / 2, "half the travel") if point is None else (point, "the contact's point")
+
+
+def _noted(provenance: Provenance, path: Path, form: str, notes: tuple[str, ...]) -> Provenance:
+    method = f"{provenance.method}; vibration from {one_line(path.name)} ({form})".removeprefix("; ")
+    assumed = [note for note in notes if note.startswith(("no file tells", "it tells no phase"))]
+    return replace(provenance, method=method, assumptions=(*provenance.assumptions, *assumed))

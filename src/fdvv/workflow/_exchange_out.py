@@ -1,0 +1,195 @@
+"""Write a button, a vibration of it or a recording in another program's format, and tell what is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Literal
+
+from fdvv.errors import InputError
+from fdvv.exchange import (
+    Exported,
+    Follow,
+    ahap,
+    bluepylons_csv,
+    curves_csv,
+    haata_csv,
+    hjif,
+    meta_haptic,
+    mjcf,
+    mode_of,
+    read_ahap,
+    read_hjif,
+    read_meta_haptic,
+    recording_csv,
+    smartknob,
+    switch_tester_json,
+)
+from fdvv.model import FDVVModel, Stroke, Vibration
+from fdvv.recording import RECORDING_SUFFIX, load_recording
+from fdvv.vibration import LISTEN_Hz, correlation, spectral_similarity, spqi, st_sim, vibration_samples
+from fdvv.workflow._open import open_model
+from fdvv.workflow._vibration_slots import vibration_wav
+
+
+@dataclass(frozen=True)
+class ExportSettings:
+    """What an export may be told; each format takes what concerns it.
+
+    Attributes
+    ----------
+    stroke, velocity_mm_s : of the vibration, or of the press where a format holds one: the slowest by
+        default, with MuJoCo the mean of all.
+    step_mm : between the samples of a curve.
+    follow : what MuJoCo's springs draw.
+    cap_mass_g : of the body in MuJoCo.
+    degrees_per_mm : how far a knob turns for a millimetre.
+    """
+
+    stroke: Stroke = Stroke.PRESS
+    velocity_mm_s: float | None = None
+    step_mm: float = 0.01
+    follow: Follow = "press"
+    cap_mass_g: float = 1.0
+    degrees_per_mm: float = 10.0
+
+
+@dataclass(frozen=True)
+class ExportFormat:
+    """A format: its name, the file's ending, what is written, and what it is of."""
+
+    name: str
+    suffix: str
+    about: str
+    of: Literal["button", "vibration", "recording"]
+
+
+EXPORT_FORMATS = (
+    ExportFormat("csv", ".csv", "all curves in one table, mm and cN", "button"),
+    ExportFormat("bluepylons-csv", ".csv", "one press and release: x_um, force_gf, actuated", "button"),
+    ExportFormat("haata", ".csv", "numbered presses and releases side by side, mm and gf", "button"),
+    ExportFormat("tester-json", ".json", "switch force tester: one press and release, mm and gf", "button"),
+    ExportFormat("mjcf", ".xml", "MuJoCo: a slide joint with springs, friction and damping", "button"),
+    ExportFormat("smartknob", ".json", "SmartKnobConfig: the snap as two detents", "button"),
+    ExportFormat("wav", ".wav", "the vibration as a sound, 48 kHz, 16 bit", "vibration"),
+    ExportFormat("ahap", ".ahap", "Apple Core Haptics: intensity and sharpness over time", "vibration"),
+    ExportFormat("haptic", ".haptic", "Meta Haptics: amplitude and frequency over time", "vibration"),
+    ExportFormat("hjif", ".hjif", "MPEG haptics, ISO/IEC 23090-31: every mode as a sine", "vibration"),
+    ExportFormat("recording-csv", ".csv", "a recording: a row for each sample", "recording"),
+)
+"""Formats that a button can be exported to."""
+
+_BUTTONS: dict[str, Callable[[FDVVModel, ExportSettings], Exported]] = {
+    "csv": lambda model, s: curves_csv(model, s.step_mm),
+    "bluepylons-csv": lambda model, s: bluepylons_csv(model, s.velocity_mm_s, s.step_mm),
+    "haata": lambda model, s: haata_csv(model, s.step_mm),
+    "tester-json": lambda model, s: switch_tester_json(model, s.velocity_mm_s, s.step_mm),
+    "mjcf": lambda model, s: mjcf(
+        model, cap_mass_g=s.cap_mass_g, follow=s.follow, velocity_mm_s=s.velocity_mm_s
+    ),
+    "smartknob": lambda model, s: smartknob(model, s.velocity_mm_s, s.degrees_per_mm),
+}
+
+
+def export_format(name: str | None, output: Path | str, of: str = "button") -> ExportFormat:
+    """Find a format by its name, or by the file's ending if that tells one. Raises InputError."""
+    known = {f.name: f for f in EXPORT_FORMATS}
+    if name is not None:
+        if name not in known:
+            raise InputError(name, "format", "no such format", f"choose one of {', '.join(known)}")
+        return known[name]
+    suffix = Path(output).suffix.lower()
+    found = [f for f in EXPORT_FORMATS if f.suffix == suffix and (of == "recording") == (f.of == "recording")]
+    # the plain table is what a .csv is, the others are layouts of particular benches
+    if suffix == ".csv" and found:
+        return found[0]
+    if len(found) != 1:
+        several = " or ".join(f.name for f in found)
+        reason = f"'{suffix}' may be {several}" if found else f"the ending '{suffix}' tells no format"
+        raise InputError(output, "format", reason, "say which with --to; fdvv export --list shows all")
+    return found[0]
+
+
+def is_recording(spec: str) -> bool:
+    """Tell whether an argument names a recording's file."""
+    return spec.endswith(RECORDING_SUFFIX) and Path(spec).is_file()
+
+
+def export_button(
+    spec: str, to: str | None, output: Path | str, settings: ExportSettings | None = None
+) -> Exported:
+    """Make the file of another program for what spec names: a button, or a recording.
+
+    spec : as open_model takes it, or a recording's file. to : the format, or None if output's ending tells
+        it. Nothing is written. Raises InputError.
+    """
+    chosen = settings or ExportSettings()
+    if is_recording(spec):
+        form = export_format(to, output, "recording")
+        if form.of != "recording":
+            raise InputError(
+                spec, "whole file", f"is a recording, {form.name} is of a {form.of}", "process it first"
+            )
+        return recording_csv(load_recording(spec))
+    form = export_format(to, output)
+    if form.of == "recording":
+        raise InputError(spec, "argument", f"{form.name} is of a recording", "name a *.recording.jsonl")
+    model = open_model(spec)
+    if form.of == "button":
+        _needs(spec, model, form.name)
+        return _BUTTONS[form.name](model, chosen)
+    return export_vibration(_vibration(spec, model, chosen), form.name, model.name)
+
+
+def _needs(spec: str, model: FDVVModel, form: str) -> None:
+    if form in ("mjcf", "smartknob") and not model.of(Stroke.PRESS):
+        raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
+
+
+def _vibration(spec: str, model: FDVVModel, settings: ExportSettings) -> Vibration:
+    found = model.vibration(settings.stroke, settings.velocity_mm_s or 0.0)
+    if found is None:
+        remedy = "choose the other --stroke" if model.vibrations else "import or tune one first"
+        raise InputError(spec, "vibrations", f"it has none of the {settings.stroke}", remedy)
+    return found
+
+
+def export_vibration(vibration: Vibration, form: str, name: str, date: str | None = None) -> Exported:
+    """Write a vibration as a sound or a haptic file; figures tell how alike what is read back is.
+
+    date : of an HJIF file, ISO 8601; today by default. The figures compare acceleration at 48 kHz:
+        ``correlation`` at its best delay, ``spectral_similarity``, ``st_sim`` and ``spqi`` are 1 for the
+        same.
+    """
+    if form == "wav":
+        made = vibration_wav(vibration)
+        kept, lost = ("the acceleration at 48 kHz",), ("strength below a 32767th of the peak",)
+        return Exported("wav", made.data, kept, lost, {"full_scale_m_s2": made.full_scale})
+    if form == "hjif":
+        written = hjif(vibration, date or datetime.now(UTC).date().isoformat(), name)
+    else:
+        written = (ahap if form == "ahap" else meta_haptic)(vibration, name)
+    return replace(
+        written, figures={**written.figures, **_likeness(read_back(vibration, written), vibration)}
+    )
+
+
+def read_back(vibration: Vibration, written: Exported) -> Vibration:
+    """Give the vibration that a haptic file's reader makes of it, at the place and stroke of the original."""
+    if written.format == "hjif":
+        modes, duration_s = read_hjif(written.data)
+        return replace(vibration, modes=modes, duration_s=duration_s, spread=None)
+    pulse = (read_ahap if written.format == "ahap" else read_meta_haptic)(written.data)
+    return replace(vibration, modes=(mode_of(pulse),), duration_s=float(pulse.t_s[-1]), spread=None)
+
+
+def _likeness(found: Vibration, target: Vibration) -> dict[str, float]:
+    a, b = vibration_samples(found), vibration_samples(target)
+    return {
+        "correlation": correlation(a, b),
+        "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
+        "st_sim": st_sim(a, b, LISTEN_Hz),
+        "spqi": spqi(a, b, LISTEN_Hz),
+    }

@@ -1,0 +1,37 @@
+"""Small programs that a rig runs while it is tested: a steady or growing force, and tones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fdvv.model import Mode
+from fdvv.program import Limits, Program, Signal, State, Surface, compile_program
+from fdvv.protocol import Settings
+
+TONES_Hz = (310.0, 430.0, 550.0, 670.0)
+"""About the exciter's resonance, wherever it is; none folds onto another at 1 kHz."""
+TONE_s = 2.5
+COUNTS = 2047.0
+
+
+def force_image(settings: Settings, travel_mm: float, start_cN: float, end_cN: float, span_s: float) -> bytes:
+    """Give a program whose force goes from one to the other in that time, wherever the cap is."""
+    flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
+    span_ms = round(1e3 * span_s)
+    state = State(
+        "push", "flat", "flat", bias_cN=start_cN, bias_end_cN=end_cN if span_ms else 0.0, bias_ms=span_ms
+    )
+    return _compiled(Program("force", travel_mm, "push", (state,), (flat,)), settings)
+
+
+def tone_image(settings: Settings, travel_mm: float) -> bytes:
+    """Give a program without force, with the tones as waveforms."""
+    flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
+    tones = tuple(Signal(f"{f:g} Hz", TONE_s, (Mode(f, COUNTS, 0.0),)) for f in TONES_Hz)
+    state = State("lie", "flat", "flat")
+    return _compiled(Program("tones", travel_mm, "lie", (state,), (flat,), tones), settings)
+
+
+def _compiled(program: Program, settings: Settings) -> bytes:
+    limits = replace(Limits(), settings=settings, weight_cN=0.0, counts_per_m_s2=1.0)
+    return compile_program(program, limits).image

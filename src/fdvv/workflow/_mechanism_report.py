@@ -1,0 +1,155 @@
+"""A designed mechanism as one HTML file: target, design, band, residual, parts, and the twin's word."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fdvv import __version__
+from fdvv.mechanism import STOP_mm, WANTED_cN, drawings_of, facts_of
+from fdvv.model import Stroke
+from fdvv.plot import (
+    DesignedStroke,
+    DrawnLine,
+    DrawnPart,
+    Section,
+    Table,
+    figure_svg,
+    plot_mechanism,
+    plot_parts,
+    render_html,
+)
+from fdvv.workflow._mechanism import MechanismResult
+from fdvv.workflow._mechanism_twin import PressedDesign
+
+
+def mechanism_report(result: MechanismResult) -> str:
+    """Write the report as HTML. Needs matplotlib (BuildError without it)."""
+    summary = f"{result.model.name}: {result.recommendation}."
+    sections = [_curves(result), _parts(result), _tolerances(result), _kinds(result), _twin(result)]
+    footer = f"fdvv {__version__}; {result.model.provenance.citation or result.model.provenance.source}"
+    return render_html(
+        f"A {result.mechanism.kind} for {result.model.name}",
+        summary,
+        sections,
+        footer,
+        simulated="no part was made; what was pressed is the twin",
+    )
+
+
+def designed_strokes(result: MechanismResult) -> tuple[DesignedStroke, ...]:
+    """Give both strokes as a figure takes them."""
+    target, band = result.target, result.band
+    x = target.displacement_mm
+    press, release = result.mechanism.strokes_cN(x)
+    slow = result.pressed[0] if result.pressed else None
+    at = None if slow is None else slow.displacement_mm
+    return (
+        DesignedStroke(
+            *(Stroke.PRESS, x, target.press_cN, press, band.press_low_cN, band.press_high_cN, at),
+            None if slow is None else slow.press_cN,
+        ),
+        DesignedStroke(
+            *(Stroke.RELEASE, x, target.release_cN, release, band.release_low_cN, band.release_high_cN, at),
+            None if slow is None else slow.release_cN,
+        ),
+    )
+
+
+def drawn_parts(result: MechanismResult) -> tuple[DrawnPart, ...]:
+    """Give the parts as a figure takes them."""
+    return tuple(
+        DrawnPart(d.title, tuple(DrawnLine(o.layer, o.points_mm, o.closed) for o in d.outlines))
+        for d in drawings_of(result.mechanism)
+    )
+
+
+def _curves(result: MechanismResult) -> Section:
+    grid = plot_mechanism(designed_strokes(result), WANTED_cN, result.model.name)
+    rows = [
+        (
+            name,
+            f"{miss.rms_cN:.2f}",
+            f"{miss.seated_rms_cN:.2f}",
+            f"{miss.largest_cN:+.1f}",
+            f"{miss.largest_mm:.2f}",
+        )
+        for name, miss in (("press", result.residual.press), ("release", result.residual.release))
+    ]
+    columns = ("stroke", "rms (cN)", "rms from 0.1 mm (cN)", "largest (cN)", "at (mm)")
+    caption = f"Design less target, from 0 to {STOP_mm:g} mm before the bottom stop."
+    sentences = tuple(f"{text[0].upper()}{text[1:]}." for text in result.residual.reasons)
+    figure = figure_svg(grid[0, 0].figure, "Target, design, tolerance band and residual of press and release")
+    return Section("Curves", sentences, (figure,), (Table(columns, tuple(rows), caption),))
+
+
+def _parts(result: MechanismResult) -> Section:
+    figure = figure_svg(plot_parts(drawn_parts(result))[0].figure, "Drawings of the parts")
+    rows = tuple(_rows(result))
+    notes = tuple(f"{note[0].upper()}{note[1:]}." for note in result.notes)
+    return Section("Parts", notes, (figure,), (Table(("part", "size", "value"), rows),))
+
+
+def _rows(result: MechanismResult) -> Iterator[tuple[str, str, str]]:
+    for part, facts in facts_of(result.mechanism, result.target).items():
+        for name, value in facts.items():
+            yield part, name, value if isinstance(value, str) else f"{value:.4g}"
+
+
+def _tolerances(result: MechanismResult) -> Section:
+    band = result.band
+    rows = tuple(
+        (s.tolerance.name, s.tolerance.path, f"{s.tolerance.half:.3g}", f"{s.rms_cN:.2f}", s.tolerance.source)
+        for s in band.shares
+    )
+    text = [f"Nine parts in ten give the press within {band.half_width_cN:.1f} cN of the middle, on average."]
+    for what, interval, digits in (
+        ("Peak", band.peak_cN, 1),
+        ("Valley", band.valley_cN, 1),
+        ("Snap ratio", band.snap_ratio, 2),
+    ):
+        if interval:
+            unit = "" if digits == 2 else " cN"
+            text.append(f"{what}: {interval[0]:.{digits}f} to {interval[1]:.{digits}f}{unit}.")
+    columns = ("tolerance", "of", "±", "alone, rms (cN)", "source")
+    caption = "What each tolerance does alone, at its limit; the first matters most."
+    return Section("Tolerances", tuple(text), (), (Table(columns, rows, caption),))
+
+
+def _kinds(result: MechanismResult) -> Section:
+    rows = tuple(
+        (
+            k.kind,
+            "–" if k.residual is None else f"{k.residual.press.rms_cN:.2f}",
+            "–" if k.residual is None else f"{k.residual.release.rms_cN:.2f}",
+            k.refused or "; ".join(k.residual.reasons if k.residual else ()),
+        )
+        for k in result.kinds
+    )
+    return Section(
+        "Kinds that were tried",
+        (),
+        (),
+        (Table(("kind", "press, rms (cN)", "release, rms (cN)", "why"), rows),),
+    )
+
+
+def _twin(result: MechanismResult) -> Section:
+    if not result.pressed:
+        return Section("On the twin", (f"The twin cannot take this design: {result.twin_refused}.",))
+    text = (
+        "The design as a real button of the twin (button.toml), pressed slowly by a stiff tester and by the "
+        "default person at speeds. Simulated.",
+    )
+    rows = tuple(_pressed_row(p) for p in result.pressed)
+    columns = ("mm/s", "against", "press, rms (cN)", "release, rms (cN)")
+    return Section("On the twin", text, (), (Table(columns, rows),))
+
+
+def _pressed_row(pressed: PressedDesign) -> tuple[str, str, str, str]:
+    against = "the model at that speed" if pressed.own_speed else "the model's slow curves"
+    return (
+        f"{pressed.speed_mm_s:g}",
+        against,
+        f"{pressed.press.rms_cN:.2f}",
+        f"{pressed.release.rms_cN:.2f}",
+    )

@@ -1,0 +1,159 @@
+"""Rows that reach the disk part by part while work goes on, and stand in one file, in order, when it is done.
+
+A part is a file, written whole or not at all, so that a killed process loses only what it had not written.
+The one file at the end is the same to the byte however the rows were shared out and whatever was killed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fdvv.workflow._parquet import open_parquet, write_table, write_tables
+
+if TYPE_CHECKING:
+    from pyarrow import Schema, Table
+
+PARTS = "parts"
+"""The folder of the parts, there only while work goes on."""
+GROUP_rows = 512
+"""Rows of a row group of the one file: what is in memory at a time."""
+
+Key = tuple[Any, ...]
+
+
+class PartStore:
+    """The rows of one table in a folder, each known by the values of its key columns.
+
+    Parameters
+    ----------
+    path : the one file; its folder exists, and this process alone works in it.
+    schema : of the rows. A file of another schema, or a damaged one, counts as not there.
+    key : names of the key columns.
+    mend : remove what a killed process left and what cannot be used; else the folder is only looked at.
+    """
+
+    def __init__(self, path: Path, schema: Schema, key: Sequence[str], mend: bool = True) -> None:
+        self._path, self._schema, self._key = path, schema, list(key)
+        self._parts = path.parent / PARTS
+        self._sources: list[tuple[Path, int]] = []
+        self._known: dict[Key, tuple[int, int]] = {}
+        self._number = 0
+        self._mend = mend
+        for temporary in path.parent.glob(f".{path.name}.*.tmp") if mend else ():
+            temporary.unlink()
+        for found in (path, *sorted(self._parts.glob("part-*.parquet"))):
+            self._learn(found)
+
+    def __contains__(self, key: Key) -> bool:
+        return key in self._known
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def add(self, table: Table) -> None:
+        """Write rows as a part; rows of a known key stand for the earlier ones. OSError."""
+        self._parts.mkdir(exist_ok=True)
+        self._number += 1
+        path = self._parts / f"part-{self._number:08}.parquet"
+        write_table(path, table.cast(self._schema))
+        self._sources.append((path, 0))
+        self._take(len(self._sources) - 1, table)
+
+    def finish(self, order: Sequence[Key]) -> bool:
+        """Write the one file with the rows of these keys, in this order; tell whether it was not there yet.
+
+        Every key must be known. What is not among them is dropped.
+        """
+        changed = not self._stands(order)
+        if changed:
+            groups = (order[i : i + GROUP_rows] for i in range(0, len(order), GROUP_rows))
+            write_tables(self._path, self._schema, (self._gathered(group) for group in groups))
+        for part in self._parts.glob("*"):
+            part.unlink()
+        with contextlib.suppress(FileNotFoundError):
+            self._parts.rmdir()
+        return changed
+
+    def tables(self, columns: Sequence[str] | None = None) -> Iterator[Table]:
+        """Give the rows of the one file, a row group after another."""
+        found = open_parquet(self._path)
+        try:
+            for group in range(found.num_row_groups):
+                yield found.read_row_group(group, columns=columns)
+        finally:
+            found.close()
+
+    def _stands(self, order: Sequence[Key]) -> bool:
+        """Tell whether the one file holds just that already."""
+        if any(path != self._path for path, _ in self._sources):
+            return False
+        return self._path.exists() and list(self._known) == list(order) and bool(self._sources or not order)
+
+    def _learn(self, path: Path) -> None:
+        """Take the rows of a file into account, or remove a part that cannot be used."""
+        stem = path.stem.rpartition("-")[2]
+        if path != self._path and stem.isdigit():
+            self._number = max(self._number, int(stem))
+        try:
+            found = open_parquet(path)
+        except FileNotFoundError:
+            return
+        except (OSError, ValueError):
+            self._refuse(path)
+            return
+        try:
+            if not _same(found.schema_arrow, self._schema):
+                self._refuse(path)
+                return
+            for group in range(found.num_row_groups):
+                table = found.read_row_group(group, columns=self._key)
+                self._sources.append((path, group))
+                self._take(len(self._sources) - 1, table)
+        except (OSError, ValueError):
+            self._refuse(path)
+        finally:
+            found.close()
+
+    def _refuse(self, path: Path) -> None:
+        """Forget a file; the rows that it may have told of before it broke are done again."""
+        kept = {i for i, (there, _) in enumerate(self._sources) if there != path}
+        self._known = {key: at for key, at in self._known.items() if at[0] in kept}
+        if self._mend and path != self._path:
+            path.unlink()
+
+    def _take(self, source: int, table: Table) -> None:
+        columns = [table.column(name).to_pylist() for name in self._key]
+        for row, key in enumerate(zip(*columns, strict=True)):
+            self._known.pop(key, None)  # the order of a dict is that of the last writing
+            self._known[key] = source, row
+
+    def _gathered(self, keys: Sequence[Key]) -> Table:
+        """Give the rows of some keys in their order."""
+        import numpy as np
+        import pyarrow as pa
+
+        wanted: dict[int, list[tuple[int, int]]] = {}
+        for place, key in enumerate(keys):
+            source, row = self._known[key]
+            wanted.setdefault(source, []).append((row, place))
+        pieces, places = [], []
+        for source, rows in wanted.items():
+            pieces.append(self._read(source).take([row for row, _ in rows]))
+            places += [place for _, place in rows]
+        return pa.concat_tables(pieces).take(np.argsort(places)).combine_chunks()
+
+    def _read(self, source: int) -> Table:
+        path, group = self._sources[source]
+        found = open_parquet(path)
+        try:
+            return found.read_row_group(group)
+        finally:
+            found.close()
+
+
+def _same(found: Schema, wanted: Schema) -> bool:
+    """Tell whether rows mean the same: columns, types, and what the schema says of itself."""
+    return bool(found.equals(wanted)) and dict(found.metadata or {}) == dict(wanted.metadata or {})

@@ -1,0 +1,237 @@
+"""What a sweep can find out of a cell: each measure with its factors, settings and figures. Simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from fdvv.compensate import (
+    Following,
+    KnownRig,
+    Method,
+    PaperLaw,
+    RigAware,
+    tuned_paper_law,
+)
+from fdvv.device import TwinDevice
+from fdvv.model import FDVVModel, Stroke, load_builtin
+from fdvv.twin import ButtonPhysics, Finger, Rig
+from fdvv.workflow._compensate import compensate, uncompensated
+from fdvv.workflow._feasibility import CurveFeasibility, feasibility
+from fdvv.workflow._population_plan import seed_of
+from fdvv.workflow._press import press_physics, quasi_static_peak_cN
+from fdvv.workflow._probe import probe
+
+Figures = dict[str, float | int | str | None]
+LEARN, JUDGE, KNOW = 1, 2, 3
+"""Purposes of random numbers: what is learned from is never what judges."""
+NOT_COMPENSATED = "none"
+METHODS = (NOT_COMPENSATED, "rig-aware", "paper", "paper-literal", "paper-tuned")
+MET_ON = "mx-clear"
+"""On which button a rig is identified for `feasible`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subjects:
+    """What a cell is about, opened: only what its measure has."""
+
+    rig: Rig | None
+    finger: Finger | None
+    button: FDVVModel | ButtonPhysics
+    method: str
+    speed_mm_s: float
+    seed: int
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A column of results."""
+
+    name: str
+    type: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Something to find out of a cell.
+
+    Attributes
+    ----------
+    factors : what may vary, each with its value where a plan leaves it out.
+    settings : what holds for all cells, likewise.
+    figures : what is found; the first number sums a sweep up. about_s : of a cell on one core, roughly.
+    real : its buttons are simulated real ones, not models that a rig renders.
+    """
+
+    about: str
+    factors: Mapping[str, str | float]
+    settings: Mapping[str, Any]
+    figures: tuple[Figure, ...]
+    find: Callable[[Subjects, Mapping[str, Any]], Figures]
+    about_s: float
+    real: bool = False
+
+
+def _probe(about: Subjects, settings: Mapping[str, Any]) -> Figures:
+    """Compensate, then judge on fresh presses."""
+    assert isinstance(about.button, FDVVModel)
+    speeds, rounds = settings["velocities_mm_s"], settings["rounds"]
+    device = TwinDevice(about.rig, about.finger, seed_of(about.seed, LEARN))
+    judge = TwinDevice(about.rig, about.finger, seed_of(about.seed, JUDGE))
+    if about.method == NOT_COMPENSATED:
+        surface = uncompensated(device, about.button, speeds)
+        found, learned, skipped = probe(judge, about.button, surface, speeds, settings["presses"]), 0, 0
+    else:
+        result = compensate(device, about.button, speeds, _law(about.method, rounds))
+        learned, skipped = result.presses, len(result.skipped)
+        found = probe(
+            judge, about.button, result.surface, speeds, settings["presses"], tuning=result.outcome.tuning
+        )
+    means = {(c.stroke, c.velocity_mm_s): c.outcome.mean_error_cN for c in found.curves}
+    strokes = {s: [e for (stroke, _), e in means.items() if stroke is s] for s in Stroke}
+    return {
+        "mean_error_cN": float(np.mean(list(means.values()))),
+        "worst_mean_error_cN": max(means.values()),
+        "press_error_cN": _mean(strokes[Stroke.PRESS]),
+        "release_error_cN": _mean(strokes[Stroke.RELEASE]),
+        "max_error_cN": max(c.outcome.max_error_cN for c in found.curves),
+        "reached_ratio": min(c.reached_ratio for c in found.curves),
+        "learning_presses": learned,
+        "skipped_presses": skipped + len(found.skipped),
+    }
+
+
+def _mean(values: list[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _law(method: str, rounds: int) -> PaperLaw | Method[Any]:
+    if method == "rig-aware":
+        return RigAware(rounds)
+    if method == "paper-tuned":
+        return tuned_paper_law()
+    return PaperLaw.literal() if method == "paper-literal" else PaperLaw()
+
+
+def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
+    """Ask of a rig that presses have told of whether it can render a button."""
+    assert isinstance(about.button, FDVVModel)
+    assert about.rig is not None
+    known = _known(about.rig, about.finger, seed_of(about.seed, KNOW), tuple(settings["velocities_mm_s"]))
+    device = TwinDevice(about.rig, about.finger)
+    report = feasibility(
+        about.button, known, device.settings(), settings["velocities_mm_s"], info=device.info()
+    )
+    order = list(Following)
+    worst = max((curve.verdict.following for curve in report.curves), key=order.index)
+    kept = [c.reached.kept_ratio for c in report.curves if c.reached.kept_ratio is not None]
+    return {
+        "verdict": str(worst),
+        "followed_ratio": _share(report.curves),
+        "expected_error_cN": max(curve.expected.mean_cN for curve in report.curves),
+        "largest_command_cN": max(float(np.abs(c.reached.command_cN).max()) for c in report.curves),
+        "saturated_ratio": max(float(c.reached.saturated.mean()) for c in report.curves),
+        "bump_kept_ratio": min(kept) if kept else None,
+        "lag_mm": max(c.reached.lag_mm for c in report.curves),
+        "margin": min(float(c.stable.margin) for c in report.curves),
+    }
+
+
+def _share(curves: tuple[CurveFeasibility, ...]) -> float:
+    return float(np.mean([curve.verdict.following is Following.FOLLOWS for curve in curves]))
+
+
+@lru_cache(maxsize=16)
+def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float, ...]) -> KnownRig:
+    """Identify a rig from its presses; cells of one rig share it, and it is the same wherever it is done."""
+    device = TwinDevice(rig, finger, seed)
+    memory = compensate(device, load_builtin(MET_ON), speeds_mm_s, RigAware()).memory
+    assert memory is not None  # RigAware always remembers
+    return memory.known
+
+
+def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
+    """Have the simulated person press a simulated real button."""
+    assert isinstance(about.button, ButtonPhysics)
+    count = settings["presses"]
+    found = press_physics(about.button, about.finger or Finger(), (about.speed_mm_s,), count, about.seed)
+    closing = [press.closing_ms for press in found if press.closing_ms is not None]
+    return {
+        "achieved_mm_s": float(np.median([press.achieved_mm_s for press in found])),
+        "before_stop_cN": float(np.median([press.before_stop_cN for press in found])),
+        "quasi_static_peak_cN": _slow_peak_cN(about.button),
+        "largest_cN": float(np.median([press.largest_cN for press in found])),
+        "closing_ms": float(np.median(closing)) if closing else None,
+        "closing_spread_ms": float(np.std(closing, ddof=1)) if len(closing) > 1 else None,
+        "closed_ratio": len(closing) / len(found),
+    }
+
+
+@lru_cache(maxsize=256)
+def _slow_peak_cN(button: ButtonPhysics) -> float:
+    """Give what fingers do not change; it takes as long as a press."""
+    return quasi_static_peak_cN(button)
+
+
+SPEEDS_mm_s = (50.0, 100.0, 200.0)
+MEASURES = {
+    "probe": Measure(
+        "compensate a rig for a model, then judge it on fresh presses in true displacement",
+        {"rig": "default", "finger": "default", "button": "mx-clear", "method": "rig-aware"},
+        {"velocities_mm_s": list(SPEEDS_mm_s), "presses": 5, "rounds": 3},
+        (
+            Figure("mean_error_cN", "double", "mean error of all strokes and speeds"),
+            Figure("worst_mean_error_cN", "double", "mean error of the worst stroke and speed"),
+            Figure("press_error_cN", "double", "mean error of the presses"),
+            Figure("release_error_cN", "double", "mean error of the releases; null if the model has none"),
+            Figure("max_error_cN", "double", "largest error anywhere"),
+            Figure("reached_ratio", "double", "part of the travel that the worst press reached"),
+            Figure("learning_presses", "int64", "presses that were made to learn"),
+            Figure("skipped_presses", "int64", "presses that could not be used"),
+        ),
+        _probe,
+        0.5,
+    ),
+    "feasible": Measure(
+        "tell whether a rig that was identified from its presses can render a model",
+        {"rig": "default", "finger": "default", "button": "mx-clear"},
+        {"velocities_mm_s": list(SPEEDS_mm_s)},
+        (
+            Figure("expected_error_cN", "double", "error to expect of the worst after learning, an estimate"),
+            Figure("verdict", "string", "of the worst stroke and speed: can follow, follows in part, cannot"),
+            Figure("followed_ratio", "double", "part of strokes and speeds that can be followed"),
+            Figure("largest_command_cN", "double", "largest force the coil is asked for"),
+            Figure("saturated_ratio", "double", "part of the travel beyond the rig's force, of the worst"),
+            Figure(
+                "bump_kept_ratio", "double", "part of the bump that is reached, of the worst; null without"
+            ),
+            Figure("lag_mm", "double", "by how much the force comes late, of the worst"),
+            Figure("margin", "double", "of the sampled loop's stability, of the worst"),
+        ),
+        _feasible,
+        0.1,
+    ),
+    "press": Measure(
+        "press a simulated real button with a finger",
+        {"finger": "default", "button": "mx-clear", "speed_mm_s": 100.0},
+        {"presses": 5},
+        (
+            Figure("closing_ms", "double", "when the circuit closed, after the cap began to move, median"),
+            Figure("closing_spread_ms", "double", "its standard deviation over the presses"),
+            Figure("closed_ratio", "double", "part of the presses that closed the circuit"),
+            Figure("achieved_mm_s", "double", "mean speed of the stroke down that was reached, median"),
+            Figure("before_stop_cN", "double", "largest force before the last 0.1 mm of the travel, median"),
+            Figure("quasi_static_peak_cN", "double", "the same at 0.5 mm/s, as a force tester has it"),
+            Figure("largest_cN", "double", "largest force, impact at the bottom included, median"),
+        ),
+        _press,
+        0.05,
+        real=True,
+    ),
+}
+"""By name."""

@@ -1,0 +1,81 @@
+"""fdvv sweep. Simulated."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from fdvv.cli import cli
+from fdvv.errors import InputError
+
+PLAN = """
+format = "fdvv-sweep"
+version = 1
+measure = "press"
+[factors]
+button = ["mx-clear", "mx-red"]
+[settings]
+presses = 1
+"""
+
+
+def asked(*arguments: str) -> Result:
+    return CliRunner().invoke(cli, ["sweep", *arguments])
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    path = tmp_path / "plan.toml"
+    path.write_text(PLAN)
+    return path
+
+
+@pytest.mark.slow
+def test_results_are_told_as_json_and_as_a_table_that_say_simulated(plan: Path, tmp_path: Path) -> None:
+    command = (str(plan), "--output", str(tmp_path / "run"), "--processes", "1")
+    first = asked(*command, "--json")
+    assert first.exit_code == 0, first.output
+    told = json.loads(first.stdout)
+    assert told["simulated"]
+    assert (told["cells"], told["failed"], told["worked"]) == (2, 0, 2)
+    assert Path(told["results"]).is_file()
+    assert [row["value"] for row in told["summary"][0]["rows"]] == ["mx-clear", "mx-red"]
+    again = asked(*command)
+    assert "2 cells (simulated), 0 failed" in again.stdout
+    assert "closing_ms by button" in again.stdout
+
+
+@pytest.mark.slow
+def test_a_preview_tells_what_it_would_try(plan: Path) -> None:
+    assert "button (2): mx-clear, mx-red" in asked(str(plan), "--preview").stdout
+
+
+def test_a_preview_tells_cells_and_time_and_writes_nothing(plan: Path, tmp_path: Path) -> None:
+    told = json.loads(asked(str(plan), "--preview", "--processes", "2", "--json").stdout)
+    assert (told["cells"], told["done"], told["processes"], told["failed"]) == (2, 0, 2, [])
+    assert told["estimated_s"] == pytest.approx(told["cell_s"])
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.toml"]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ([], "needs --output FOLDER, or --preview"),
+        (["-o", "run", "--workers", "1", "--cluster", "tcp://127.0.0.1:1"], "exclude each other"),
+    ],
+)
+def test_options_that_cannot_be_are_refused(plan: Path, options: list[str], said: str) -> None:
+    result = asked(str(plan), *options)
+    assert result.exit_code == 2
+    assert said in result.stderr
+
+
+def test_a_file_that_is_no_plan_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "other.toml"
+    path.write_text("[coil]\n")
+    result = asked(str(path), "--preview")
+    assert isinstance(result.exception, InputError)
+    assert "not a plan of a sweep" in str(result.exception)

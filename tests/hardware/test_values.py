@@ -1,0 +1,191 @@
+"""Filters, steps, power and settings follow from the parts; what is drawn and listed is the same circuit."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from tests.hardware.circuits import CIRCUIT, with_value
+
+from fdvv.hardware import (
+    PAPER_USD,
+    circuit_report,
+    coil_drive,
+    converter_steps,
+    filter_values,
+    group_totals,
+    load_bill,
+    paper_cutoff_Hz,
+    read_bill,
+    rig_settings,
+    to_csv,
+    to_document,
+    to_kicad,
+    wiring_rows,
+)
+from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_papers_parts_make_478_and_neither_500_nor_498() -> None:
+    assert paper_cutoff_Hz() == pytest.approx(477.9, abs=0.1)
+    force = next(f for f in filter_values(CIRCUIT) if f.name == "force")
+    assert force.cutoff_Hz == pytest.approx(1 / (2 * math.pi * 332 * 1e-6), rel=5e-3)
+    assert force.paper_Hz == (500.0, 498.0)
+    assert all(force.lowest_Hz < value < force.highest_Hz for value in force.paper_Hz)
+
+
+def test_a_first_order_filter_turns_45_degrees_and_loses_3_dB_at_its_cut_off() -> None:
+    farad = 1 / (2 * math.pi * 239.0 * filter_values(CIRCUIT)[0].ohm)
+    found = filter_values(with_value("C3", farad))[0]
+    assert found.snap_deg == pytest.approx(-45, abs=0.01)
+    assert found.snap_dB == pytest.approx(-3.0103, abs=1e-3)
+    assert found.lag_um == pytest.approx(200 * found.time_ms)
+
+
+def test_steps_of_the_converter_are_the_ranges_over_its_counts() -> None:
+    steps = {s.name: s for s in converter_steps(CIRCUIT)}
+    assert steps["position"].volts_mV == pytest.approx(3300 / 4096)
+    assert steps["position"].value == pytest.approx(12700 / 4096, rel=0.01)
+    assert steps["force"].value == pytest.approx(981 / (0.9 * 4096), rel=0.01)
+    assert steps["supply"].value == pytest.approx(3300 / 4096 * 122 / 22, rel=1e-3)
+
+
+def test_the_settings_that_follow_give_millimetres_and_centinewtons_back() -> None:
+    found = rig_settings(CIRCUIT, 25)
+    span_mm = 25 * 4096 * found["position_gain_q14"] / 2**14 / UM16_PER_mm
+    assert span_mm * converter_steps(CIRCUIT)[0].value == pytest.approx(12.7 * 3.1, rel=0.02)
+    full = 0.95 * 4096 * 0.997
+    way = (full - found["force_offset_counts"]) * found["force_gain_q14"] / 2**14 / CN64_PER_cN
+    assert way == pytest.approx(981, rel=0.01)
+    assert -found["position_offset_um16"] / UM16_PER_mm == pytest.approx(6.35)
+
+
+def test_the_coil_is_reckoned_as_the_firmwares_settings_are() -> None:
+    drive, told = coil_drive(CIRCUIT, Settings()), Settings()
+    assert round(drive.full_duty_rise_K) == told.full_duty_rise_K
+    assert drive.rise_K < told.derate_start_K
+    duty = told.force_limit_cN64 * told.duty_gain_q16 / 2**16 / 2**15
+    bridge_ohm = 0.2  # that of the default settings, of the coil's own 2.9
+    assert duty * 12 / (2.9 + bridge_ohm) == pytest.approx(drive.current_A, rel=0.08)
+    assert drive.current_A < drive.chop_A < 3.6
+    assert drive.heat_W == pytest.approx(drive.current_A**2 * 2.9)
+
+
+def test_the_ripple_is_that_of_a_simulated_coil() -> None:
+    drive, ohm, henry = coil_drive(CIRCUIT, Settings()), 2.9, 1.5e-3
+    for pwm_Hz, ripple in ((23437.5, drive.ripple_A), (48e6 / 2**16, drive.default_ripple_cN / 390)):
+        amps, seen, step = 2.0, [], 1 / pwm_Hz / 2000
+        for i in range(2000 * 30):
+            amps += step * ((12.0 if i % 2000 < 1000 else 0.0) - ohm * amps) / henry
+            seen.append(amps)
+        last = seen[-2000:]
+        assert max(last) - min(last) == pytest.approx(ripple, rel=0.01)
+
+
+def test_the_committed_drawings_netlists_and_pages_are_those_of_the_circuit() -> None:
+    pytest.importorskip("schemdraw")
+    spec = importlib.util.spec_from_file_location("make_circuit", ROOT / "tools" / "make_circuit.py")
+    assert spec is not None
+    assert spec.loader is not None
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    for path, text in tool.files().items():
+        assert path.read_text() == text, f"run python tools/make_circuit.py: {path.name}"
+    assert {p.name for p in tool.CIRCUIT.iterdir()} == {
+        p.name for p in tool.files() if p.parent == tool.CIRCUIT
+    }
+
+
+def test_every_part_and_value_stands_in_a_drawing() -> None:
+    drawn = " ".join(path.read_text() for path in (ROOT / "hardware" / "circuit").glob("*.svg"))
+    drawn = " ".join(re.sub(r"<[^>]*>", " ", drawn).split())
+    for part in CIRCUIT.parts.values():
+        assert re.search(rf"\b{part.ref}\b", drawn), part.ref
+        assert part.text in drawn
+
+
+def _lists(text: str) -> list[object]:
+    """Read s-expressions."""
+    stack: list[list[object]] = [[]]
+    for token in re.findall(r'\(|\)|"[^"]*"|[^\s()]+', text):
+        if token == "(":
+            stack.append([])
+        elif token == ")":
+            done = stack.pop()
+            stack[-1].append(done)
+        else:
+            stack[-1].append(token.strip('"'))
+    assert len(stack) == 1
+    return stack[0]
+
+
+def test_the_kicad_netlist_holds_every_part_and_every_connection() -> None:
+    export = _lists(to_kicad(CIRCUIT))[0]
+    assert isinstance(export, list)
+    sections = {part[0]: part[1:] for part in export[1:] if isinstance(part, list)}
+    refs = {comp[1][1] for comp in sections["components"]}
+    assert refs == set(CIRCUIT.parts)
+    nets = {net[2][1]: tuple(f"{node[1][1]}.{node[2][1]}" for node in net[3:]) for net in sections["nets"]}
+    assert nets == CIRCUIT.nets
+
+
+def test_the_json_netlist_holds_the_same() -> None:
+    document = json.loads(json.dumps(to_document(CIRCUIT)))
+    assert {net["name"]: tuple(net["pins"]) for net in document["nets"]} == CIRCUIT.nets
+    assert [part["ref"] for part in document["parts"]] == list(CIRCUIT.parts)
+
+
+def test_the_wires_join_what_the_nets_join_and_nothing_else() -> None:
+    joined: dict[str, set[str]] = {}
+    for a, b, net in wiring_rows(CIRCUIT):
+        joined.setdefault(net, set()).update(end.split(" ")[0].split(",")[0] for end in (a, b))
+    stars = {net: pins - {net} for net, pins in joined.items()}
+    assert stars == {net: set(pins) for net, pins in CIRCUIT.nets.items()}
+
+
+def test_the_bill_and_the_circuit_name_the_same_parts_in_the_same_numbers() -> None:
+    needed = Counter(part.bill for part in CIRCUIT.parts.values())
+    lines = {line.role: line.count for line in load_bill(CIRCUIT).lines}
+    assert {role: lines[role] for role in needed} == needed
+    assert set(lines) - set(needed) == {"board and wire", "screws", "filament"}
+
+
+def test_the_total_is_the_sum_of_its_lines_and_tells_of_estimates() -> None:
+    bill = load_bill(CIRCUIT)
+    assert bill.total_USD == pytest.approx(sum(line.packs * line.price_USD for line in bill.lines))
+    assert sum(group_totals(bill).values()) == pytest.approx(bill.total_USD)
+    assert all(line.estimated and line.priced.year >= 2026 for line in bill.lines)
+    assert group_totals(bill)["rig"] > 0.5 * PAPER_USD
+
+
+def test_printed_parts_are_paid_by_their_mass() -> None:
+    light, heavy = (load_bill(CIRCUIT, {"base": grams}) for grams in (100.0, 300.0))
+    assert heavy.total_USD - light.total_USD == pytest.approx(200 * 0.03)
+
+
+def test_a_role_that_the_bill_lacks_and_one_that_the_circuit_lacks_are_refused() -> None:
+    line = '[[lines]]\nrole = "screw"\ngroup = "rig"\nmaker = "m"\npart_number = "p"\n'
+    line += "price_USD = 1\npriced = 2026-11-01\n"
+    assert read_bill(line, {"screw": 5}).lines[0].count == 5
+    with pytest.raises(Exception, match="is not in the circuit"):
+        read_bill(line, {})
+    with pytest.raises(Exception, match="the circuit needs nut"):
+        read_bill(line, {"screw": 1, "nut": 2})
+
+
+def test_the_csv_has_a_row_for_every_line() -> None:
+    bill = load_bill(CIRCUIT)
+    assert len(to_csv(bill).splitlines()) == len(bill.lines) + 1
+
+
+def test_the_report_bears_units_and_no_violation() -> None:
+    told = circuit_report(CIRCUIT)
+    assert told["violations"] == []
+    assert all("Hz" in key for key in told["filters"][0] if key.endswith("cutoff_Hz"))
