@@ -59,6 +59,7 @@ WIRES = {
         "EN 10270-3, normal strength; permissible torsion at rest 0.48 of it, EN 13906-1",
     ),
 }
+"""Spring wires, by name."""
 WIRE_SIZES_mm = (0.14, 0.16, 0.18, 0.20, 0.22, 0.25, 0.28, 0.30, 0.32, 0.34, 0.36, 0.38)
 """Preferred diameters of EN 10270-1 in the range of keys."""
 
@@ -103,6 +104,7 @@ STRIPS = {
     ),
     "stainless": Strip("stainless strip 1.4310", 185_000.0, 1100.0, 7900.0, "EN 10151, +C1300; catalogue"),
 }
+"""Strips for leaves, by name."""
 STRIP_SIZES_mm = (0.06, 0.08, 0.10, 0.12, 0.15, 0.18, 0.20)
 STRIP_WIDTHS_mm = (1.0, 1.5, 2.0, 2.5, 3.0)
 

@@ -17,6 +17,7 @@ from fdvv.mechanism._spring import SpringMechanism
 from fdvv.mechanism._target import Target
 
 Mechanism: TypeAlias = SpringMechanism | LeafMechanism | DomeMechanism
+"""A mechanism of any kind."""
 
 KINDS = ("spring", "leaf", "dome")
 """From the simplest to the one with most to tune."""

@@ -79,6 +79,7 @@ EXPORT_FORMATS = (
     ExportFormat("hjif", ".hjif", "MPEG haptics, ISO/IEC 23090-31: every mode as a sine", "vibration"),
     ExportFormat("recording-csv", ".csv", "a recording: a row for each sample", "recording"),
 )
+"""Formats that a button can be exported to."""
 
 _BUTTONS: dict[str, Callable[[FDVVModel, ExportSettings], Exported]] = {
     "csv": lambda model, s: curves_csv(model, s.step_mm),

@@ -75,6 +75,7 @@ COLUMNS = (
     Column("release_dcN", WHOLES, "its release likewise; empty if the file holds none"),
     Column("curves", CURVES, "every stroke and speed: force_cN[i] at start_mm + i step_mm, float"),
 )
+"""Columns of a library's table."""
 _SKETCH = {"press_dcN", "release_dcN"}
 ROW_NAMES = tuple(f for f in ShelfRow.__struct_fields__ if f not in ("origin", "sketch"))
 READ_NAMES = ("place", "state", *ROW_NAMES, *sorted(_SKETCH))
