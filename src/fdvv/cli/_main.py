@@ -37,8 +37,6 @@ COMMANDS = {
         "Build a rig: what to print and buy, how to wire it, which part is wrong.",
     ),
     "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
-        "Make the rig: list its printed parts, export them, check that they go together.",
-    ),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
     "mechanism": ("fdvv.cli._mechanism", "Design a real switch that gives a model's curves."),
     "library": (
