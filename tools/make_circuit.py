@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fdvv.files import write_atomic
-from fdvv.hardware import bill_page, circuit_files, load_bill, load_circuit, printed_parts, require_sound
+from fdvv.hardware import bill_page, circuit_files, load_bill, load_circuit, require_sound
 
 ROOT = Path(__file__).parents[1]
 CIRCUIT = ROOT / "hardware" / "circuit"
@@ -17,7 +17,7 @@ def files() -> dict[Path, str]:
     circuit = load_circuit()
     require_sound(circuit, "circuit.toml")
     made = {CIRCUIT / name: text for name, text in circuit_files(circuit).items()}
-    return {**made, BILL: bill_page(load_bill(circuit, printed_parts()))}
+    return {**made, BILL: bill_page(load_bill(circuit))}
 
 
 if __name__ == "__main__":

@@ -24,14 +24,13 @@ def bill(as_csv: bool, as_json: bool) -> None:
         group_totals,
         load_bill,
         load_circuit,
-        printed_parts,
         summary,
         to_csv,
     )
 
     if as_csv and as_json:
         raise InputError("--csv", "with --json", "only one of them can be printed", "leave one out")
-    found = load_bill(load_circuit(), printed_parts())
+    found = load_bill(load_circuit())
     if as_csv:
         click.echo(to_csv(found), nl=False)
         return

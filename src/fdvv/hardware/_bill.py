@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from fdvv.errors import InputError, ModelError
 from fdvv.hardware._circuit import Circuit
+from fdvv.hardware._parts import printed_parts
 
 PAPER_USD = 550.0
 """What the paper says the construction of its simulator costs, about."""
@@ -121,14 +122,14 @@ class Printed(Protocol):
 def load_bill(circuit: Circuit, printed: Iterable[Printed] | None = None) -> Bill:
     """Give the rig's bill: counts come from the circuit, the plastic from the printed parts.
 
-    printed : the parts; None takes the file's own guess of their masses.
+    printed : the parts; those of the rig if None.
     Raises InputError if the circuit asks for a role that bill.toml does not have, or the other way round.
     """
     text = resources.files("fdvv.hardware").joinpath("bill.toml").read_text("utf-8")
-    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed)
+    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), _own(printed))
 
 
-def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] | None = None) -> Bill:
+def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] = ()) -> Bill:
     """Read a bill from TOML text; needed : count of each electrical role."""
     document = tomllib.loads(text)
     lines = [_line(raw, needed) for raw in document["lines"]]
@@ -139,21 +140,22 @@ def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] |
     return Bill((*lines, *_printed(document.get("printed", {}), printed)))
 
 
-def _printed(raw: dict[str, Any], printed: Iterable[Printed] | None) -> list[BillLine]:
-    masses = [(name, float(mass_g), 1) for name, mass_g in raw.get("guess_g", {}).items()]
-    if printed is not None:
-        masses = [(part.name, part.mass_g, part.count) for part in printed]
+def _own(printed: Iterable[Printed] | None) -> Iterable[Printed]:
+    return printed_parts() if printed is None else printed
+
+
+def _printed(raw: dict[str, Any], printed: Iterable[Printed]) -> list[BillLine]:
     return [
         BillLine(
-            role=name,
+            role=part.name,
             group=raw["group"],
             maker="printed",
-            part_number=f"{raw['material']}, {mass_g:.0f} g",
-            count=count,
-            price_USD=round(mass_g * raw["price_USD_g"], 2),
+            part_number=f"{raw['material']}, {part.mass_g:.1f} g",
+            count=part.count,
+            price_USD=round(part.mass_g * raw["price_USD_g"], 2),
             priced=raw["priced"],
         )
-        for name, mass_g, count in masses
+        for part in printed
     ]
 
 
