@@ -33,7 +33,7 @@ def kept_token(project: Path) -> str:
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
         return _read(path)
-    with os.fdopen(handle, "w") as stream:
+    with os.fdopen(handle, "w", encoding="utf-8") as stream:
         stream.write(token := new_token())
         stream.flush()
         os.fsync(stream.fileno())
@@ -51,7 +51,7 @@ def _read(path: Path) -> str:
     # Windows knows no such permissions
     if os.name == "posix" and about.st_mode & 0o077:
         raise InputError(path, "permissions", "others on this machine can read it", REMEDY)
-    token = path.read_text(errors="replace").strip()
+    token = path.read_text(encoding="utf-8", errors="replace").strip()
     if not TOKEN.fullmatch(token):
         raise InputError(path, "whole file", "holds no token", REMEDY)
     return token
