@@ -116,7 +116,7 @@ def problem(line: str) -> str:
     text = re.split(r" (?:\||>|&&|…|\.\.\.)|[;…]", line)[0]
     words = shlex.split(text, comments=True)[1:]
     command: click.Command = cli
-    context = click.Context(cli)
+    context = click.Context(cli, **cli.context_settings)
     while isinstance(command, click.Group) and words and not words[0].startswith("-"):
         found = command.get_command(context, words[0])
         if found is None:
@@ -125,7 +125,7 @@ def problem(line: str) -> str:
             words = words[1:]
         else:
             return ""
-        command, context = found, click.Context(found)
+        command, context = found, click.Context(found, context)
     try:
         command.make_parser(context).parse_args(words)
     except click.NoSuchOption as error:

@@ -21,7 +21,7 @@ SET_IN_MAKE = re.compile(r"^(?:export )?([A-Z][A-Z0-9_]+) \?=", flags=re.MULTILI
 
 def commands(group: click.Group, path: str = "fdvv") -> Iterator[tuple[str, click.Command]]:
     """Give every command with the words that call it."""
-    context = click.Context(group)
+    context = click.Context(group, **cli.context_settings)
     for name in group.list_commands(context):
         command = group.get_command(context, name)
         assert command is not None
@@ -49,7 +49,7 @@ def test_every_option_tells_more_than_its_name(name: str) -> None:
 
 @pytest.mark.parametrize("name", ALL)
 def test_every_argument_is_told_in_the_help_of_its_command(name: str) -> None:
-    context = click.Context(ALL[name])
+    context = click.Context(ALL[name], **cli.context_settings)
     for argument in ALL[name].params:
         if isinstance(argument, click.Argument):
             word = argument.make_metavar(context).strip("[].")
