@@ -1,13 +1,8 @@
 """Does the self-test name the part that is wrong? Every fault on rigs drawn at random. Simulated.
 
 ``python -m benchmarks.hardware_diagnosis [rigs] [first seed] [sound rigs] [workers]``
-<<<<<<< HEAD
 Bounds were set on seeds below 1000. A drawn rig is what its builder has the settings for; what was built
 is off by what parts and hands leave.
-=======
-Bounds were set on seeds below 1000. A drawn rig is what its builder has settings for; what was built is off
-by what parts and hands leave.
->>>>>>> st-DOCS
 """
 
 from __future__ import annotations

@@ -35,9 +35,13 @@ RUN_ELSEWHERE = {
     "docs/tutorials/run-a-study.md": "test_tutorials.py",
     "docs/reference/recording-file.md": "recording/test_documents.py",
     "docs/reference/answers-file.md": "workflow/test_study_analyse_csv.py",
+    "docs/reference/library-files.md": "workflow/test_library.py",
+    "docs/reference/sweep-files.md": "workflow/test_sweep.py",
 }
 """Pages whose examples have a test of their own."""
-NOT_RUN: dict[str, str] = {}
+NOT_RUN: dict[str, str] = {
+    "docs/how-to/exchange.md": "begins from a recording of one's own",
+}
 """Pages whose examples no test runs, and why."""
 EXTRAS = {"docs/how-to/work-in-a-notebook.md": ("matplotlib", "pandas")}
 """Optional packages that a page needs."""

@@ -1,7 +1,5 @@
 /** The card of who sits here: in memory and in this tab's sessionStorage only, so that a reload finds the way back. */
 
-const HOLDER = "fdvv-holder";
-
 export interface Card {
   readonly person: string;
   readonly code: string;
@@ -10,13 +8,15 @@ export interface Card {
   readonly noted: boolean;
 }
 
+const holderKey = (study: string, seat: string) => `fdvv-holder:${study}:${seat}`;
+
 /** The word by which this tab alone holds a seat: who else sees the link cannot sit down on it. */
-export function holder(): string {
-  const known = sessionStorage.getItem(HOLDER);
+export function holder(study: string, seat: string): string {
+  const known = sessionStorage.getItem(holderKey(study, seat));
   if (known) return known;
   // randomUUID is only there where a page came encrypted or from this machine
   const drawn = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-  sessionStorage.setItem(HOLDER, drawn);
+  sessionStorage.setItem(holderKey(study, seat), drawn);
   return drawn;
 }
 
@@ -31,4 +31,10 @@ export function keptCard(study: string, seat: string): Card | null {
 export function keepCard(study: string, seat: string, card: Card | null): void {
   if (card) sessionStorage.setItem(key(study, seat), JSON.stringify(card));
   else sessionStorage.removeItem(key(study, seat));
+}
+
+/** The session is over: nothing of it stays in this tab. */
+export function forget(study: string, seat: string): void {
+  keepCard(study, seat, null);
+  sessionStorage.removeItem(holderKey(study, seat));
 }

@@ -5,7 +5,7 @@ import type { Channels, StudyAbout, StudyFrame, StudyReady, StudyStep } from "..
 import { batch, onCleanup, signal, type Signal } from "../../ui";
 import type { Led } from "../press/stage";
 import { Draft } from "./answer";
-import { holder, keepCard, keptCard, type Card } from "./keep";
+import { forget, holder, keepCard, keptCard, type Card } from "./keep";
 
 type Tell = Channels["study"]["tells"];
 type Ask = Channels["study"]["asks"];
@@ -60,7 +60,7 @@ export class StudySession implements Led {
   }
 
   sit(): void {
-    this.ask({ type: "sit", study: this.study, seat: this.seat, holder: holder(), language: this.language.peek() });
+    this.ask({ type: "sit", study: this.study, seat: this.seat, holder: holder(this.study, this.seat), language: this.language.peek() });
   }
 
   /** Go on with what stands on a card. */
@@ -148,7 +148,7 @@ export class StudySession implements Led {
       this.away();
     });
     if (card) this.send({ type: "resume", study: this.study, person: card.person, code: card.code });
-    else this.send({ type: "look", study: this.study, seat: this.seat, holder: holder() });
+    else this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
   }
 
   private take(message: Tell): void {
@@ -202,7 +202,7 @@ export class StudySession implements Led {
     this.step.set(step);
     this.standing.set(this.card.peek()?.noted === false ? "card" : "step");
     if (task) this.send({ type: "shown", number: task.number });
-    if (step.kind === "withdrawn" || step.kind === "declined" || step.kind === "done") keepCard(this.study, this.seat, null);
+    if (step.kind === "withdrawn" || step.kind === "declined" || step.kind === "done") forget(this.study, this.seat);
   }
 
   private takeReady(ready: StudyReady): void {
@@ -239,7 +239,7 @@ export class StudySession implements Led {
     if (this.standing.peek() === "step") return;
     this.card.set(null);
     keepCard(this.study, this.seat, null);
-    if (!this.about.peek()) this.send({ type: "look", study: this.study, seat: this.seat, holder: holder() });
+    if (!this.about.peek()) this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
   }
 
   private stop(reason: string): void {
