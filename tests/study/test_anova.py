@@ -48,7 +48,7 @@ def test_it_agrees_with_pingouin_on_every_column() -> None:
 
 @pytest.mark.slow
 def test_it_agrees_with_statsmodels_on_random_scores() -> None:
-    import pandas  # type: ignore[import-untyped]
+    import pandas
     from statsmodels.stats.anova import AnovaRM  # type: ignore[import-untyped]
 
     scores = some_scores(3, people=7, shape=(4, 3))

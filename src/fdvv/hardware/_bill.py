@@ -130,7 +130,11 @@ def load_bill(circuit: Circuit, printed: Iterable[Printed] | None = None) -> Bil
 
 
 def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] = ()) -> Bill:
-    """Read a bill from TOML text; needed : count of each electrical role."""
+    """Read a bill from TOML text.
+
+    needed : count of each electrical role. printed : the printed parts, of which the plastic is counted.
+    Raises InputError if a role is needed that the text does not have, or the other way round.
+    """
     document = tomllib.loads(text)
     lines = [_line(raw, needed) for raw in document["lines"]]
     lacking = sorted(set(needed) - {line.role for line in lines})
