@@ -143,8 +143,8 @@ def _curves(name: str, t_s: FloatArray, values: FloatArray) -> list[dict[str, An
 def read_ahap(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pulse:
     """Read the haptic events of an AHAP file as one pulse; sounds are left out.
 
-    scale_m_s2 : what intensity 1 stands for; by default what the file's description says. Where events
-        overlap the stronger one tells the frequency and their powers add. Raises InputError.
+    scale_m_s2 : what intensity 1 stands for; by default what the file's description says.
+    Where events overlap the stronger one tells the frequency and their powers add. Raises InputError.
     """
     name = "AHAP" if isinstance(source, bytes) else str(source)
     found = read_json(source, Pattern, name, WHAT)

@@ -80,8 +80,8 @@ class Hjif(msgspec.Struct):
 def hjif(vibration: Vibration, date: str, name: str = "vibration") -> Exported:
     """Write a vibration as an HJIF file of the main profile.
 
-    date : ISO 8601, that of the file. Raises ModelError if the vibration is silent, longer than 30 s or has a
-        mode above 24 kHz.
+    date : ISO 8601, that of the file.
+    Raises ModelError if the vibration is silent, longer than 30 s or has a mode above 24 kHz.
     """
     scale = sum(abs(mode.amplitude_m_s2) for mode in vibration.modes)
     if not scale:
@@ -152,7 +152,8 @@ def read_hjif(source: Path | str | bytes, scale_m_s2: float | None = None) -> tu
     """Read the sine effects of an HJIF file: one mode for each, and how long all together last, s.
 
     All must begin together, as a snap's do. scale_m_s2 : what amplitude 1 stands for; by default what the
-    description says. Raises InputError.
+    description says.
+    Raises InputError.
     """
     name = "HJIF" if isinstance(source, bytes) else str(source)
     found = read_json(source, Hjif, name, WHAT)

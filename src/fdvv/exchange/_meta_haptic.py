@@ -130,7 +130,8 @@ def meta_haptic(vibration: Vibration, name: str = "vibration") -> Exported:
 def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pulse:
     """Read a .haptic file as a pulse; an emphasis lifts the amplitude of its breakpoint.
 
-    scale_m_s2 : what amplitude 1 stands for; by default what the file's description says. Raises InputError.
+    scale_m_s2 : what amplitude 1 stands for; by default what the file's description says.
+    Raises InputError.
     """
     name = ".haptic" if isinstance(source, bytes) else str(source)
     found = read_json(source, Haptic, name, WHAT)

@@ -54,7 +54,10 @@ class SpringButton:
     errors: tuple[tuple[Stroke, float | None, float, float], ...]
 
     def force_at_cN(self, displacement_mm: FloatArray, velocity_mm_s: float, stroke: Stroke) -> FloatArray:
-        """Evaluate what the springs give at a speed (positive) of a stroke."""
+        """Evaluate what the springs give on a stroke.
+
+        velocity_mm_s : its speed, positive.
+        """
         line = np.interp(displacement_mm, self.displacement_mm, self.force_cN)
         sign = 1.0 if stroke is Stroke.PRESS else -1.0
         return np.asarray(line + sign * (self.friction_cN + self.damping_cN_s_mm * velocity_mm_s))
@@ -70,7 +73,8 @@ def spring_button(
 
     Friction and damping are the least squares of half the difference of press and release over speed, neither
     below 0; the line is what then is left of the presses or of both strokes: at one velocity if one is given,
-    else the mean over the model's.
+    else the mean over the model's. Pieces of the line stray from it by tolerance_cN at most.
+    velocity_mm_s : of that one velocity; None: all of the model's.
     """
     if not model.of(Stroke.PRESS):
         raise ModelError(f"model {model.name!r} has no press curve, MuJoCo's joint needs one")
@@ -128,7 +132,8 @@ def mjcf(
     """Write a button as an MJCF file of its own: body, slide joint, springs, sensors, points of the contact.
 
     Displacement is the joint's position in m, positive into the button; control ``button`` is what a finger
-    adds, N. Raises ModelError if the model has no press curve or the mass is not positive.
+    adds, N. velocity_mm_s : the one velocity that the line is of; None: all of the model's.
+    Raises ModelError if the model has no press curve or the mass is not positive.
     """
     if not (np.isfinite(cap_mass_g) and cap_mass_g > 0):
         raise ModelError(f"cap_mass_g must be positive, got {cap_mass_g}")

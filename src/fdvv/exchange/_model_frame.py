@@ -23,10 +23,10 @@ def model_to_xarray(
     """Give a model as a dataset: ``force`` and ``stiffness`` over stroke, velocity and displacement.
 
     velocities_mm_s : by default those the model has curves at; a model of unknown velocity has the one
-        coordinate NaN. Displacement goes in steps from 0 to the travel, its end included. Units are in
-        ``attrs["units"]`` as CF's conventions write them; travel, contact points and provenance in the
-        dataset's attributes. A stroke without curves is left out. Raises BuildError without xarray,
-        ModelError for a step that is not positive.
+    coordinate NaN.
+    Displacement goes in steps from 0 to the travel, its end included. Units are in ``attrs["units"]`` as CF's
+    conventions write them; travel, contact points and provenance in the dataset's attributes. A stroke
+    without curves is left out. Raises BuildError without xarray, ModelError for a step that is not positive.
     """
     require_frames()
     import xarray as xr

@@ -48,8 +48,9 @@ class MujocoButton:
         self._release: list[list[float]] = table.release_cN.tolist()
 
     def force_cN(self, displacement_mm: float, velocity_mm_s: float) -> float:
-        """Give the force against the finger; velocity is signed, positive on the press.
+        """Give the force against the finger.
 
+        velocity_mm_s : signed, positive on the press.
         From the model's own curves, tabulated every 2 µm; within 2 mm/s of rest press and release are mixed.
         """
         at = self._place(displacement_mm, abs(velocity_mm_s))
@@ -66,7 +67,10 @@ class MujocoButton:
         return row, max(0.0, min(1.0, (v_mm_s - self._speeds[row]) / step)), column, across
 
     def passive(self, model: Any, data: Any) -> None:
-        """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``."""
+        """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``.
+
+        model, data : MuJoCo's own.
+        """
         dof, force_N = self._ask(model, data)
         data.qfrc_passive[dof] -= force_N
 
@@ -74,14 +78,17 @@ class MujocoButton:
         """Set the joint's applied force for the next step: for loops that want no callback.
 
         Call it before every ``mj_step``; force and ``closed`` then are those of the step's beginning. MuJoCo
-        clears the contact's sensor in the step, as it does without a callback.
+        clears the contact's sensor in the step, as it does without a callback. model, data : MuJoCo's own.
         """
         dof, force_N = self._ask(model, data)
         data.qfrc_applied[dof] = -force_N
         self._switch(model, data)
 
     def sense(self, model: Any, data: Any, stage: int) -> None:
-        """Write whether the contact is closed into its sensor: MuJoCo's ``mjcb_sensor``."""
+        """Write whether the contact is closed into its sensor: MuJoCo's ``mjcb_sensor``.
+
+        model, data : MuJoCo's own.
+        """
         if stage == POSITION_STAGE:
             self._switch(model, data)
 

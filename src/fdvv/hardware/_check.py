@@ -121,7 +121,10 @@ def meetings(assembly: Assembly, state: State) -> list[Meeting]:
 def clearances(
     assembly: Assembly, tell: Callable[[int, int], None] = lambda _done, _total: None
 ) -> list[Clearance]:
-    """Give the smallest gap of every pair that moves against each other and does not touch by design."""
+    """Give the smallest gap of every pair that moves against each other and does not touch by design.
+
+    tell : called with how many states are done, and how many there are.
+    """
     closest: dict[tuple[str, str], Clearance] = {}
     todo = list(states(assembly.d))
     for done, state in enumerate(todo):

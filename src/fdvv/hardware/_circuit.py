@@ -22,8 +22,8 @@ class Pin:
     Attributes
     ----------
     name : as printed on the board. number, chip, signal : of the package, of the chip, of the firmware.
-    type : one of PIN_TYPES.
-    V : what a source or a high output gives. ohm : inside an output. limit_mA : of a source.
+    type : one of PIN_TYPES; V : what a source or a high output gives. ohm : inside an output.
+    limit_mA : of a source.
     low_V, high_V : of a supply its range; of an input high_V is the level from which it reads as high.
     max_V : what destroys an input. max_source_ohm : largest resistance of what drives a converter.
     bias : it sets its own rest level. load_ohm : what it loads its driver with.
@@ -63,7 +63,10 @@ class Pin:
 
 @dataclass(frozen=True)
 class Kind:
-    """What parts of one kind have in common: pins by name, and where their figures come from."""
+    """What parts of one kind have in common: pins by name, and tolerance of their value.
+
+    source : where their figures come from.
+    """
 
     name: str
     about: str
@@ -91,7 +94,10 @@ class Component:
 
 @dataclass(frozen=True)
 class Sheet:
-    """What is drawn together; each path leads from pin to pin; grounds are listed below."""
+    """What is drawn together.
+
+    name, title : of the sheet. paths : each leads from pin to pin. grounds : are listed below.
+    """
 
     name: str
     title: str
@@ -142,7 +148,7 @@ class Circuit:
         return [f"{part.ref}.{pin}" for part in self.parts.values() for pin in part.kind.pins]
 
     def between(self, kind: str) -> list[tuple[Component, str, str]]:
-        """List the parts of a kind with two pins, and the nets they join."""
+        """List the parts of a kind (its name) with two pins, and the nets they join."""
         found = [part for part in self.parts.values() if part.kind.name == kind]
         return [(p, self.net_of.get(f"{p.ref}.1", ""), self.net_of.get(f"{p.ref}.2", "")) for p in found]
 

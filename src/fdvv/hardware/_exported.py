@@ -55,8 +55,8 @@ class FolderCheck:
 def check_exported(folder: Path | str, tell: Tell = lambda _label, _done, _total: None) -> FolderCheck:
     """Check exported parts and how they go together, with the dimensions that their manifest tells.
 
-    tell : is called with what is being done, and how much of it. Raises InputError where the folder cannot be
-    read; BuildError without manifold3d.
+    tell : is called with what is being done, and how much of it.
+    Raises InputError where the folder cannot be read; BuildError without manifold3d.
     """
     manifest = read_manifest(folder)
     d = manifest.made_from()

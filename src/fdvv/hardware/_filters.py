@@ -42,7 +42,10 @@ class FilterValues:
 
 @dataclass(frozen=True)
 class Step:
-    """What one step of a converter means: at its pin, and of what is measured."""
+    """What one step of a converter means.
+
+    volts_mV : at its pin. value, unit : of what is measured. full_scale : the most that is measured, in unit.
+    """
 
     name: str
     net: str

@@ -21,7 +21,13 @@ CONTACTS = ("fuse", "switch")
 
 @dataclass(frozen=True)
 class PowerState:
-    """What drives: outputs high or low, references whose outputs let go, parts pulled out, contacts open."""
+    """What drives.
+
+    Attributes
+    ----------
+    high : outputs are high, else low. released : references of parts whose outputs let go.
+    absent : references of parts that are pulled out. contacts_open : no contact is closed.
+    """
 
     high: bool = True
     released: Collection[str] = ()
@@ -31,7 +37,7 @@ class PowerState:
 
 @dataclass(frozen=True)
 class Level:
-    """A net's voltage in a state, and the resistance behind it; floats if nothing holds it."""
+    """A net's voltage (V) in a state, and the resistance behind it (ohm); floats if nothing holds it."""
 
     V: float
     ohm: float

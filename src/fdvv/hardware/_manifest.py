@@ -22,7 +22,10 @@ KIND = Kind(FORMAT, VERSION, "a manifest of exported parts", REMEDY)
 
 
 class MadePart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """An exported part: what the CAD kernel measured of its solid, and its files with their SHA-256."""
+    """An exported part: what the CAD kernel measured of its solid, and its files.
+
+    files : SHA-256 of each file, by its name.
+    """
 
     volume_cm3: float
     area_cm2: float

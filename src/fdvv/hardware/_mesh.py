@@ -73,7 +73,10 @@ class Mesh:
 
 
 def joined(corners_mm: FloatArray) -> Mesh:
-    """Make a mesh from loose triangles (m, 3, 3): corners at the same place become one point; slivers go."""
+    """Make a mesh from loose triangles: corners at the same place become one point; slivers go.
+
+    corners_mm : of each triangle (m, 3, 3).
+    """
     rounded = np.rint(corners_mm.reshape(-1, 3) / ROUND_mm).astype(np.int64)
     places, index = np.unique(rounded, axis=0, return_inverse=True)
     triangles = index.reshape(-1, 3)

@@ -15,7 +15,11 @@ ILIM_V = 64e3
 
 @dataclass(frozen=True)
 class Rail:
-    """What a source gives: voltage, its limit, what its consumers take usually and at most."""
+    """What a source gives.
+
+    source : its pin. net : the one that it feeds. V : voltage. limit_mA : the most it can give.
+    usual_mA : what its consumers take usually; peak_mA : at most.
+    """
 
     source: str
     net: str

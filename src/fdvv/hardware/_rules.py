@@ -19,7 +19,10 @@ SAME_V = 0.2
 
 @dataclass(frozen=True)
 class Violation:
-    """One broken rule: its name, pin or net, what was found, what to do."""
+    """One broken rule.
+
+    rule : its name. place : pin or net. reason : what was found. remedy : what to do.
+    """
 
     rule: str
     place: str

@@ -42,6 +42,7 @@ def choose_coil(
 ) -> Coil:
     """Choose the spring whose force varies least with wire and coil, among those that fit and hold.
 
+    preload_cN : force at rest. rate_cN_mm : stiffness. travel_mm : of the slider. material : one of WIRES.
     Raises ModelError that says what stands in the way if there is none.
     """
     if not (rate_cN_mm > 0 and preload_cN >= 0):

@@ -124,7 +124,11 @@ def cone_force_N(
     young_MPa: float,
     poisson_ratio: float = RUBBER_POISSON_ratio,
 ) -> FloatArray:
-    """Give the force of a truncated cone pressed in by s (mm), edges free to turn and to widen."""
+    """Give the force of a truncated cone pressed in by s (mm), edges free to turn and to widen.
+
+    outer_mm : radius of the wall's middle line at its foot; inner_mm : at its top; height_mm : of that line;
+    wall_mm : thickness of the wall; young_MPa : Young's modulus; poisson_ratio : Poisson's.
+    """
     part = _section(s, outer_mm, inner_mm, height_mm, wall_mm)
     moment = np.einsum("ij,ij,j->i", part.strain, part.rate, part.weight)
     modulus = young_MPa / (1.0 - poisson_ratio**2)

@@ -82,7 +82,10 @@ class Leaf:
         return TIP_MASS_ratio * volume_mm3 * self.strip.density_kg_m3 * 1e-6
 
     def force_cN(self, height_mm: FloatArray) -> FloatArray:
-        """Give the force between leaf and cam at a height of the cam; 0 where the cam has left the leaf."""
+        """Give the force between leaf and cam; 0 where the cam has left the leaf.
+
+        height_mm : of the cam, 0 where the leaf just reaches the fixed contact.
+        """
         alone = self.preload_cN + self.stiffness_cN_mm * height_mm
         both = self.preload_cN + (self.stiffness_cN_mm + self.contact_cN_mm) * height_mm
         return np.asarray(np.where(height_mm >= 0.0, alone, np.maximum(both, 0.0)))

@@ -14,8 +14,10 @@ LENGTH_STEP_mm, OFFSET_STEP_mm = 0.05, 0.01
 
 
 def choose_leaf(preload_cN: float, stiffness_cN_mm: float, largest_cN: float, making: Making) -> Leaf:
-    """Choose the least stressed leaf of a stiffness; largest_cN is the most that the cam asks of it.
+    """Choose the least stressed leaf of a stiffness.
 
+    preload_cN : its force where it just reaches the fixed contact. stiffness_cN_mm : of its tip.
+    largest_cN : the most that the cam asks of it.
     Raises ModelError if none is short enough, long enough and strong enough.
     """
     leaves = list(_candidates(preload_cN, stiffness_cN_mm, making))

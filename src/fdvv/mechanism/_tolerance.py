@@ -43,7 +43,10 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Share:
-    """What one tolerance alone does: rms change of both strokes (cN) at its limit."""
+    """What one tolerance alone does.
+
+    rms_cN : rms change of both strokes at its limit.
+    """
 
     tolerance: Tolerance
     rms_cN: float

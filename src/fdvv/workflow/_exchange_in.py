@@ -56,7 +56,7 @@ class ImportSettings:
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """A model, the format it came in, and what was repaired or assumed, one sentence each."""
+    """A model, the format it came in, and notes: what was repaired or assumed, one sentence each."""
 
     model: FDVVModel
     format: str

@@ -18,7 +18,7 @@ LAY_s, LAY_mm = 0.2, 0.7
 HAND_N = 4.0
 """Overcomes a slider that sticks."""
 SOUND = RigFault("", "nothing is wrong")
-"""Of a rig that is whole."""
+"""The fault of a rig that has none."""
 G_cN = 0.980665
 """Weight of a gram."""
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pyarrow import Table
 
 By = Literal["all", "curve", "landmarks"]
-"""What likeness is told by."""
+"""What likeness is told by: force, shape and landmarks; the first two; or landmarks alone."""
 PARTS: dict[By, tuple[int, ...]] = {"all": (0, 1, 2), "curve": (0, 1), "landmarks": (2,)}
 """Which of the distances of force, shape and landmarks count."""
 ASKED = "asked:"
