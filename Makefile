@@ -38,7 +38,7 @@ test: check ## Every check and every test of the default run
 	$(BIN)/pytest -n 2 -m "not slow and not browser"
 
 test-slow: setup ## The long tests
-	$(BIN)/pytest -n 2 --timeout 300 -m "slow and not browser"
+	$(BIN)/pytest -n 2 --timeout 300 --durations 25 -m "slow and not browser"
 
 test-browser: setup web-tools ## Drive the studio in a real browser
 	$(BIN)/pytest -n 2 --timeout 180 -m browser

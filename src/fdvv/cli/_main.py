@@ -34,7 +34,7 @@ COMMANDS = {
     "fit": ("fdvv.cli._fit", "Fit measured force curves: one file, or every file of a folder."),
     "hardware": (
         "fdvv.cli._hardware",
-        "Build a rig: what to print and buy, how to wire it, which part is wrong.",
+        "Build a rig: what to print and to buy, how to wire it, and which part is wrong.",
     ),
     "import": ("fdvv.cli._exchange", "Read a file of another program into a model."),
     "join": ("fdvv.cli._join", "Join logs of instruments that ran at once into a recording."),
