@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 def test_every_page_is_reached_by_a_key_and_by_a_link(page: Page) -> None:
     names = page.eval_on_selector_all("nav a", "links => links.map(a => a.getAttribute('href').slice(2))")
-    assert names == ["library", "edit", "press", "live", "programs", "optimize"]
+    assert names == ["library", "edit", "press", "live", "programs", "optimize", "studies"]
     for number, name in enumerate(names, start=1):
         page.keyboard.press(f"Alt+{number}")
         page.wait_for_selector(f"main[data-page={name}]")
