@@ -67,7 +67,7 @@ def fitted(data: OrdinalData, nodes: int) -> OrdinalFit:
     free = _freed(start.flat(), cuts.size)
     found = minimize(falling, free, jac=True, method="BFGS", options={"gtol": 1e-5, "maxiter": 500})
     point = start.moved(_ordered(found.x, cuts.size))
-    steepest = float(np.abs(found.jac).max()) / float(data.count.sum())
+    steepest = float(np.abs(np.asarray(found.jac, float)).max()) / float(data.count.sum())
     return OrdinalFit(point, -float(found.fun), _covariance(data, point, nodes), steepest)
 
 
