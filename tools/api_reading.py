@@ -164,7 +164,8 @@ def _fields(room: str, found: type[Any], doc: str) -> tuple[Said | None, tuple[P
     if _kind(found) in ("error", "contract"):
         return read(doc, ())[0], ()
     made = None if dataclasses.is_dataclass(found) else vars(found).get("__init__")
-    whole = f"{doc}\n\n{inspect.cleandoc(getattr(made, '__doc__', None) or '')}".strip()
+    more = inspect.cleandoc(made.__doc__ or "") if made is not None else ""  # None has words of its own
+    whole = f"{doc}\n\n{more}".strip()
     given = parameters(found)
     said, entries = read(whole, tuple(p.name for p in given))
     return said, tuple(_part(room, p, _field_texts(found) | entries, whole) for p in given)
