@@ -110,11 +110,7 @@ class DeviceTrial:
         )
         start_s, end_s = (1e-3 * (at_ms + ask.clock_ms) for at_ms in (ask.start_ms, ask.end_ms))
         pressed_s = self._key.pressed_s(start_s, end_s)
-        activations_s = tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s)
-        target_s = 1e-3 * (ask.target_ms + ask.display.ms)
-        finished = self._played.keep(target_s, activations_s, timing)
-        late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
-        return m.PlayKept(ask.number, late_ms, None, finished)
+        return self._played.over(ask, tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s), timing)
 
     def close(self) -> None:
         """Have the device fall to zero force, and put the trial away."""

@@ -100,7 +100,6 @@ class LiveTrial:
 
     def keep(self, ask: m.PlayRound) -> m.PlayKept:
         """Bring a round to the disk, and score the trial after the last one."""
-        transport_ms = self._transport_ms(ask)
         timing = RoundTiming(
             ClockSource.PAGE,
             ask.display.ms,
@@ -109,16 +108,12 @@ class LiveTrial:
             ask.input.error_ms,
             ask.clock_ms,
             ask.clock_error_ms,
-            transport_ms,
+            self._transport_ms(ask),
             ask.frame_ms,
             ask.hand,
         )
         found = self._times.between(ask.start_ms / 1e3, ask.end_ms / 1e3)
-        target_s = (ask.target_ms + ask.display.ms) / 1e3
-        activations_s = tuple(at_s - ask.input.ms / 1e3 for at_s in found)
-        finished = self.played.keep(target_s, activations_s, timing)
-        late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
-        return m.PlayKept(ask.number, late_ms, transport_ms, finished)
+        return self.played.over(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
 
     def _transport_ms(self, ask: m.PlayRound) -> float | None:
         """Give how long the round's first press was on its way here."""

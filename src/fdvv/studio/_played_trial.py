@@ -8,6 +8,7 @@ from typing import Protocol
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize import Trial, TrialState
+from fdvv.studio._messages_play import PlayKept, PlayRound
 from fdvv.studio._pointing import pointing_of, require_player
 from fdvv.workflow import OptimizeSession, PlayedRounds, RoundTiming
 
@@ -79,6 +80,13 @@ class PlayedTrial:
             except ModelError as error:
                 session.fail(self._number, str(error))
         return True
+
+    def over(self, ask: PlayRound, activations_s: tuple[float, ...], timing: RoundTiming) -> PlayKept:
+        """Keep a round that the page tells of, with what was pressed in it; InputError as of keep()."""
+        target_s = (ask.target_ms + ask.display.ms) / 1e3
+        finished = self.keep(target_s, activations_s, timing)
+        late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
+        return PlayKept(ask.number, late_ms, timing.transport_ms, finished)
 
     def fail(self, reason: str) -> None:
         """Keep that this design cannot be played, and let go of the run."""
