@@ -191,7 +191,8 @@ def test_a_dear_change_is_made_less_often_where_its_cost_is_known() -> None:
         case = Problem(SPACE, problem().objectives, 1)
         trials = run(engine_of("gp", given), case, 16, truth)  # type: ignore[arg-type]
         built[name] = len({trial.design["y1_cN"] for trial in trials})
-    assert built["dear"] < built["free"] == 16
+    # a force at the end of its range may come twice where it costs nothing
+    assert 2 * built["dear"] < built["free"]
 
 
 def test_places_are_arrays_of_the_unit_cube() -> None:

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from fdvv.optimize._places import missing
 from fdvv.units import FloatArray
 
-LENGTH = (0.15, 0.5)
+LENGTH = (0.2, 0.7)
 """Prior of a log length: mean is log of this times the root of d, SD the second; ranges are 1 wide."""
 SIGNAL, SIGNAL_BESIDE = (0.1, 0.5), (-1.2, 0.7)
 KNOWN_NOISE, UNKNOWN_NOISE = (-4.0, 1.0), (-2.0, 1.0)
