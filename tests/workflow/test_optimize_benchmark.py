@@ -6,20 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.optimize_engines import (
-    BASELINE,
-    LOOKS,
-    PEOPLE,
-    SEEDS,
-    SMOOTHED,
-    Run,
-    Runner,
-    Variant,
-    compare,
-    needed,
-    runs_of,
-)
+from benchmarks.optimize_engines import Runner, Variant, compare, runs_of
 from benchmarks.optimize_people import Person, expected_ms
+from benchmarks.optimize_tables import BASELINE, LOOKS, PEOPLE, SEEDS, SMOOTHED, Run, needed
 
 from fdvv.optimize import paper_model, paper_space
 
@@ -52,7 +41,7 @@ def test_the_true_value_is_the_mean_of_many_scores(level: str) -> None:
 @pytest.mark.slow
 def test_runs_are_kept_and_gone_on_with(tmp_path: Path) -> None:
     variants = {"random": Variant("random", budget=2), "sobol": Variant("sobol", budget=2)}
-    runner = Runner(tmp_path, people_seed=7, variants=variants)
+    runner = Runner(tmp_path, first_seed=7, variants=variants)
     one = compare(tmp_path, runs_of(1, variants), runner, 1)
     two = compare(tmp_path, runs_of(2, variants), runner, 2)
     assert {run: two[run] for run in one} == one
@@ -61,7 +50,7 @@ def test_runs_are_kept_and_gone_on_with(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_baseline_answers_in_two_ways_from_the_same_trials(tmp_path: Path) -> None:
-    runner = Runner(tmp_path, people_seed=7, variants={BASELINE: Variant("gp-ei", budget=3)})
+    runner = Runner(tmp_path, first_seed=7, variants={BASELINE: Variant("gp-ei", budget=3)})
     found = runner(Run(BASELINE, 0, "easy"))
     assert found.keys() == {BASELINE, SMOOTHED}
     assert [len(values) for values in found.values()] == [3, 3]
