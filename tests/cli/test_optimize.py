@@ -228,3 +228,12 @@ def test_an_experiment_is_not_gone_on_with_under_other_settings(fdvv: Run) -> No
     ran = fdvv(*short, "--engine", "random")
     assert ran.status == 2
     assert "was begun with engine 'sobol', not 'random'" in ran.err
+
+
+def test_an_experiment_begins_from_a_grid_of_each_level_or_from_none(fdvv: Run, tmp_path: Path) -> None:
+    run_population(tmp_path / "easy", PopulationPlan(kind="grid", people=2, designs=3, rounds=2), Here())
+    ran = fdvv(*EXPERIMENT, "--seed", "1", "--prior", "easy")
+    assert ran.status == 2
+    assert "hard: is a level without a grid" in ran.err
+    assert "both are drawn with seed 0" in fdvv(*EXPERIMENT, "--prior", "easy").err
+    assert not (tmp_path / "e").exists()

@@ -40,6 +40,10 @@ REPORT, MODEL, RESULT = "report.html", "winner.fdvv.json", "result.json"
 @click.option("--rounds", type=click.IntRange(1, 20), default=2, show_default=True,
               help="How often each button appears per level.")  # fmt: skip
 @engine_option("gp")
+@click.option("--prior", "priors", multiple=True,
+              type=click.Path(path_type=Path, exists=True, file_okay=False),
+              help="Begin every training from what others did: a finished fdvv optimize population --grid; "
+              "give it twice, one of each level.")  # fmt: skip
 @rig_option
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of everything random."
@@ -49,8 +53,8 @@ REPORT, MODEL, RESULT = "report.html", "winner.fdvv.json", "result.json"
               help="Render the winning design on a simulated rig and capture it as a model.")  # fmt: skip
 @json_option
 def experiment(
-    folder: Path, engine: tuple[str, dict[str, Any]], processes: int | None, winner: bool, as_json: bool,
-    **asked: Any,
+    folder: Path, engine: tuple[str, dict[str, Any]], priors: tuple[Path, ...], processes: int | None,
+    winner: bool, as_json: bool, **asked: Any,
 ) -> None:  # fmt: skip
     """Run the paper's whole experiment on simulated people.
 
@@ -61,6 +65,7 @@ def experiment(
     check_folder(folder)
     from fdvv.workflow import (
         ExperimentSetup,
+        experiment_prior,
         judge_experiment,
         open_executor,
         run_experiment,
@@ -68,7 +73,8 @@ def experiment(
     )
 
     begun_s = time.perf_counter()
-    setup = ExperimentSetup(engine=engine[0], options=engine[1], **asked)
+    prior = experiment_prior(priors, asked["seed"])
+    setup = ExperimentSetup(engine=engine[0], options=engine[1], prior=prior, **asked)
     with stages() as stage, _kept(folder), open_executor(processes) as executor:
         result = run_experiment(folder, setup, executor, stage)
         rendered = _rendered(result, folder, stage) if winner else None

@@ -65,11 +65,11 @@ def population(
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
-    from fdvv.workflow import open_executor, read_population, run_population
+    from fdvv.workflow import open_executor, read_grid, run_population
 
     check_executor(processes, workers, cluster)
     plan = _plan(people, level, engine, budget, grid, seed, shifts, rig)
-    trials = read_population(prior).prior() if prior else ()
+    trials = read_grid(prior).prior() if prior else ()
     with (
         kept_on_interrupt(folder),
         open_executor(processes, workers, cluster) as executor,

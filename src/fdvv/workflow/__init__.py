@@ -164,6 +164,7 @@ if TYPE_CHECKING:
         model_space_setup,
         read_setup,
     )
+    from fdvv.workflow._others import experiment_prior, read_grid
     from fdvv.workflow._paper_like import paper_design_like
     from fdvv.workflow._paper_means import PaperFit, PaperModel, PaperPresses, PaperStudy, fit_paper
     from fdvv.workflow._participant import Participant
@@ -537,6 +538,7 @@ __all__ = [
     "drawn_traces",
     "expected_ms",
     "experiment_html",
+    "experiment_prior",
     "experiment_report",
     "export_button",
     "export_format",
@@ -629,6 +631,7 @@ __all__ = [
     "read_chained",
     "read_code_book",
     "read_experiment_setup",
+    "read_grid",
     "read_population",
     "read_press_trace",
     "read_program",

@@ -61,6 +61,7 @@ class ExperimentResult:
             "seed": self.setup.seed,
             "engine": self.setup.engine,
             "people": self.setup.people,
+            "prior_designs": {level: len(trials) for level, trials in self.setup.prior.items()},
             "observations": [asdict(one) for one in self.observations],
             "designs": [
                 {"person": one.person, "level": one.level, "parameters": one.best} for one in self.trainings

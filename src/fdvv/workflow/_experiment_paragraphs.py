@@ -19,11 +19,13 @@ def method_paragraphs(setup: ExperimentSetup) -> tuple[str, ...]:
 
 def _training(setup: ExperimentSetup) -> str:
     levels = " and ".join(level_title(level) for level in LEVELS)
+    others = " and ".join(f"{len(trials)} designs ({level})" for level, trials in setup.prior.items())
+    told = f" Every training begins from the mean scores that other simulated people gave {others}."
     return (
         f"{setup.people} simulated people play temporal pointing without visual feedback of the press at two "
         f"levels, {levels}. In training, each has {setup.trials} trials of {setup.presses} presses per "
         f"level; the engine {setup.engine} suggests the next design from the mean asynchronies so far. Every "
-        "second person begins with the hard level."
+        f"second person begins with the hard level.{told if others else ''}"
     )
 
 

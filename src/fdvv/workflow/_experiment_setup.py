@@ -11,13 +11,14 @@ from msgspec import Meta, Struct
 from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import InputError
 from fdvv.files import read_limited, write_atomic
+from fdvv.optimize import Trial
 from fdvv.workflow._session_manifest import now, versions
 
 EXPERIMENT_FILE = "experiment.json"
 KIND = Kind(
     "fdvv-experiment", 1, "an experiment", "name the folder of an experiment, or one that is new or empty"
 )
-LARGEST_bytes = 1_000_000
+LARGEST_bytes = 16_000_000
 LEVELS = ("easy", "hard")
 OPTIMAL, RANDOM = "optimal", "random"
 MX = ("mx-clear", "mx-brown", "mx-black", "mx-red")
@@ -52,6 +53,7 @@ class ExperimentSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     engine, options : what suggests designs. rig : what renders them.
     rivals : built-in buttons to compare with, a random design aside.
     gap : see WeekGap.
+    prior : by level, finished trials of others that every training begins from; of none: from nothing.
     """
 
     format: Literal["fdvv-experiment"] = "fdvv-experiment"
@@ -65,6 +67,7 @@ class ExperimentSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     rig: str = "ideal"
     rivals: Annotated[tuple[str, ...], Meta(min_length=1)] = MX
     gap: WeekGap = WeekGap()
+    prior: dict[str, tuple[Trial, ...]] = {}
     seed: Annotated[int, Meta(ge=0)] = 0
     versions: dict[str, str] = msgspec.field(default_factory=versions)
     created: str = msgspec.field(default_factory=now)
@@ -92,7 +95,11 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
         return there
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "folder", "is not empty and holds no experiment", "name a new one")
-    write_atomic(path, pretty(msgspec.to_builtins(setup)) + "\n")
+    text = pretty(msgspec.to_builtins(setup)) + "\n"
+    if len(text) > LARGEST_bytes:
+        reason = f"larger than {LARGEST_bytes // 1_000_000} MB"
+        raise InputError("setup", "prior", reason, "begin from fewer trials of others")
+    write_atomic(path, text)
     return setup
 
 
@@ -110,4 +117,6 @@ def _check_same(path: Path, there: ExperimentSetup, asked: ExperimentSetup) -> N
     for name in ExperimentSetup.__struct_fields__:
         if name not in MADE and getattr(there, name) != getattr(asked, name):
             begun = f"was begun with {name} {getattr(there, name)!r}, not {getattr(asked, name)!r}"
+            if name == "prior":
+                begun = "was begun from other trials of others"
             raise InputError(path, f"$.{name}", begun, "go on with the same, or name a new folder")

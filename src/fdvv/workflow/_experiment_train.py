@@ -88,6 +88,7 @@ class Train:
             level=level,
             seed=play_seed(setup.seed, TRAINING, person, LEVELS.index(level)),
             budget=setup.trials,
+            prior=setup.prior.get(level, ()),
             simulated=True,
             about={**about_player(person, setup.rig, setup.presses), "drawn_with_seed": setup.seed},
         )

@@ -16,7 +16,7 @@ from fdvv.workflow._open import open_model
 from fdvv.workflow._optimize_player import POINTING, about_player, task_named
 from fdvv.workflow._optimize_session import OptimizeSession
 from fdvv.workflow._optimize_setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
-from fdvv.workflow._population_result import RESULT_FILE, read_population
+from fdvv.workflow._others import read_grid
 from fdvv.workflow._rig_shelf import SHIPPED_RIGS, SUFFIX
 
 PAPER = "paper"
@@ -91,10 +91,7 @@ def _about(asked: RunAsked) -> dict[str, Any]:
 def _prior(asked: RunAsked) -> tuple[Trial, ...]:
     if asked.prior is None:
         return ()
-    if not (asked.prior / RESULT_FILE).is_file():
-        remedy = "name the folder of a finished fdvv optimize population --grid"
-        raise InputError("--prior", str(asked.prior), "holds no grid that is finished", remedy)
-    found = read_population(asked.prior)
+    found = read_grid(asked.prior)
     if asked.space != PAPER or asked.task != POINTING:
         reason = f"others played {POINTING} with designs of the space {PAPER}"
         raise InputError("--prior", str(asked.prior), reason, "leave it out, or play the same")
