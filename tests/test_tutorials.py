@@ -187,3 +187,23 @@ def test_a_study_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[st
     dry = ["new", "freeze", "simulate", "unseal", "analyse"]
     assert ran_here == ["new", "check", "power", *dry, "freeze", "verify"]
     assert "simulated" in (tmp_path / "dry-run.html").read_text().lower()
+
+
+OPTIMISE = REPOSITORY / "docs" / "tutorials" / "optimise.md"
+CUT = {"population": ("--people", "2", "--grid", "4"), "experiment": ("--people", "3", "--trials", "2")}
+"""What takes minutes is run with fewer people and designs; of an option given twice the last counts."""
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_optimising_goes_as_the_tutorial_shows(tmp_path: Path, environment: dict[str, str]) -> None:
+    ran_here = list[str]()
+    for language, text in blocks(OPTIMISE):
+        if language == "console":
+            for command, shown in steps(text):
+                check([*command, *CUT.get(command[2], ())], shown, tmp_path, environment)
+                ran_here.append(command[2])
+    begun = ["run", "report", "replay", "resume"]
+    others = ["population", "run", "run", "experiment", "population", "experiment"]
+    assert ran_here == [*begun, "run", *others]
+    assert "simulated" in (tmp_path / "warm-experiment" / "report.html").read_text().lower()

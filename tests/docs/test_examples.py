@@ -33,6 +33,7 @@ RUN_ELSEWHERE = {
     "docs/tutorials/compensate-a-rig.md": "test_tutorials.py",
     "docs/tutorials/capture-a-button.md": "test_tutorials.py",
     "docs/tutorials/run-a-study.md": "test_tutorials.py",
+    "docs/tutorials/optimise.md": "test_tutorials.py",
     "docs/reference/recording-file.md": "recording/test_documents.py",
     "docs/reference/answers-file.md": "workflow/test_study_analyse_csv.py",
     "docs/reference/library-files.md": "workflow/test_library.py",
