@@ -14,6 +14,7 @@ from playwright.sync_api import expect
 from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
 from tests.workflow.test_device_key import KeyedRig
+from tests.workflow.test_others import grid
 
 from fdvv.optimize import Answer, TrialState
 from fdvv.workflow import (
@@ -292,6 +293,20 @@ def test_a_simulated_person_goes_on_while_the_page_is_away(page: Page, studio: R
     page.wait_for_selector("text=simulated person 0: 3 of 3 trials, done")
     assert page.locator(".tag.simulated").count() >= 2
     expect(page.locator("tbody tr")).to_have_count(3)
+
+
+def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: RunningStudio) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    expect(page.locator(".opt-fields code")).to_contain_text("fdvv optimize population others/easy")
+    grid(studio.project / "others" / "easy", "easy")
+    page.reload()
+    page.get_by_label("Others").select_option("easy")
+    page.get_by_label("Designs").select_option("FDV")
+    expect(page.get_by_label("Others")).to_have_count(0)
+    page.get_by_label("Designs").select_option("paper")
+    page.get_by_label("Others").select_option("easy")
+    begin(page, "gp")
+    expect(page.get_by_text("begun from 5 designs scored by 2 simulated people, easy")).to_be_visible()
 
 
 def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:

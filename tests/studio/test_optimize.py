@@ -12,12 +12,13 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from tests.studio.conftest import LIVE
 from tests.workflow.test_device_key import KeyedRig
+from tests.workflow.test_others import grid
 
 from fdvv.model import load_builtin, model_from_json
-from fdvv.optimize import Score, TemporalPointing, TrialState
+from fdvv.optimize import Objective, Problem, Score, TemporalPointing, TrialState, engine_of, paper_space
 from fdvv.studio import Studio, _play_device
 from fdvv.studio._optimizations import Optimizations
-from fdvv.workflow import ClockSource, OptimizeSession, PlayedRounds
+from fdvv.workflow import ClockSource, OptimizeSession, PlayedRounds, read_grid
 
 CREATE = {
     "title": "mine",
@@ -352,6 +353,25 @@ def test_presses_of_people_and_simulated_ones_are_never_mixed(
         assert "a simulated person plays" in player.hear("ready")["error"]
 
 
+def test_a_run_begins_from_what_others_of_the_project_did(
+    ask: Callable[..., Any], own_studio: Studio
+) -> None:
+    assert ask("offers")["others"] == []
+    grid(own_studio.project / "others" / "quick", "easy")
+    (own_studio.project / "others" / "unfinished").mkdir()
+    told = "5 designs scored by 2 simulated people, easy"
+    assert ask("offers")["others"] == [{"name": "quick", "told": told}]
+    run = ask("create", **{**CREATE, "engine": "gp", "start": None, "others": "quick"})["run"]
+    assert ask("detail", run=run)["others"] == told
+    ask("next", run=run)
+    (first,) = ask("detail", run=run)["trials"]
+    prior = read_grid(own_studio.project / "others" / "quick").prior()
+    (expected,) = engine_of("gp").suggest(Problem(paper_space(), (Objective("asynchrony_ms"),), 7, prior), ())
+    assert first["design"] == pytest.approx(expected)
+    alone = ask("create", **CREATE)["run"]
+    assert ask("detail", run=alone)["others"] == ""
+
+
 @pytest.mark.parametrize(
     ("name", "question", "said"),
     [
@@ -364,6 +384,8 @@ def test_presses_of_people_and_simulated_ones_are_never_mixed(
         ("create", {**CREATE, "space": "FDV", "start": None}, "choose one"),
         ("create", {**CREATE, "space": "none"}, "no such space"),
         ("create", {**CREATE, "rig": "../x"}, "rig"),
+        ("create", {**CREATE, "others": "../x"}, "is no finished grid in the project's folder others"),
+        ("create", {**CREATE, "others": "easy", "space": "FDV"}, "scored designs of the space paper"),
     ],
 )
 def test_what_cannot_be_is_told_in_one_line(

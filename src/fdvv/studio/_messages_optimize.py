@@ -29,7 +29,8 @@ class OptimizeOffers(Struct, frozen=True):
     """What a run can be made of.
 
     engines : read scores. pair_engines : read preferences. spaces : of designs. objectives : beside the
-    first. starts : buttons that a run may start from.
+    first. starts : buttons that a run may start from. others : grids of the project that a run in the
+    paper's space may begin from.
     """
 
     engines: list[OptimizeOffer]
@@ -39,6 +40,7 @@ class OptimizeOffers(Struct, frozen=True):
     levels: list[OptimizeOffer]
     objectives: list[OptimizeOffer]
     starts: list[OptimizeOffer]
+    others: list[OptimizeOffer]
 
 
 class OptimizeDevicesAsk(Struct, frozen=True, forbid_unknown_fields=True):
@@ -58,7 +60,8 @@ class OptimizeCreate(Struct, frozen=True, forbid_unknown_fields=True):
     simulated : a simulated person plays, not whoever sits here. level : of temporal pointing.
     also : objectives beside asynchrony. start : a button; None starts from what the engine suggests.
     rig : must be able to render every design; None asks for none. budget : trials, or comparisons.
-    task_presses : of a score, 20 in the paper.
+    task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
+    begins from nothing.
     """
 
     title: Name
@@ -73,6 +76,7 @@ class OptimizeCreate(Struct, frozen=True, forbid_unknown_fields=True):
     seed: Number
     budget: Annotated[int, Meta(ge=1, le=500)]
     task_presses: Annotated[int, Meta(ge=2, le=100)] = 20
+    others: Annotated[str, Meta(max_length=300)] | None = None
 
 
 class OptimizeListAsk(Struct, frozen=True, forbid_unknown_fields=True):
@@ -190,7 +194,7 @@ class OptimizeDetail(Struct, frozen=True):
 
     rounds : presses of a score. rules : what every design must hold. start : the design the run began with,
     None while there is none. start_name : the button it is near; empty if an engine chose it.
-    playable : a person can play its task here.
+    others : what it began from; empty if from nothing. playable : a person can play its task here.
     """
 
     row: OptimizeRow
@@ -204,6 +208,7 @@ class OptimizeDetail(Struct, frozen=True):
     pairs: list[OptimizePair]
     start: dict[str, float] | None
     start_name: str
+    others: str
     simulated: OptimizeSimulated | None
     playable: bool
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fdvv.errors import FdvvError, InputError, ModelError
-from fdvv.optimize import ENGINES, PAIR_ENGINES, LEVELS_px_s, model_space, neutral_design
+from fdvv.optimize import ENGINES, PAIR_ENGINES, LEVELS_px_s, Trial, model_space, neutral_design
 from fdvv.studio import _messages_optimize as m
 from fdvv.studio import _optimize_told as t
 from fdvv.studio._contract import Call, ChannelKind, Tell
@@ -18,6 +18,7 @@ from fdvv.workflow import (
     ObjectiveSetup,
     OptimizeSession,
     OptimizeSetup,
+    OthersShelf,
     RigShelf,
     SpaceSetup,
     button_choices,
@@ -59,6 +60,7 @@ def offers(studio: Studio, _ask: m.OptimizeOffersAsk) -> m.OptimizeOffers:
         [m.OptimizeOffer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
         [m.OptimizeOffer(name, MORE_TOLD[name]) for name in MORE_TOLD],
         [m.OptimizeOffer(choice.id, choice.name) for choice in button_choices(studio.shelf)],
+        [m.OptimizeOffer(entry.name, entry.about) for entry in OthersShelf(studio.project).entries()],
     )
 
 
@@ -70,6 +72,7 @@ def devices(_studio: Studio, _ask: m.OptimizeDevicesAsk) -> m.OptimizeDevices:
 def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
     """Begin a run."""
     space, start = _space(studio, ask)
+    others, prior = _others(studio, ask)
     setup = OptimizeSetup(
         space=space,
         engine=ask.engine,
@@ -80,7 +83,13 @@ def create(studio: Studio, ask: m.OptimizeCreate) -> m.OptimizeAsk:
         seed=ask.seed,
         budget=ask.budget,
         start=start,
-        about={t.TITLE: ask.title.strip(), t.START: ask.start, OptimizeSetup.PRESSES: ask.task_presses},
+        prior=prior,
+        about={
+            t.TITLE: ask.title.strip(),
+            t.START: ask.start,
+            t.OTHERS: others,
+            OptimizeSetup.PRESSES: ask.task_presses,
+        },
     )
     if playable(setup):
         try:
@@ -103,6 +112,17 @@ def _space(studio: Studio, ask: m.OptimizeCreate) -> tuple[SpaceSetup, dict[str,
         )
     setup = model_space_setup(base, (ask.space,), rig=ask.rig)
     return setup, neutral_design(model_space(base, (ask.space,)), base)
+
+
+def _others(studio: Studio, ask: m.OptimizeCreate) -> tuple[str, tuple[Trial, ...]]:
+    """Give what a run begins from, in words and as trials. InputError."""
+    if ask.others is None:
+        return "", ()
+    if ask.preference or ask.space != PAPER:
+        reason = f"others scored designs of the space {PAPER}"
+        raise InputError("optimise", ask.others, reason, "begin from nothing, or choose that space")
+    entry, prior = OthersShelf(studio.project).prior(ask.others)
+    return entry.about, prior
 
 
 def rows(studio: Studio, _ask: m.OptimizeListAsk) -> m.OptimizeRows:
@@ -137,6 +157,7 @@ def detail(studio: Studio, ask: m.OptimizeAsk) -> m.OptimizeDetail:
             t.pairs(session),
             _start(session),
             str(setup.about.get(t.START) or ""),
+            str(setup.about.get(t.OTHERS) or ""),
             t.simulated(optimizations.simulated(ask.run)),
             playable(setup),
         )

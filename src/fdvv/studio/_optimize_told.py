@@ -13,8 +13,8 @@ from fdvv.workflow import OptimizeSession, OptimizeSetup
 
 PICTURE_POINTS = 40
 DIGITS = 3
-TITLE, START = "title", "start"
-"""Where a setup keeps what people call a run, and the button it starts from."""
+TITLE, START, OTHERS = "title", "start", "others"
+"""Where a setup keeps what people call a run, the button it starts from, whose scores it begins from."""
 
 
 def row(run: int, session: OptimizeSession) -> m.OptimizeRow:

@@ -164,7 +164,7 @@ if TYPE_CHECKING:
         model_space_setup,
         read_setup,
     )
-    from fdvv.workflow._others import experiment_prior, read_grid
+    from fdvv.workflow._others import OthersEntry, OthersShelf, experiment_prior, read_grid
     from fdvv.workflow._paper_like import paper_design_like
     from fdvv.workflow._paper_means import PaperFit, PaperModel, PaperPresses, PaperStudy, fit_paper
     from fdvv.workflow._participant import Participant
@@ -391,6 +391,8 @@ __all__ = [
     "OptimizeSession",
     "OptimizeSetup",
     "Origin",
+    "OthersEntry",
+    "OthersShelf",
     "PaceStanding",
     "PaperFit",
     "PaperModel",

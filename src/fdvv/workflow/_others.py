@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from fdvv.errors import InputError
@@ -11,15 +12,74 @@ from fdvv.workflow._experiment_setup import LEVELS
 from fdvv.workflow._population_result import RESULT_FILE, PopulationResult, read_population
 
 OPTION = "--prior"
+GRID = "name the folder of a finished fdvv optimize population --grid"
+EACH = "name one grid per level: --prior EASY --prior HARD"
+FOLDER = "others"
+"""Of a project: every folder in it that holds a finished grid can be begun from."""
+
+
+@dataclass(frozen=True)
+class OthersEntry:
+    """A finished grid of a project.
+
+    Attributes
+    ----------
+    name : of its folder. level : that was played. people, designs : how many; each design has their mean.
+    """
+
+    name: str
+    level: str
+    people: int
+    designs: int
+
+    @property
+    def about(self) -> str:
+        """Get what it is, in a few words."""
+        return f"{self.designs} designs scored by {self.people} simulated people, {self.level}"
+
+
+class OthersShelf:
+    """The finished grids of a project, in ``<project>/others``; what is unfinished or broken is not offered.
+
+    Parameters
+    ----------
+    project : its folder.
+    """
+
+    def __init__(self, project: Path) -> None:
+        self._folder = project / FOLDER
+
+    def entries(self) -> tuple[OthersEntry, ...]:
+        """List what a run may begin from, by name."""
+        return tuple(entry for entry, _ in self._grids())
+
+    def prior(self, name: str) -> tuple[OthersEntry, tuple[Trial, ...]]:
+        """Give the trials of a grid that is offered, and what it is. InputError."""
+        for entry, grid in self._grids():
+            if entry.name == name:
+                return entry, grid.prior()
+        reason = f"is no finished grid in the project's folder {FOLDER}"
+        raise InputError("optimise", name, reason, "choose one that is offered, or finish it")
+
+    def _grids(self) -> list[tuple[OthersEntry, PopulationResult]]:
+        found = []
+        for folder in sorted(self._folder.iterdir()) if self._folder.is_dir() else ():
+            try:
+                grid = read_grid(folder)
+            except (InputError, OSError):
+                continue
+            plan = grid.plan
+            found.append((OthersEntry(folder.name, plan.level, plan.people, plan.designs), grid))
+        return found
 
 
 def read_grid(folder: Path) -> PopulationResult:
     """Read a finished grid of others. InputError on anything else."""
     if not (folder / RESULT_FILE).is_file():
-        raise InputError(OPTION, str(folder), "holds no grid that is finished", _REMEDY)
+        raise InputError(OPTION, str(folder), "holds no grid that is finished", GRID)
     found = read_population(folder)
     if found.plan.kind != "grid":
-        raise InputError(OPTION, str(folder), "holds runs of many people, not a grid", _REMEDY)
+        raise InputError(OPTION, str(folder), "holds runs of many people, not a grid", GRID)
     return found
 
 
@@ -36,16 +96,12 @@ def experiment_prior(folders: Sequence[Path], seed: int) -> dict[str, tuple[Tria
         found = read_grid(folder)
         level = found.plan.level
         if level in grids:
-            raise InputError(OPTION, str(folder), f"is a second grid of the level {level}", _EACH)
+            raise InputError(OPTION, str(folder), f"is a second grid of the level {level}", EACH)
         if found.plan.seed == seed:
             same = f"its people are those of the experiment: both are drawn with seed {seed}"
             raise InputError(OPTION, str(folder), same, "give the experiment another --seed")
         grids[level] = found
     missing = [level for level in LEVELS if level not in grids]
     if grids and missing:
-        raise InputError(OPTION, missing[0], "is a level without a grid", _EACH)
+        raise InputError(OPTION, missing[0], "is a level without a grid", EACH)
     return {level: grids[level].prior() for level in LEVELS if level in grids}
-
-
-_REMEDY = "name the folder of a finished fdvv optimize population --grid"
-_EACH = "name one grid per level: --prior EASY --prior HARD"

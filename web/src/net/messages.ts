@@ -705,6 +705,7 @@ export interface OptimizeCreate {
   readonly seed: number;
   readonly budget: number;
   readonly task_presses?: number;
+  readonly others?: string | null;
 }
 
 export interface OptimizeDetail {
@@ -719,6 +720,7 @@ export interface OptimizeDetail {
   readonly pairs: readonly OptimizePair[];
   readonly start: Readonly<Record<string, number>> | null;
   readonly start_name: string;
+  readonly others: string;
   readonly simulated: OptimizeSimulated | null;
   readonly playable: boolean;
 }
@@ -843,6 +845,7 @@ export interface OptimizeOffers {
   readonly levels: readonly OptimizeOffer[];
   readonly objectives: readonly OptimizeOffer[];
   readonly starts: readonly OptimizeOffer[];
+  readonly others: readonly OptimizeOffer[];
 }
 
 export interface OptimizeSimulate {

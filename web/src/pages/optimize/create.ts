@@ -22,6 +22,7 @@ class Form {
   readonly level = signal<"easy" | "hard">("easy");
   readonly start = signal("builtin:mx-clear");
   readonly rig = signal("");
+  readonly others = signal("");
   readonly seed = signal(0);
   readonly budget = signal<number>(BUDGET.play);
   readonly presses = signal(20);
@@ -30,6 +31,11 @@ class Form {
   /** Whether it matters what the run starts from: a comparison in the paper's space begins anywhere. */
   varies(): boolean {
     return this.kind() !== "prefer" || this.space() !== "paper";
+  }
+
+  /** Whether scores of others say anything of its designs: they scored those of the paper's space. */
+  listens(): boolean {
+    return this.kind() !== "prefer" && this.space() === "paper";
   }
 
   ask(): OptimizeCreate {
@@ -47,6 +53,7 @@ class Form {
       seed: this.seed(),
       budget: this.budget(),
       task_presses: this.presses(),
+      others: (this.listens() && this.others()) || null,
     };
   }
 }
@@ -102,6 +109,7 @@ function fields(form: Form, offers: OptimizeOffers | null): HTMLElement {
     () => (form.varies() ? startChoice(form, offers) : null),
     choice({ label: "Rig", options: [["", "any: felt as intended"], ...offers.rigs.map((one) => [one.name, `must be rendered by ${one.told}`] as const)], value: form.rig, set: form.rig.set }),
     () => (scored() ? scoredFields(form, offers) : null),
+    () => (form.listens() ? othersChoice(form, offers) : null),
     numberField({ label: "Budget", unit: "at most", value: form.budget, set: form.budget.set, least: 1, most: 500, digits: 0 }),
     numberField({ label: "Seed", unit: "", value: form.seed, set: form.seed.set, least: 0, most: 2 ** 31, digits: 0 }),
     titleField(form),
@@ -112,6 +120,19 @@ function startChoice(form: Form, offers: OptimizeOffers): HTMLElement {
   const starts = offers.starts.map((one) => [one.name, one.told] as const);
   const options = () => (form.space() === "paper" ? [["", "what the engine suggests"] as const, ...starts] : starts);
   return choice({ label: form.space() === "paper" ? "Start from" : "Vary", options: options(), value: form.start, set: form.start.set });
+}
+
+/** What simulated people scored before: with it an engine that learns begins where most of them did best. */
+function othersChoice(form: Form, offers: OptimizeOffers): HTMLElement {
+  if (!offers.others.length)
+    return h(
+      "p",
+      { class: "muted" },
+      "A run may begin from what simulated people scored; tried on simulated ones, that saves more than half of the trials. In this project's folder: ",
+      h("code", {}, "fdvv optimize population others/easy --people 24 --grid 512 --level easy"),
+      ".",
+    );
+  return choice({ label: "Others", options: [["", "begin from nothing"], ...told(offers.others)], value: form.others, set: form.others.set });
 }
 
 function scoredFields(form: Form, offers: OptimizeOffers): HTMLElement[] {

@@ -75,7 +75,8 @@ function heading(store: RunStore): HTMLElement {
   const said = () => {
     const row = store.detail()?.row;
     const what = row?.preference ? "preference" : row?.level;
-    return row ? `${row.engine}, ${what}, seed ${store.detail()?.seed ?? 0}` : "";
+    const others = store.detail()?.others;
+    return row ? `${row.engine}, ${what}, seed ${store.detail()?.seed ?? 0}${others ? `; begun from ${others}` : ""}` : "";
   };
   return h("div", { class: "row" }, h("h1", {}, () => store.detail()?.row.title ?? ""), h("span", { class: "muted" }, said), () => (store.detail()?.row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null));
 }
