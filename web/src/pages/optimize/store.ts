@@ -1,20 +1,18 @@
 /** One run as the server knows it, and followed while the page is open. */
 
-import { call, live, type LiveChannel, StudioError } from "../../net";
+import { Followed } from "../../app/followed";
+import { call, live, type LiveChannel } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
-import { onCleanup, signal, tell, type Signal } from "../../ui";
+import { onCleanup, signal, type Signal } from "../../ui";
 
 export type Design = Readonly<Record<string, number>>;
 
-export class RunStore {
-  readonly detail: Signal<OptimizeDetail | null> = signal<OptimizeDetail | null>(null);
-  readonly wrong: Signal<string> = signal("");
+export class RunStore extends Followed<OptimizeDetail> {
   /** Number of the trial that is looked at; null: the newest. */
   readonly chosen: Signal<number | null> = signal<number | null>(null);
-  private asking = false;
-  private again = false;
 
   constructor(readonly run: number) {
+    super(() => call("optimize.detail", { run }));
     let channel: LiveChannel<"optimize"> | null = null;
     const watch = () => void channel?.send({ type: "watch" });
     channel = live().channel("optimize", {
@@ -26,26 +24,6 @@ export class RunStore {
     watch();
     onCleanup(() => channel.close());
     void this.refresh();
-  }
-
-  /** Ask anew; asks that come meanwhile are one. */
-  async refresh(): Promise<void> {
-    this.again = true;
-    if (this.asking) return;
-    this.asking = true;
-    try {
-      while (this.again) {
-        this.again = false;
-        this.detail.set(await call("optimize.detail", { run: this.run }));
-        this.wrong.set("");
-      }
-    } catch (error) {
-      // what the person cannot change is said in the page, the rest beside it
-      if (error instanceof StudioError && !this.detail.peek()) this.wrong.set(error.message);
-      else tell(error);
-    } finally {
-      this.asking = false;
-    }
   }
 
   /** Give the trial that is looked at. */
