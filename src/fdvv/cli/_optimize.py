@@ -67,7 +67,7 @@ def optimize() -> None:
               help="Begin from what others did: a finished fdvv optimize population --grid.")  # fmt: skip
 @click.option("--task", default="temporal-pointing", show_default=True, help="What is played.")
 @level_option
-@engine_option("tpe")
+@engine_option("gp")
 @click.option("--trials", type=click.IntRange(1, 100_000), default=30, show_default=True,
               help="How many designs are tried.")  # fmt: skip
 @click.option("--presses", type=click.IntRange(2, 1000), default=20, show_default=True, help="Of a trial.")

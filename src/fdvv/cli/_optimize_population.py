@@ -22,7 +22,7 @@ def add_population(group: click.Group) -> None:
               help="How many are simulated.")  # fmt: skip
 @click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True,
               help="How fast the bullet is.")  # fmt: skip
-@click.option("--engine", default="tpe", show_default=True, help="Of every person's run.")
+@click.option("--engine", default="gp", show_default=True, help="Of every person's run.")
 @click.option(
     "--budget", type=click.IntRange(1, 1000), default=30, show_default=True, help="Trials of each person."
 )

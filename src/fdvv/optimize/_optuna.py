@@ -44,7 +44,7 @@ BROKEN = "held"
 
 @dataclass(frozen=True)
 class TPEEngine:
-    """Tree-structured Parzen estimators over all parameters at once, the light default.
+    """Tree-structured Parzen estimators over all parameters at once.
 
     Trials under way count as bad ones (the constant liar), so that a batch spreads; failed ones and what
     breaks a constraint are told to the sampler as infeasible.

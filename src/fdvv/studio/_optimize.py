@@ -31,10 +31,10 @@ PAPER = "paper"
 ENGINES_TOLD = {
     "random": "draws designs by lot",
     "sobol": "spreads designs evenly",
-    "tpe": "learns from every score; light",
+    "tpe": "Optuna's; for many trials",
     "cmaes": "moves a cloud of designs towards the better ones",
     "nsga2": "breeds designs; for several objectives",
-    "gp": "a Gaussian process that knows how noisy a score is",
+    "gp": "learns from every score, and knows how noisy each is",
     "gp-ei": "as in the paper: a Gaussian process and expected improvement",
     "botorch": "the strongest; needs the extra fdvv[botorch]",
 }

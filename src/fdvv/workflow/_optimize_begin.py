@@ -41,7 +41,7 @@ class RunAsked:
     task: str = POINTING
     level: str | None = "easy"
     presses: int = 20
-    engine: str = "tpe"
+    engine: str = "gp"
     options: dict[str, Any] = field(default_factory=dict)
     budget: int = 30
     seed: int = 0

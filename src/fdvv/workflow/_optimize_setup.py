@@ -78,7 +78,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     format: Literal["fdvv-optimize"] = "fdvv-optimize"
     version: Literal[1] = 1
     space: SpaceSetup = SpaceSetup()
-    engine: str = "tpe"
+    engine: str = "gp"
     options: dict[str, Any] = {}
     task: str = "temporal-pointing"
     level: str | None = None

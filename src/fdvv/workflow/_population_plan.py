@@ -49,7 +49,7 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     level: Literal["easy", "hard"] = "easy"
     rounds: Annotated[int, Meta(ge=1, le=1000)] = 20
     rig: str = "ideal"
-    engine: str = "tpe"
+    engine: str = "gp"
     options: dict[str, Any] = {}
     budget: Annotated[int, Meta(ge=1, le=1000)] = 30
     designs: Annotated[int, Meta(ge=1, le=100_000)] = 100

@@ -16,7 +16,7 @@ const BUDGET = { play: 27, prefer: 10, simulated: 27 } as const;
 class Form {
   readonly kind = signal<Kind>("play");
   readonly title = signal("");
-  readonly engine = signal("tpe");
+  readonly engine = signal("gp");
   readonly pairEngine = signal("");
   readonly space = signal("paper");
   readonly level = signal<"easy" | "hard">("easy");
