@@ -75,6 +75,7 @@ class Variant:
 
 VARIANTS: Mapping[str, Variant] = {
     BASELINE: Variant("gp-ei", runs=SEEDS * PEOPLE),
+    "gp-ei, tuned": Variant("gp-ei", {"startup": 10}, runs=240),
     "gp, warm": Variant("gp", prior="usual", budget=BUDGET // 2, runs=SEEDS * PEOPLE),
     "gp, wrong warm": Variant("gp", prior="shifted", budget=BUDGET // 2),
     "gp": Variant("gp", runs=240),

@@ -23,6 +23,7 @@ VARIANTS: Mapping[str, Variant] = {
     "a length per parameter": Variant("gp-ei", {"ard": True}),
     "improves on the posterior mean": Variant("gp-ei", {"plug_in": True}),
     "the last two": Variant("gp-ei", {"ard": True, "plug_in": True}),
+    "ten designs, a length per parameter": Variant("gp-ei", {"startup": 10, "ard": True}),
     "gp": Variant("gp"),
 }
 
