@@ -177,6 +177,12 @@ def test_another_plan_in_the_same_folder_is_refused(grid: tuple[Path, Population
         run(grid[0], msgspec.structs.replace(GRID, seed=4, people=8))
 
 
+def test_what_a_grid_does_not_use_makes_no_other_plan(grid: tuple[Path, PopulationResult]) -> None:
+    folder, first = grid
+    assert same(run(folder, msgspec.structs.replace(GRID, engine="sobol", budget=7, judged=2)), first)
+    assert PEOPLE.differs(msgspec.structs.replace(PEOPLE, engine="sobol", designs=7)) == ["engine"]
+
+
 def test_a_folder_with_other_things_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "letter.txt").write_text("mine")
     with pytest.raises(InputError, match="is not empty"):

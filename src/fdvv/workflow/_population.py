@@ -73,8 +73,7 @@ def _begin(folder: Path, plan: PopulationPlan, prior: tuple[Trial, ...]) -> None
         write_atomic(folder / PRIOR_FILE, told)
         write_atomic(path, plan_text(plan))
         return
-    kept = read_plan(path)
-    other = [name for name in plan.__struct_fields__ if getattr(kept, name) != getattr(plan, name)]
+    other = read_plan(path).differs(plan)
     if other:
         reason = f"holds a run with other {', '.join(other)}"
         raise InputError(folder, "folder", reason, "give the same options to go on, or name a new folder")

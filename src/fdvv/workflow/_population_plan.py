@@ -22,6 +22,9 @@ LARGEST_bytes = 1_000_000
 CELLS = 40
 """Scores of a grid in a chunk, about 25 ms each."""
 
+UNUSED = {"grid": {"engine", "options", "budget", "against", "judged"}, "optimize": {"designs"}}
+"""What decides nothing in a run of that kind."""
+
 Shift = Annotated[float, Meta(gt=0, le=100)]
 
 
@@ -60,6 +63,11 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     def chunks(self) -> int:
         """Get into how many chunks the run is cut, whoever works on them."""
         return self.people if self.kind == "optimize" else -(-self.people * self.designs // CELLS)
+
+    def differs(self, other: PopulationPlan) -> list[str]:
+        """List what the results of another plan would differ by, by field."""
+        names = [name for name in self.__struct_fields__ if name not in UNUSED[self.kind]]
+        return [name for name in names if getattr(self, name) != getattr(other, name)]
 
     def cells(self, chunk: int) -> range:
         """Give the cells of a grid that a chunk holds: cell i is person i % people and design i // people."""
