@@ -8,17 +8,17 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from fdvv.documents import Kind, pretty, read_document
+from fdvv.documents import Kind, read_document
 from fdvv.errors import InputError
 from fdvv.files import read_limited, write_atomic
 from fdvv.optimize import Trial
+from fdvv.workflow._optimize_setup import LARGEST_bytes, setup_text
 from fdvv.workflow._session_manifest import now, versions
 
 EXPERIMENT_FILE = "experiment.json"
 KIND = Kind(
     "fdvv-experiment", 1, "an experiment", "name the folder of an experiment, or one that is new or empty"
 )
-LARGEST_bytes = 16_000_000
 LEVELS = ("easy", "hard")
 OPTIMAL, RANDOM = "optimal", "random"
 MX = ("mx-clear", "mx-brown", "mx-black", "mx-red")
@@ -95,11 +95,7 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
         return there
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "folder", "is not empty and holds no experiment", "name a new one")
-    text = pretty(msgspec.to_builtins(setup)) + "\n"
-    if len(text) > LARGEST_bytes:
-        reason = f"larger than {LARGEST_bytes // 1_000_000} MB"
-        raise InputError("setup", "prior", reason, "begin from fewer trials of others")
-    write_atomic(path, text)
+    write_atomic(path, setup_text(setup))
     return setup
 
 

@@ -112,7 +112,7 @@ def read_setup(path: Path) -> OptimizeSetup:
     )
 
 
-def setup_text(setup: OptimizeSetup) -> str:
+def setup_text(setup: Struct) -> str:
     """Write a setup. InputError if it is too large to be read again."""
     text = pretty(msgspec.to_builtins(setup)) + "\n"
     if len(text) > LARGEST_bytes:

@@ -51,26 +51,30 @@ class OthersShelf:
 
     def entries(self) -> tuple[OthersEntry, ...]:
         """List what a run may begin from, by name."""
-        return tuple(entry for entry, _ in self._grids())
+        found = ((folder, _offered(folder)) for folder in self._folders())
+        return tuple(_entry(folder, grid) for folder, grid in found if grid)
 
     def prior(self, name: str) -> tuple[OthersEntry, tuple[Trial, ...]]:
         """Give the trials of a grid that is offered, and what it is. InputError."""
-        for entry, grid in self._grids():
-            if entry.name == name:
-                return entry, grid.prior()
+        for folder in self._folders():
+            if folder.name == name and (grid := _offered(folder)):
+                return _entry(folder, grid), grid.prior()
         reason = f"is no finished grid in the project's folder {FOLDER}"
         raise InputError("optimise", name, reason, "choose one that is offered, or finish it")
 
-    def _grids(self) -> list[tuple[OthersEntry, PopulationResult]]:
-        found = []
-        for folder in sorted(self._folder.iterdir()) if self._folder.is_dir() else ():
-            try:
-                grid = read_grid(folder)
-            except (InputError, OSError):
-                continue
-            plan = grid.plan
-            found.append((OthersEntry(folder.name, plan.level, plan.people, plan.designs), grid))
-        return found
+    def _folders(self) -> list[Path]:
+        return sorted(self._folder.iterdir()) if self._folder.is_dir() else []
+
+
+def _offered(folder: Path) -> PopulationResult | None:
+    try:
+        return read_grid(folder)
+    except (InputError, OSError):
+        return None
+
+
+def _entry(folder: Path, grid: PopulationResult) -> OthersEntry:
+    return OthersEntry(folder.name, grid.plan.level, grid.plan.people, grid.plan.designs)
 
 
 def read_grid(folder: Path) -> PopulationResult:
