@@ -8,11 +8,11 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.workflow.executors import Here
 
 from fdvv.workflow import PopulationPlan, run_population
 
@@ -73,16 +73,6 @@ def test_a_rigs_limits_are_those_of_the_run_wherever_it_goes_on(fdvv: Run, tmp_p
     assert begun(fdvv, "own", "--within", "mine.rig.json").status == 0
     assert (tmp_path / "own" / "rigs" / "mine.rig.json").read_bytes() == kept.read_bytes()
     assert fdvv("optimize", "replay", "own", "--json").json["same"] is True
-
-
-class Here:
-    """Works in this very process."""
-
-    processes = 1
-
-    def run(self, work: Any, chunks: Sequence[Any]) -> Generator[tuple[int, Any], None, None]:
-        for place, chunk in enumerate(chunks):
-            yield place, work(chunk)
 
 
 def test_a_run_begins_from_what_others_did(fdvv: Run, tmp_path: Path) -> None:

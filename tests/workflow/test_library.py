@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.workflow.conftest import write_cycle
+from tests.workflow.executors import Here
 from tests.workflow.shelves import write_folder
 
 from fdvv.errors import BuildError, InputError, WorkerError
@@ -40,16 +41,6 @@ from fdvv.workflow._shelf_read import row_of_file
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "library-files.md"
 NAMES = {"reds/light red.csv": 0.0, "reds/dark red.csv": 3.0, "blues/navy.csv": 25.0, "plain.csv": 12.0}
-
-
-class Here:
-    """Works in this process: most tests need no other."""
-
-    processes = 1
-
-    def run(self, work, chunks):  # type: ignore[no-untyped-def]  # as Executor
-        for number, chunk in enumerate(chunks):
-            yield number, work(chunk)
 
 
 def built(source: Path, library: Path, read: DeadlyReader | None = None) -> LibraryBuilt:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 import pytest
+from tests.workflow.executors import Here
 
 from fdvv.errors import InputError
 from fdvv.workflow import (
@@ -22,18 +22,6 @@ from fdvv.workflow import (
 )
 
 SEED = 7
-
-
-class Here:
-    """Works on chunks one after the other."""
-
-    processes = 1
-
-    def run(
-        self, work: Callable[[Any], Any], chunks: Sequence[Any]
-    ) -> Generator[tuple[int, Any], None, None]:
-        for place, chunk in enumerate(chunks):
-            yield place, work(chunk)
 
 
 def grid(folder: Path, level: Literal["easy", "hard"], designs: int = 5) -> Path:

@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.workflow.executors import Here
 
 from fdvv.device import TwinDevice
 from fdvv.errors import BuildError, InputError
@@ -54,16 +55,6 @@ PRESS = SweepPlan(
     },
     settings={"presses": 1},
 )
-
-
-class Here:
-    """Works in this process: most tests need no other."""
-
-    processes = 1
-
-    def run(self, work, chunks):  # type: ignore[no-untyped-def]  # as Executor
-        for number, chunk in enumerate(chunks):
-            yield number, work(chunk)
 
 
 def cells_log(row: dict[str, Any]) -> tuple[Any, ...]:
