@@ -3,7 +3,7 @@
 #define FOUR(bits) bits, bits, bits, bits
 #define SIXTEEN(bits) FOUR(bits), FOUR(bits), FOUR(bits), FOUR(bits)
 #define SIXTY_FOUR(bits) SIXTEEN(bits), SIXTEEN(bits), SIXTEEN(bits), SIXTEEN(bits)
-const uint8_t fdvv_byte_headroom[256] = {
+const uint8_t fdvv_byte_leading_zeros[256] = {
     8, 7, 6, 6, FOUR(5), FOUR(4), FOUR(4), SIXTEEN(3), SIXTEEN(2), SIXTEEN(2), SIXTY_FOUR(1),
     SIXTY_FOUR(0), SIXTY_FOUR(0),
 };
@@ -11,13 +11,13 @@ const uint8_t fdvv_byte_headroom[256] = {
 fdvv_ratio fdvv_ratio_of_wide(uint64_t value)
 {
     fdvv_ratio ratio;
-    int16_t dropped = 0;
+    int16_t shifted = 0;
     while (value >> 32) {
         value >>= 4;
-        dropped = (int16_t)(dropped + 4);
+        shifted = (int16_t)(shifted + 4);
     }
     ratio = fdvv_ratio_of((uint32_t)value);
-    ratio.shift = (int16_t)(ratio.shift - dropped);
+    ratio.shift = (int16_t)(ratio.shift - shifted);
     return ratio;
 }
 

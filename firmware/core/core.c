@@ -1,14 +1,14 @@
 #include "core.h"
 
-/* Servo pulse for a travel: rounded to the nearest, within what servos take. */
+/* Servo pulse for the travel of the program, rounded to nearest, within the range of servos. */
 static uint16_t stop_pulse_us(const fdvv_settings *settings, const uint8_t *image)
 {
-    int32_t way_us16000;
+    int32_t offset_us16000;
     if (!image)
         return settings->stop_zero_us;
-    way_us16000 = settings->stop_us_mm * fdvv_image_head(image)->travel_um16;
-    way_us16000 += way_us16000 < 0 ? -8000 : 8000;
-    return (uint16_t)fdvv_clamp(settings->stop_zero_us + way_us16000 / 16000, 400, 2600);
+    offset_us16000 = settings->stop_us_mm * fdvv_image_head(image)->travel_um16;
+    offset_us16000 += offset_us16000 < 0 ? -8000 : 8000;
+    return (uint16_t)fdvv_clamp(settings->stop_zero_us + offset_us16000 / 16000, 400, 2600);
 }
 
 void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings)
@@ -53,73 +53,76 @@ void fdvv_core_announce(fdvv_core *core, uint16_t velocity_mm_s16)
     core->announced_mm_s16 = velocity_mm_s16;
 }
 
-/* Keycap force: the gain is split, so that (a * 2^9 + b) >> 14 needs no more than 32 bits. */
+/* counts * gain >> 14. The gain is split into a * 2^9 + b, so that 32 bits are enough. */
 static int16_t keycap_force_cN64(const fdvv_settings *settings, uint16_t counts)
 {
-    int32_t way = (int32_t)counts - settings->force_offset_counts, gain = settings->force_gain_q14;
-    int32_t coarse = way * (gain >> 9), fine = way * (gain & 511);
+    int32_t net_counts = (int32_t)counts - settings->force_offset_counts, gain = settings->force_gain_q14;
+    int32_t coarse = net_counts * (gain >> 9), fine = net_counts * (gain & 511);
     return (int16_t)fdvv_clamp((coarse + (fine >> 9)) >> 5, -INT16_MAX, INT16_MAX);
 }
 
-/* Limit, slew, limit: the slew never keeps a command above a limit that has fallen. */
-static uint8_t command(fdvv_core *core, int32_t wanted_cN64, int32_t limit_cN64)
+/* Limit, rate-limit, limit again: the command follows a falling limit at once. Returns the flags it sets. */
+static uint8_t limit_command(fdvv_core *core, int32_t requested_cN64, int32_t limit_cN64)
 {
     int32_t last_cN64 = core->command_cN64, slew_cN64 = core->settings.slew_cN64_tick;
-    int32_t limited_cN64 = fdvv_clamp(wanted_cN64, -limit_cN64, limit_cN64);
+    int32_t limited_cN64 = fdvv_clamp(requested_cN64, -limit_cN64, limit_cN64);
     int32_t slewed_cN64 = fdvv_clamp(limited_cN64, last_cN64 - slew_cN64, last_cN64 + slew_cN64);
     int32_t command_cN64 = fdvv_clamp(slewed_cN64, -limit_cN64, limit_cN64);
     uint8_t flags = slewed_cN64 != limited_cN64 ? FDVV_TICK_FLAG_SLEWED : 0;
-    if (limited_cN64 != wanted_cN64 || command_cN64 != slewed_cN64)
+    if (limited_cN64 != requested_cN64 || command_cN64 != slewed_cN64)
         flags |= limit_cN64 < core->settings.force_limit_cN64 ? FDVV_TICK_FLAG_DERATED : FDVV_TICK_FLAG_LIMITED;
     core->command_cN64 = (int16_t)command_cN64;
     return flags;
 }
 
-/* Force to duty at the supply of this tick, which counts no further than its own bounds. */
-static uint8_t drive(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q15)
+/* Duty for the commanded force at the supply voltage of this tick, clamped to its valid range. Returns the flags it
+ * sets. */
+static uint8_t compute_duty(const fdvv_core *core, uint16_t supply_mV, int16_t *duty_q15)
 {
     const fdvv_settings *settings = &core->settings;
-    int32_t most = settings->duty_limit_q15, duty;
+    int32_t limit = settings->duty_limit_q15, duty;
     uint32_t supply = (uint32_t)fdvv_clamp(supply_mV, settings->supply_low_mV, settings->supply_high_mV);
-    /* 64 / 65536 * 3000 / 40000 to 18 Q15 per cN64, whose shifts are 29 to 11 */
+    /* from 64 / 65536 * 3000 / 40000 to 18 Q15 per cN64: shifts from 29 to 11 */
     duty = fdvv_scale_short(core->command_cN64,
                             fdvv_ratio_product(core->drive, fdvv_ratio_inverse(fdvv_ratio_of(supply))));
-    *duty_q15 = (int16_t)fdvv_clamp(duty, -most, most);
+    *duty_q15 = (int16_t)fdvv_clamp(duty, -limit, limit);
     return *duty_q15 != duty ? FDVV_TICK_FLAG_LIMITED : 0;
 }
 
-/* Where the surface is looked up, and what is taken off its force; a fade leads from what the program wanted. */
-static void look_ahead(fdvv_core *core, fdvv_moment *moment)
+/* Predict the displacement at which the surface is evaluated, and the drag and friction to compensate. A fade starts
+ * from the program's own force, which excludes the compensation. */
+static void predict(fdvv_core *core, fdvv_machine_inputs *in)
 {
     int32_t resistance_cN64;
-    moment->ahead_um16 = core->position.um16;
-    moment->command_cN64 = core->command_cN64;
-    if (!core->predictor.on)
+    in->ahead_um16 = core->position.um16;
+    in->command_cN64 = core->command_cN64;
+    if (!core->predictor.enabled)
         return;
-    moment->ahead_um16 = fdvv_predictor_ahead_um16(&core->predictor);
-    moment->command_cN64 = (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
+    in->ahead_um16 = fdvv_predictor_ahead_um16(&core->predictor);
+    in->command_cN64 = (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
     resistance_cN64 = fdvv_predictor_resistance_cN64(&core->predictor);
     core->resistance_cN64 = (int16_t)fdvv_clamp(resistance_cN64, -INT16_MAX, INT16_MAX);
 }
 
-/* One tick of a program; gives the flags it sets. */
+/* One tick of a program. Returns the flags it sets. */
 static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elapsed_ticks, int32_t limit_cN64,
                       fdvv_outputs *outputs)
 {
     fdvv_machine *machine = &core->machine;
     const fdvv_state *state;
-    fdvv_moment moment;
+    fdvv_machine_inputs in;
     uint8_t flags;
-    moment.position = &core->position;
-    moment.velocity = &core->velocity;
-    moment.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
-    moment.events = core->events;
-    moment.announced_mm_s16 = core->announced_mm_s16;
-    look_ahead(core, &moment);
-    fdvv_machine_tick(machine, core->image, &moment);
+    in.position = &core->position;
+    in.velocity = &core->velocity;
+    in.elapsed_us = (uint32_t)elapsed_ticks * core->settings.tick_us;
+    in.events = core->events;
+    in.announced_mm_s16 = core->announced_mm_s16;
+    predict(core, &in);
+    fdvv_machine_tick(machine, core->image, &in);
     state = machine->now;
-    flags = command(core, fdvv_machine_force_cN64(machine, core->image, &moment) - core->resistance_cN64, limit_cN64);
-    flags |= drive(core, inputs->supply_mV, &outputs->duty_q15);
+    flags = limit_command(core, fdvv_machine_force_cN64(machine, core->image, &in) - core->resistance_cN64,
+                          limit_cN64);
+    flags |= compute_duty(core, inputs->supply_mV, &outputs->duty_q15);
     outputs->enable = 1;
     outputs->slot = machine->slot;
     outputs->key = state->key;
@@ -133,8 +136,8 @@ static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elaps
     return flags;
 }
 
-/* Zero force at once. */
-static void rest(fdvv_core *core, fdvv_outputs *outputs)
+/* Zero force immediately. */
+static void stop_rendering(fdvv_core *core, fdvv_outputs *outputs)
 {
     fdvv_machine_stop(&core->machine);
     core->command_cN64 = core->resistance_cN64 = 0;
@@ -163,7 +166,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     uint8_t flags = 0;
     fdvv_position_tick(&core->position, settings, inputs->sum);
     fdvv_velocity_tick(&core->velocity, settings, &core->position, elapsed_ticks);
-    if (core->predictor.on)
+    if (core->predictor.enabled)
         fdvv_predictor_tick(&core->predictor, core->position.um16, elapsed_ticks);
     fdvv_supervisor_check(supervisor, settings, inputs, core->position.um16, force_cN64, core->command_cN64,
                           core->machine.state);
@@ -171,7 +174,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     if (core->image && (supervisor->mode == FDVV_MODE_ARMED || supervisor->mode == FDVV_MODE_DERATED))
         flags = render(core, inputs, elapsed_ticks, limit_cN64, outputs);
     else
-        rest(core, outputs);
+        stop_rendering(core, outputs);
     core->events = 0;
     fdvv_supervisor_heat(supervisor, settings, outputs->duty_q15, elapsed_ticks);
     if (core->position.release)

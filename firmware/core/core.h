@@ -11,12 +11,12 @@
 
 typedef struct {
     int16_t command_cN64;    /* of the last tick */
-    int16_t resistance_cN64; /* taken off it then */
+    int16_t resistance_cN64; /* drag and friction subtracted from it */
     uint16_t announced_mm_s16;
     uint16_t stop_us;        /* servo pulse for the program's travel */
-    fdvv_ratio drive;        /* duty per force, times the supply in mV */
-    const uint8_t *image;    /* active and checked, or 0 */
-    uint32_t events;         /* host events not yet seen by the program, a bit each */
+    fdvv_ratio drive;        /* duty per force, multiplied by the supply in mV */
+    const uint8_t *image;    /* the active program, checked; or 0 */
+    uint32_t events;         /* host events since the last tick, one bit each */
     fdvv_settings settings;
     fdvv_machine machine;
     fdvv_supervisor supervisor;
@@ -25,19 +25,19 @@ typedef struct {
     fdvv_predictor predictor;
 } fdvv_core;
 
-/* Start with checked settings (fdvv_settings_check), no program, mode boot. */
+/* Start in mode boot with checked settings (fdvv_settings_check) and no program. */
 void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings);
 
-/* Use other checked settings; forgets position and velocity. Only while idle. */
+/* Replace the settings by other checked ones; resets position and velocity. Only while idle. */
 void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings);
 
-/* Render this checked image from the next tick on (0: none); enters its start state. */
+/* Render this checked image (0: none) from the next tick on, beginning with its start state. */
 void fdvv_core_activate(fdvv_core *core, const uint8_t *image);
 
 /* A host event 0 to 31. */
 void fdvv_core_event(fdvv_core *core, uint8_t event);
 
-/* The next press is meant to be this fast. */
+/* Announce the velocity of the next press. */
 void fdvv_core_announce(fdvv_core *core, uint16_t velocity_mm_s16);
 
 void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs);

@@ -1,4 +1,4 @@
-/* Four bits at a time: 64 bytes of table, some 16 cycles a byte. */
+/* Four bits at a time: a table of 64 bytes, about 16 cycles per byte. */
 #include "crc32.h"
 
 uint32_t fdvv_crc32(uint32_t crc, const uint8_t *bytes, uint16_t count)

@@ -1,10 +1,10 @@
-/* The checksum of programs: zlib's CRC-32. */
+/* Checksum of programs: CRC-32 as in zlib. */
 #ifndef FDVV_CRC32_H
 #define FDVV_CRC32_H
 
 #include <stdint.h>
 
-/* Go on from a checksum (0 at the start) over `count` more bytes. */
+/* Continue a checksum (initially 0) with `count` more bytes. */
 uint32_t fdvv_crc32(uint32_t crc, const uint8_t *bytes, uint16_t count);
 
 #endif

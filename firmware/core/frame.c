@@ -50,14 +50,14 @@ static uint16_t crc_of(const uint8_t *bytes, uint16_t count)
     return (uint16_t)crc;
 }
 
-/* Store the bytes of a block, up to a zero, which ends the frame too early; tell how many there were. */
+/* Store the bytes of a block up to a zero, which ends the frame too early; returns their number. */
 static uint16_t store(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count)
 {
     uint8_t *to = (uint8_t *)reader->words + 2 + reader->length;
     uint16_t i;
     if (count > FDVV_FRAME_BYTES - reader->length) {
         reader->broken = 1;
-        to = (uint8_t *)reader->words; /* somewhere: it will not be read */
+        to = (uint8_t *)reader->words; /* any valid address: it will not be read */
         count = 1;
     }
     for (i = 0; i < count && bytes[i]; i++)
@@ -68,7 +68,7 @@ static uint16_t store(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t 
     return i;
 }
 
-/* A code byte: the block before it ended in a zero; blocks of 254 without one exceed a frame. */
+/* A code byte: the previous block ended with a zero. Blocks of 254 bytes without one do not fit into a frame. */
 static void open_block(fdvv_frame_reader *reader, uint8_t code)
 {
     if (reader->begun && !reader->broken) {
@@ -84,22 +84,22 @@ static void open_block(fdvv_frame_reader *reader, uint8_t code)
 static uint8_t finish(fdvv_frame_reader *reader)
 {
     const uint8_t *bytes = fdvv_frame_bytes(reader);
-    uint16_t told;
+    uint16_t received_crc;
     reader->ended = 1;
     if (!reader->begun)
-        return FDVV_FRAME_NOTHING; /* zeros in a row only separate */
+        return FDVV_FRAME_NOTHING; /* consecutive zeros are separators */
     if (reader->broken || reader->left || reader->length < 4)
         return FDVV_FRAME_BAD;
-    told = (uint16_t)(bytes[reader->length - 2] | (uint16_t)(bytes[reader->length - 1] << 8));
-    return told == crc_of(bytes, (uint16_t)(reader->length - 2)) ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
+    received_crc = (uint16_t)(bytes[reader->length - 2] | (uint16_t)(bytes[reader->length - 1] << 8));
+    return received_crc == crc_of(bytes, (uint16_t)(reader->length - 2)) ? FDVV_FRAME_WHOLE : FDVV_FRAME_BAD;
 }
 
-static uint16_t take_some(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
+static uint16_t take_block(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *result)
 {
     if (reader->ended)
         fdvv_frame_reader_reset(reader);
     if (bytes[0] == 0) {
-        *found = finish(reader);
+        *result = finish(reader);
         return 1;
     }
     if (reader->left)
@@ -108,12 +108,12 @@ static uint16_t take_some(fdvv_frame_reader *reader, const uint8_t *bytes, uint1
     return 1;
 }
 
-uint16_t fdvv_frame_take(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *found)
+uint16_t fdvv_frame_take(fdvv_frame_reader *reader, const uint8_t *bytes, uint16_t count, uint8_t *result)
 {
     uint16_t taken = 0;
-    *found = FDVV_FRAME_NOTHING;
-    while (taken < count && *found == FDVV_FRAME_NOTHING)
-        taken = (uint16_t)(taken + take_some(reader, bytes + taken, (uint16_t)(count - taken), found));
+    *result = FDVV_FRAME_NOTHING;
+    while (taken < count && *result == FDVV_FRAME_NOTHING)
+        taken = (uint16_t)(taken + take_block(reader, bytes + taken, (uint16_t)(count - taken), result));
     return taken;
 }
 
@@ -143,15 +143,15 @@ uint16_t fdvv_ring_take(fdvv_ring *ring, uint8_t *bytes, uint16_t room)
     return count;
 }
 
-/* a frame being stuffed */
+/* a frame being encoded */
 typedef struct {
     uint8_t *ring;
     uint32_t head;    /* where the next byte goes */
-    uint32_t code_at; /* where the last zero was: it becomes the way to the next */
+    uint32_t code_at; /* position of the last zero: replaced by the distance to the next one */
     uint32_t crc;
 } stuffing;
 
-/* One pass over the bytes with everything in registers: it must fit between two ticks of a Cortex-M0+. */
+/* One pass with all variables in registers, because it must fit between two ticks of a Cortex-M0+. */
 static void stuff(stuffing *open, const uint8_t *bytes, uint16_t count)
 {
     uint8_t *ring = open->ring;

@@ -1,4 +1,4 @@
-/* The parts of a program follow each other in memory. */
+/* The tables of a program are contiguous: header, states, transitions, surfaces, vibrations, slots. */
 #include "image.h"
 
 const fdvv_image_header *fdvv_image_head(const uint8_t *image)

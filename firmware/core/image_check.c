@@ -1,4 +1,4 @@
-/* Whether a program may be trusted: piece by piece, reading nothing that lies outside it. */
+/* Validates a program in steps, without reading outside of it. */
 #include <stddef.h>
 
 #include "crc32.h"
@@ -23,17 +23,17 @@ static void enter(fdvv_image_check *check, uint8_t stage)
     check->at = 0;
 }
 
-/* Refuse the record `it` for the first field out of its range. */
+/* Refuse the record `it` if this field is out of range. */
 #define CHECK(field, low, high)                                                                             \
     if (fdvv_outside((int32_t)it->field, low, high))                                                        \
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->field);
 
-/* Refuse it for an index or offset that leads nowhere. */
-#define LEADS(condition, field)                                                                             \
+/* Refuse it if this index or offset is invalid. */
+#define REQUIRE(condition, field)                                                                             \
     if (!(condition))                                                                                       \
         return refuse(check, FDVV_REFUSAL_IMAGE_LAYOUT, &it->field);
 
-/* Where the tables end and velocities, forces and waves may lie. */
+/* End of the tables. Velocities, forces and waves follow in any order. */
 static uint16_t pool_at(const fdvv_image_header *head)
 {
     return (uint16_t)(sizeof(fdvv_image_header) + head->states * sizeof(fdvv_state) +
@@ -46,7 +46,7 @@ static uint8_t in_pool(const fdvv_image_check *check, uint32_t at, uint32_t byte
     return at >= pool_at(fdvv_image_head(check->image)) && at + bytes <= check->size_bytes;
 }
 
-static uint8_t slot_or_none(const fdvv_image_header *head, uint8_t slot)
+static uint8_t is_slot_or_none(const fdvv_image_header *head, uint8_t slot)
 {
     return slot < head->slots || slot == FDVV_NONE;
 }
@@ -55,8 +55,8 @@ static uint16_t check_head(fdvv_image_check *check, const fdvv_settings *setting
 {
     const fdvv_image_header *it = fdvv_image_head(check->image);
     (void)settings;
-    LEADS(it->magic == FDVV_IMAGE_MAGIC, magic)
-    LEADS(it->size_bytes == check->size_bytes, size_bytes)
+    REQUIRE(it->magic == FDVV_IMAGE_MAGIC, magic)
+    REQUIRE(it->size_bytes == check->size_bytes, size_bytes)
     if (it->crc32 != check->announced_crc32)
         return refuse(check, FDVV_REFUSAL_CHECKSUM, &it->crc32);
     enter(check, CHECKSUM);
@@ -78,8 +78,8 @@ static uint16_t check_checksum(fdvv_image_check *check, const fdvv_settings *set
     return count;
 }
 
-/* ASCII, then nothing but zeros. */
-static const uint8_t *bad_letter(const fdvv_image_header *head)
+/* The name must be ASCII, padded with zeros. Returns the first invalid character, or 0. */
+static const uint8_t *find_invalid_character(const fdvv_image_header *head)
 {
     uint8_t i, ended = 0;
     for (i = 0; i < sizeof head->name; i++) {
@@ -93,15 +93,15 @@ static const uint8_t *bad_letter(const fdvv_image_header *head)
 static uint16_t check_counts(fdvv_image_check *check, const fdvv_settings *settings)
 {
     const fdvv_image_header *it = fdvv_image_head(check->image);
-    const uint8_t *letter = bad_letter(it);
+    const uint8_t *invalid = find_invalid_character(it);
     (void)settings;
     FDVV_IMAGE_HEADER_RANGES(CHECK)
     if (it->travel_um16 > check->travel_limit_um16)
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->travel_um16);
-    if (letter)
-        return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, letter);
-    LEADS(it->start_state < it->states, start_state)
-    LEADS(pool_at(it) <= check->size_bytes, states)
+    if (invalid)
+        return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, invalid);
+    REQUIRE(it->start_state < it->states, start_state)
+    REQUIRE(pool_at(it) <= check->size_bytes, states)
     enter(check, SURFACES);
     return sizeof *it;
 }
@@ -113,8 +113,8 @@ static uint16_t check_surface(fdvv_image_check *check, const fdvv_settings *sett
     uint8_t row;
     (void)settings;
     FDVV_SURFACE_RANGES(CHECK)
-    LEADS(it->velocities_at % 2 == 0 && in_pool(check, it->velocities_at, 2u * it->rows), velocities_at)
-    LEADS(it->forces_at % 2 == 0 && in_pool(check, it->forces_at, 2u * it->rows * it->columns), forces_at)
+    REQUIRE(it->velocities_at % 2 == 0 && in_pool(check, it->velocities_at, 2u * it->rows), velocities_at)
+    REQUIRE(it->forces_at % 2 == 0 && in_pool(check, it->forces_at, 2u * it->rows * it->columns), forces_at)
     velocities = (const uint16_t *)(const void *)(check->image + it->velocities_at);
     for (row = 1; row < it->rows; row++)
         if (velocities[row] <= velocities[row - 1])
@@ -126,7 +126,7 @@ static uint16_t check_surface(fdvv_image_check *check, const fdvv_settings *sett
     return (uint16_t)(sizeof *it + 2u * it->rows);
 }
 
-/* Some nodes of the surface; its extremes are kept for the states that add to it. */
+/* Some nodes of the surface. Stores its extremes, to check the states that add a bias to it. */
 static uint16_t check_forces(fdvv_image_check *check, const fdvv_settings *settings)
 {
     const fdvv_surface *surface = fdvv_image_surface(check->image, (uint8_t)check->at);
@@ -148,8 +148,8 @@ static uint16_t check_forces(fdvv_image_check *check, const fdvv_settings *setti
     return (uint16_t)(2 * i);
 }
 
-static uint8_t too_strong(const fdvv_image_check *check, const fdvv_settings *settings, uint8_t surface,
-                          int16_t bias_cN64)
+static uint8_t exceeds_force_limit(const fdvv_image_check *check, const fdvv_settings *settings, uint8_t surface,
+                                   int16_t bias_cN64)
 {
     return bias_cN64 + check->lowest_cN64[surface] < -settings->force_limit_cN64 ||
            bias_cN64 + check->highest_cN64[surface] > settings->force_limit_cN64;
@@ -160,18 +160,18 @@ static uint16_t check_state(fdvv_image_check *check, const fdvv_settings *settin
     const fdvv_image_header *head = fdvv_image_head(check->image);
     const fdvv_state *it = fdvv_image_state(check->image, (uint8_t)check->at++);
     FDVV_STATE_RANGES(CHECK)
-    LEADS(it->press_surface < head->surfaces, press_surface)
-    LEADS(it->release_surface < head->surfaces, release_surface)
-    LEADS(it->first_transition + it->transitions <= head->transitions, first_transition)
-    LEADS(slot_or_none(head, it->enter_slot), enter_slot)
-    LEADS(slot_or_none(head, it->repeat_slot), repeat_slot)
+    REQUIRE(it->press_surface < head->surfaces, press_surface)
+    REQUIRE(it->release_surface < head->surfaces, release_surface)
+    REQUIRE(it->first_transition + it->transitions <= head->transitions, first_transition)
+    REQUIRE(is_slot_or_none(head, it->enter_slot), enter_slot)
+    REQUIRE(is_slot_or_none(head, it->repeat_slot), repeat_slot)
     if ((it->repeat_slot == FDVV_NONE) != (it->repeat_ms == 0))
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->repeat_ms);
-    if (too_strong(check, settings, it->press_surface, it->bias_cN64) ||
-        too_strong(check, settings, it->release_surface, it->bias_cN64))
+    if (exceeds_force_limit(check, settings, it->press_surface, it->bias_cN64) ||
+        exceeds_force_limit(check, settings, it->release_surface, it->bias_cN64))
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->bias_cN64);
-    if (too_strong(check, settings, it->press_surface, it->bias_end_cN64) ||
-        too_strong(check, settings, it->release_surface, it->bias_end_cN64))
+    if (exceeds_force_limit(check, settings, it->press_surface, it->bias_end_cN64) ||
+        exceeds_force_limit(check, settings, it->release_surface, it->bias_end_cN64))
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->bias_end_cN64);
     return sizeof *it;
 }
@@ -188,8 +188,8 @@ static uint16_t check_transition(fdvv_image_check *check, const fdvv_settings *s
     const fdvv_transition *it = fdvv_image_transition(check->image, (uint8_t)check->at++);
     (void)settings;
     FDVV_TRANSITION_RANGES(CHECK)
-    LEADS(it->target < fdvv_image_head(check->image)->states, target)
-    LEADS(slot_or_none(fdvv_image_head(check->image), it->slot), slot)
+    REQUIRE(it->target < fdvv_image_head(check->image)->states, target)
+    REQUIRE(is_slot_or_none(fdvv_image_head(check->image), it->slot), slot)
     if (operand_outside(it->condition, it->value))
         return refuse(check, FDVV_REFUSAL_IMAGE_RANGE, &it->value);
     if (operand_outside(it->guard, it->guard_value))
@@ -202,8 +202,8 @@ static uint16_t check_vibration(fdvv_image_check *check, const fdvv_settings *se
     const fdvv_vibration *it = fdvv_image_vibration(check->image, (uint8_t)check->at++);
     (void)settings;
     FDVV_VIBRATION_RANGES(CHECK)
-    LEADS(it->slot < fdvv_image_head(check->image)->slots, slot)
-    LEADS(it->states >> fdvv_image_head(check->image)->states == 0, states)
+    REQUIRE(it->slot < fdvv_image_head(check->image)->slots, slot)
+    REQUIRE(it->states >> fdvv_image_head(check->image)->states == 0, states)
     return sizeof *it;
 }
 
@@ -213,17 +213,17 @@ static uint16_t check_slot(fdvv_image_check *check, const fdvv_settings *setting
     (void)settings;
     FDVV_SLOT_RANGES(CHECK)
     if (it->waveform == FDVV_WAVEFORM_DECAYING_SINE) {
-        LEADS(it->wave_at == 0, wave_at)
-        LEADS(it->wave_samples == 0, wave_samples)
+        REQUIRE(it->wave_at == 0, wave_at)
+        REQUIRE(it->wave_samples == 0, wave_samples)
     } else {
-        LEADS(it->wave_samples > 0, wave_samples)
-        LEADS(in_pool(check, it->wave_at, it->wave_samples), wave_at)
+        REQUIRE(it->wave_samples > 0, wave_samples)
+        REQUIRE(in_pool(check, it->wave_at, it->wave_samples), wave_at)
     }
     return sizeof *it;
 }
 
-/* Records of the table that this stage goes through. */
-static uint8_t records(const fdvv_image_header *head, uint8_t stage)
+/* Number of records in the table of this stage. */
+static uint8_t record_count(const fdvv_image_header *head, uint8_t stage)
 {
     switch (stage) {
     case SURFACES: return head->surfaces;
@@ -234,15 +234,15 @@ static uint8_t records(const fdvv_image_header *head, uint8_t stage)
     }
 }
 
-static uint16_t piece(fdvv_image_check *check, const fdvv_settings *settings)
+static uint16_t check_piece(fdvv_image_check *check, const fdvv_settings *settings)
 {
-    static uint16_t (*const pieces[DONE])(fdvv_image_check *, const fdvv_settings *) = {
+    static uint16_t (*const stages[DONE])(fdvv_image_check *, const fdvv_settings *) = {
         check_head,  check_checksum,   check_counts,    check_surface, check_forces,
         check_state, check_transition, check_vibration, check_slot,
     };
     uint8_t table = check->stage >= SURFACES && check->stage != FORCES;
-    if (!table || check->at < records(fdvv_image_head(check->image), check->stage))
-        return pieces[check->stage](check, settings);
+    if (!table || check->at < record_count(fdvv_image_head(check->image), check->stage))
+        return stages[check->stage](check, settings);
     enter(check, check->stage == SURFACES ? STATES : (uint8_t)(check->stage + 1));
     if (check->stage == DONE)
         check->result = FDVV_REFUSAL_NONE;
@@ -251,23 +251,24 @@ static uint16_t piece(fdvv_image_check *check, const fdvv_settings *settings)
 
 void fdvv_image_check_begin(fdvv_image_check *check, const uint8_t *image, uint16_t size_bytes, uint32_t crc32)
 {
-    uint8_t usable = size_bytes >= sizeof(fdvv_image_header) && size_bytes <= FDVV_IMAGE_BYTES && size_bytes % 4 == 0;
+    uint8_t is_valid_size =
+        size_bytes >= sizeof(fdvv_image_header) && size_bytes <= FDVV_IMAGE_BYTES && size_bytes % 4 == 0;
     check->image = image;
     check->size_bytes = size_bytes;
     check->announced_crc32 = crc32;
     check->crc32 = 0;
     check->travel_limit_um16 = INT32_MAX;
-    check->detail = usable ? 0 : (uint16_t)offsetof(fdvv_image_header, size_bytes);
-    check->result = usable ? FDVV_REFUSAL_BUSY : FDVV_REFUSAL_IMAGE_LAYOUT;
+    check->detail = is_valid_size ? 0 : (uint16_t)offsetof(fdvv_image_header, size_bytes);
+    check->result = is_valid_size ? FDVV_REFUSAL_BUSY : FDVV_REFUSAL_IMAGE_LAYOUT;
     enter(check, HEAD);
 }
 
 uint8_t fdvv_image_check_step(fdvv_image_check *check, const fdvv_settings *settings, uint16_t bytes)
 {
-    uint32_t looked = 0;
+    uint32_t checked_bytes = 0;
     while (check->result == FDVV_REFUSAL_BUSY) {
-        looked += piece(check, settings);
-        if (looked >= bytes)
+        checked_bytes += check_piece(check, settings);
+        if (checked_bytes >= bytes)
             break;
     }
     return check->result;

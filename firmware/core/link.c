@@ -1,16 +1,16 @@
 #include "link_state.h"
 
-static uint8_t equal(const uint8_t *one, const uint8_t *other, uint16_t count)
+static uint8_t equal(const uint8_t *a, const uint8_t *b, uint16_t count)
 {
     uint16_t i;
     for (i = 0; i < count; i++)
-        if (one[i] != other[i])
+        if (a[i] != b[i])
             return 0;
     return 1;
 }
 
-/* What a connection leaves behind; programs and the board's self-test outlive it. */
-static void forget_connection(fdvv_link *link)
+/* Programs and a running self-test of the board are kept. */
+static void reset_connection(fdvv_link *link)
 {
     fdvv_frame_reader_reset(&link->reader);
     fdvv_ring_reset(&link->out);
@@ -33,12 +33,12 @@ void fdvv_link_init(fdvv_link *link, fdvv_core *core, const fdvv_board *board)
     link->testing = 0;
     link->active = 0;
     fdvv_link_forget_programs(link);
-    forget_connection(link);
+    reset_connection(link);
 }
 
 void fdvv_link_reset(fdvv_link *link)
 {
-    forget_connection(link);
+    reset_connection(link);
     fdvv_link_forget_upload(link);
 }
 
@@ -46,11 +46,11 @@ uint16_t fdvv_link_receive(fdvv_link *link, const uint8_t *bytes, uint16_t count
 {
     uint16_t taken = 0;
     while (taken < count && !link->waiting) {
-        uint8_t found;
-        taken = (uint16_t)(taken + fdvv_frame_take(&link->reader, bytes + taken, (uint16_t)(count - taken), &found));
-        if (found == FDVV_FRAME_BAD)
+        uint8_t result;
+        taken = (uint16_t)(taken + fdvv_frame_take(&link->reader, bytes + taken, (uint16_t)(count - taken), &result));
+        if (result == FDVV_FRAME_BAD)
             link->board->counters->bad_frames++;
-        if (found != FDVV_FRAME_WHOLE)
+        if (result != FDVV_FRAME_WHOLE)
             continue;
         link->board->counters->frames++;
         link->waiting = 1;
@@ -92,8 +92,8 @@ static uint8_t *last_request(fdvv_link *link)
     return (uint8_t *)link->last_request + 2;
 }
 
-/* Word by word, to be quick. */
-static void keep_request(fdvv_link *link)
+/* Copied word by word, for speed. */
+static void store_request(fdvv_link *link)
 {
     uint8_t i;
     link->last_request_bytes = (uint16_t)(link->reader.length - 2);
@@ -105,7 +105,7 @@ void fdvv_link_answer_deferred(fdvv_link *link, uint8_t refusal)
 {
     const fdvv_command *command = fdvv_link_command(link->deferred);
     set_reply(link, command->id, refusal, command->reply_bytes);
-    /* what was kept is the request last heard: keep this one, which has no payload, instead */
+    /* the stored request is the last one received: replace it by this one, which has no payload */
     last_request(link)[0] = link->deferred;
     last_request(link)[1] = link->deferred_sequence;
     link->last_request_bytes = 2;
@@ -113,8 +113,8 @@ void fdvv_link_answer_deferred(fdvv_link *link, uint8_t refusal)
     send_reply(link, link->deferred_sequence);
 }
 
-/* Only a known host may do more than say hello and ping; while an answer is outstanding it may also stop. */
-static uint8_t admitted(const fdvv_link *link, uint8_t id)
+/* Before a valid HELLO only HELLO and PING are allowed; while a reply is deferred, only these and DISARM. */
+static uint8_t check_allowed(const fdvv_link *link, uint8_t id)
 {
     if (id == FDVV_MSG_HELLO || id == FDVV_MSG_PING)
         return FDVV_REFUSAL_NONE;
@@ -125,39 +125,39 @@ static uint8_t admitted(const fdvv_link *link, uint8_t id)
     return link->deferred && id != FDVV_MSG_DISARM ? FDVV_REFUSAL_BUSY : FDVV_REFUSAL_NONE;
 }
 
-static uint8_t right_length(const fdvv_command *command, const void *payload, uint16_t count)
+static uint8_t is_valid_length(const fdvv_command *command, const void *payload, uint16_t count)
 {
     if (command->id != FDVV_MSG_DATA)
         return count == command->request_bytes;
-    /* of a data message only the bytes that are there are sent */
+    /* a data message carries only as many bytes as it has */
     return count >= 4 && count == 4 + ((const fdvv_data_request *)payload)->count;
 }
 
-static uint8_t carry_out(fdvv_link *link, uint8_t id, const void *payload, uint16_t count)
+static uint8_t execute(fdvv_link *link, uint8_t id, const void *payload, uint16_t count)
 {
     const fdvv_command *command = fdvv_link_command(id);
     uint8_t refusal;
     link->detail = 0;
     if (!command)
         return FDVV_REFUSAL_UNKNOWN_MESSAGE;
-    refusal = admitted(link, id);
+    refusal = check_allowed(link, id);
     if (refusal != FDVV_REFUSAL_NONE)
         return refusal;
-    if (!right_length(command, payload, count)) {
+    if (!is_valid_length(command, payload, count)) {
         link->detail = count;
         return FDVV_REFUSAL_BAD_LENGTH;
     }
     return command->handle(link, payload);
 }
 
-/* The bytes that tell one request from another: all but the checksum. */
+/* A request is repeated if all its bytes but the checksum are the same. */
 static uint8_t is_repeated(fdvv_link *link)
 {
     return link->last_request_bytes == link->reader.length - 2 &&
            equal(last_request(link), fdvv_frame_bytes(&link->reader), link->last_request_bytes);
 }
 
-static void answer(fdvv_link *link)
+static void process_frame(fdvv_link *link)
 {
     const uint8_t *frame = fdvv_frame_bytes(&link->reader);
     uint16_t count;
@@ -166,23 +166,23 @@ static void answer(fdvv_link *link)
     uint8_t refusal;
     link->waiting = 0;
     if (link->deferred && frame[0] == link->deferred && frame[1] == link->deferred_sequence && !count)
-        return; /* asked again meanwhile; the answer comes once */
+        return; /* repeated while it is being processed; there will be one reply */
     if (is_repeated(link)) {
         send_reply(link, frame[1]);
         return;
     }
-    refusal = carry_out(link, frame[0], payload, count);
+    refusal = execute(link, frame[0], payload, count);
     if (refusal == FDVV_REFUSAL_NONE && link->deferred == frame[0]) {
         link->deferred_sequence = frame[1];
         return;
     }
     command = fdvv_link_command(frame[0]);
     set_reply(link, frame[0], refusal, command ? command->reply_bytes : 0);
-    keep_request(link);
+    store_request(link);
     send_reply(link, frame[1]);
 }
 
-static uint8_t other_work(fdvv_link *link)
+static uint8_t do_background_work(fdvv_link *link)
 {
     if (link->testing) {
         fdvv_link_poll_selftest(link);
@@ -196,19 +196,19 @@ static uint8_t other_work(fdvv_link *link)
 
 void fdvv_link_work(fdvv_link *link)
 {
-    uint8_t has_room, may_answer;
+    uint8_t has_room, may_reply;
     if (fdvv_link_send_batch(link))
         return;
     fdvv_link_send_notices(link);
     has_room = fdvv_ring_room(&link->out) >= FDVV_REPLY_ROOM;
-    may_answer = link->waiting && has_room;
+    may_reply = link->waiting && has_room;
     link->turn ^= 1;
-    if (may_answer && link->turn) {
-        answer(link);
+    if (may_reply && link->turn) {
+        process_frame(link);
         return;
     }
     if (link->deferred && !has_room)
-        return; /* its last step would have to answer */
-    if (!other_work(link) && may_answer)
-        answer(link);
+        return; /* its last step needs room for the reply */
+    if (!do_background_work(link) && may_reply)
+        process_frame(link);
 }

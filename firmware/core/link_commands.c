@@ -1,4 +1,4 @@
-/* What each request does; payloads have the right length and lie aligned. */
+/* The handlers of the requests. Payloads are aligned and have the correct length. */
 #include "link_state.h"
 
 #define FIRMWARE_VERSION 0x000200u /* 0.2.0 */
@@ -46,22 +46,22 @@ static uint8_t read_settings(fdvv_link *link, const void *request)
 static uint8_t write_settings(fdvv_link *link, const void *request)
 {
     const fdvv_settings *settings = (const fdvv_settings *)request;
-    uint8_t wrong, mode = link->core->supervisor.mode;
-    /* in fault too: settings that do not suit the rig may be what holds it there */
+    uint8_t invalid, mode = link->core->supervisor.mode;
+    /* also allowed in mode fault, because wrong settings may be the cause of the fault */
     if (mode != FDVV_MODE_IDLE && mode != FDVV_MODE_FAULT)
         return FDVV_REFUSAL_WRONG_MODE;
-    wrong = fdvv_settings_check(settings);
-    if (wrong) {
-        link->detail = (uint16_t)(wrong - 1);
+    invalid = fdvv_settings_check(settings);
+    if (invalid) {
+        link->detail = (uint16_t)(invalid - 1);
         return FDVV_REFUSAL_BAD_VALUE;
     }
-    /* programs were checked against the limits of before */
+    /* they were checked against the old limits */
     fdvv_link_forget_programs(link);
     fdvv_core_set(link->core, settings);
     return FDVV_REFUSAL_NONE;
 }
 
-static uint8_t ask(fdvv_link *link, uint8_t what, uint8_t number)
+static uint8_t request_mode(fdvv_link *link, uint8_t what, uint8_t number)
 {
     return fdvv_supervisor_ask(&link->core->supervisor, &link->core->settings, what, number);
 }
@@ -69,13 +69,13 @@ static uint8_t ask(fdvv_link *link, uint8_t what, uint8_t number)
 static uint8_t arm(fdvv_link *link, const void *request)
 {
     (void)request;
-    return link->core->image ? ask(link, FDVV_ASK_ARM, 0) : FDVV_REFUSAL_NO_IMAGE;
+    return link->core->image ? request_mode(link, FDVV_ASK_ARM, 0) : FDVV_REFUSAL_NO_IMAGE;
 }
 
 static uint8_t disarm(fdvv_link *link, const void *request)
 {
     (void)request;
-    return ask(link, FDVV_ASK_DISARM, 0);
+    return request_mode(link, FDVV_ASK_DISARM, 0);
 }
 
 static uint8_t event(fdvv_link *link, const void *request)
@@ -119,12 +119,12 @@ static uint8_t read_fault(fdvv_link *link, const void *request)
 static uint8_t clear_fault(fdvv_link *link, const void *request)
 {
     const fdvv_clear_fault_request *clear = (const fdvv_clear_fault_request *)request;
-    return clear->spare ? FDVV_REFUSAL_BAD_VALUE : ask(link, FDVV_ASK_CLEAR, clear->fault);
+    return clear->spare ? FDVV_REFUSAL_BAD_VALUE : request_mode(link, FDVV_ASK_CLEAR, clear->fault);
 }
 
 static uint8_t selftest(fdvv_link *link, const void *request)
 {
-    uint8_t refusal = ask(link, FDVV_ASK_TEST, 0);
+    uint8_t refusal = request_mode(link, FDVV_ASK_TEST, 0);
     (void)request;
     if (refusal != FDVV_REFUSAL_NONE)
         return refusal;
@@ -135,19 +135,19 @@ static uint8_t selftest(fdvv_link *link, const void *request)
 
 void fdvv_link_poll_selftest(fdvv_link *link)
 {
-    fdvv_selftest_reply found, *reply = (fdvv_selftest_reply *)link->reply;
+    fdvv_selftest_reply results, *reply = (fdvv_selftest_reply *)link->reply;
     uint8_t i;
-    for (i = 0; i < sizeof found.values; i++)
-        found.values[i] = 0;
-    for (i = 0; i < sizeof found.verdicts; i++)
-        found.verdicts[i] = FDVV_VERDICT_NOT_TESTED;
-    if (!link->board->selftest(&found))
+    for (i = 0; i < sizeof results.values; i++)
+        results.values[i] = 0;
+    for (i = 0; i < sizeof results.verdicts; i++)
+        results.verdicts[i] = FDVV_VERDICT_NOT_TESTED;
+    if (!link->board->selftest(&results))
         return;
     link->testing = 0;
-    (void)ask(link, FDVV_ASK_TESTED, 0);
+    (void)request_mode(link, FDVV_ASK_TESTED, 0);
     if (link->deferred != FDVV_MSG_SELFTEST)
-        return; /* who asked has gone */
-    *reply = found;
+        return; /* the host has disconnected meanwhile */
+    *reply = results;
     fdvv_link_answer_deferred(link, FDVV_REFUSAL_NONE);
 }
 

@@ -1,4 +1,4 @@
-/* The inside of the link: for boards that place it, and for the link's own files. */
+/* The state of the link and the functions that its source files share; boards need it to allocate the link. */
 #ifndef FDVV_LINK_STATE_H
 #define FDVV_LINK_STATE_H
 
@@ -8,20 +8,20 @@
 /* what is known of the host */
 enum { FDVV_HOST_UNKNOWN, FDVV_HOST_OTHER_HASH, FDVV_HOST_KNOWN };
 
-/* how far an upload has come */
+/* state of an upload */
 enum { FDVV_UPLOAD_NONE, FDVV_UPLOAD_OPEN, FDVV_UPLOAD_READY };
 
-/* what the check in progress is for */
+/* purpose of the check in progress */
 enum { FDVV_CHECK_NONE, FDVV_CHECK_COMMIT, FDVV_CHECK_ACTIVE };
 
-/* fewer than a frame may hold: stuffing must fit between two ticks of a Cortex-M0+ */
+/* fewer than fit into a frame, because stuffing must fit between two ticks of a Cortex-M0+ */
 #define FDVV_BATCH_RECORDS 4
 #define FDVV_REPLY_BYTES 96      /* largest reply: settings */
 typedef char fdvv_settings_fit_a_reply[sizeof(fdvv_settings) <= FDVV_REPLY_BYTES ? 1 : -1];
 #define FDVV_REPLY_ROOM (FDVV_REPLY_BYTES + 6)
-#define FDVV_KEPT_ROOM (FDVV_REPLY_ROOM + 32) /* telemetry leaves it free for a reply and two notices */
+#define FDVV_KEPT_ROOM (FDVV_REPLY_ROOM + 32) /* telemetry keeps this free for a reply and two notices */
 
-/* a program in a bank, or none: size_bytes 0 */
+/* program in a bank; size_bytes is 0 if there is none */
 typedef struct {
     uint32_t crc32;
     uint16_t size_bytes;
@@ -33,39 +33,39 @@ struct fdvv_link {
 
     fdvv_frame_reader reader;
     fdvv_ring out;
-    uint32_t arrived_us;         /* when the waiting frame was whole */
-    uint8_t waiting;             /* a whole frame is to be answered */
-    uint8_t turn;                /* frames and other work take turns */
+    uint32_t arrived_us;         /* when the waiting frame was complete */
+    uint8_t waiting;             /* a complete frame needs a reply */
+    uint8_t turn;                /* alternates between frames and background work */
     uint8_t host;                /* FDVV_HOST_… */
-    uint8_t sequence;            /* of the next unasked frame */
+    uint8_t sequence;            /* of the next unsolicited frame */
 
-    /* the last request answered, so that its repetition gets the same reply */
-    uint32_t last_request[FDVV_FRAME_WORDS]; /* as in the reader, two bytes in */
+    /* the last request and its reply, so that a repeated request gets the same reply */
+    uint32_t last_request[FDVV_FRAME_WORDS]; /* from the third byte on, as in the reader */
     uint16_t last_request_bytes;             /* 0: none */
     uint8_t last_reply_id;
     uint8_t last_reply_bytes;
     uint32_t reply[FDVV_REPLY_BYTES / 4];
 
-    /* a request whose answer takes several steps: 0, commit or self-test */
+    /* id of a request whose reply takes several steps: commit or self-test; 0: none */
     uint8_t deferred;
     uint8_t deferred_sequence;
-    uint8_t testing;             /* the board's self-test runs, whether or not anyone waits for it */
+    uint8_t testing;             /* the board's self-test is running, even if the host has disconnected */
 
     uint8_t upload;              /* FDVV_UPLOAD_… */
     uint8_t checking;            /* FDVV_CHECK_… */
-    uint8_t active;              /* bank that is rendered; uploads go into the other */
+    uint8_t active;              /* bank of the rendered program; uploads go into the other */
     uint16_t received;
-    uint16_t detail;             /* of the refusal in the making */
+    uint16_t detail;             /* of the next refusal */
     fdvv_image_check check;
     fdvv_bank_content content[2];
 
     uint32_t tick;               /* of the last tick */
     uint32_t due_tick;           /* of the next record */
-    uint8_t every;               /* 0: no telemetry */
-    uint8_t key;                 /* last told */
-    uint8_t key_waits;
+    uint8_t every;               /* ticks per record; 0: no telemetry */
+    uint8_t key;                 /* last state noticed */
+    uint8_t key_waits;           /* the notice is to be sent */
     uint8_t fault_waits;
-    uint16_t faults;             /* last told */
+    uint16_t faults;             /* last count noticed */
     fdvv_key_request key_notice;
     fdvv_faulted_request fault_notice;
     fdvv_records_request batch;  /* followed by the records */
@@ -75,7 +75,7 @@ struct fdvv_link {
 };
 typedef char fdvv_link_stays_small[sizeof(struct fdvv_link) <= 2 * FDVV_IMAGE_BYTES + 1536 ? 1 : -1];
 
-/* link_commands.c: carry out the waiting request; the reply's bytes are in link->reply. */
+/* link_commands.c: handle returns a refusal; it writes the payload of the reply to link->reply. */
 typedef struct {
     uint8_t id;
     uint8_t request_bytes;
@@ -85,7 +85,7 @@ typedef struct {
 const fdvv_command *fdvv_link_command(uint8_t id);
 void fdvv_link_poll_selftest(fdvv_link *link);
 
-/* link.c: answer the deferred request, refusal FDVV_REFUSAL_NONE if it was carried out. */
+/* link.c: send the reply to the deferred request, or its refusal. */
 void fdvv_link_answer_deferred(fdvv_link *link, uint8_t refusal);
 
 /* link_upload.c */

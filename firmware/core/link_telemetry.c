@@ -1,4 +1,4 @@
-/* What the device says unasked: telemetry, which may be lost but never invented, and notices. */
+/* Unsolicited messages: telemetry, whose records may be dropped (and are counted then), and notices. */
 #include "link_state.h"
 
 #define NOTICE_ROOM 20 /* a key notice, stuffed */
@@ -8,7 +8,7 @@ static void send(fdvv_link *link, uint8_t id, const void *payload, uint16_t coun
     fdvv_frame_put(&link->out, id, link->sequence++, payload, count);
 }
 
-/* A frame spans about FDVV_BATCH_RECORDS ticks, whatever the distance of its records. */
+/* A frame spans about FDVV_BATCH_RECORDS ticks, regardless of the interval between records. */
 static uint8_t is_full(const fdvv_link *link)
 {
     return link->batch.count && (uint32_t)link->batch.count * link->every >= FDVV_BATCH_RECORDS;
@@ -30,7 +30,7 @@ static void send_batch(fdvv_link *link)
     link->batch.count = 0;
 }
 
-/* Stuffing waits for the time between ticks; only if there was none the next tick has to do it. */
+/* Called between ticks, because stuffing takes long; add_record sends only what has not been sent by then. */
 uint8_t fdvv_link_send_batch(fdvv_link *link)
 {
     if (!is_full(link))
@@ -49,7 +49,7 @@ void fdvv_link_set_telemetry(fdvv_link *link, uint8_t every)
 static void add_record(fdvv_link *link, const fdvv_inputs *inputs, const fdvv_outputs *outputs)
 {
     fdvv_records_request *batch = &link->batch;
-    /* a missed tick leaves a gap: what follows it begins a new frame */
+    /* the records of a frame are equidistant: after a missed tick a new frame begins */
     if (is_full(link) || batch->first_tick + (uint32_t)batch->count * link->every != link->tick)
         send_batch(link);
     if (!batch->count) {
@@ -73,7 +73,7 @@ static void note_key(fdvv_link *link, const fdvv_inputs *inputs, const fdvv_outp
     link->key_notice.spare = 0;
     link->key_notice.tick = link->tick;
     link->key_notice.time_us = inputs->time_us;
-    link->key_waits = 1; /* an older one not yet sent is out of date */
+    link->key_waits = 1; /* replaces an older one that was not sent yet */
 }
 
 static void note_fault(fdvv_link *link)

@@ -1,9 +1,9 @@
-/* Programs come into the bank that is not rendered, in order; only a checked one can become the active one. */
+/* Programs are uploaded in order into the inactive bank. Only a checked program can be activated. */
 #include "link_state.h"
 
-#define STEP_BYTES 64 /* of a check; it must fit between two ticks of a Cortex-M0+ */
+#define STEP_BYTES 64 /* checked per call, which must fit between two ticks of a Cortex-M0+ */
 
-static uint8_t spare_bank(const fdvv_link *link)
+static uint8_t inactive_bank(const fdvv_link *link)
 {
     return (uint8_t)(link->active ^ 1);
 }
@@ -17,7 +17,7 @@ void fdvv_link_forget_upload(fdvv_link *link)
 {
     link->upload = FDVV_UPLOAD_NONE;
     link->received = 0;
-    link->content[spare_bank(link)].size_bytes = 0;
+    link->content[inactive_bank(link)].size_bytes = 0;
     if (link->checking == FDVV_CHECK_COMMIT)
         link->checking = FDVV_CHECK_NONE;
 }
@@ -41,17 +41,17 @@ uint8_t fdvv_link_begin(fdvv_link *link, const void *request)
     if (begin->size_bytes < sizeof(fdvv_image_header) || begin->size_bytes % 4 || begin->spare)
         return FDVV_REFUSAL_BAD_VALUE;
     fdvv_link_forget_upload(link);
-    content = &link->content[spare_bank(link)];
+    content = &link->content[inactive_bank(link)];
     content->size_bytes = begin->size_bytes;
     content->crc32 = begin->crc32;
     link->upload = FDVV_UPLOAD_OPEN;
     return FDVV_REFUSAL_NONE;
 }
 
-/* Bytes that are there already must be the same; give the first that differs, or where all of them end. */
-static uint16_t agrees_until(fdvv_link *link, const fdvv_data_request *data)
+/* Offset of the first byte that differs from what was received before, or the end of the data. */
+static uint16_t find_difference(fdvv_link *link, const fdvv_data_request *data)
 {
-    const uint8_t *bank = bank_bytes(link, spare_bank(link));
+    const uint8_t *bank = bank_bytes(link, inactive_bank(link));
     uint16_t i;
     for (i = 0; i < data->count; i++)
         if (bank[data->offset + i] != data->bytes[i])
@@ -59,7 +59,7 @@ static uint16_t agrees_until(fdvv_link *link, const fdvv_data_request *data)
     return (uint16_t)(data->offset + i);
 }
 
-/* Word by word where both lie so, as all but the last piece of a program do. */
+/* Word by word where both are aligned, as all but the last piece of a program are. */
 static void copy(uint8_t *to, const uint8_t *from, uint16_t count)
 {
     uint16_t i = 0;
@@ -72,9 +72,9 @@ static void copy(uint8_t *to, const uint8_t *from, uint16_t count)
 
 static uint8_t append(fdvv_link *link, const fdvv_data_request *data)
 {
-    uint8_t *bank = bank_bytes(link, spare_bank(link)) + link->received;
-    if (data->count > link->content[spare_bank(link)].size_bytes - link->received) {
-        link->detail = link->content[spare_bank(link)].size_bytes;
+    uint8_t *bank = bank_bytes(link, inactive_bank(link)) + link->received;
+    if (data->count > link->content[inactive_bank(link)].size_bytes - link->received) {
+        link->detail = link->content[inactive_bank(link)].size_bytes;
         return FDVV_REFUSAL_TOO_LARGE;
     }
     copy(bank, data->bytes, data->count);
@@ -94,7 +94,7 @@ static uint8_t accept(fdvv_link *link, const fdvv_data_request *data)
         return append(link, data);
     if (end > link->received)
         return FDVV_REFUSAL_WRONG_ORDER;
-    link->detail = agrees_until(link, data);
+    link->detail = find_difference(link, data);
     return link->detail == end ? FDVV_REFUSAL_NONE : FDVV_REFUSAL_BAD_VALUE;
 }
 
@@ -107,9 +107,9 @@ uint8_t fdvv_link_data(fdvv_link *link, const void *request)
     return refusal;
 }
 
-static void begin_check(fdvv_link *link, uint8_t bank, uint8_t what)
+static void begin_check(fdvv_link *link, uint8_t bank, uint8_t purpose)
 {
-    link->checking = what;
+    link->checking = purpose;
     fdvv_image_check_begin(&link->check, bank_bytes(link, bank), link->content[bank].size_bytes,
                            link->content[bank].crc32);
     link->check.travel_limit_um16 = (int32_t)link->board->travel_limit_um16_256 * 256;
@@ -119,9 +119,9 @@ uint8_t fdvv_link_commit(fdvv_link *link, const void *request)
 {
     (void)request;
     link->detail = link->received;
-    if (link->upload != FDVV_UPLOAD_OPEN || link->received != link->content[spare_bank(link)].size_bytes)
+    if (link->upload != FDVV_UPLOAD_OPEN || link->received != link->content[inactive_bank(link)].size_bytes)
         return FDVV_REFUSAL_WRONG_ORDER;
-    begin_check(link, spare_bank(link), FDVV_CHECK_COMMIT);
+    begin_check(link, inactive_bank(link), FDVV_CHECK_COMMIT);
     link->deferred = FDVV_MSG_COMMIT;
     return FDVV_REFUSAL_NONE;
 }
@@ -136,8 +136,8 @@ static void end_commit(fdvv_link *link, uint8_t refusal)
     fdvv_link_answer_deferred(link, refusal);
 }
 
-/* The active program is read again and again: memory may fail. */
-static void end_watch(fdvv_link *link, uint8_t refusal)
+/* The active program is checked all the time, because memory may fail. */
+static void end_recheck(fdvv_link *link, uint8_t refusal)
 {
     if (refusal == FDVV_REFUSAL_NONE)
         return;
@@ -148,18 +148,18 @@ static void end_watch(fdvv_link *link, uint8_t refusal)
 
 void fdvv_link_check(fdvv_link *link)
 {
-    uint8_t what, refusal;
+    uint8_t purpose, refusal;
     if (link->checking == FDVV_CHECK_NONE)
         begin_check(link, link->active, FDVV_CHECK_ACTIVE);
-    what = link->checking;
+    purpose = link->checking;
     refusal = fdvv_image_check_step(&link->check, &link->core->settings, STEP_BYTES);
     if (refusal == FDVV_REFUSAL_BUSY)
         return;
     link->checking = FDVV_CHECK_NONE;
-    if (what == FDVV_CHECK_COMMIT)
+    if (purpose == FDVV_CHECK_COMMIT)
         end_commit(link, refusal);
     else
-        end_watch(link, refusal);
+        end_recheck(link, refusal);
 }
 
 uint8_t fdvv_link_activate(fdvv_link *link, const void *request)
@@ -170,7 +170,7 @@ uint8_t fdvv_link_activate(fdvv_link *link, const void *request)
         return FDVV_REFUSAL_WRONG_ORDER;
     if (mode != FDVV_MODE_IDLE && mode != FDVV_MODE_ARMED && mode != FDVV_MODE_DERATED)
         return FDVV_REFUSAL_WRONG_MODE;
-    link->active = spare_bank(link);
+    link->active = inactive_bank(link);
     link->upload = FDVV_UPLOAD_NONE;
     link->checking = FDVV_CHECK_NONE;
     fdvv_core_activate(link->core, bank_bytes(link, link->active));

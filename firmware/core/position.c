@@ -4,30 +4,30 @@ int32_t fdvv_displacement_um16(const fdvv_settings *settings, uint32_t sum)
 {
     int32_t gain = settings->position_gain_q14;
     uint32_t size = gain < 0 ? 0u - (uint32_t)gain : (uint32_t)gain;
-    int32_t way = (int32_t)((((size * sum) >> 13) + 1u) >> 1);
-    return settings->position_offset_um16 + (gain < 0 ? -way : way);
+    int32_t magnitude = (int32_t)((((size * sum) >> 13) + 1u) >> 1);
+    return settings->position_offset_um16 + (gain < 0 ? -magnitude : magnitude);
 }
 
 void fdvv_position_init(fdvv_position *position)
 {
     position->um16 = position->extreme_um16 = position->sum_um16 = 0;
     position->count = position->next = 0;
-    position->known = position->release = position->turned = 0;
+    position->initialized = position->release = position->turned = 0;
     position->at_top = 1;
 }
 
-/* Give sum / count to the nearest, halves up: the quotient is guessed twice by a reciprocal, then put right. */
-static int32_t mean_of(int32_t sum, int32_t count)
+/* sum / count, rounded to nearest, halves up: two approximations with the reciprocal, then an exact correction. */
+static int32_t divide(int32_t sum, int32_t count)
 {
-    fdvv_ratio each = fdvv_ratio_inverse(fdvv_ratio_of((uint32_t)count));
-    int32_t mean, left = sum + (count >> 1);
-    mean = fdvv_scale(left, each);
-    mean += fdvv_scale(left - mean * count, each);
-    left -= mean * count;
-    return left < 0 ? mean - 1 : left >= count ? mean + 1 : mean;
+    fdvv_ratio reciprocal = fdvv_ratio_inverse(fdvv_ratio_of((uint32_t)count));
+    int32_t quotient, remainder = sum + (count >> 1);
+    quotient = fdvv_scale(remainder, reciprocal);
+    quotient += fdvv_scale(remainder - quotient * count, reciprocal);
+    remainder -= quotient * count;
+    return remainder < 0 ? quotient - 1 : remainder >= count ? quotient + 1 : quotient;
 }
 
-/* 32 * 662,144 stays far below 2^31. */
+/* The sum cannot overflow: 32 * 662,144 is far below 2^31. */
 static int32_t sliding_mean(fdvv_position *position, uint8_t ticks, int32_t um16)
 {
     if (position->count == ticks)
@@ -38,11 +38,11 @@ static int32_t sliding_mean(fdvv_position *position, uint8_t ticks, int32_t um16
     position->sum_um16 += um16;
     if (++position->next == ticks)
         position->next = 0;
-    return mean_of(position->sum_um16, position->count);
+    return divide(position->sum_um16, position->count);
 }
 
-/* Turn round once the cap has come back by reversal_um16 from its extreme; a press begins at the top. */
-static void find_direction(fdvv_position *position, const fdvv_settings *settings)
+/* The direction reverses when the cap has moved back by reversal_um16 from its extreme. At the top it is a press. */
+static void update_direction(fdvv_position *position, const fdvv_settings *settings)
 {
     int32_t x = position->um16, extreme = position->extreme_um16;
     position->turned = 0;
@@ -69,9 +69,9 @@ void fdvv_position_tick(fdvv_position *position, const fdvv_settings *settings, 
         um16 = sliding_mean(position, settings->sliding_ticks, um16);
     position->um16 = um16;
     position->at_top = um16 < settings->rearm_um16;
-    if (!position->known) {
-        position->known = 1;
+    if (!position->initialized) {
+        position->initialized = 1;
         position->extreme_um16 = um16;
     }
-    find_direction(position, settings);
+    update_direction(position, settings);
 }

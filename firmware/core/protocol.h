@@ -719,7 +719,7 @@ typedef char fdvv_key_request_has_12_bytes[sizeof(fdvv_key_request) == 12 ? 1 : 
 enum {
     FDVV_MSG_HELLO = 0x01, /* who are you; must be the first request */
     FDVV_MSG_PING = 0x02, /* I am here; feeds the host watch and relates the clocks */
-    FDVV_MSG_READ_SETTINGS = 0x03, /* tell your settings */
+    FDVV_MSG_READ_SETTINGS = 0x03, /* report the settings */
     FDVV_MSG_WRITE_SETTINGS = 0x04, /* use these; while idle or in fault, all or none */
     FDVV_MSG_BEGIN = 0x05, /* a program follows into the bank that is not active; forgets an unfinished one */
     FDVV_MSG_DATA = 0x06, /* the next bytes of the program; a repeated offset is accepted if the bytes are the same */

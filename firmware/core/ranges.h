@@ -1,4 +1,4 @@
-/* Ranges of fields, signed and unsigned alike. */
+/* Range check of signed and unsigned fields. */
 #ifndef FDVV_RANGES_H
 #define FDVV_RANGES_H
 

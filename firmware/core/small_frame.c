@@ -1,6 +1,6 @@
 #include "small_frame.h"
 
-/* CRC-16 of CCITT over one more byte, in shifts that an 8-bit processor does as moves. */
+/* CRC-16/CCITT-FALSE of one more byte, with shifts that an 8-bit processor does as moves. */
 static uint16_t crc_step(uint16_t crc, uint8_t byte)
 {
     uint8_t high = (uint8_t)((crc >> 8) ^ byte);
@@ -34,14 +34,16 @@ static void store(fdvv_small_reader *reader, uint8_t byte)
 
 static uint8_t finish(fdvv_small_reader *reader)
 {
-    uint16_t told;
+    uint16_t received_crc;
     reader->ended = 1;
     if (!reader->begun)
-        return FDVV_SMALL_FRAME_NOTHING; /* zeros in a row only separate */
+        return FDVV_SMALL_FRAME_NOTHING; /* consecutive zeros are separators */
     if (reader->broken || reader->left || reader->length < 4)
         return FDVV_SMALL_FRAME_BAD;
-    told = (uint16_t)(reader->bytes[reader->length - 2] | (uint16_t)((uint16_t)reader->bytes[reader->length - 1] << 8));
-    return told == crc_of(reader->bytes, (uint8_t)(reader->length - 2)) ? FDVV_SMALL_FRAME_WHOLE : FDVV_SMALL_FRAME_BAD;
+    received_crc = (uint16_t)(reader->bytes[reader->length - 2] |
+                              (uint16_t)((uint16_t)reader->bytes[reader->length - 1] << 8));
+    return received_crc == crc_of(reader->bytes, (uint8_t)(reader->length - 2)) ? FDVV_SMALL_FRAME_WHOLE
+                                                                                : FDVV_SMALL_FRAME_BAD;
 }
 
 uint8_t fdvv_small_take(fdvv_small_reader *reader, uint8_t byte)
@@ -56,7 +58,7 @@ uint8_t fdvv_small_take(fdvv_small_reader *reader, uint8_t byte)
         return FDVV_SMALL_FRAME_NOTHING;
     }
     if (reader->begun)
-        store(reader, 0); /* what the code byte stands for */
+        store(reader, 0); /* the zero that the code byte replaced */
     reader->begun = 1;
     reader->left = (uint8_t)(byte - 1);
     return FDVV_SMALL_FRAME_NOTHING;

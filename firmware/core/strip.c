@@ -12,27 +12,27 @@ static void colour(uint8_t *bytes, uint8_t brightness, uint8_t blue, uint8_t gre
     bytes[3] = red;
 }
 
-static uint8_t has_come(uint32_t time_us, uint32_t now_us)
+static uint8_t is_past(uint32_t time_us, uint32_t now_us)
 {
     return (int32_t)(now_us - time_us) >= 0;
 }
 
-static void go_dark(fdvv_strip *strip, uint8_t mode, uint32_t now_us)
+static void turn_off(fdvv_strip *strip, uint8_t mode, uint32_t now_us)
 {
     strip->mode = mode;
     strip->picture.first = strip->picture.last = strip->picture.bullet = FDVV_STRIP_NOWHERE;
     strip->frame_us = now_us;
 }
 
-/* When the bullet comes to a pixel, to the nearest microsecond. */
+/* Time when the bullet reaches a pixel, rounded to microseconds. */
 static uint32_t step_us(const fdvv_strip *strip, uint8_t pixel)
 {
     uint32_t speed = strip->rules.speed_px_s;
     return strip->start_us + (pixel * 1000000ul + speed / 2) / speed;
 }
 
-/* How long before a step its frame begins, so that the bullet's pixel shows it in time; beyond the strip as for its
- * last pixel. */
+/* Time from the start of a frame until the bullet's pixel shows it. A position beyond the strip counts as its last
+ * pixel. */
 static uint32_t lead_us(const fdvv_strip *strip, uint8_t pixel)
 {
     uint16_t shown = pixel < strip->rules.pixels ? pixel : (uint16_t)(strip->rules.pixels - 1);
@@ -51,10 +51,10 @@ void fdvv_strip_init(fdvv_strip *strip, uint8_t flags, uint8_t byte_us16)
     strip->byte_us16 = byte_us16;
     strip->picture.pixels = FDVV_STRIP_MOST_PIXELS;
     fdvv_small_reader_reset(&strip->reader);
-    go_dark(strip, FDVV_STRIP_MODE_IDLE, 0);
+    turn_off(strip, FDVV_STRIP_MODE_IDLE, 0);
 }
 
-/* A division takes 40 us on an 8-bit processor: once per step, when its frame is not waited for. */
+/* A division takes 40 us on an 8-bit processor, so this is done once per step, while there is time. */
 static void plan_step(fdvv_strip *strip)
 {
     strip->bullet_us = step_us(strip, strip->step) - lead_us(strip, strip->step);
@@ -87,25 +87,25 @@ void fdvv_strip_begin(fdvv_strip *strip, const fdvv_strip_begin_request *rules, 
 
 void fdvv_strip_stop(fdvv_strip *strip, uint32_t now_us)
 {
-    go_dark(strip, FDVV_STRIP_MODE_IDLE, now_us);
+    turn_off(strip, FDVV_STRIP_MODE_IDLE, now_us);
 }
 
-void fdvv_strip_show(fdvv_strip *strip, const fdvv_strip_show_request *order, uint32_t now_us)
+void fdvv_strip_show(fdvv_strip *strip, const fdvv_strip_show_request *request, uint32_t now_us)
 {
-    go_dark(strip, FDVV_STRIP_MODE_SHOWING, now_us);
+    turn_off(strip, FDVV_STRIP_MODE_SHOWING, now_us);
     strip->picture.pixels = FDVV_STRIP_MOST_PIXELS;
-    colour(strip->picture.lit, order->brightness, order->blue, order->green, order->red);
-    if (!order->count)
+    colour(strip->picture.lit, request->brightness, request->blue, request->green, request->red);
+    if (!request->count)
         return;
-    strip->picture.first = order->first;
-    strip->picture.last = (uint8_t)(order->first + order->count - 1);
+    strip->picture.first = request->first;
+    strip->picture.last = (uint8_t)(request->first + request->count - 1);
 }
 
 void fdvv_strip_edge(fdvv_strip *strip, uint32_t time_us)
 {
     strip->edges++;
-    /* an edge is told a little after it came, and then the round may have begun */
-    if (!fdvv_strip_is_playing(strip) || has_come(strip->end_us, time_us) || !has_come(strip->begun_us, time_us))
+    /* an edge is reported with a delay, so the round may have started after it */
+    if (!fdvv_strip_is_playing(strip) || is_past(strip->end_us, time_us) || !is_past(strip->begun_us, time_us))
         return;
     if (strip->presses < FDVV_STRIP_PRESSES)
         strip->asynchronies_us[strip->presses] = (int32_t)(time_us - strip->target_us);
@@ -119,10 +119,10 @@ void fdvv_strip_tick(fdvv_strip *strip, uint32_t now_us)
         return;
     if (now_us - strip->heard_us > FDVV_STRIP_HOST_TIMEOUT_MS * 1000ul) {
         strip->end_us = fdvv_strip_is_playing(strip) ? now_us : strip->end_us;
-        go_dark(strip, FDVV_STRIP_MODE_LOST, now_us);
-    } else if (strip->mode == FDVV_STRIP_MODE_WAITING && has_come(strip->start_us, now_us)) {
+        turn_off(strip, FDVV_STRIP_MODE_LOST, now_us);
+    } else if (strip->mode == FDVV_STRIP_MODE_WAITING && is_past(strip->start_us, now_us)) {
         strip->mode = FDVV_STRIP_MODE_MOVING;
-    } else if (strip->mode == FDVV_STRIP_MODE_MOVING && has_come(strip->end_us, now_us)) {
+    } else if (strip->mode == FDVV_STRIP_MODE_MOVING && is_past(strip->end_us, now_us)) {
         strip->mode = FDVV_STRIP_MODE_OVER;
         strip->picture.bullet = FDVV_STRIP_NOWHERE;
         strip->frame_us = now_us;
@@ -131,20 +131,20 @@ void fdvv_strip_tick(fdvv_strip *strip, uint32_t now_us)
 
 /* -- frames ------------------------------------------------------------------------------------------- */
 
-static uint8_t is_bound(const fdvv_strip *strip)
+static uint8_t has_next_step(const fdvv_strip *strip)
 {
     return fdvv_strip_is_playing(strip) && strip->step <= strip->rules.pixels;
 }
 
 uint32_t fdvv_strip_spare_us(const fdvv_strip *strip, uint32_t now_us)
 {
-    if (!is_bound(strip))
+    if (!has_next_step(strip))
         return UINT32_MAX;
-    return has_come(strip->bullet_us, now_us) ? 0 : strip->bullet_us - now_us;
+    return is_past(strip->bullet_us, now_us) ? 0 : strip->bullet_us - now_us;
 }
 
-/* The bullet's next step: one pixel beyond the strip it is gone. */
-static void take_step(fdvv_strip *strip, uint32_t late_us)
+/* Move the bullet by one pixel; it disappears at the end of the strip. */
+static void advance_bullet(fdvv_strip *strip, uint32_t late_us)
 {
     strip->picture.bullet = strip->step < strip->rules.pixels ? strip->step : FDVV_STRIP_NOWHERE;
     strip->step++;
@@ -157,15 +157,15 @@ uint8_t fdvv_strip_frame(fdvv_strip *strip, uint32_t now_us)
 {
     uint32_t spare_us = fdvv_strip_spare_us(strip, now_us);
     if (!spare_us)
-        take_step(strip, now_us - strip->bullet_us);
-    else if (!has_come(strip->frame_us, now_us) || spare_us < LONGEST_FRAME_us)
-        return 0; /* a frame that only repeats must be over when the bullet's begins */
+        advance_bullet(strip, now_us - strip->bullet_us);
+    else if (!is_past(strip->frame_us, now_us) || spare_us < LONGEST_FRAME_us)
+        return 0; /* a refresh must end before the bullet's next frame starts */
     strip->frame_us = now_us + REFRESH_us;
     return 1;
 }
 
 void fdvv_strip_sent(fdvv_strip *strip)
 {
-    if (is_bound(strip))
+    if (has_next_step(strip))
         plan_step(strip);
 }

@@ -1,4 +1,4 @@
-/* Requests of the host and their replies. */
+/* Requests from the host and their replies. */
 #include "strip.h"
 
 #include "ranges.h"
@@ -9,9 +9,9 @@ typedef struct {
     uint8_t refusal;
     uint8_t bytes; /* of the reply's payload */
     uint16_t detail;
-} answer;
+} outcome;
 
-/* the largest frame begins with the largest reply; aligned for both */
+/* the payload of any reply */
 typedef union {
     fdvv_strip_hello_reply hello;
     fdvv_strip_status_reply status;
@@ -26,27 +26,27 @@ static void copy(void *to, const void *from, uint8_t count)
         ((uint8_t *)to)[count] = ((const uint8_t *)from)[count];
 }
 
-static answer done(uint8_t bytes)
+static outcome done(uint8_t bytes)
 {
-    answer found = {FDVV_STRIP_REFUSAL_NONE, 0, 0};
-    found.bytes = bytes;
-    return found;
+    outcome result = {FDVV_STRIP_REFUSAL_NONE, 0, 0};
+    result.bytes = bytes;
+    return result;
 }
 
-static answer refuse(uint8_t refusal, uint16_t detail)
+static outcome refuse(uint8_t refusal, uint16_t detail)
 {
-    answer found = {0, 0, 0};
-    found.refusal = refusal;
-    found.detail = detail;
-    return found;
+    outcome result = {0, 0, 0};
+    result.refusal = refusal;
+    result.detail = detail;
+    return result;
 }
 
-static answer say_hello(fdvv_strip *strip, const uint8_t *payload, reply *out)
+static outcome reply_hello(fdvv_strip *strip, const uint8_t *payload, reply *out)
 {
     static const char name[sizeof out->hello.name] = "uno-strip";
-    fdvv_strip_hello_request asked;
-    copy(&asked, payload, sizeof asked);
-    strip->is_known = asked.hash == FDVV_STRIP_PROTOCOL_HASH;
+    fdvv_strip_hello_request request;
+    copy(&request, payload, sizeof request);
+    strip->is_known = request.hash == FDVV_STRIP_PROTOCOL_HASH;
     out->hello.hash = FDVV_STRIP_PROTOCOL_HASH;
     out->hello.firmware = FIRMWARE;
     out->hello.most_pixels = FDVV_STRIP_MOST_PIXELS;
@@ -56,7 +56,7 @@ static answer say_hello(fdvv_strip *strip, const uint8_t *payload, reply *out)
     return done(sizeof out->hello);
 }
 
-static answer tell_status(const fdvv_strip *strip, uint32_t now_us, uint8_t key, reply *out)
+static outcome reply_status(const fdvv_strip *strip, uint32_t now_us, uint8_t key, reply *out)
 {
     out->status.time_us = now_us;
     out->status.edges = strip->edges;
@@ -68,8 +68,8 @@ static answer tell_status(const fdvv_strip *strip, uint32_t now_us, uint8_t key,
     return done(sizeof out->status);
 }
 
-/* 0, or the number of the first field out of its range, counted from 1. */
-static uint8_t fault_of_rules(const fdvv_strip_begin_request *rules)
+/* 0, or the number (from 1) of the first field that is out of range. */
+static uint8_t find_invalid_rule(const fdvv_strip_begin_request *rules)
 {
     uint8_t number = 1;
 #define CHECK(field, low, high) \
@@ -81,7 +81,7 @@ static uint8_t fault_of_rules(const fdvv_strip_begin_request *rules)
     return rules->zone_px + rules->zone_half_px >= rules->pixels ? 6 : 0;
 }
 
-static answer tell_times(const fdvv_strip *strip, reply *out)
+static outcome reply_times(const fdvv_strip *strip, reply *out)
 {
     out->begin.start_us = strip->start_us;
     out->begin.target_us = strip->target_us;
@@ -89,24 +89,24 @@ static answer tell_times(const fdvv_strip *strip, reply *out)
     return done(sizeof out->begin);
 }
 
-/* The same round again is the same request again, whose reply was lost. */
-static answer begin(fdvv_strip *strip, const uint8_t *payload, uint32_t now_us, reply *out)
+/* The same round again means that the reply was lost and the request was repeated. */
+static outcome begin(fdvv_strip *strip, const uint8_t *payload, uint32_t now_us, reply *out)
 {
     fdvv_strip_begin_request rules;
-    uint8_t fault;
+    uint8_t invalid;
     copy(&rules, payload, sizeof rules);
     if (fdvv_strip_is_playing(strip) && rules.round == strip->rules.round)
-        return tell_times(strip, out);
+        return reply_times(strip, out);
     if (fdvv_strip_is_playing(strip))
         return refuse(FDVV_STRIP_REFUSAL_BUSY, strip->rules.round);
-    fault = fault_of_rules(&rules);
-    if (fault)
-        return refuse(FDVV_STRIP_REFUSAL_BAD_VALUE, fault);
+    invalid = find_invalid_rule(&rules);
+    if (invalid)
+        return refuse(FDVV_STRIP_REFUSAL_BAD_VALUE, invalid);
     fdvv_strip_begin(strip, &rules, now_us);
-    return tell_times(strip, out);
+    return reply_times(strip, out);
 }
 
-static answer tell_round(const fdvv_strip *strip, reply *out)
+static outcome reply_round(const fdvv_strip *strip, reply *out)
 {
     out->round.round = strip->rules.round;
     out->round.mode = strip->mode;
@@ -119,22 +119,22 @@ static answer tell_round(const fdvv_strip *strip, reply *out)
     return done(sizeof out->round);
 }
 
-static answer show(fdvv_strip *strip, const uint8_t *payload, uint32_t now_us)
+static outcome show(fdvv_strip *strip, const uint8_t *payload, uint32_t now_us)
 {
-    fdvv_strip_show_request order;
-    copy(&order, payload, sizeof order);
+    fdvv_strip_show_request picture;
+    copy(&picture, payload, sizeof picture);
     if (fdvv_strip_is_playing(strip))
         return refuse(FDVV_STRIP_REFUSAL_BUSY, strip->rules.round);
-    if (fdvv_outside(order.count, 0, FDVV_STRIP_LIT_PIXELS) || order.first + order.count > FDVV_STRIP_MOST_PIXELS)
+    if (fdvv_outside(picture.count, 0, FDVV_STRIP_LIT_PIXELS) || picture.first + picture.count > FDVV_STRIP_MOST_PIXELS)
         return refuse(FDVV_STRIP_REFUSAL_BAD_VALUE, 2);
-    if (fdvv_outside(order.brightness, 1, 31))
+    if (fdvv_outside(picture.brightness, 1, 31))
         return refuse(FDVV_STRIP_REFUSAL_BAD_VALUE, 6);
-    fdvv_strip_show(strip, &order, now_us);
+    fdvv_strip_show(strip, &picture, now_us);
     return done(0);
 }
 
-/* 255 for a message that there is not. */
-static uint8_t bytes_of_request(uint8_t message)
+/* Payload size of a request; 255 for an unknown message. */
+static uint8_t request_bytes(uint8_t message)
 {
     switch (message) {
 #define CASE(name, id, request, reply) case id: return id == FDVV_STRIP_MSG_REFUSED ? 255 : request;
@@ -145,24 +145,24 @@ static uint8_t bytes_of_request(uint8_t message)
     }
 }
 
-static answer carry_out(fdvv_strip *strip, uint32_t now_us, uint8_t key, reply *out)
+static outcome execute(fdvv_strip *strip, uint32_t now_us, uint8_t key, reply *out)
 {
     const uint8_t message = strip->reader.bytes[0], *payload = strip->reader.bytes + HEAD_BYTES;
-    uint8_t expected = bytes_of_request(message);
+    uint8_t expected = request_bytes(message);
     if (expected == 255)
         return refuse(FDVV_STRIP_REFUSAL_UNKNOWN_MESSAGE, 0);
     if (strip->reader.length != expected + HEAD_BYTES + 2)
         return refuse(FDVV_STRIP_REFUSAL_BAD_LENGTH, strip->reader.length);
     if (message == FDVV_STRIP_MSG_HELLO)
-        return say_hello(strip, payload, out);
+        return reply_hello(strip, payload, out);
     if (!strip->is_known)
         return refuse(FDVV_STRIP_REFUSAL_HASH_MISMATCH, 0);
     if (message == FDVV_STRIP_MSG_STATUS)
-        return tell_status(strip, now_us, key, out);
+        return reply_status(strip, now_us, key, out);
     if (message == FDVV_STRIP_MSG_BEGIN)
         return begin(strip, payload, now_us, out);
     if (message == FDVV_STRIP_MSG_READ_ROUND)
-        return tell_round(strip, out);
+        return reply_round(strip, out);
     if (message == FDVV_STRIP_MSG_SHOW)
         return show(strip, payload, now_us);
     fdvv_strip_stop(strip, now_us);
@@ -173,19 +173,19 @@ static void reply_to(fdvv_strip *strip, uint32_t now_us, uint8_t key)
 {
     uint8_t frame[HEAD_BYTES + sizeof(reply)];
     reply out;
-    answer found = carry_out(strip, now_us, key, &out);
+    outcome result = execute(strip, now_us, key, &out);
     frame[0] = (uint8_t)(strip->reader.bytes[0] + REPLY);
     frame[1] = strip->reader.bytes[1];
-    if (found.refusal) {
+    if (result.refusal) {
         frame[0] = FDVV_STRIP_MSG_REFUSED + REPLY;
         out.refused.request = strip->reader.bytes[0];
-        out.refused.refusal = found.refusal;
-        out.refused.detail = found.detail;
-        found.bytes = sizeof out.refused;
+        out.refused.refusal = result.refusal;
+        out.refused.detail = result.detail;
+        result.bytes = sizeof out.refused;
     }
-    copy(frame + HEAD_BYTES, &out, found.bytes);
+    copy(frame + HEAD_BYTES, &out, result.bytes);
     strip->out_at = 0;
-    strip->out_end = fdvv_small_put(frame, (uint8_t)(HEAD_BYTES + found.bytes), strip->out);
+    strip->out_end = fdvv_small_put(frame, (uint8_t)(HEAD_BYTES + result.bytes), strip->out);
 }
 
 uint8_t fdvv_strip_listens(const fdvv_strip *strip)
@@ -195,10 +195,10 @@ uint8_t fdvv_strip_listens(const fdvv_strip *strip)
 
 void fdvv_strip_receive(fdvv_strip *strip, uint8_t byte, uint32_t now_us, uint8_t key)
 {
-    uint8_t found = fdvv_small_take(&strip->reader, byte);
-    if (found == FDVV_SMALL_FRAME_BAD)
+    uint8_t result = fdvv_small_take(&strip->reader, byte);
+    if (result == FDVV_SMALL_FRAME_BAD)
         strip->bad_frames++;
-    if (found != FDVV_SMALL_FRAME_WHOLE)
+    if (result != FDVV_SMALL_FRAME_WHOLE)
         return;
     strip->heard_us = now_us;
     reply_to(strip, now_us, key);

@@ -90,7 +90,7 @@ typedef char fdvv_strip_status_reply_has_16_bytes[sizeof(fdvv_strip_status_reply
     X(spare, 0, 0) \
 
 
-/* play a round: show the zone, after the delay let the bullet run; the round that is already played is only told again (request) */
+/* play a round: show the zone, after the delay let the bullet run; the round that is already played only has its result repeated (request) */
 typedef struct {
     uint16_t round; /* 0 to 65535; the host's number, another for every round */
     uint16_t speed_px_s; /* px/s; 20 to 200; of the bullet; a frame of the longest strip must fit into a step with time to spare */
@@ -116,7 +116,7 @@ typedef char fdvv_strip_begin_request_has_14_bytes[sizeof(fdvv_strip_begin_reque
     X(spare, 0, 0) \
 
 
-/* play a round: show the zone, after the delay let the bullet run; the round that is already played is only told again (reply) */
+/* play a round: show the zone, after the delay let the bullet run; the round that is already played only has its result repeated (reply) */
 typedef struct {
     uint32_t start_us; /* us; 0 to 4294967295; the bullet appears at pixel 0 */
     uint32_t target_us; /* us; 0 to 4294967295; it reaches the zone's middle */
@@ -181,7 +181,7 @@ typedef char fdvv_strip_refused_reply_has_4_bytes[sizeof(fdvv_strip_refused_repl
 enum {
     FDVV_STRIP_MSG_HELLO = 0x01, /* who are you; must be the first request */
     FDVV_STRIP_MSG_STATUS = 0x02, /* I am here; how are you */
-    FDVV_STRIP_MSG_BEGIN = 0x03, /* play a round: show the zone, after the delay let the bullet run; the round that is already played is only told again */
+    FDVV_STRIP_MSG_BEGIN = 0x03, /* play a round: show the zone, after the delay let the bullet run; the round that is already played only has its result repeated */
     FDVV_STRIP_MSG_READ_ROUND = 0x04, /* how does the round go, or how did it */
     FDVV_STRIP_MSG_STOP = 0x05, /* end the round or what is shown; go dark */
     FDVV_STRIP_MSG_SHOW = 0x06, /* light a few pixels, to check the strip; not during a round */

@@ -1,9 +1,9 @@
-/* Two tables say what may happen: which mode a question leads to, and what is a fault. */
+/* Two tables define the safety behaviour: the mode transitions and the faults. */
 #include "supervisor.h"
 
 #include "arithmetic.h"
 
-/* -- asking ------------------------------------------------------------------------------------------------- */
+/* -- mode transitions --------------------------------------------------------------------------------------- */
 
 #define BOOT FDVV_MODE_BOOT
 #define TESTING FDVV_MODE_SELFTEST
@@ -16,8 +16,8 @@
 #define BUSY (REFUSED | FDVV_REFUSAL_BUSY)
 #define FAULTY (REFUSED | FDVV_REFUSAL_FAULT_LATCHED)
 
-/* Mode that a question leads to, or refusal. Zero force is never refused. */
-static const uint8_t leads_to[FDVV_MODES][FDVV_ASKS] = {
+/* The mode after each request, or its refusal. Disarming is never refused. */
+static const uint8_t mode_transitions[FDVV_MODES][FDVV_ASKS] = {
     /*             booted  test     tested  arm     disarm   clear */
     /* boot */     {IDLE,   WRONG,   WRONG,  WRONG,  BOOT,    BOOT},
     /* selftest */ {BUSY,   BUSY,    IDLE,   BUSY,   TESTING, TESTING},
@@ -29,138 +29,161 @@ static const uint8_t leads_to[FDVV_MODES][FDVV_ASKS] = {
 
 /* -- faults ------------------------------------------------------------------------------------------------- */
 
-/* What the conditions look at, found once per tick. */
+/* What the fault conditions depend on besides the supervisor's state; computed once per tick. */
 typedef struct {
     const fdvv_settings *set;
     const fdvv_inputs *in;
-    int32_t moved_um16, jump_um16;  /* since the last tick, and allowed */
-    int32_t silent_us, timeout_us;  /* of the host */
-    int32_t force_cN64;             /* of the keycap, without its sign */
-    uint32_t checksum;              /* of the settings as they are now */
-} findings;
+    int32_t moved_um16, jump_um16;  /* displacement since the last tick, and its limit */
+    int32_t silent_us, timeout_us;  /* time since the last message of the host, and its limit */
+    int32_t force_cN64;             /* absolute value of the measured keycap force */
+    uint32_t checksum;              /* of the settings in memory now */
+} fault_inputs;
 
-/* Each fault: whether it is looked for ALWAYS or while RENDERING, or ELSEWHERE (fdvv_supervisor_fault tells);
- * whether it may be cleared when its condition has GONE, at ANY time (it tells of the past) or NEVER (boot again);
- * whether it means STOP or only WARN, which leaves the mode as it is; the unit of value and bound in the evidence;
- * margin, which is below zero while the condition holds, value, bound. Of several in a tick that with the lowest
- * number is latched. */
+/* One row per fault. If several become active in one tick, the one with the lowest number is latched.
+ *
+ *   fault   FDVV_FAULT_...
+ *   when    ALWAYS checked; checked while RENDERING (armed or derated); EXTERNAL: set by fdvv_supervisor_fault
+ *   clear   allowed when INACTIVE; at ANYTIME, for a past event; NEVER, only by a reset
+ *   effect  STOP: mode fault, zero force; WARN: the mode does not change
+ *   unit    of value and bound in the evidence
+ *   margin  the fault is active while this is negative
+ *   value   the measured quantity
+ *   bound   its limit */
 #define FAULT_TABLE(X)                                                                                          \
-    X(POSITION_LOW, ALWAYS, GONE, STOP, counts,                                                                 \
+    /* Is the lowest position reading below the sensor's range? */                                              \
+    X(POSITION_LOW, ALWAYS, INACTIVE, STOP, counts,                                                             \
       in->lowest - set->reading_low, in->lowest, set->reading_low)                                              \
-    X(POSITION_HIGH, ALWAYS, GONE, STOP, counts,                                                                \
+    /* Is the highest position reading above the sensor's range? */                                             \
+    X(POSITION_HIGH, ALWAYS, INACTIVE, STOP, counts,                                                            \
       set->reading_high - in->highest, in->highest, set->reading_high)                                          \
-    X(POSITION_STUCK, RENDERING, GONE, STOP, ticks,                                                             \
+    /* Has the position reading been the same for too many ticks? */                                            \
+    X(POSITION_STUCK, RENDERING, INACTIVE, STOP, ticks,                                                         \
       set->stuck_ticks - 1 - me->equal_sums, me->equal_sums, set->stuck_ticks)                                  \
-    X(POSITION_JUMP, RENDERING, GONE, STOP, um16,                                                               \
-      found->jump_um16 - found->moved_um16, found->moved_um16, found->jump_um16)                                \
-    X(OVER_FORCE, RENDERING, GONE, STOP, cN64,                                                                  \
-      set->force_gain_q14 ? set->over_force_cN64 - found->force_cN64 : 0, found->force_cN64, set->over_force_cN64)\
-    X(OVER_HEAT, ALWAYS, GONE, STOP, K,                                                                         \
+    /* Did the position change by more than is possible since the last tick? */                                 \
+    X(POSITION_JUMP, RENDERING, INACTIVE, STOP, um16,                                                           \
+      derived->jump_um16 - derived->moved_um16, derived->moved_um16, derived->jump_um16)                        \
+    /* Is the measured keycap force too large? (not checked without a force sensor) */                          \
+    X(OVER_FORCE, RENDERING, INACTIVE, STOP, cN64,                                                              \
+      set->force_gain_q14 ? set->over_force_cN64 - derived->force_cN64 : 0, derived->force_cN64, set->over_force_cN64) \
+    /* Is the coil too warm, according to the thermal model? */                                                 \
+    X(OVER_HEAT, ALWAYS, INACTIVE, STOP, K,                                                                     \
       set->heat_limit_K - 1 - (int32_t)(me->heat_K_q16 >> 16), me->heat_K_q16 >> 16, set->heat_limit_K)         \
-    X(SUPPLY_LOW, ALWAYS, GONE, STOP, mV,                                                                       \
+    /* Is the supply voltage too low? */                                                                        \
+    X(SUPPLY_LOW, ALWAYS, INACTIVE, STOP, mV,                                                                   \
       in->supply_mV - set->supply_low_mV, in->supply_mV, set->supply_low_mV)                                    \
-    X(SUPPLY_HIGH, ALWAYS, GONE, STOP, mV,                                                                      \
+    /* Is the supply voltage too high? */                                                                       \
+    X(SUPPLY_HIGH, ALWAYS, INACTIVE, STOP, mV,                                                                  \
       set->supply_high_mV - in->supply_mV, in->supply_mV, set->supply_high_mV)                                  \
-    X(HOST_LOST, RENDERING, GONE, STOP, us,                                                                     \
-      me->host_heard - 1, found->silent_us, found->timeout_us)                                                  \
-    X(IMAGE_CORRUPT, ELSEWHERE, ANY, STOP, offset,                                                              \
+    /* Has the host been silent for longer than its timeout? */                                                 \
+    X(HOST_LOST, RENDERING, INACTIVE, STOP, us,                                                                 \
+      me->host_heard - 1, derived->silent_us, derived->timeout_us)                                              \
+    /* Did the link's periodic check find the active program corrupted? */                                      \
+    X(IMAGE_CORRUPT, EXTERNAL, ANYTIME, STOP, offset,                                                           \
       0, me->now.value, me->now.bound)                                                                          \
-    X(WATCHDOG, ALWAYS, ANY, STOP, none,                                                                        \
+    /* Was the last reset caused by the watchdog? */                                                            \
+    X(WATCHDOG, ALWAYS, ANYTIME, STOP, none,                                                                    \
       -(in->board & FDVV_BOARD_WATCHDOG), 0, 0)                                                                 \
-    X(BROWN_OUT, ALWAYS, ANY, STOP, mV,                                                                         \
+    /* Was there a brown-out? */                                                                                \
+    X(BROWN_OUT, ALWAYS, ANYTIME, STOP, mV,                                                                     \
       -(in->board & FDVV_BOARD_BROWN_OUT), in->supply_mV, set->supply_low_mV)                                   \
-    X(LATE, RENDERING, GONE, STOP, ticks,                                                                       \
+    /* Were too many ticks missed? */                                                                           \
+    X(LATE, RENDERING, INACTIVE, STOP, ticks,                                                                   \
       set->late_ticks - in->elapsed_ticks, in->elapsed_ticks, set->late_ticks)                                  \
-    X(OUTPUT, ALWAYS, GONE, STOP, none,                                                                         \
+    /* Does the bridge report a fault, or are its inputs not as commanded? */                                   \
+    X(OUTPUT, ALWAYS, INACTIVE, STOP, none,                                                                     \
       -(in->board & FDVV_BOARD_OUTPUT), 0, 0)                                                                   \
-    X(SETTINGS_CORRUPT, ALWAYS, GONE, STOP, checksum,                                                           \
-      -(found->checksum != me->settings_sum), found->checksum, me->settings_sum)                                \
-    X(VIBRATION_BOARD, ALWAYS, GONE, WARN, none,                                                                \
+    /* Do the settings differ from those that were set? */                                                      \
+    X(SETTINGS_CORRUPT, ALWAYS, INACTIVE, STOP, checksum,                                                       \
+      -(derived->checksum != me->settings_sum), derived->checksum, me->settings_sum)                            \
+    /* Does the vibration board not respond? */                                                                 \
+    X(VIBRATION_BOARD, ALWAYS, INACTIVE, WARN, none,                                                            \
       -(in->board & FDVV_BOARD_VIBRATION), 0, 0)                                                                \
+    /* Is the mode invalid? */                                                                                  \
     X(INTERNAL, ALWAYS, NEVER, STOP, mode,                                                                      \
       FDVV_MODES - 1 - me->mode, me->mode, FDVV_MODES - 1)
 
 #define BIT(fault) ((uint32_t)1 << (fault))
 
-/* The columns as masks of faults. */
-enum { IS_ALWAYS, IS_RENDERING, IS_ELSEWHERE, IS_GONE, IS_ANY, IS_NEVER, IS_STOP, IS_WARN };
-#define HAS(fault, is, wanted) | BIT(FDVV_FAULT_##fault) * (IS_##is == IS_##wanted)
-#define RENDERING_BIT(fault, when, clear, effect, ...) HAS(fault, when, RENDERING)
-#define ANY_BIT(fault, when, clear, effect, ...) HAS(fault, clear, ANY)
-#define NEVER_BIT(fault, when, clear, effect, ...) HAS(fault, clear, NEVER)
-#define STOP_BIT(fault, when, clear, effect, ...) HAS(fault, effect, STOP)
+/* The columns `when`, `clear` and `effect` as masks of faults. */
+enum { IS_ALWAYS, IS_RENDERING, IS_EXTERNAL, IS_INACTIVE, IS_ANYTIME, IS_NEVER, IS_STOP, IS_WARN };
+#define OR_BIT_IF(fault, cell, wanted) | BIT(FDVV_FAULT_##fault) * (IS_##cell == IS_##wanted)
+#define RENDERING_BIT(fault, when, clear, effect, ...) OR_BIT_IF(fault, when, RENDERING)
+#define ANYTIME_BIT(fault, when, clear, effect, ...) OR_BIT_IF(fault, clear, ANYTIME)
+#define NEVER_BIT(fault, when, clear, effect, ...) OR_BIT_IF(fault, clear, NEVER)
+#define STOP_BIT(fault, when, clear, effect, ...) OR_BIT_IF(fault, effect, STOP)
 #define MASK(COLUMN_BIT) (0 FAULT_TABLE(COLUMN_BIT))
-static const uint32_t while_rendering = MASK(RENDERING_BIT), cleared_any = MASK(ANY_BIT),
-                      cleared_never = MASK(NEVER_BIT), stops = MASK(STOP_BIT);
+static const uint32_t rendering_faults = MASK(RENDERING_BIT), anytime_faults = MASK(ANYTIME_BIT),
+                      never_faults = MASK(NEVER_BIT), stop_faults = MASK(STOP_BIT);
 
-static uint8_t renders(uint8_t mode)
+static uint8_t is_rendering(uint8_t mode)
 {
     return mode == ARMED || mode == DERATED;
 }
 
-/* The usual tick: the OR of the margins is below zero if one of them is. */
-static uint8_t is_usual(const fdvv_supervisor *me, const findings *found)
+/* Fast path: the bitwise OR of the margins is negative if and only if at least one margin is. */
+static uint8_t no_fault_active(const fdvv_supervisor *me, const fault_inputs *derived)
 {
-    const fdvv_settings *set = found->set;
-    const fdvv_inputs *in = found->in;
+    const fdvv_settings *set = derived->set;
+    const fdvv_inputs *in = derived->in;
 #define OR_MARGIN(fault, when, clear, effect, unit, margin, value, bound) | (margin)
     return (0 FAULT_TABLE(OR_MARGIN)) >= 0;
 }
 
-/* Bits of the faults whose conditions hold. */
-static uint32_t holding(const fdvv_supervisor *me, const findings *found)
+/* A bit for each fault whose condition is true in the present mode. */
+static uint32_t active_faults(const fdvv_supervisor *me, const fault_inputs *derived)
 {
-    const fdvv_settings *set = found->set;
-    const fdvv_inputs *in = found->in;
+    const fdvv_settings *set = derived->set;
+    const fdvv_inputs *in = derived->in;
     uint32_t bits = 0;
-#define LOOK(fault, when, clear, effect, unit, margin, value, bound)                                            \
+#define SET_BIT_IF_ACTIVE(fault, when, clear, effect, unit, margin, value, bound)                               \
     if ((margin) < 0)                                                                                           \
         bits |= BIT(FDVV_FAULT_##fault);
-    FAULT_TABLE(LOOK)
-    return renders(me->mode) ? bits : bits & ~while_rendering;
+    FAULT_TABLE(SET_BIT_IF_ACTIVE)
+    return is_rendering(me->mode) ? bits : bits & ~rendering_faults;
 }
 
-static void evidence_of(const fdvv_supervisor *me, const findings *found, uint8_t fault, fdvv_evidence *evidence)
+static void fill_evidence(const fdvv_supervisor *me, const fault_inputs *derived, uint8_t fault,
+                          fdvv_evidence *evidence)
 {
-    const fdvv_settings *set = found->set;
-    const fdvv_inputs *in = found->in;
-#define TELL(which, when, clear, effect, unit, margin, found_value, found_bound)                                \
+    const fdvv_settings *set = derived->set;
+    const fdvv_inputs *in = derived->in;
+#define EVIDENCE_CASE(which, when, clear, effect, unit, margin, measured, limit)                                \
     case FDVV_FAULT_##which:                                                                                    \
-        evidence->value = (int32_t)(found_value);                                                               \
-        evidence->bound = (int32_t)(found_bound);                                                               \
+        evidence->value = (int32_t)(measured);                                                                  \
+        evidence->bound = (int32_t)(limit);                                                                     \
         break;
     switch (fault) {
-        FAULT_TABLE(TELL)
+        FAULT_TABLE(EVIDENCE_CASE)
     }
 }
 
-/* Which of them become the reason: a stop unless there is one, a warning unless there is any. */
-static uint32_t reasons(const fdvv_supervisor *me, uint32_t faults)
+/* A STOP fault may be latched unless the mode is fault already; a WARN fault only if none is latched. */
+static uint32_t latchable(const fdvv_supervisor *me, uint32_t faults)
 {
     if (me->mode == FAULT)
         return 0;
-    if (faults & stops)
-        return faults & stops;
+    if (faults & stop_faults)
+        return faults & stop_faults;
     return me->fault == FDVV_FAULT_NONE ? faults : 0;
 }
 
-static void count(fdvv_supervisor *me)
+static void count_fault(fdvv_supervisor *me)
 {
     if (me->faults < UINT16_MAX)
         me->faults++;
 }
 
-/* The reason and its evidence, of which value and bound are in `now`. */
+/* Value and bound of the evidence are in `now` already. */
 static void latch(fdvv_supervisor *me, uint8_t fault)
 {
     me->evidence = me->now;
     me->evidence.mode = me->mode < FDVV_MODES ? me->mode : FAULT;
     me->fault = fault;
-    if (stops & BIT(fault))
+    if (stop_faults & BIT(fault))
         me->mode = FAULT;
 }
 
-static uint8_t lowest(uint32_t faults)
+static uint8_t lowest_fault(uint32_t faults)
 {
     uint8_t fault = FDVV_FAULT_NONE;
     while (!(faults & BIT(fault)))
@@ -168,70 +191,71 @@ static uint8_t lowest(uint32_t faults)
     return fault;
 }
 
-/* A condition that has gone and come again is another fault; one that stays is a reason again once the reason
- * before it was cleared, unless it tells of the past. Apart, so that the usual tick keeps its registers. */
-static __attribute__((noinline)) void judge(fdvv_supervisor *me, const findings *found)
+/* Count each fault that becomes active, and latch one. A fault that stays active is latched again after it was
+ * cleared, unless it is a past event. Not inlined, so that the fast path needs fewer registers. */
+static __attribute__((noinline)) void update_faults(fdvv_supervisor *me, const fault_inputs *derived)
 {
-    uint32_t present = holding(me, found), fresh = present & ~me->present;
-    uint32_t candidates = reasons(me, present & (fresh | ~cleared_any));
-    for (; fresh; fresh &= fresh - 1) /* a bit at a time */
-        count(me);
-    me->present = present;
+    uint32_t active = active_faults(me, derived), newly_active = active & ~me->active;
+    uint32_t candidates = latchable(me, active & (newly_active | ~anytime_faults));
+    for (; newly_active; newly_active &= newly_active - 1) /* clears the lowest bit */
+        count_fault(me);
+    me->active = active;
     if (candidates) {
-        evidence_of(me, found, lowest(candidates), &me->now);
-        latch(me, lowest(candidates));
+        fill_evidence(me, derived, lowest_fault(candidates), &me->now);
+        latch(me, lowest_fault(candidates));
     }
 }
 
-/* -- looking ------------------------------------------------------------------------------------------------ */
+/* -- checks of one tick ------------------------------------------------------------------------------------- */
 
-/* settings are read as words, whatever their fields */
+/* settings are read word by word, regardless of the types of their fields */
 typedef uint32_t __attribute__((may_alias)) settings_word;
 
-static uint32_t with(uint32_t sum, settings_word word)
+static uint32_t rotate_add(uint32_t sum, settings_word word)
 {
     return (sum << 31 | sum >> 1) + word;
 }
 
-/* Changes with any one word and with their order; four at a time, as it is found anew in every tick. */
+/* Depends on every word and on their order. Unrolled by four, because it is computed in every tick. */
 static uint32_t checksum(const fdvv_settings *settings)
 {
     const settings_word *word = (const settings_word *)settings, *end = (const settings_word *)(settings + 1);
     uint32_t sum = 0;
     for (; word != end; word += 4)
-        sum = with(with(with(with(sum, word[0]), word[1]), word[2]), word[3]);
+        sum = rotate_add(rotate_add(rotate_add(rotate_add(sum, word[0]), word[1]), word[2]), word[3]);
     return sum;
 }
 
-static int32_t capped(uint32_t value)
+static int32_t clamp_to_int32(uint32_t value)
 {
     return value < INT32_MAX ? (int32_t)value : INT32_MAX;
 }
 
 static int32_t distance(int32_t a, int32_t b)
 {
-    return capped(a > b ? (uint32_t)a - (uint32_t)b : (uint32_t)b - (uint32_t)a);
+    return clamp_to_int32(a > b ? (uint32_t)a - (uint32_t)b : (uint32_t)b - (uint32_t)a);
 }
 
-/* Silence is judged here and remembered, so that it does not end when the clock wraps. */
-static void watch_host(fdvv_supervisor *me, findings *found)
+/* The timeout is stored in host_heard, so that it does not end when the clock wraps around. */
+static void check_host(fdvv_supervisor *me, fault_inputs *derived)
 {
-    found->silent_us = (int32_t)(found->in->time_us - me->host_seen_us);
-    found->timeout_us = (int32_t)found->set->host_timeout_ms * 1000;
-    if (found->silent_us > found->timeout_us)
+    derived->silent_us = (int32_t)(derived->in->time_us - me->host_seen_us);
+    derived->timeout_us = (int32_t)derived->set->host_timeout_ms * 1000;
+    if (derived->silent_us > derived->timeout_us)
         me->host_heard = 0;
 }
 
-static void watch_position(fdvv_supervisor *me, findings *found, int32_t displacement_um16, uint16_t elapsed_ticks)
+static void check_position(fdvv_supervisor *me, fault_inputs *derived, int32_t displacement_um16,
+                           uint16_t elapsed_ticks)
 {
     if (!me->position_known)
         me->now.displacement_um16 = displacement_um16;
-    found->jump_um16 = capped((uint32_t)found->set->jump_um16 * elapsed_ticks);
-    found->moved_um16 = distance(displacement_um16, me->now.displacement_um16);
-    me->equal_sums++; /* may wrap while nothing is rendered: arming starts anew */
-    if (found->in->sum != me->last_sum)
+    derived->jump_um16 = clamp_to_int32((uint32_t)derived->set->jump_um16 * elapsed_ticks);
+    derived->moved_um16 = distance(displacement_um16, me->now.displacement_um16);
+    me->equal_sums++; /* may wrap around while not rendering; arming resets it */
+    if (derived->in->sum != me->last_sum)
         me->equal_sums = 0;
-    me->last_sum = found->in->sum;
+    me->last_sum = derived->in->sum;
     me->position_known = 1;
 }
 
@@ -240,22 +264,22 @@ void fdvv_supervisor_check(fdvv_supervisor *supervisor, const fdvv_settings *set
                            uint8_t program_state)
 {
     uint16_t elapsed_ticks = inputs->elapsed_ticks ? inputs->elapsed_ticks : 1;
-    findings found;
-    found.set = settings;
-    found.in = inputs;
-    found.force_cN64 = distance(force_cN64, 0);
-    found.checksum = checksum(settings);
-    watch_host(supervisor, &found);
-    watch_position(supervisor, &found, displacement_um16, elapsed_ticks);
+    fault_inputs derived;
+    derived.set = settings;
+    derived.in = inputs;
+    derived.force_cN64 = distance(force_cN64, 0);
+    derived.checksum = checksum(settings);
+    check_host(supervisor, &derived);
+    check_position(supervisor, &derived, displacement_um16, elapsed_ticks);
     supervisor->now.time_us = inputs->time_us;
     supervisor->now.tick += elapsed_ticks;
     supervisor->now.displacement_um16 = displacement_um16;
     supervisor->now.commanded_cN64 = commanded_cN64;
     supervisor->now.state = program_state;
-    if (is_usual(supervisor, &found))
-        supervisor->present = 0;
+    if (no_fault_active(supervisor, &derived))
+        supervisor->active = 0;
     else
-        judge(supervisor, &found);
+        update_faults(supervisor, &derived);
 }
 
 void fdvv_supervisor_host_seen(fdvv_supervisor *supervisor, uint32_t time_us)
@@ -272,14 +296,14 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
         supervisor->now.value = fault;
         fault = FDVV_FAULT_INTERNAL;
     }
-    count(supervisor);
-    if (reasons(supervisor, BIT(fault)))
+    count_fault(supervisor);
+    if (latchable(supervisor, BIT(fault)))
         latch(supervisor, fault);
 }
 
 /* -- modes -------------------------------------------------------------------------------------------------- */
 
-/* Part of heat_time_ms that a tick is, rounded down: long division. */
+/* tick_us / heat_time_us, rounded down, by long division. */
 static uint32_t heat_rate_q32(const fdvv_settings *settings)
 {
     uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;
@@ -314,7 +338,7 @@ static uint8_t clear(fdvv_supervisor *me, uint8_t fault)
 {
     if (fault != me->fault || fault == FDVV_FAULT_NONE)
         return FDVV_REFUSAL_BAD_VALUE;
-    if ((cleared_never | (me->present & ~cleared_any)) & BIT(fault))
+    if ((never_faults | (me->active & ~anytime_faults)) & BIT(fault))
         return FDVV_REFUSAL_FAULT_LATCHED;
     me->fault = FDVV_FAULT_NONE;
     return FDVV_REFUSAL_NONE;
@@ -333,7 +357,7 @@ uint8_t fdvv_supervisor_ask(fdvv_supervisor *supervisor, const fdvv_settings *se
         return FDVV_REFUSAL_BAD_VALUE;
     if (supervisor->mode >= FDVV_MODES)
         fdvv_supervisor_fault(supervisor, FDVV_FAULT_INTERNAL, supervisor->mode, FDVV_MODES - 1);
-    to = leads_to[supervisor->mode][ask];
+    to = mode_transitions[supervisor->mode][ask];
     if (to & REFUSED)
         return to & ~REFUSED;
     if (ask == FDVV_ASK_CLEAR)
@@ -351,30 +375,30 @@ int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_setti
 {
     uint32_t start = (uint32_t)settings->derate_start_K << 16, end = (uint32_t)settings->heat_limit_K << 16;
     uint32_t heat = supervisor->heat_K_q16;
-    if (!renders(supervisor->mode))
+    if (!is_rendering(supervisor->mode))
         return 0;
     if (heat >= start)
         supervisor->mode = DERATED;
-    else if (heat < start - (start >> 4)) /* back only when well below */
+    else if (heat < start - (start >> 4)) /* hysteresis */
         supervisor->mode = ARMED;
     if (heat <= start)
         return settings->force_limit_cN64;
-    /* no more than force_limit_cN64 << 16: the slope is that limit over the whole span */
+    /* at most force_limit_cN64 << 16: the slope is the force limit divided by the span from start to end */
     return heat < end ? (int16_t)(supervisor->derate_cN64_K_q8 * ((end - heat) >> 8) >> 16) : 0;
 }
 
-/* Heat as one number, K times 2^48: steps of a part in 2^32 of the way left add up exactly. */
+/* First-order thermal model. The temperature rise has 48 fractional bits, so that no step is rounded. */
 void fdvv_supervisor_heat(fdvv_supervisor *supervisor, const fdvv_settings *settings, int16_t duty_q15,
                           uint16_t elapsed_ticks)
 {
-    /* rounded up: rather too warm than too cool */
+    /* rounded up, so that the model is never too cool */
     uint32_t duty_q16 = ((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14;
     uint32_t end_K_q16 = settings->full_duty_rise_K * duty_q16;
     uint32_t heat_K_q16 = supervisor->heat_K_q16, rate_q32 = supervisor->heat_rate_q32;
     uint64_t heat_K_q48 = (uint64_t)heat_K_q16 << 32 | supervisor->heat_rest_q48;
     if (elapsed_ticks != 1) {
         uint64_t long_q32 = fdvv_wide_product(rate_q32, elapsed_ticks);
-        rate_q32 = long_q32 >> 32 ? UINT32_MAX : (uint32_t)long_q32; /* beyond the time constant: at the end */
+        rate_q32 = long_q32 >> 32 ? UINT32_MAX : (uint32_t)long_q32; /* beyond the time constant: final value */
     }
     if (end_K_q16 > heat_K_q16)
         heat_K_q48 += fdvv_wide_product(end_K_q16 - heat_K_q16, rate_q32);

@@ -2,7 +2,7 @@
 
 #include "synth_sine.h"
 
-/* the sum of product and this is never negative, so that its shift is one of an unsigned number */
+/* added to a product it gives a non-negative number, which can be shifted as unsigned */
 #define MIDDLE_AND_HALF ((int32_t)FDVV_SYNTH_SILENCE * 131072 + 65536)
 
 void fdvv_synth_init(fdvv_synth_bank *bank) {

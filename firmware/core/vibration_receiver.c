@@ -4,7 +4,7 @@ enum { IDLE, COLLECTING, OVER };
 
 #define PLAY_HEADER FDVV_VIBRATION_HEADER(FDVV_VIBRATION_PLAY, FDVV_VIBRATION_PLAY_BYTES)
 
-/* four bits at a time: 16 bytes of table, and the last byte of a PLAY is checked in a few microseconds */
+/* four bits at a time: a table of 16 bytes, and fast enough to check the last byte of a PLAY in a few microseconds */
 static const uint8_t nibbles[16] = {0x00, 0x07, 0x0E, 0x09, 0x1C, 0x1B, 0x12, 0x15,
                                     0x38, 0x3F, 0x36, 0x31, 0x24, 0x23, 0x2A, 0x2D};
 
@@ -29,7 +29,7 @@ void fdvv_vibration_begin(fdvv_vibration_receiver *receiver) {
 }
 
 void fdvv_vibration_end(fdvv_vibration_receiver *receiver) {
-    /* an address without a byte is a master asking who is there */
+    /* an address without data is a bus scan */
     if (receiver->state == COLLECTING && receiver->received) receiver->errors++;
     receiver->state = IDLE;
 }
@@ -38,8 +38,7 @@ static uint16_t number(const uint8_t *bytes) {
     return (uint16_t)(bytes[0] | (uint16_t)((uint16_t)bytes[1] << 8));
 }
 
-
-static uint8_t carry_out_set(fdvv_synth_bank *bank, const uint8_t *payload) {
+static uint8_t execute_set(fdvv_synth_bank *bank, const uint8_t *payload) {
     fdvv_synth_slot slot;
     slot.waveform = payload[1];
     slot.frequency_Hz16 = number(payload + 2);
@@ -51,22 +50,22 @@ static uint8_t carry_out_set(fdvv_synth_bank *bank, const uint8_t *payload) {
     return fdvv_synth_set(bank, payload[0], &slot);
 }
 
-static uint8_t carry_out(fdvv_vibration_receiver *receiver) {
+static uint8_t execute(fdvv_vibration_receiver *receiver) {
     const uint8_t *payload = receiver->message + 1;
     const uint8_t command = receiver->message[0] >> 5, bytes = receiver->message[0] & 31u;
     if (command == FDVV_VIBRATION_PLAY && bytes == FDVV_VIBRATION_PLAY_BYTES)
         return payload[0] < FDVV_SYNTH_SLOTS && receiver->bank->slots[payload[0]].duration_samples;
     if (command == FDVV_VIBRATION_SET && bytes == FDVV_VIBRATION_SET_BYTES)
-        return carry_out_set(receiver->bank, payload);
+        return execute_set(receiver->bank, payload);
     if (command == FDVV_VIBRATION_LOAD && bytes > 2u && bytes <= 2u + FDVV_VIBRATION_LOAD_SAMPLES)
         return fdvv_synth_load(receiver->bank, number(payload), payload + 2, (uint8_t)(bytes - 2u));
     return 0;
 }
 
 static uint8_t finish(fdvv_vibration_receiver *receiver, uint8_t byte) {
-    /* what follows a refused message belongs to it and is not counted again */
+    /* further bytes of an invalid message are not counted again */
     receiver->state = IDLE;
-    if (byte != receiver->checksum || !carry_out(receiver)) {
+    if (byte != receiver->checksum || !execute(receiver)) {
         receiver->errors++;
         return FDVV_VIBRATION_NOTHING;
     }
@@ -95,7 +94,7 @@ uint8_t fdvv_vibration_byte(fdvv_vibration_receiver *receiver, uint8_t byte) {
 
 fdvv_vibration_status fdvv_vibration_report(const fdvv_vibration_receiver *receiver, uint8_t flags) {
     fdvv_vibration_status status = {FDVV_VIBRATION_VERSION, flags, receiver->accepted, receiver->errors, 0};
-    const uint8_t told[4] = {status.version, status.flags, status.accepted, status.errors};
-    for (uint8_t i = 0; i < sizeof told; i++) status.checksum = fdvv_vibration_checksum(status.checksum, told[i]);
+    const uint8_t bytes[4] = {status.version, status.flags, status.accepted, status.errors};
+    for (uint8_t i = 0; i < sizeof bytes; i++) status.checksum = fdvv_vibration_checksum(status.checksum, bytes[i]);
     return status;
 }

@@ -1,12 +1,11 @@
 /* The I2C messages between the rig's controller (master) and the vibration board (slave).
  *
- * To the board: header, payload, checksum, one message from START to STOP.
+ * To the board: header, payload, checksum; one message from START to STOP.
  *   header    command * 32 + bytes of payload
- *   checksum  CRC-8 of header and payload: polynomial x^8 + x^2 + x + 1, from 0, not reflected, not inverted
- * Two-byte numbers: low byte first. The board carries a message out when its checksum has come, before the STOP.
- * It ignores and counts a message with a wrong checksum, an unknown command, a length that is not the
- * command's, a number out of range, an end before its time or bytes after its checksum (the message itself
- * then stands). */
+ *   checksum  CRC-8 of header and payload: polynomial x^8 + x^2 + x + 1, initial value 0, not reflected, not inverted
+ * Two-byte numbers are little-endian. The board executes a message when it has received the checksum, before the STOP.
+ * It ignores and counts a message with a wrong checksum, an unknown command, the wrong length for its command or a
+ * value out of range, and an incomplete one. Bytes after the checksum are counted, but the message is executed. */
 #ifndef FDVV_VIBRATION_WIRE_H
 #define FDVV_VIBRATION_WIRE_H
 
@@ -26,15 +25,15 @@
 #define FDVV_VIBRATION_MESSAGE_BYTES 33u /* header, 31 of payload, checksum */
 #define FDVV_VIBRATION_HEADER(command, bytes) ((uint8_t)((command) * 32u + (bytes)))
 
-/* From the board: five bytes, the last the checksum of the four before it. */
+/* From the board: five bytes, the last one the checksum of the others. */
 #define FDVV_VIBRATION_STATUS_BYTES 5u
-#define FDVV_VIBRATION_PLAYING 1u  /* bit of flags: a voice is not over */
-#define FDVV_VIBRATION_WATCHDOG 2u /* bit of flags: the last reset was the watchdog's; slots are empty again */
+#define FDVV_VIBRATION_PLAYING 1u  /* bit of flags: a voice is playing */
+#define FDVV_VIBRATION_WATCHDOG 2u /* bit of flags: the last reset was caused by the watchdog; all slots are empty */
 
 typedef struct {
     uint8_t version;
     uint8_t flags;
-    uint8_t accepted; /* messages carried out since reset, modulo 256 */
+    uint8_t accepted; /* messages executed since reset, modulo 256 */
     uint8_t errors;   /* messages ignored since reset, modulo 256 */
     uint8_t checksum;
 } fdvv_vibration_status;

@@ -12,10 +12,10 @@ struct fdvv_host {
     fdvv_board board;
     fdvv_read_counters_reply counters;
     fdvv_inputs inputs;   /* of the last tick */
-    uint8_t slot;         /* asked for by the host, played with the next tick */
+    uint8_t slot;         /* requested by the host, started with the next tick */
 };
 
-static fdvv_host *current; /* the callbacks have no argument for it, as a board is alone */
+static fdvv_host *current; /* for the callbacks, which have no argument for it */
 
 static uint32_t now_us(void)
 {
@@ -27,24 +27,26 @@ static void play(uint8_t slot)
     current->slot = slot;
 }
 
-static void tell(fdvv_selftest_reply *reply, uint8_t part, uint8_t verdict, int32_t value)
+static void set_result(fdvv_selftest_reply *reply, uint8_t part, uint8_t verdict, int32_t value)
 {
     reply->verdicts[part] = verdict;
     reply->values[2 * part] = (uint8_t)value;
     reply->values[2 * part + 1] = (uint8_t)(value >> 8);
 }
 
-/* What can be told without touching the plant: its last readings. */
+/* Tests the last readings only; nothing moves. */
 static uint8_t selftest(fdvv_selftest_reply *reply)
 {
     const fdvv_settings *settings = &current->core.settings;
     const fdvv_inputs *inputs = &current->inputs;
-    uint8_t heard = inputs->lowest >= settings->reading_low && inputs->highest <= settings->reading_high;
-    uint8_t fed = inputs->supply_mV >= settings->supply_low_mV && inputs->supply_mV <= settings->supply_high_mV;
-    tell(reply, FDVV_PART_POSITION_SENSOR, heard ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED, inputs->lowest);
-    tell(reply, FDVV_PART_SUPPLY, fed ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED, inputs->supply_mV);
-    tell(reply, FDVV_PART_FORCE_SENSOR, settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT, 0);
-    tell(reply, FDVV_PART_CLOCK, FDVV_VERDICT_PASSED, settings->tick_us);
+    uint8_t in_range = inputs->lowest >= settings->reading_low && inputs->highest <= settings->reading_high;
+    uint8_t supplied = inputs->supply_mV >= settings->supply_low_mV && inputs->supply_mV <= settings->supply_high_mV;
+    set_result(reply, FDVV_PART_POSITION_SENSOR, in_range ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED,
+               inputs->lowest);
+    set_result(reply, FDVV_PART_SUPPLY, supplied ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED, inputs->supply_mV);
+    set_result(reply, FDVV_PART_FORCE_SENSOR,
+               settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT, 0);
+    set_result(reply, FDVV_PART_CLOCK, FDVV_VERDICT_PASSED, settings->tick_us);
     return 1;
 }
 

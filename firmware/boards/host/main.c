@@ -1,11 +1,11 @@
-/* The firmware as a program, in lockstep with a plant.
+/* The firmware as a program, in lockstep with a simulated plant.
  *
  *   fdvv-host PLANT_IN PLANT_OUT [TTY]
  *
- * PLANT_IN and PLANT_OUT are file descriptors. For every tick the plant sends a `question` and gets an
- * `answer`; time passes only so. The host's link is TTY, else standard input and output. Both records count
- * the bytes that went over the link, so that a tick sees what was written before it, whatever the system
- * does with its buffers. Ends when the plant's pipe is closed. */
+ * PLANT_IN and PLANT_OUT are file descriptors. For every tick the plant sends a `tick_request` and receives a
+ * `tick_reply`; there is no other clock. The link to the host is TTY, or standard input and output. Both records count
+ * the bytes sent over the link, so that a tick sees all that was written before it, regardless of buffering. The
+ * program ends when the plant's pipe is closed. */
 #define _XOPEN_SOURCE 600
 
 #include <errno.h>
@@ -20,25 +20,25 @@
 
 typedef struct {
     fdvv_inputs inputs;
-    uint32_t written;   /* bytes that the host has put on the link since the cable was plugged in */
-    uint32_t plugged;   /* 0: the cable is out, and what was on it is lost */
-} question;
+    uint32_t written;   /* bytes that the host has written to the link since it was connected */
+    uint32_t plugged;   /* 0: disconnected; unread bytes are lost */
+} tick_request;
 
 typedef struct {
     fdvv_outputs outputs;
-    uint32_t sent;      /* bytes that the device has put on the link since the cable was plugged in */
-} answer;
+    uint32_t sent;      /* bytes that the device has written to the link since it was connected */
+} tick_reply;
 
-typedef char question_has_28_bytes[sizeof(question) == 28 ? 1 : -1];
-typedef char answer_has_24_bytes[sizeof(answer) == 24 ? 1 : -1];
+typedef char tick_request_has_28_bytes[sizeof(tick_request) == 28 ? 1 : -1];
+typedef char tick_reply_has_24_bytes[sizeof(tick_reply) == 24 ? 1 : -1];
 
 typedef struct {
     int in, out;
     uint8_t plugged;
-    uint32_t heard, sent;
-    uint8_t waiting[4096]; /* read, but not yet taken by the firmware */
+    uint32_t received, sent;
+    uint8_t waiting[4096]; /* received, but not yet accepted by the firmware */
     uint16_t first, count;
-} cable;
+} connection;
 
 static int read_whole(int file, void *to, size_t count)
 {
@@ -68,42 +68,42 @@ static int write_whole(int file, const void *from, size_t count)
     return 1;
 }
 
-static void pull(fdvv_host *host, cable *link)
+static void disconnect(fdvv_host *host, connection *link)
 {
     fdvv_host_unplug(host);
     link->plugged = 0;
-    link->heard = link->sent = 0;
+    link->received = link->sent = 0;
     link->first = link->count = 0;
 }
 
-/* Take what the firmware has room for out of what was read. */
-static void hand_over(fdvv_host *host, cable *link)
+/* Pass on as many of the received bytes as the firmware accepts. */
+static void forward(fdvv_host *host, connection *link)
 {
     uint16_t taken = fdvv_host_receive(host, link->waiting + link->first, link->count);
     link->first = (uint16_t)(link->first + taken);
     link->count = (uint16_t)(link->count - taken);
 }
 
-/* Read until all that the host has written is here; give 0 if the other end is gone. */
-static int hear(fdvv_host *host, cable *link, uint32_t written)
+/* Receive everything that the host has written; returns 0 if the other end was closed. */
+static int receive(fdvv_host *host, connection *link, uint32_t written)
 {
-    hand_over(host, link);
-    while (link->heard != written && !link->count) {
+    forward(host, link);
+    while (link->received != written && !link->count) {
         ssize_t got = read(link->in, link->waiting, sizeof link->waiting);
         if (got < 0 && errno == EINTR)
             continue;
         if (got <= 0)
             return 0;
-        link->heard += (uint32_t)got;
+        link->received += (uint32_t)got;
         link->first = 0;
         link->count = (uint16_t)got;
-        hand_over(host, link);
+        forward(host, link);
     }
     return 1;
 }
 
-/* Write what the firmware has to say; give 0 if the other end is gone. */
-static int speak(fdvv_host *host, cable *link)
+/* Send the output of the firmware; returns 0 if the other end was closed. */
+static int transmit(fdvv_host *host, connection *link)
 {
     uint8_t bytes[256];
     uint16_t count;
@@ -115,20 +115,20 @@ static int speak(fdvv_host *host, cable *link)
     return 1;
 }
 
-static void tick(fdvv_host *host, cable *link, const question *asked, answer *given)
+static void tick(fdvv_host *host, connection *link, const tick_request *request, tick_reply *reply)
 {
-    if (link->plugged && !asked->plugged)
-        pull(host, link);
-    link->plugged = asked->plugged != 0;
-    if (link->plugged && !hear(host, link, asked->written))
-        pull(host, link);
-    fdvv_host_tick(host, &asked->inputs, &given->outputs);
-    if (link->plugged && !speak(host, link))
-        pull(host, link);
-    given->sent = link->sent;
+    if (link->plugged && !request->plugged)
+        disconnect(host, link);
+    link->plugged = request->plugged != 0;
+    if (link->plugged && !receive(host, link, request->written))
+        disconnect(host, link);
+    fdvv_host_tick(host, &request->inputs, &reply->outputs);
+    if (link->plugged && !transmit(host, link))
+        disconnect(host, link);
+    reply->sent = link->sent;
 }
 
-/* A terminal that changes no byte. */
+/* Open a terminal in raw mode. */
 static int open_raw(const char *path)
 {
     struct termios mode;
@@ -144,28 +144,28 @@ static int open_raw(const char *path)
     return tcsetattr(file, TCSANOW, &mode) ? -1 : file;
 }
 
-int main(int count, char **words)
+int main(int count, char **arguments)
 {
-    static cable link;
-    question asked;
-    answer given = {{0, 0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0}}, 0};
+    static connection link;
+    tick_request request;
+    tick_reply reply = {{0, 0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0}}, 0};
     fdvv_host *host = fdvv_host_new();
     int in, out;
     if (!host || count < 3 || count > 4) {
         (void)fprintf(stderr, "usage: fdvv-host PLANT_IN PLANT_OUT [TTY]\n");
         return 2;
     }
-    in = atoi(words[1]);
-    out = atoi(words[2]);
+    in = atoi(arguments[1]);
+    out = atoi(arguments[2]);
     link.in = STDIN_FILENO;
     link.out = STDOUT_FILENO;
-    if (count == 4 && (link.in = link.out = open_raw(words[3])) < 0) {
-        perror(words[3]);
+    if (count == 4 && (link.in = link.out = open_raw(arguments[3])) < 0) {
+        perror(arguments[3]);
         return 1;
     }
-    while (read_whole(in, &asked, sizeof asked)) {
-        tick(host, &link, &asked, &given);
-        if (!write_whole(out, &given, sizeof given))
+    while (read_whole(in, &request, sizeof request)) {
+        tick(host, &link, &request, &reply);
+        if (!write_whole(out, &reply, sizeof reply))
             break;
     }
     fdvv_host_free(host);

@@ -1,9 +1,9 @@
-/* The tick and its readings, timed by hardware alone.
+/* The tick and its readings, timed by hardware.
  *
- * Timer 3 overflows once a tick. Its event starts the converter, which then runs free, a reading each 4 us, and
- * counts timer 4 on. The DMA controller stores the first `reads` readings and stops. Only then is the processor
- * needed: it converts one other input, gives the result away and arms all three for the next tick. A tick for which
- * it came too late has no readings; timer 4 still counts it. */
+ * Timer 3 overflows once per tick. Its event increments timer 4 and starts the ADC, which is free-running with one
+ * reading per 4 us. The DMA controller stores the first `reads` readings and stops. Then the program converts one other
+ * input, returns the readings and arms ADC and DMA for the next tick. If it is late, a tick has no readings, but
+ * timer 4 counts it. */
 #include "board.h"
 #include "pins.h"
 #include "samd21.h"
@@ -11,19 +11,19 @@
 enum {
     CLOCK_MHZ = 48,
     PER_MHZ_Q20 = 21846, /* 2^20 / 48, rounded up: exact for every count of a tick */
-    SETTLED = 24,        /* counts after which timer 4 surely shows the tick too */
+    SETTLED = 24,        /* counts after which timer 4 has been incremented too */
     SUPPLY_GAIN_Q13 = 36600 /* 3300 mV / 4096 * (100 + 22) / 22 * 2^13 */
 };
 
 static struct {
     uint32_t tick_us;
     uint32_t time_us;   /* of `tick` */
-    uint16_t tick;      /* newest whose readings were given away */
-    uint16_t armed;     /* the tick that will start the next burst */
+    uint16_t tick;      /* of the last readings returned */
+    uint16_t armed;     /* tick that will start the next burst */
     uint16_t supply_mV;
     uint16_t force_counts;
     uint8_t reads;
-    uint8_t is_force;   /* whose turn it is between supply and force */
+    uint8_t is_force;   /* the other input: supply and force alternate */
 } acquire;
 
 static volatile uint16_t burst[BOARD_READS_MAX];
@@ -50,9 +50,9 @@ static void select_input(uint32_t input)
 
 static void start_adc(void)
 {
-    board_clock(GCLK_ID_ADC, 2); /* 8 MHz, over 4: the converter may have 2.1 MHz at most */
+    board_clock(GCLK_ID_ADC, 2); /* 8 MHz / 4: the maximum of the ADC is 2.1 MHz */
     PORT_PMUX(PIN_POSITION) = PORT_MUX_B;
-    PORT_PMUX(PIN_SUPPLY) = PORT_MUX_B | (PORT_MUX_B << 4); /* and PIN_FORCE beside it */
+    PORT_PMUX(PIN_SUPPLY) = PORT_MUX_B | (PORT_MUX_B << 4); /* and PIN_FORCE, in the same register */
     PORT_PINCFG(PIN_POSITION) = PORT_PINCFG_PMUXEN;
     PORT_PINCFG(PIN_SUPPLY) = PORT_PINCFG_PMUXEN;
     PORT_PINCFG(PIN_FORCE) = PORT_PINCFG_PMUXEN;
@@ -101,8 +101,8 @@ static void start_timers(void)
     TC_READREQ(TC3_BASE) = TC_READREQ_COUNT_ALWAYS;
 }
 
-/* With the tick at rest the clock stands where it is; start_timers lets it go on from 0. */
-static void rest(void)
+/* Stop the tick; the device clock keeps its value until start_timers. */
+static void stop_tick(void)
 {
     if (!acquire.tick_us) return;
     acquire.time_us = board_now_us();
@@ -114,7 +114,7 @@ static void rest(void)
     acquire.tick = TC_COUNT(TC4_BASE);
 }
 
-/* Until no tick has come in between, so that it is certain which one starts the burst. */
+/* Repeated until no tick occurred meanwhile, so that it is known which tick starts the burst. */
 static void arm(void)
 {
     uint16_t before;
@@ -135,7 +135,7 @@ static void arm(void)
 
 void board_acquire_start(uint16_t tick_us, uint8_t reads)
 {
-    rest();
+    stop_tick();
     acquire.tick_us = tick_us;
     acquire.reads = reads > BOARD_READS_MAX ? BOARD_READS_MAX : reads;
     PM_APBCMASK |= PM_APBCMASK_EVSYS | PM_APBCMASK_TC3 | PM_APBCMASK_TC4 | PM_APBCMASK_ADC;
@@ -157,7 +157,7 @@ static void convert_other(void)
     ADC_SWTRIG = ADC_SWTRIG_START;
 }
 
-static void take_other(void)
+static void read_other(void)
 {
     while (!(ADC_INTFLAG & ADC_INTFLAG_RESRDY)) {
     }
@@ -170,7 +170,7 @@ static void take_other(void)
     acquire.is_force ^= 1u;
 }
 
-static void reduce(board_readings *readings)
+static void summarize(board_readings *readings)
 {
     uint32_t sum = 0, lowest = 0xFFFF, highest = 0;
     for (unsigned i = 0; i < acquire.reads; i++) {
@@ -188,8 +188,8 @@ uint8_t board_acquire(board_readings *readings)
 {
     if (!(DMAC_CHINTFLAG & DMAC_CHINTFLAG_TCMPL)) return 0;
     convert_other();
-    reduce(readings); /* while the converter works */
-    take_other();
+    summarize(readings); /* while the conversion is running */
+    read_other();
     readings->elapsed_ticks = (uint16_t)(acquire.armed - acquire.tick);
     acquire.time_us += acquire.tick_us * readings->elapsed_ticks;
     acquire.tick = acquire.armed;

@@ -1,11 +1,11 @@
-/* A program that shows every part of the board at work, for bringing one up and for tests: the cap is a spring,
- * what the host says comes back, and each tick is told. */
+/* A program that exercises every part of the board, to commission it and for tests: the cap acts as a spring,
+ * bytes from the host are echoed, and each tick is reported. */
 #include "board.h"
 
 enum {
     TICK_US = 250,
     READS = 25,
-    MIDDLE = 2048 * READS,
+    CENTRE = 2048 * READS,
     FRAME_TICK = 'T',
     FRAME_ECHO = 'E',
     VIBRATION_BOARD = 0x2A
@@ -21,11 +21,11 @@ typedef struct {
 
 static int16_t spring(uint32_t sum)
 {
-    int32_t duty = ((int32_t)sum - MIDDLE) / 2;
+    int32_t duty = ((int32_t)sum - CENTRE) / 2;
     return (int16_t)(duty > 32767 ? 32767 : duty < -32767 ? -32767 : duty);
 }
 
-static void tell(const board_readings *readings, int16_t duty_q15, uint16_t served_us)
+static void report(const board_readings *readings, int16_t duty_q15, uint16_t served_us)
 {
     tick_frame frame = {FRAME_TICK, sizeof frame, board_reset_cause(), (uint8_t)readings->elapsed_ticks,
                         readings->time_us, readings->sum, readings->lowest, readings->highest,
@@ -41,10 +41,10 @@ static void serve(const board_readings *readings)
     uint16_t served_us = (uint16_t)(board_now_us() - readings->time_us);
     board_watchdog_clear();
     board_stop((uint16_t)(500 + readings->force_counts));
-    uint8_t is_deep = readings->sum > MIDDLE;
+    uint8_t is_deep = readings->sum > CENTRE;
     if (is_deep && !was_deep) board_wire_send(VIBRATION_BOARD, (const uint8_t[]){0x22, 1, 255, 0x5B}, 4);
     was_deep = is_deep;
-    tell(readings, duty_q15, served_us);
+    report(readings, duty_q15, served_us);
 }
 
 static void echo(void)

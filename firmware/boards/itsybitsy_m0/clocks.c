@@ -1,4 +1,4 @@
-/* 48 MHz without a crystal, and the way of clocks and pins to the peripherals. */
+/* 48 MHz clock without a crystal, and the routing of clocks and pins to peripherals. */
 #include "board.h"
 #include "samd21.h"
 
@@ -22,8 +22,8 @@ static void start_dfll(void)
 {
     uint32_t coarse = NVM_CALIBRATION(1) >> 26;
     uint32_t fine = NVM_CALIBRATION(2) & 0x3FFu;
-    if (coarse == 0x3F) coarse = COARSE_FALLBACK; /* never calibrated */
-    SYSCTRL_DFLLCTRL = SYSCTRL_DFLLCTRL_ENABLE;   /* erratum 9905: enabled, not on demand, before all else */
+    if (coarse == 0x3F) coarse = COARSE_FALLBACK; /* not calibrated */
+    SYSCTRL_DFLLCTRL = SYSCTRL_DFLLCTRL_ENABLE;   /* erratum 9905: clear ONDEMAND before any other access */
     wait_dfll();
     SYSCTRL_DFLLVAL = (coarse << 10) | fine;
     wait_dfll();
@@ -36,28 +36,28 @@ static void start_dfll(void)
 
 void board_clocks_start(void)
 {
-    NVMCTRL_CTRLB = NVMCTRL_CTRLB_ONE_WAIT_STATE | NVMCTRL_CTRLB_MANW; /* before the clock rises */
+    NVMCTRL_CTRLB = NVMCTRL_CTRLB_ONE_WAIT_STATE | NVMCTRL_CTRLB_MANW; /* before the clock frequency is raised */
     start_dfll();
     generator(0, GCLK_SOURCE_DFLL48M, 1);
     generator(1, GCLK_SOURCE_OSCULP32K, 1);
     generator(2, GCLK_SOURCE_DFLL48M, 6);
 }
 
-void board_clock(uint8_t peripheral, uint8_t from)
+void board_clock(uint8_t peripheral, uint8_t source)
 {
-    GCLK_CLKCTRL = (uint16_t)(peripheral | ((uint16_t)from << 8) | GCLK_CLKCTRL_CLKEN);
+    GCLK_CLKCTRL = (uint16_t)(peripheral | ((uint16_t)source << 8) | GCLK_CLKCTRL_CLKEN);
     while (GCLK_STATUS & GCLK_STATUS_SYNCBUSY) {
     }
 }
 
 void board_pin(uint8_t pin, uint8_t function)
 {
-    uint8_t both = PORT_PMUX(pin);
+    uint8_t mux = PORT_PMUX(pin);
     if (pin & 1u) {
-        both = (uint8_t)((both & 0x0Fu) | ((unsigned)function << 4));
+        mux = (uint8_t)((mux & 0x0Fu) | ((unsigned)function << 4));
     } else {
-        both = (uint8_t)((both & 0xF0u) | function);
+        mux = (uint8_t)((mux & 0xF0u) | function);
     }
-    PORT_PMUX(pin) = both;
+    PORT_PMUX(pin) = mux;
     PORT_PINCFG(pin) = PORT_PINCFG_PMUXEN | PORT_PINCFG_INEN;
 }

@@ -3,7 +3,7 @@
 #include "pins.h"
 #include "samd21.h"
 
-/* Dual slope: 48 MHz / (2 * 1024) = 23.4 kHz, above hearing; 1024 steps either way. */
+/* Dual slope: 48 MHz / (2 * 1024) = 23.4 kHz, which is inaudible; 1024 steps in each direction. */
 enum { PWM_STEPS = 1024, PWM_SHIFT = 5 /* Q15 to steps */, IN1 = 2, IN2 = 3 };
 /* 3 MHz: 50 Hz is 60000 steps */
 enum { STOP_STEPS = 60000, STOP_STEPS_US = 3, STOP_LOWEST_US = 400, STOP_HIGHEST_US = 2600, STOP = 1 };
@@ -19,8 +19,8 @@ static void start_bridge(void)
     while (TCC_SYNCBUSY(TCC0_BASE)) {
     }
     TCC_CTRLA(TCC0_BASE) = TCC_CTRLA_ENABLE;
-    PORT_PMUX(PIN_IN1) = PORT_MUX_F | (PORT_MUX_F << 4); /* one register for both; connected on enabling */
-    PORT_OUTSET = PIN_BIT(PIN_FAULT);                    /* pulled up */
+    PORT_PMUX(PIN_IN1) = PORT_MUX_F | (PORT_MUX_F << 4); /* one register for both; connected when enabled */
+    PORT_OUTSET = PIN_BIT(PIN_FAULT);                    /* pull-up */
     PORT_PINCFG(PIN_FAULT) = PORT_PINCFG_INEN | PORT_PINCFG_PULLEN;
 }
 
@@ -28,7 +28,7 @@ static void start_stop(void)
 {
     TCC_WAVE(TCC1_BASE) = TCC_WAVE_SINGLE_SLOPE;
     TCC_PER(TCC1_BASE) = STOP_STEPS - 1;
-    TCC_CC(TCC1_BASE, STOP) = 0; /* no pulse: the servo rests until it is told where to go */
+    TCC_CC(TCC1_BASE, STOP) = 0; /* no pulse: the servo does not move before the first command */
     while (TCC_SYNCBUSY(TCC1_BASE)) {
     }
     TCC_CTRLA(TCC1_BASE) = TCC_CTRLA_ENABLE | TCC_CTRLA_DIV16;
@@ -47,15 +47,15 @@ static void connect(uint8_t enable)
 {
     uint8_t config = enable ? PORT_PINCFG_INEN | PORT_PINCFG_PMUXEN : PORT_PINCFG_INEN;
     if (!enable) PORT_OUTCLR = PIN_BIT(PIN_ENABLE);
-    PORT_PINCFG(PIN_IN1) = config; /* without PMUXEN the pin is OUT, which is low for ever */
+    PORT_PINCFG(PIN_IN1) = config; /* without PMUXEN the pin is controlled by OUT, which is always low */
     PORT_PINCFG(PIN_IN2) = config;
     if (enable) PORT_OUTSET = PIN_BIT(PIN_ENABLE);
     is_enabled = enable;
 }
 
-/* Slow decay: one input is high, the other low for the driven part and high for the rest, in which the coil is
- * shorted. So the mean voltage is duty times supply at any current, and duty 0 is the short: no jump there.
- * The two compare values may be taken over one period (43 us) apart; both mixtures drive less than asked. */
+/* Slow decay: one input is high; the other is low in the driven part of the period and high in the rest, during which
+ * the coil is shorted. So the mean voltage is duty times supply at any current, without a discontinuity at duty 0. The
+ * two compare values may take effect one period (43 us) apart; either mixture drives less than commanded. */
 void board_drive(int16_t duty_q15, uint8_t enable)
 {
     int32_t steps = duty_q15 / (1 << PWM_SHIFT);

@@ -1,4 +1,4 @@
-/* Watchdog, brown-out detector, and why we are here. */
+/* Watchdog, brown-out detector and cause of the last reset. */
 #include "board.h"
 #include "samd21.h"
 
@@ -14,18 +14,18 @@ uint8_t board_reset_cause(void)
 
 void board_brown_out_start(void)
 {
-    SYSCTRL_BOD33 = 0; /* it may not be changed while it runs */
+    SYSCTRL_BOD33 = 0; /* must be disabled before its configuration is changed */
     while (!(SYSCTRL_PCLKSR & SYSCTRL_PCLKSR_B33SRDY)) {
     }
     uint32_t setting = SYSCTRL_BOD33_LEVEL(BROWN_OUT_2_8_V) | SYSCTRL_BOD33_HYST;
-    SYSCTRL_BOD33 = setting | SYSCTRL_BOD33_ENABLE; /* armed only once it sees the true voltage */
+    SYSCTRL_BOD33 = setting | SYSCTRL_BOD33_ENABLE; /* the reset is enabled only when the detector is ready */
     while (!(SYSCTRL_PCLKSR & SYSCTRL_PCLKSR_BOD33RDY)) {
     }
     SYSCTRL_BOD33 = setting | SYSCTRL_BOD33_ENABLE | SYSCTRL_BOD33_RESET;
 }
 
-/* The whole 32.768 kHz instead of the usual 1.024 kHz: 64 cycles are 1.95 ms, 1.7 to 2.5 ms over the
- * oscillator's tolerance. */
+/* At 32.768 kHz instead of the usual 1.024 kHz, 64 cycles are 1.95 ms, or 1.7 to 2.5 ms with the tolerance of the
+ * oscillator. */
 void board_watchdog_start(void)
 {
     board_clock(GCLK_ID_WDT, 1);
@@ -39,6 +39,6 @@ void board_watchdog_start(void)
 
 void board_watchdog_clear(void)
 {
-    /* a write during synchronisation would stall the processor: the next tick clears it */
+    /* a write during synchronisation would stall the processor; the next tick clears the watchdog instead */
     if (!(WDT_STATUS & WDT_STATUS_SYNCBUSY)) WDT_CLEAR = WDT_CLEAR_KEY;
 }

@@ -1,48 +1,52 @@
-/* The rig's controller: a tick as soon as its readings are there, and USB, link and vibration board between. */
+/* Controller of the rig: runs a tick as soon as its readings are available, and serves USB, link and vibration board
+ * between ticks. */
 #include "board.h"
 #include "link_state.h"
 #include "vibration.h"
 
-enum { TRAVEL_LIMIT_UM16 = 99200 /* 6.2 mm, the coil's */, PIECE_BYTES = 16 /* of the wire at a time: a frame's bytes cost up to 4 us each */ };
+enum {
+    TRAVEL_LIMIT_UM16 = 99200, /* 6.2 mm, travel of the coil */
+    PIECE_BYTES = 16           /* per call, because a byte of a frame takes up to 4 us */
+};
 
 static fdvv_core core;
 static fdvv_link link;
 static fdvv_board board;
 static fdvv_read_counters_reply counters;
 static fdvv_inputs inputs;       /* of the last tick */
-static uint8_t reset_bits;       /* FDVV_BOARD_… of the reset, until told once */
+static uint8_t reset_bits;       /* FDVV_BOARD_…: cause of the reset, until it was reported once */
 static uint8_t is_testing;
 static uint16_t tick_us;
 static uint8_t reads;
 
-static void tell(fdvv_selftest_reply *reply, uint8_t part, uint8_t verdict, uint16_t value)
+static void set_result(fdvv_selftest_reply *reply, uint8_t part, uint8_t verdict, uint16_t value)
 {
     reply->verdicts[part] = verdict;
     reply->values[2 * part] = (uint8_t)value;
     reply->values[2 * part + 1] = (uint8_t)(value >> 8);
 }
 
-static uint8_t verdict_of(uint8_t is_right)
+static uint8_t verdict_of(uint8_t is_ok)
 {
-    return is_right ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED;
+    return is_ok ? FDVV_VERDICT_PASSED : FDVV_VERDICT_FAILED;
 }
 
-/* The vibration board is asked to be silent, and whether it acknowledges is seen when the queue is empty. Nothing
- * moves: whether coil and force sensor work only a press can show. */
+/* The vibration board is tested with a command that silences it: when the queue is empty, it has acknowledged it or
+ * not. Nothing moves, so coil and force sensor are not tested. */
 static uint8_t selftest(fdvv_selftest_reply *reply)
 {
     const fdvv_settings *settings = &core.settings;
     if (!is_testing) vibration_silence();
     is_testing = board_wire_room() < BOARD_MESSAGES;
     if (is_testing) return 0;
-    uint8_t is_heard = inputs.lowest >= settings->reading_low && inputs.highest <= settings->reading_high;
-    uint8_t is_fed = inputs.supply_mV >= settings->supply_low_mV && inputs.supply_mV <= settings->supply_high_mV;
-    tell(reply, FDVV_PART_POSITION_SENSOR, verdict_of(is_heard), inputs.lowest);
-    tell(reply, FDVV_PART_SUPPLY, verdict_of(is_fed), inputs.supply_mV);
-    tell(reply, FDVV_PART_FORCE_SENSOR, settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT,
-         inputs.force_counts);
-    tell(reply, FDVV_PART_VIBRATION_BOARD, verdict_of(board_wire_answers()), (uint16_t)board_wire_errors());
-    tell(reply, FDVV_PART_CLOCK, verdict_of(inputs.time_us != 0), tick_us);
+    uint8_t is_in_range = inputs.lowest >= settings->reading_low && inputs.highest <= settings->reading_high;
+    uint8_t is_supplied = inputs.supply_mV >= settings->supply_low_mV && inputs.supply_mV <= settings->supply_high_mV;
+    set_result(reply, FDVV_PART_POSITION_SENSOR, verdict_of(is_in_range), inputs.lowest);
+    set_result(reply, FDVV_PART_SUPPLY, verdict_of(is_supplied), inputs.supply_mV);
+    set_result(reply, FDVV_PART_FORCE_SENSOR,
+               settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT, inputs.force_counts);
+    set_result(reply, FDVV_PART_VIBRATION_BOARD, verdict_of(board_wire_answers()), (uint16_t)board_wire_errors());
+    set_result(reply, FDVV_PART_CLOCK, verdict_of(inputs.time_us != 0), tick_us);
     return 1;
 }
 
@@ -60,7 +64,7 @@ static void describe(void)
     board.counters = &counters;
 }
 
-static uint8_t trouble(void)
+static uint8_t board_errors(void)
 {
     uint8_t bits = reset_bits;
     reset_bits = 0;
@@ -69,7 +73,7 @@ static uint8_t trouble(void)
     return bits;
 }
 
-static void take(const board_readings *readings)
+static void set_inputs(const board_readings *readings)
 {
     inputs.time_us = readings->time_us;
     inputs.sum = readings->sum;
@@ -78,10 +82,10 @@ static void take(const board_readings *readings)
     inputs.elapsed_ticks = readings->elapsed_ticks;
     inputs.supply_mV = readings->supply_mV;
     inputs.force_counts = readings->force_counts;
-    inputs.board = trouble();
+    inputs.board = board_errors();
 }
 
-static void count(const board_readings *readings)
+static void update_counters(const board_readings *readings)
 {
     uint32_t served_us = board_now_us() - readings->time_us;
     if (served_us > counters.worst_tick_us) counters.worst_tick_us = served_us;
@@ -90,26 +94,26 @@ static void count(const board_readings *readings)
     counters.vibration_errors = board_wire_errors();
 }
 
-/* 1 if there was one. */
+/* Returns 1 if there was a tick. */
 static uint8_t serve_tick(void)
 {
     board_readings readings;
     fdvv_outputs outputs;
     if (!board_acquire(&readings)) return 0;
-    take(&readings);
+    set_inputs(&readings);
     fdvv_core_tick(&core, &inputs, &outputs);
-    board_key(outputs.key); /* 0 unless the core renders: in no fault is it down */
+    board_key(outputs.key); /* 0 unless rendering, so never down in mode fault */
     board_drive(outputs.duty_q15, outputs.enable);
     board_watchdog_clear();
-    count(&readings);
+    update_counters(&readings);
     board_stop(outputs.stop_us);
     if (outputs.slot != FDVV_NONE) vibration_play(outputs.slot);
     fdvv_link_tick(&link, &inputs, &outputs);
     return 1;
 }
 
-/* New settings may mean another tick; the link takes them only while idle. */
-static void follow_settings(void)
+/* New settings may change the tick. The link accepts them only while idle or in mode fault. */
+static void apply_settings(void)
 {
     if (tick_us == core.settings.tick_us && reads == core.settings.reads) return;
     tick_us = core.settings.tick_us;
@@ -147,7 +151,7 @@ static void transmit(void)
 static void work(void)
 {
     fdvv_link_work(&link);
-    follow_settings();
+    apply_settings();
 }
 
 static void drive_vibration(void)
@@ -160,7 +164,9 @@ static void start(void)
 {
     static const fdvv_settings defaults = FDVV_SETTINGS_DEFAULTS;
     uint8_t cause = board_reset_cause();
-    reset_bits = cause == BOARD_RESET_WATCHDOG ? FDVV_BOARD_WATCHDOG : cause == BOARD_RESET_BROWN_OUT ? FDVV_BOARD_BROWN_OUT : 0;
+    reset_bits = cause == BOARD_RESET_WATCHDOG    ? FDVV_BOARD_WATCHDOG
+                 : cause == BOARD_RESET_BROWN_OUT ? FDVV_BOARD_BROWN_OUT
+                                                  : 0;
     board_clocks_start();
     board_brown_out_start();
     board_drive_start();
@@ -171,19 +177,19 @@ static void start(void)
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&link, &core, &board);
     vibration_silence();
-    follow_settings();
+    apply_settings();
     board_watchdog_start();
 }
 
 int main(void)
 {
-    static void (*const chores[])(void) = {board_usb_step, receive, work, transmit, drive_vibration};
+    static void (*const tasks[])(void) = {board_usb_step, receive, work, transmit, drive_vibration};
     start();
     for (;;) {
-        for (unsigned i = 0; i < sizeof chores / sizeof *chores; i++) {
+        for (unsigned i = 0; i < sizeof tasks / sizeof *tasks; i++) {
             while (serve_tick()) {
             }
-            chores[i]();
+            tasks[i]();
         }
     }
 }

@@ -1,4 +1,4 @@
-/* The three functions that a C compiler may call on its own; written so that none turns into itself. */
+/* The functions that the compiler may call implicitly, written so that it does not turn their loops into such calls. */
 #include <stddef.h>
 #include <stdint.h>
 

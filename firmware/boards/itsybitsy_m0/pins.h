@@ -1,4 +1,4 @@
-/* Where things are connected; numbers are of port A. Names in brackets are printed on the board. */
+/* Connections; numbers are bits of port A, names in brackets are printed on the board. */
 #ifndef ITSYBITSY_M0_PINS_H
 #define ITSYBITSY_M0_PINS_H
 
@@ -7,7 +7,7 @@ enum {
     PIN_SUPPLY = 4,     /* (A3) AIN4, supply through 100 kOhm over 22 kOhm */
     PIN_FORCE = 5,      /* (A4) AIN5, keycap force sensor, tied to ground if there is none */
     PIN_STOP = 7,       /* (D9) TCC1/WO1, servo */
-    PIN_KEY = 14,       /* (D2) high while the key is down, to the LED strip's board */
+    PIN_KEY = 14,       /* (D2) high while the key is down; to the LED strip's board */
     PIN_ENABLE = 16,    /* (D11) nSLEEP of the bridge */
     PIN_IN1 = 18,       /* (D10) TCC0/WO2 */
     PIN_IN2 = 19,       /* (D12) TCC0/WO3 */

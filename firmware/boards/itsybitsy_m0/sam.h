@@ -1,5 +1,5 @@
-/* Just what TinyUSB's SAMD driver asks of a vendor header: the USB device's registers, and an interrupt
- * controller that is not used, because the driver is polled. Offsets as in the data sheet, chapter USB. */
+/* The part of the vendor's header that TinyUSB's SAMD driver needs: the registers of the USB device, and stubs for the
+ * interrupt controller, because the driver is polled. Offsets as in the data sheet, chapter USB. */
 #ifndef ITSYBITSY_M0_SAM_H
 #define ITSYBITSY_M0_SAM_H
 
@@ -11,7 +11,7 @@ enum { USB_IRQn = 7 };
 static inline void NVIC_EnableIRQ(int number) { (void)number; }
 static inline void NVIC_DisableIRQ(int number) { (void)number; }
 
-/* a register as a whole and by its bits */
+/* access to a register as a whole or by its bits */
 #define SAM_REGISTER(name, type, ...) \
     typedef union { struct { __VA_ARGS__ } bit; type reg; } name
 
@@ -145,7 +145,7 @@ _Static_assert(sizeof(SAM_USB_PCKSIZE) == 4 && sizeof(SAM_USB_CTRLB) == 2 && siz
 #define USB_DEVICE_EPINTENSET_TRCPT1 (1u << 1)
 #define USB_DEVICE_EPINTENSET_RXSTP (1u << 4)
 
-/* the pads' trim, written at production */
+/* calibration of the pads, written at production */
 #define USB_FUSES_TRANSN_ADDR 0x00806024u
 #define USB_FUSES_TRANSN_Pos 13
 #define USB_FUSES_TRANSN_Msk (0x1Fu << USB_FUSES_TRANSN_Pos)

@@ -1,5 +1,5 @@
-/* The registers of the SAMD21G18A that this board uses, and no others. Names, addresses and bits as in the
- * data sheet (SAM D21/DA1 Family, DS40001882). */
+/* The registers of the SAMD21G18A that are used here. Names, addresses and bits as in the data sheet (SAM D21/DA1
+ * Family, DS40001882). */
 #ifndef ITSYBITSY_M0_SAMD21_H
 #define ITSYBITSY_M0_SAMD21_H
 
@@ -125,7 +125,7 @@ enum {
 typedef struct {
     uint16_t btctrl;
     uint16_t btcnt;
-    uint32_t srcaddr; /* where the block ends if the address counts up, else the address */
+    uint32_t srcaddr; /* end of the block if the address is incremented, else the address */
     uint32_t dstaddr;
     uint32_t descaddr;
 } dmac_descriptor;

@@ -1,4 +1,4 @@
-/* From reset to main: the bridge off and the key up first, then memory. */
+/* From reset to main: first switch off the bridge and release the key, then initialize the memory. */
 #include "pins.h"
 #include "samd21.h"
 
@@ -11,13 +11,13 @@ void board_trap(void);
 static void outputs_off(void)
 {
     const uint32_t off = PIN_BIT(PIN_IN1) | PIN_BIT(PIN_IN2) | PIN_BIT(PIN_ENABLE) | PIN_BIT(PIN_KEY);
-    PORT_PINCFG(PIN_IN1) = PORT_PINCFG_INEN; /* the pin obeys OUT, not the timer */
+    PORT_PINCFG(PIN_IN1) = PORT_PINCFG_INEN; /* controlled by OUT, not by the timer */
     PORT_PINCFG(PIN_IN2) = PORT_PINCFG_INEN;
     PORT_OUTCLR = off;
     PORT_DIRSET = off;
 }
 
-/* Any fault of the processor: nothing can be trusted, so off and anew. */
+/* After a processor fault no state is valid: switch off the outputs and reset. */
 void board_trap(void)
 {
     outputs_off();
@@ -26,7 +26,7 @@ void board_trap(void)
     }
 }
 
-/* No interrupt is ever enabled: everything is polled, so only the processor's own traps are listed. */
+/* Everything is polled, so there are only exception vectors and no interrupt vectors. */
 __attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
     &ld_stack_top, board_reset, board_trap, board_trap, 0, 0, 0, 0,
     0, 0, 0, board_trap, 0, 0, board_trap, board_trap

@@ -1,4 +1,4 @@
-/* A serial port over USB: descriptors for TinyUSB, and its driver polled instead of interrupting. */
+/* Serial port over USB: descriptors for TinyUSB. Its driver is polled instead of using interrupts. */
 #include "board.h"
 #include "pins.h"
 #include "samd21.h"
@@ -8,7 +8,7 @@ enum { INTERFACE_CONTROL, INTERFACE_DATA, INTERFACES };
 enum { TEXT_LANGUAGE, TEXT_MAKER, TEXT_PRODUCT, TEXT_SERIAL, TEXTS };
 enum { ENDPOINT_NOTIFY = 0x81, ENDPOINT_OUT = 0x02, ENDPOINT_IN = 0x82, TEXT_UNITS = 24 };
 
-/* vendor and product of the pid.codes test range: a private rig, no product */
+/* vendor and product from the test range of pid.codes, since this is not a commercial product */
 static const tusb_desc_device_t device = {
     .bLength = sizeof(tusb_desc_device_t),
     .bDescriptorType = TUSB_DESC_DEVICE,
@@ -73,7 +73,7 @@ const uint16_t *tud_descriptor_string_cb(uint8_t index, uint16_t language)
     return units;
 }
 
-/* TinyUSB waits with this only while resuming the bus, which this board never asks for. */
+/* TinyUSB uses this only for a remote wake-up, which this board never requests. */
 uint32_t tusb_time_millis_api(void)
 {
     return board_now_us() / 1000;

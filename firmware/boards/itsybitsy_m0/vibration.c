@@ -6,11 +6,11 @@
 
 enum { ROOM_FOR_PLAY = 2, FULL_STRENGTH = 255 };
 
-/* what is still to be forwarded */
+/* progress of sending the waveforms of a program */
 static struct {
-    const uint8_t *image; /* 0: nothing */
-    uint16_t pool_at;     /* where the waves of the slots so far end in the board's pool */
-    uint16_t sent;        /* samples of this slot's wave */
+    const uint8_t *image; /* 0: nothing to send */
+    uint16_t pool_at;     /* end of the waves sent so far in the board's pool */
+    uint16_t sent;        /* samples of the wave of this slot */
     uint8_t slot;
 } load;
 

@@ -1,19 +1,19 @@
-/* The vibration board, as vibration_wire.h speaks to it over the I2C bus. */
+/* Commands to the vibration board over I2C, in the format of vibration_wire.h. */
 #ifndef ITSYBITSY_M0_VIBRATION_H
 #define ITSYBITSY_M0_VIBRATION_H
 
 #include <stdint.h>
 
-/* Start a waveform at its own strength. */
+/* Start a vibration with its own amplitude. */
 void vibration_play(uint8_t slot);
 
-/* Be silent: also how to find out whether the board is there. */
+/* Silence the board; also used to detect it. */
 void vibration_silence(void);
 
-/* Begin to forward the waveforms of a checked program, which stays where it is; vibration_step goes on with it. */
+/* Start to send the waveforms of a checked program, which must stay in memory; vibration_step continues. */
 void vibration_load(const uint8_t *image);
 
-/* Put one more message of the forwarding into the queue, if it has room beside a PLAY. */
+/* Queue the next message with waveforms, if the queue then still has room for a PLAY. */
 void vibration_step(void);
 
 #endif

@@ -1,13 +1,13 @@
-/* I2C master that never waits: each step moves one byte or one edge on. */
+/* Non-blocking I2C master: each step transfers one byte, or makes one edge of the bus recovery. */
 #include "board.h"
 #include "pins.h"
 #include "samd21.h"
 
 enum {
     BAUD_400_KHZ = 48,        /* 48 MHz / (10 + 2 * 48 + 14), the 14 for 300 ns of rise */
-    TIMEOUT_US = 2000,        /* a whole message is 750 us at most */
+    TIMEOUT_US = 2000,        /* a message takes at most 750 us */
     EDGE_US = 5,
-    RECOVERY_EDGES = 18       /* nine clocks free any slave */
+    RECOVERY_EDGES = 18       /* nine clock pulses release any slave */
 };
 
 typedef enum { BUS_IDLE, BUS_SENDING, BUS_RECOVERING } bus_state;
@@ -53,7 +53,7 @@ void board_wire_start(void)
 {
     PM_APBCMASK |= PM_APBCMASK_SERCOM3;
     board_clock(GCLK_ID_SERCOM3_CORE, 0);
-    PORT_OUTCLR = PIN_BIT(PIN_SDA) | PIN_BIT(PIN_SCL); /* low when driven; released by DIR */
+    PORT_OUTCLR = PIN_BIT(PIN_SDA) | PIN_BIT(PIN_SCL); /* open drain: low as output, released as input */
     bus.answers = 1;
     open_bus();
 }
@@ -75,7 +75,7 @@ static void drop_first(void)
     bus.waiting--;
 }
 
-/* A message that failed is not repeated: late, it would be felt at the wrong place. */
+/* A failed message is not repeated, because the vibration would be too late. */
 static void recover(uint32_t now_us)
 {
     bus.errors++;

@@ -1,9 +1,9 @@
 /* The LED strip's board: an Arduino Uno, a strip of APA102 or SK9822 (DotStar) and the key line of the rig's
  * controller.
  *
- * Timer 1 counts half microseconds and stores its count by itself when the key line rises: neither a frame that is
- * being sent nor an interrupt can move the time of an edge. Bytes of the host are stored by interrupt; everything else
- * is polled, and nothing is begun that could hold up the bullet's next frame. */
+ * Timer 1 counts half microseconds and captures its count in hardware when the key line rises, so neither a frame being
+ * sent nor an interrupt can delay the time of an edge. Bytes from the host are stored by interrupt. Everything else is
+ * polled, and nothing is started that could delay the bullet's next frame. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/wdt.h>
@@ -12,16 +12,16 @@
 
 /* port B */
 #define KEY 0x01u    /* D8, ICP1: the key line */
-#define SELECT 0x04u /* D10: must be an output, or the SPI would take it for a master's select */
+#define SELECT 0x04u /* D10: must be an output, or the SPI would leave master mode */
 #define DATA 0x08u   /* D11, MOSI */
 #define CLOCK 0x20u  /* D13, SCK */
 
 enum {
-    BAUD_115200 = 16,      /* UBRR at double speed: 117.6 kBd, as the Uno's USB side makes it of the same crystal */
-    BYTE_us16 = 46,        /* counted: 32 cycles on the wire, 10 between two bytes, 16 more between two pixels */
-    CALM_us = 600,         /* a request is carried out in less */
+    BAUD_115200 = 16,      /* UBRR at double speed: 117.6 kBd, the same as the Uno's USB chip with its crystal */
+    BYTE_us16 = 46,        /* from cycle counts: 32 on the wire, 10 between two bytes, 16 more between two pixels */
+    REQUEST_us = 600,      /* upper limit of the time to execute a request */
     OVERFLOW_us = 32768,
-    WAITING_BYTES = 64,    /* a power of two, longer than what comes during the longest frame */
+    WAITING_BYTES = 64,    /* a power of two, more than arrive during the longest frame */
     WAITING_EDGES = 8
 };
 
@@ -38,7 +38,7 @@ ISR(TIMER1_OVF_vect) {
     overflow_us += OVERFLOW_us;
 }
 
-/* What a count means: an overflow of which the interrupt still waits is counted here. */
+/* Time of a timer count, including an overflow whose interrupt is still pending. */
 static inline __attribute__((always_inline)) uint32_t time_us(uint16_t count) {
     uint32_t base_us = overflow_us;
     if ((TIFR1 & _BV(TOV1)) && count < 0x8000u) base_us += OVERFLOW_us;
@@ -56,7 +56,7 @@ ISR(TIMER1_CAPT_vect) {
     }
 }
 
-/* A byte too many is left out: its frame's checksum tells. */
+/* If the buffer is full the byte is dropped, and the checksum of its frame will be wrong. */
 ISR(USART_RX_vect) {
     const uint8_t byte = UDR0, next = (uint8_t)(bytes_in + 1u) % WAITING_BYTES;
     if (next == bytes_out) return;
@@ -83,8 +83,8 @@ static inline __attribute__((always_inline)) void send_pixel(const uint8_t *colo
     for (uint8_t i = 0; i < 4; i++) send(colour[i]);
 }
 
-/* Zeros end a frame too: an SK9822 shows the frame after 32 of them, and the clock of an APA102 is half a bit later
- * in every pixel. */
+/* A frame also ends with zeros: an SK9822 shows it after 32 of them, and every APA102 delays the clock by half a
+ * bit. */
 static void send_zeros(uint8_t count) {
     while (count--) send(0);
 }
@@ -105,7 +105,7 @@ static void send_frame(void) {
 
 /* -- work --------------------------------------------------------------------------------------------- */
 
-static void take_edges(void) {
+static void process_edges(void) {
     while (edges_out != edges_in) {
         fdvv_strip_edge(&strip, edges_us[edges_out]);
         edges_out = (uint8_t)(edges_out + 1u) % WAITING_EDGES;
@@ -113,7 +113,7 @@ static void take_edges(void) {
     if (is_edge_lost) strip.flags |= FDVV_STRIP_BOARD_FLAG_EDGES_LOST;
 }
 
-static void talk(uint32_t now) {
+static void serve_link(uint32_t now) {
     uint8_t byte;
     if (bytes_out != bytes_in && fdvv_strip_listens(&strip)) {
         byte = bytes[bytes_out];
@@ -126,13 +126,13 @@ static void talk(uint32_t now) {
 static void start_pins(void) {
     PORTB = 0;
     DDRB = SELECT | DATA | CLOCK;
-    SPCR = _BV(SPE) | _BV(MSTR); /* a quarter of 16 MHz, data taken at the clock's rise */
+    SPCR = _BV(SPE) | _BV(MSTR); /* 16 MHz / 4, data sampled at the rising edge of the clock */
 }
 
 static void start_clock(void) {
     TCCR1A = 0;
     TIMSK1 = _BV(TOIE1) | _BV(ICIE1);
-    /* a spike shorter than four cycles is no edge; rising; 2 MHz */
+    /* noise canceller (four cycles), rising edge, 2 MHz */
     TCCR1B = _BV(ICNC1) | _BV(ICES1) | _BV(CS11);
 }
 
@@ -154,16 +154,16 @@ int main(void) {
     sei();
     for (uint32_t seen = 0;;) {
         const uint32_t now = now_us();
-        /* fed only while the clock goes on; one that begins anew is none */
+        /* the watchdog is reset only while the time increases */
         if ((int32_t)(now - seen) > 0) {
             seen = now;
             wdt_reset();
         }
-        take_edges();
+        process_edges();
         fdvv_strip_tick(&strip, now);
         if (fdvv_strip_frame(&strip, now))
             send_frame();
-        else if (fdvv_strip_spare_us(&strip, now) > CALM_us)
-            talk(now);
+        else if (fdvv_strip_spare_us(&strip, now) > REQUEST_us)
+            serve_link(now);
     }
 }

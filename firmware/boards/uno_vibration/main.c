@@ -1,29 +1,29 @@
-/* The vibration board: an Arduino Uno with Adafruit's Wave Shield, of which only the converter is used.
+/* The vibration board: an Arduino Uno with the converter of an Adafruit Wave Shield.
  *
- * Timer 1 takes every sample out at 16 kHz and nothing may delay it: the bus is polled, no other interrupt is
- * enabled and none is ever masked. A new PLAY is prepared beside the voice that sounds; one byte then hands the
- * converter over, so a sample is never half of one voice and half of another. */
+ * The interrupt of timer 1 outputs a sample every 1/16000 s and must not be delayed: the bus is polled, and no other
+ * interrupt is enabled. A new PLAY is prepared in a second voice while the first one is playing; writing one byte
+ * switches between them, so a sample never mixes two voices. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/wdt.h>
 
 #include "vibration_receiver.h"
 
-/* port D, the Wave Shield's wiring of the MCP4921 */
+/* port D, connected to the MCP4921 by the Wave Shield */
 #define SELECT 0x04u /* D2: chip select, active low */
-#define CLOCK 0x08u  /* D3: data are taken at its rise */
-#define DATA 0x10u   /* D4: bit 4, which SEND knows */
-#define LATCH 0x20u  /* D5: LDAC, its fall moves the converter's output */
+#define CLOCK 0x08u  /* D3: data are sampled at its rising edge */
+#define DATA 0x10u   /* D4: SEND assumes bit 4 */
+#define LATCH 0x20u  /* D5: LDAC, its falling edge updates the output */
 #define CONVERTER (SELECT | CLOCK | DATA | LATCH)
 
 #define COMMAND 0x30u /* MCP4921, register 5-1, high byte: unbuffered reference, gain 1, output on */
 
-/* states of the bus as slave: ATmega328P data sheet, tables 22-4 and 22-5 */
-#define BUS_TROUBLE 0x00u
-#define ADDRESSED_TO_LISTEN 0x60u
-#define BYTE_CAME 0x80u
-#define ADDRESSED_TO_SPEAK 0xA8u
-#define BYTE_WENT 0xB8u
+/* TWI status codes in slave mode: ATmega328P data sheet, tables 22-4 and 22-5 */
+#define BUS_ERROR 0x00u
+#define ADDRESSED_TO_RECEIVE 0x60u
+#define BYTE_RECEIVED 0x80u
+#define ADDRESSED_TO_TRANSMIT 0xA8u
+#define BYTE_TRANSMITTED 0xB8u
 
 #define RELEASE (_BV(TWINT) | _BV(TWEA) | _BV(TWEN))
 
@@ -32,15 +32,15 @@ static fdvv_vibration_receiver receiver;
 
 static fdvv_synth_voice voices[2];
 static volatile uint16_t next_sample[2];
-static volatile uint8_t sounding; /* which of the two the timer plays */
+static volatile uint8_t playing; /* index of the voice that the timer plays */
 static volatile uint8_t ticks;
 
 static fdvv_vibration_status status;
-static uint8_t told; /* bytes of the status sent */
+static uint8_t status_bytes_sent;
 static uint8_t reset_flags;
 
-/* the compiler may move no access to memory across this */
-#define IN_ORDER() __asm__ volatile("" ::: "memory")
+/* compiler barrier */
+#define MEMORY_BARRIER() __asm__ volatile("" ::: "memory")
 
 /* Four cycles whatever the bit: data with the clock low, then the clock high by a write to PIND, which toggles. */
 #define SEND(byte, bit)                                                                   \
@@ -70,9 +70,9 @@ static inline __attribute__((always_inline)) void convert(uint16_t sample_counts
 }
 
 ISR(TIMER1_COMPA_vect) {
-    const uint8_t voice = sounding;
+    const uint8_t voice = playing;
     convert(next_sample[voice]);
-    /* a silent board is spared the call, during which a command would wait */
+    /* skip the call when silent, because a command has to wait during it */
     if (fdvv_synth_playing(&voices[voice]))
         next_sample[voice] = fdvv_synth_sample(&voices[voice]);
     else
@@ -80,57 +80,57 @@ ISR(TIMER1_COMPA_vect) {
     ticks++;
 }
 
-/* The other voice is made ready byte by byte while the command still travels. */
-static void take(uint8_t byte) {
-    const uint8_t other = sounding ^ 1u;
-    const uint8_t brought = fdvv_vibration_byte(&receiver, byte);
-    if (brought == FDVV_VIBRATION_SLOT) fdvv_synth_choose(&voices[other], &bank, byte);
-    if (brought == FDVV_VIBRATION_STRENGTH) {
+/* Prepare the other voice byte by byte while the command is being received. */
+static void process_byte(uint8_t byte) {
+    const uint8_t other = playing ^ 1u;
+    const uint8_t result = fdvv_vibration_byte(&receiver, byte);
+    if (result == FDVV_VIBRATION_SLOT) fdvv_synth_choose(&voices[other], &bank, byte);
+    if (result == FDVV_VIBRATION_STRENGTH) {
         fdvv_synth_start(&voices[other], byte);
         next_sample[other] = fdvv_synth_sample(&voices[other]);
     }
-    IN_ORDER();
-    if (brought == FDVV_VIBRATION_RIGHT) sounding = other;
+    MEMORY_BARRIER();
+    if (result == FDVV_VIBRATION_RIGHT) playing = other;
 }
 
 static void prepare_status(void) {
     uint8_t flags = reset_flags;
-    IN_ORDER();
-    if (fdvv_synth_playing(&voices[sounding])) flags |= FDVV_VIBRATION_PLAYING;
+    MEMORY_BARRIER();
+    if (fdvv_synth_playing(&voices[playing])) flags |= FDVV_VIBRATION_PLAYING;
     status = fdvv_vibration_report(&receiver, flags);
-    told = 0;
+    status_bytes_sent = 0;
 }
 
 static void load_status_byte(void) {
-    TWDR = told < sizeof status ? ((const uint8_t *)&status)[told] : 0xFFu;
-    told++;
+    TWDR = status_bytes_sent < sizeof status ? ((const uint8_t *)&status)[status_bytes_sent] : 0xFFu;
+    status_bytes_sent++;
 }
 
-static void speak(uint8_t state) {
-    if (state == ADDRESSED_TO_SPEAK) prepare_status();
+static void transmit(uint8_t state) {
+    if (state == ADDRESSED_TO_TRANSMIT) prepare_status();
     load_status_byte();
     TWCR = RELEASE;
 }
 
-/* The clock is held low until TWCR is written, so that comes first: the next byte travels meanwhile. */
-static void listen(uint8_t state) {
+/* The bus clock is stretched until TWCR is written. Writing it first lets the next byte arrive meanwhile. */
+static void receive(uint8_t state) {
     const uint8_t byte = TWDR;
-    TWCR = state == BUS_TROUBLE ? RELEASE | _BV(TWSTO) : RELEASE;
-    if (state == ADDRESSED_TO_LISTEN)
+    TWCR = state == BUS_ERROR ? RELEASE | _BV(TWSTO) : RELEASE;
+    if (state == ADDRESSED_TO_RECEIVE)
         fdvv_vibration_begin(&receiver);
-    else if (state != BYTE_CAME)
+    else if (state != BYTE_RECEIVED)
         fdvv_vibration_end(&receiver);
     else
-        take(byte);
+        process_byte(byte);
 }
 
 static void serve_bus(void) {
     if (!(TWCR & _BV(TWINT))) return;
     const uint8_t state = TWSR & 0xF8u;
-    if (state == ADDRESSED_TO_SPEAK || state == BYTE_WENT)
-        speak(state);
+    if (state == ADDRESSED_TO_TRANSMIT || state == BYTE_TRANSMITTED)
+        transmit(state);
     else
-        listen(state);
+        receive(state);
 }
 
 static void start_converter(void) {
@@ -163,7 +163,7 @@ static void start_bus(void) {
 }
 
 int main(void) {
-    /* silence first, whatever the reason of the reset */
+    /* silence first, regardless of the cause of the reset */
     start_converter();
     if (MCUSR & _BV(WDRF)) reset_flags = FDVV_VIBRATION_WATCHDOG;
     MCUSR = 0;
@@ -175,7 +175,7 @@ int main(void) {
     sei();
     for (uint8_t seen = 0;;) {
         serve_bus();
-        /* fed only while the timer really takes samples out */
+        /* the watchdog is reset only while the timer outputs samples */
         if (ticks != seen) wdt_reset();
         seen = ticks;
     }
