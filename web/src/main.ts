@@ -1,7 +1,7 @@
 /** The studio's page. */
 
-import { mountShell } from "./app/shell";
 import { followAddress } from "./app/route";
+import { mountShell } from "./app/shell";
 import { followTheme } from "./app/theme";
 import { live } from "./net/live";
 import { listenForShortcuts } from "./ui/keys";

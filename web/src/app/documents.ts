@@ -1,8 +1,7 @@
 /** Documents of the studio: what a store needs of the server, and news of other tabs. */
 
-import type { FDVVModel } from "../model";
-import { type Answer, type Change, type DocumentServer, DocumentStore, type OpenedDocument } from "../model";
-import { call, type Document, live, type LiveChannel, StudioError } from "../net";
+import type { Answer, Change, DocumentServer, DocumentStore, FDVVModel, OpenedDocument } from "../model";
+import { call, type Document, type LiveChannel, live, StudioError } from "../net";
 import type { Cleanup } from "../ui";
 
 /** What the server refuses for good; anything else may be well the next time. */
@@ -21,7 +20,8 @@ export const documents: DocumentServer = {
     const found = await call("document.change", { button, revision, change } as unknown as Ask);
     return found.conflict ? { conflict: opened(found.conflict) } : { revision: found.revision };
   },
-  copy: async (name, model) => (await call("document.create", { name, template: null, model: plain(model) })).button,
+  copy: async (name, model) =>
+    (await call("document.create", { name, template: null, model: plain(model) })).button,
   unreachable: (error) => !(error instanceof StudioError && REFUSED.has(error.status)),
 };
 
@@ -38,11 +38,11 @@ export function follow(store: DocumentStore, button: () => string = () => store.
   const watch = () => void channel?.send({ type: "watch" });
   channel = live().channel("documents", {
     opened: watch,
-    told: (news) => {
+    onMessage: (news) => {
       // before the watch was in force others may have been at work
       if (news.type === "watching") return void store.refresh();
       if (news.button !== button()) return;
-      if (news.type === "changed") void store.told(news.revision);
+      if (news.type === "changed") void store.onRevision(news.revision);
       else store.gone(goneLine(news.renamed_to));
     },
   });
@@ -59,5 +59,7 @@ export function follow(store: DocumentStore, button: () => string = () => store.
 }
 
 function goneLine(renamedTo: string | null): string {
-  return renamedTo ? `this button is called ${renamedTo.replace(/^own:/, "")} now` : "this button was deleted";
+  return renamedTo
+    ? `this button is now called ${renamedTo.replace(/^own:/, "")}`
+    : "this button was deleted";
 }

@@ -1,10 +1,10 @@
 /** Something the server knows, asked anew whenever it may have changed. */
 
 import { StudioError } from "../net";
-import { signal, tell, type Signal } from "../ui";
+import { type Signal, signal, tell } from "../ui";
 
 export class Followed<Detail> {
-  /** As it was told last; null before the first answer. */
+  /** The latest answer; null before the first. */
   readonly detail: Signal<Detail | null> = signal<Detail | null>(null);
   /** Why it cannot be shown at all; empty if it can. */
   readonly wrong: Signal<string> = signal("");

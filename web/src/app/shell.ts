@@ -1,16 +1,29 @@
 /** The frame around every page: navigation, theme, connection, keys. */
 
-import { live, type LiveState } from "../net/live";
-import { addShortcuts, button, effect, h, scope, shortcuts, signal, tell, untracked, type Cleanup } from "../ui";
-import { LISTED, PAGES, type Entry, type Page } from "./page";
-import { address, go, route, type Route } from "./route";
+import { type LiveState, live } from "../net/live";
+import {
+  addShortcuts,
+  button,
+  type Cleanup,
+  effect,
+  h,
+  scope,
+  shortcuts,
+  signal,
+  tell,
+  untracked,
+} from "../ui";
+import { headerExtras } from "./header";
+import { LISTED, PAGES } from "./pages";
+import { address, go, type Route, route } from "./route";
 import { nextTheme, theme } from "./theme";
+import type { Entry, Page } from "./types";
 
-const THEMES = { system: "Theme: as the system", light: "Theme: light", dark: "Theme: dark" } as const;
+const THEMES = { system: "Theme: system", light: "Theme: light", dark: "Theme: dark" } as const;
 const SAID: Readonly<Record<LiveState, string>> = {
   opening: "connecting",
   open: "",
-  lost: "no connection to the studio; trying again",
+  lost: "connection lost; reconnecting",
 };
 
 /** Whether the help sheet is shown. */
@@ -18,9 +31,6 @@ const helping = signal(false);
 
 /** Whether the page stands alone, with nothing of the studio around it. */
 const alone = (): boolean => !!PAGES.find((entry) => entry.name === route().page)?.alone;
-
-/** Parts of pages that stay in the header, such as a job that runs. */
-export const headerExtras = signal<readonly HTMLElement[]>([]);
 
 export function mountShell(body: HTMLElement): void {
   const host = h("main", { id: "page", tabindex: "-1" });
@@ -67,10 +77,21 @@ function header(): HTMLElement {
     ),
     h("span", { class: "grow" }),
     h("span", { class: "row" }, () => headerExtras()),
-    button({ label: "Keys", glyph: "?", kind: "quiet", act: () => helping.update((on) => !on), hint: "Keys (?)" }),
+    button({
+      label: "Keys",
+      glyph: "?",
+      kind: "quiet",
+      act: () => helping.update((on) => !on),
+      hint: "Keys (?)",
+    }),
     h(
       "button",
-      { type: "button", class: "button quiet", "aria-label": () => `${THEMES[theme()]}; change`, on: { click: nextTheme } },
+      {
+        type: "button",
+        class: "button quiet",
+        "aria-label": () => `${THEMES[theme()]}; change`,
+        on: { click: nextTheme },
+      },
       () => ({ system: "◐", light: "☀", dark: "☾" })[theme()],
     ),
   );
@@ -85,7 +106,9 @@ function banner(): HTMLElement {
 function helpSheet(): HTMLElement {
   const close = button({ label: "Close", kind: "quiet", act: () => helping.set(false) });
   const rows = () =>
-    shortcuts().map((one) => h("div", { class: "key-row" }, h("dt", {}, h("kbd", {}, one.keys)), h("dd", {}, one.does)));
+    shortcuts().map((shortcut) =>
+      h("div", { class: "key-row" }, h("dt", {}, h("kbd", {}, shortcut.keys)), h("dd", {}, shortcut.does)),
+    );
   const sheet = h(
     "aside",
     { class: "help", "aria-label": "Keys", hidden: () => !helping() },
@@ -113,12 +136,12 @@ function showPages(host: HTMLElement): void {
       if (mine !== turn) return;
       leave();
       host.replaceChildren();
-      host.dataset["page"] = entry.name;
+      host.dataset.page = entry.name;
       document.title = `${page.title} · fdvv studio`;
       shown = { entry, page, key };
       if (entry.alone) helping.set(false);
       leave = scope(() => page.mount(host, now));
-      document.documentElement.dataset["ready"] = entry.name;
+      document.documentElement.dataset.ready = entry.name;
     } catch (error) {
       tell(error);
     }

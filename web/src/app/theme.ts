@@ -22,8 +22,9 @@ export function nextTheme(): void {
 
 export function apply(): void {
   const chosen = theme.peek();
-  const dark = chosen === "dark" || (chosen === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
-  document.documentElement.dataset["theme"] = dark ? "dark" : "light";
+  const dark =
+    chosen === "dark" || (chosen === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
   refreshPalette();
 }
 

@@ -174,7 +174,9 @@ export class SvgBrush implements Brush {
     const place = `x="${rounded(at.x_px)}" y="${rounded(at.y_px)}"`;
     const turn = style.upwards ? ` transform="rotate(-90 ${rounded(at.x_px)} ${rounded(at.y_px)})"` : "";
     const anchor = { left: "start", center: "middle", right: "end" }[style.align ?? "left"];
-    const base = { top: "text-before-edge", middle: "central", bottom: "text-after-edge" }[style.base ?? "middle"];
+    const base = { top: "text-before-edge", middle: "central", bottom: "text-after-edge" }[
+      style.base ?? "middle"
+    ];
     const halo = style.halo ? ` stroke="${style.halo}" stroke-width="${HALO_px}" paint-order="stroke"` : "";
     const font = `font-family="${FONT}" font-size="${style.size_px ?? 12}" font-weight="${style.weight ?? 400}"`;
     this.parts.push(
@@ -190,7 +192,7 @@ export class SvgBrush implements Brush {
     this.parts.push("</g>");
   }
 
-  /** Give the whole file. */
+  /** Return the whole file. */
   file(width_px: number, height_px: number, background: string): string {
     const size = `width="${width_px}" height="${height_px}" viewBox="0 0 ${width_px} ${height_px}"`;
     const back = `<rect width="100%" height="100%" fill="${background}"/>`;

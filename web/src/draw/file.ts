@@ -14,7 +14,7 @@ export function csv(columns: readonly (readonly [string, ArrayLike<number | stri
   const rows = Math.max(0, ...columns.map(([, values]) => values.length));
   const lines = [columns.map(([name]) => cell(name)).join(",")];
   for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => cell(values[i] ?? "")).join(","));
-  return lines.join("\n") + "\n";
+  return `${lines.join("\n")}\n`;
 }
 
 function cell(value: number | string): string {

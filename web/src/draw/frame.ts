@@ -2,8 +2,8 @@
 
 import type { Brush } from "./brush";
 import { palette } from "./palette";
-import type { PlotOptions, View } from "./plot";
-import { ticks, tickStep, tickText, type Scale } from "./scale";
+import { type Scale, tickStep, ticks, tickText } from "./scale";
+import type { PlotOptions, View } from "./types";
 
 const APART = { x_px: 80, y_px: 44 };
 
@@ -15,7 +15,11 @@ export function drawFrame(brush: Brush, view: View, options: PlotOptions): void 
   for (const [value, text] of marks(view.x, counts.x)) {
     const at = view.x.px(value);
     brush.line([at, at], [box.top, bottom], { colour: grid });
-    brush.text(text, { x_px: at, y_px: bottom + 6 }, { colour: muted, align: "center", base: "top", size_px: 11 });
+    brush.text(
+      text,
+      { x_px: at, y_px: bottom + 6 },
+      { colour: muted, align: "center", base: "top", size_px: 11 },
+    );
   }
   for (const [value, text] of marks(view.y, counts.y)) {
     const at = view.y.px(value);
@@ -29,7 +33,8 @@ export function drawFrame(brush: Brush, view: View, options: PlotOptions): void 
 function drawLabels(brush: Brush, view: View, options: PlotOptions): void {
   const colour = palette().text;
   const { box } = view;
-  const label = (axis: { label: string; unit: string }) => (axis.unit ? `${axis.label}, ${axis.unit}` : axis.label);
+  const label = (axis: { label: string; unit: string }) =>
+    axis.unit ? `${axis.label}, ${axis.unit}` : axis.label;
   const below = { x_px: box.left + box.width / 2, y_px: view.height_px - 4 };
   const beside = { x_px: 12, y_px: box.top + box.height / 2 };
   brush.text(label(options.x), below, { colour, align: "center", base: "bottom" });

@@ -5,3 +5,4 @@ export * from "./file";
 export * from "./palette";
 export * from "./plot";
 export * from "./scale";
+export * from "./types";

@@ -45,7 +45,7 @@ function read(): Palette {
 
 const current = signal<Palette | null>(null);
 
-/** Give the colours of now; an effect that reads them runs again when the theme changes. */
+/** Return the colours of now; an effect that reads them runs again when the theme changes. */
 export function palette(): Palette {
   return current() ?? refreshPalette();
 }
@@ -57,8 +57,11 @@ export function refreshPalette(): Palette {
   return found;
 }
 
-/** Give colour and dash of the n-th series. */
+/** Return the colour and dash of the n-th series. */
 export function series(n: number): { readonly colour: string; readonly dash: readonly number[] } {
   const colours = palette().series;
-  return { colour: colours[n % colours.length] as string, dash: SERIES_DASH[n % SERIES_DASH.length] as number[] };
+  return {
+    colour: colours[n % colours.length] as string,
+    dash: SERIES_DASH[n % SERIES_DASH.length] as number[],
+  };
 }

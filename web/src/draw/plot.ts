@@ -1,47 +1,13 @@
 /** A plot: two axes with units, a still layer and one that moves, zoom, pan and pointers in the plot's units. */
 
-import { effect, onCleanup, signal, type Signal } from "../ui/signal";
 import { h } from "../ui/element";
-import { CanvasBrush, SvgBrush, type Box, type Brush } from "./brush";
+import { effect, onCleanup, type Signal, signal } from "../ui/signal";
+import { type Brush, CanvasBrush, SvgBrush } from "./brush";
 import { drawFrame } from "./frame";
-import { zoomByHand } from "./hand";
 import { palette } from "./palette";
-import { linear, type DataPoint, type Range, type Scale, type ScreenPoint } from "./scale";
-
-export interface Axis {
-  readonly label: string;
-  readonly unit: string;
-}
-
-/** What a layer needs to know to draw. */
-export interface View {
-  readonly x: Scale;
-  readonly y: Scale;
-  /** The inside of the axes, px. */
-  readonly box: Box;
-  readonly width_px: number;
-  readonly height_px: number;
-}
-
-export type Layer = (brush: Brush, view: View) => void;
-
-export interface PlotOptions {
-  /** Says what the plot shows to those who do not see it. */
-  readonly label: string;
-  readonly x: Axis;
-  readonly y: Axis;
-  /** Everything there is to see; what Fit goes back to. */
-  readonly whole: () => { readonly x: Range; readonly y: Range };
-  /** Drawn when what it reads changes, or the view does. */
-  readonly still?: Layer;
-  /** Drawn above it, on its own: what follows the hand. */
-  readonly moving?: Layer;
-  /** The wheel and two fingers on a touchpad zoom, + - and 0 too; a drag with the middle button pans. */
-  readonly zoom?: boolean;
-  readonly height_px?: number;
-  /** Leave the axes' labels out, for small plots whose neighbours carry them. */
-  readonly small?: boolean;
-}
+import { type DataPoint, linear, type Range, type ScreenPoint } from "./scale";
+import type { PlotOptions, View } from "./types";
+import { listenForZoom } from "./zoom";
 
 const MARGIN = { left: 58, right: 14, top: 12, bottom: 44 };
 const SMALL = { left: 38, right: 8, top: 8, bottom: 24 };
@@ -73,10 +39,10 @@ export class Plot {
       cancelAnimationFrame(this.frame);
     });
     this.follow();
-    if (options.zoom) zoomByHand(this);
+    if (options.zoom) listenForZoom(this);
   }
 
-  /** Give the view of now. */
+  /** Return the view of now. */
   view(): View {
     const { width_px, height_px } = this.size();
     const m = this.options.small ? SMALL : MARGIN;
@@ -126,7 +92,7 @@ export class Plot {
     this.window.set({ x: shifted(from.x.range, x_ratio), y: shifted(from.y.range, y_ratio) });
   }
 
-  /** Give the plot as an SVG file. */
+  /** Return the plot as an SVG file. */
   toSvg(): string {
     const brush = new SvgBrush();
     const view = this.view();
@@ -135,7 +101,7 @@ export class Plot {
     return brush.file(view.width_px, view.height_px, palette().surface);
   }
 
-  /** Give the plot as a PNG file, at twice the size of the screen. */
+  /** Return the plot as a PNG file, at twice the size of the screen. */
   async toPng(): Promise<Blob> {
     const view = this.view();
     const canvas = h("canvas", { width: view.width_px * 2, height: view.height_px * 2 });
@@ -147,7 +113,10 @@ export class Plot {
     this.paint(brush, view, 0);
     this.paint(brush, view, 1);
     return new Promise((resolve, reject) =>
-      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be made"))), "image/png"),
+      canvas.toBlob(
+        (blob) => (blob ? resolve(blob) : reject(new Error("the image could not be created"))),
+        "image/png",
+      ),
     );
   }
 

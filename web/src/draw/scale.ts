@@ -41,7 +41,7 @@ export function linear(range: Range, from_px: number, to_px: number): Scale {
 /** By how much more labels than asked for may stand on an axis. */
 const MORE = 1.3;
 
-/** Give round values about so far apart that `count` of them fill the range. */
+/** Return round values about so far apart that `count` of them fill the range. */
 export function ticks(range: Range, count: number): number[] {
   const step = tickStep(range, count);
   const first = Math.ceil(range.low / step - 1e-9);
@@ -49,7 +49,7 @@ export function ticks(range: Range, count: number): number[] {
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
 }
 
-/** Give the round step: rather a few more labels than hardly any. */
+/** Return the round step: rather a few more labels than hardly any. */
 export function tickStep(range: Range, count: number): number {
   const rough = Math.abs(range.high - range.low) / Math.max(1, count) || 1;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -64,7 +64,7 @@ export function tickText(value: number, step: number): string {
   return rounded.toFixed(digits).replace("-", "−");
 }
 
-/** Give the least range that holds all finite numbers, with some air; null where there are none. */
+/** Return the least range that holds all finite numbers, with some air; null where there are none. */
 export function rangeOf(columns: Iterable<ArrayLike<number>>, air_ratio = 0.05): Range | null {
   let [low, high] = [Infinity, -Infinity];
   for (const column of columns) {

@@ -1,9 +1,20 @@
 /** Zoom and pan of a plot by wheel, middle button and keys. */
 
 import { followPointer } from "../ui/pointer";
-import type { Plot } from "./plot";
+import type { DataPoint, ScreenPoint } from "./scale";
+import type { View } from "./types";
 
-export function zoomByHand(plot: Plot): void {
+/** The part of a plot that zoom and pan need. */
+interface Zoomable {
+  readonly element: HTMLElement;
+  view(): View;
+  at(event: PointerEvent | WheelEvent): DataPoint & ScreenPoint;
+  fit(): void;
+  zoomBy(factor: number, around?: DataPoint): void;
+  panBy(x_ratio: number, y_ratio: number, from: View): void;
+}
+
+export function listenForZoom(plot: Zoomable): void {
   const { element } = plot;
   const wheel = (event: WheelEvent) => {
     event.preventDefault();
@@ -16,7 +27,7 @@ export function zoomByHand(plot: Plot): void {
   element.addEventListener("keydown", (event) => onKey(plot, event));
 }
 
-function pan(plot: Plot, event: PointerEvent): void {
+function pan(plot: Zoomable, event: PointerEvent): void {
   event.preventDefault();
   const [start, view] = [plot.at(event), plot.view()];
   followPointer(plot.element, event, (now) => {
@@ -25,7 +36,7 @@ function pan(plot: Plot, event: PointerEvent): void {
   });
 }
 
-function onKey(plot: Plot, event: KeyboardEvent): void {
+function onKey(plot: Zoomable, event: KeyboardEvent): void {
   if (event.target !== plot.element || event.defaultPrevented) return;
   if (event.key === "+" || event.key === "=") plot.zoomBy(0.8);
   else if (event.key === "-") plot.zoomBy(1.25);

@@ -10,7 +10,7 @@ export function roundHalfEven(x: number): number {
   return low % 2 === 0 ? low : low + 1;
 }
 
-/** Give count numbers from start to end, both included. */
+/** Return count numbers from start to end, both included. */
 export function linspace(start: number, end: number, count: number): Float64Array {
   const out = new Float64Array(count);
   const step = (end - start) / (count - 1);
@@ -20,7 +20,7 @@ export function linspace(start: number, end: number, count: number): Float64Arra
   return out;
 }
 
-/** Give the first index whose number is not below x, in a rising row. */
+/** Return the first index whose number is not below x, in a rising row. */
 export function firstNotBelow(row: Numbers, x: number): number {
   let low = 0;
   let high = row.length;
@@ -32,7 +32,7 @@ export function firstNotBelow(row: Numbers, x: number): number {
   return low;
 }
 
-/** Give the first index whose number is above x, in a rising row. */
+/** Return the first index whose number is above x, in a rising row. */
 export function firstAbove(row: Numbers, x: number): number {
   let low = 0;
   let high = row.length;

@@ -107,7 +107,7 @@ export function evaluate(
   let i = k;
   for (let m = 0; m < x.length; m++) {
     const at = x[m]!;
-    const inside = at < start ? start : at > end ? end : at;
+    const inside = at < start ? start : Math.min(at, end);
     i = findSpan(t, k, inside, i);
     if (!derivative) out[m] = valueAt(t, c, k, i, inside);
     else out[m] = inside === at ? slopeAt(t, c, k, i, inside) : 0;
@@ -116,7 +116,13 @@ export function evaluate(
 }
 
 /** Evaluate the k + 1 basis functions that are not zero at x in span i; the first is number i - k. */
-export function basis(t: Numbers, k: number, i: number, x: number, out = new Float64Array(k + 1)): Float64Array {
+export function basis(
+  t: Numbers,
+  k: number,
+  i: number,
+  x: number,
+  out = new Float64Array(k + 1),
+): Float64Array {
   out[0] = 1;
   for (let r = 1; r <= k; r++) {
     let carried = 0;

@@ -16,12 +16,12 @@ export interface Bump {
   readonly valley_cN: number;
 }
 
-/** Give the fall from peak to valley. */
+/** Return the fall from peak to valley. */
 export function drop_cN(bump: Bump): number {
   return bump.peak_cN - bump.valley_cN;
 }
 
-/** Give (peak - valley) / peak, the click ratio of switch data sheets. */
+/** Return (peak - valley) / peak, the click ratio of switch data sheets. */
 export function snapRatio(bump: Bump): number {
   return drop_cN(bump) / bump.peak_cN;
 }
@@ -40,7 +40,12 @@ export function findBump(x_mm: Numbers, force_cN: Numbers, least_drop_cN = LEAST
     const fall = force[highest]! - force[i]!;
     if (fall > deepest) [peak, valley, deepest] = [highest, i, fall];
   }
-  const bump = { peak_mm: x_mm[peak]!, peak_cN: force[peak]!, valley_mm: x_mm[valley]!, valley_cN: force[valley]! };
+  const bump = {
+    peak_mm: x_mm[peak]!,
+    peak_cN: force[peak]!,
+    valley_mm: x_mm[valley]!,
+    valley_cN: force[valley]!,
+  };
   return drop_cN(bump) >= least_drop_cN ? bump : null;
 }
 

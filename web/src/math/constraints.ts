@@ -62,7 +62,10 @@ export function monotone(
   for (let j = 1; j < bounds.length; j++) {
     const [from, to] = [bounds[j - 1]! + 1, bounds[j]!];
     const [least, most] = [from > 0 ? y[from - 1]! : -Infinity, to < y.length ? y[to]! : Infinity];
-    y.set(pooled(y.subarray(from, to)).map((value) => limit(value, least, most)), from);
+    y.set(
+      pooled(y.subarray(from, to)).map((value) => limit(value, least, most)),
+      from,
+    );
   }
   return y.map((value) => sign * value + 0);
 }
@@ -120,7 +123,9 @@ export function constrain(
 ): Float64Array {
   const { step_cN: step = 0, least_cN: least, most_cN: most } = constraints;
   const fixed = new Set(held);
-  const asked = Float64Array.from(wanted, (value, i) => (held.has(i) ? limit(snap(value, step), least, most) : value));
+  const asked = Float64Array.from(wanted, (value, i) =>
+    held.has(i) ? limit(snap(value, step), least, most) : value,
+  );
   if (constraints.keepEnds) {
     for (const end of [0, asked.length - 1]) {
       asked[end] = before[end]!;

@@ -19,22 +19,22 @@ export function forceAt_cN(curve: Spline, x_mm: number): number {
   return force_cN(curve, [x_mm])[0]!;
 }
 
-/** Give the displacement at which the curve begins. */
+/** Return the displacement at which the curve begins. */
 export function start_mm(curve: Spline): number {
   return curve.knots_mm[0]!;
 }
 
-/** Give the displacement at which the curve ends. */
+/** Return the displacement at which the curve ends. */
 export function end_mm(curve: Spline): number {
   return curve.knots_mm[curve.knots_mm.length - 1]!;
 }
 
-/** Give the places (Greville abscissae) at which the control points act, one for each. */
+/** Return the places (Greville abscissae) at which the control points act, one for each. */
 export function controlPoints_mm(curve: Spline): Float64Array {
   return greville(curve.knots_mm, curve.degree);
 }
 
-/** Give places about step_mm apart from start to end of the curve, both included. */
+/** Return positions about step_mm apart from start to end of the curve, both included. */
 export function places_mm(curve: Spline, step_mm = 0.05): Float64Array {
   const [from, to] = [start_mm(curve), end_mm(curve)];
   return linspace(from, to, Math.max(2, roundHalfEven((to - from) / step_mm) + 1));

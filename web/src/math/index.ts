@@ -5,11 +5,19 @@ export { basis, checkSpline, evaluate, findSpan, greville, uniformKnots } from "
 export { type Bump, drop_cN, findBump, LEAST_DROP_cN, runningMean, snapRatio } from "./bump";
 export { buttonDifference, type Difference, differences } from "./compare";
 export { type Constraints, constrain, keepWork, limit, monotone, snap, type Work } from "./constraints";
-export { controlPoints_mm, end_mm, force_cN, forceAt_cN, places_mm, start_mm, stiffness_cN_mm } from "./curve";
+export {
+  controlPoints_mm,
+  end_mm,
+  force_cN,
+  forceAt_cN,
+  places_mm,
+  start_mm,
+  stiffness_cN_mm,
+} from "./curve";
 export { integral_cN_mm, integralWeights } from "./integral";
 export { type Added, addPoint, insertKnot, type Refitted, refit, removePoint } from "./knots";
 export { bumpOf, dense, type Landmarks, landmarks, mJ_PER_cN_mm, work_mJ } from "./landmarks";
-export { splice, type Spliced } from "./splice";
+export { type Spliced, splice } from "./splice";
 export { type Surface, surface, surfaceGrid } from "./surface";
 export {
   type ButtonLike,
@@ -20,8 +28,8 @@ export {
   ModelError,
   type Numbers,
   type Spline,
-  type Stroke,
   STROKES,
+  type Stroke,
   type VibrationLike,
 } from "./types";
 export { type Blend, blend, blendOf, curvesOf, nearest } from "./velocity";

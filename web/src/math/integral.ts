@@ -29,7 +29,7 @@ export function quadrature(breaks: Numbers, visit: (x: number, weight: number) =
 }
 
 /**
- * Give the weights w with which a curve's integral from a to b (cN mm) is the sum of w times its control points.
+ * Return the weights w with which a curve's integral from a to b (cN mm) is the sum of w times its control points.
  *
  * Outside the knots the end values hold, as in force_cN.
  */

@@ -32,7 +32,9 @@ export interface Added extends Spline {
 export function insertKnot(curve: Spline, x_mm: number): Omit<Added, "degree" | "index"> {
   const { knots_mm: t, control_points_cN: c, degree: k } = curve;
   if (!(x_mm > t[0]! && x_mm < t[t.length - 1]!)) {
-    throw new ModelError(`a control point goes inside the curve, ${t[0]} to ${t[t.length - 1]} mm, got ${x_mm}`);
+    throw new ModelError(
+      `a control point goes inside the curve, ${t[0]} to ${t[t.length - 1]} mm, got ${x_mm}`,
+    );
   }
   const s = findSpan(t, k, x_mm);
   const knots = Float64Array.from([...Array.from(t).slice(0, s + 1), x_mm, ...Array.from(t).slice(s + 1)]);
@@ -81,7 +83,8 @@ function clearOfKnots(t: Numbers, x: number): number {
 export function removePoint(curve: Spline, index: number): Refitted {
   const k = curve.degree;
   const n = curve.control_points_cN.length;
-  if (n <= k + 1) throw new ModelError(`degree ${k} needs at least ${k + 1} control points, the curve has no more`);
+  if (n <= k + 1)
+    throw new ModelError(`degree ${k} needs at least ${k + 1} control points, the curve has no more`);
   const low = Math.min(Math.max(index + 1, k + 1), n - 1);
   const high = Math.max(Math.min(index + k, n - 1), low);
   let best: Refitted | null = null;
@@ -131,7 +134,14 @@ function project(
   return compared(curve, { degree: k, knots_mm: t, control_points_cN: found });
 }
 
-function normalEquations(curve: Spline, k: number, t: Float64Array, fixed: Float64Array, first: number, size: number) {
+function normalEquations(
+  curve: Spline,
+  k: number,
+  t: Float64Array,
+  fixed: Float64Array,
+  first: number,
+  size: number,
+) {
   const gram = Array.from({ length: size }, () => new Float64Array(size));
   const right = new Float64Array(size);
   const values = new Float64Array(k + 1);
@@ -145,7 +155,8 @@ function normalEquations(curve: Spline, k: number, t: Float64Array, fixed: Float
       right[row] = right[row]! + weight * values[a]! * rest;
       for (let b = 0; b <= k; b++) {
         const column = i - k + b - first;
-        if (column >= 0 && column < size) gram[row]![column] = gram[row]![column]! + weight * values[a]! * values[b]!;
+        if (column >= 0 && column < size)
+          gram[row]![column] = gram[row]![column]! + weight * values[a]! * values[b]!;
       }
     }
   });
@@ -156,7 +167,7 @@ function breaksOf(a: Numbers, b: Numbers): number[] {
   return [...new Set([...Array.from(a), ...Array.from(b)])].sort((x, y) => x - y);
 }
 
-/** Tell how far two curves are apart: largest and where, and the integral of the square. */
+/** How far two curves are apart: largest and where, and the integral of the square. */
 function compared(before: Spline, after: Omit<Refitted, "largest_cN" | "at_mm">): [Refitted, number] {
   let error = 0;
   let [largest, at] = [0, before.knots_mm[0]!];

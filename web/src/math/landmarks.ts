@@ -17,7 +17,7 @@ export const mJ_PER_cN_mm = 0.01;
 
 /**
  * Landmarks of a button at one velocity; null where the button has no such point or it is unknown. Their
- * meaning is told by `fdvv.model.Landmarks`.
+ * meaning is documented in `fdvv.model.Landmarks`.
  */
 export interface Landmarks {
   readonly velocity_mm_s: number | null;
@@ -46,20 +46,20 @@ export interface Landmarks {
   readonly hysteresis_loss_mJ: number | null;
 }
 
-/** Give the places that landmarks are read from: the curve to the end of the travel, longer if it must. */
+/** Return the places that landmarks are read from: the curve to the end of the travel, longer if it must. */
 export function dense(curve: Spline, end_mm: number): Float64Array {
   const start = start_mm(curve);
   const end = Math.max(end_mm, start + STEP_mm);
   return linspace(start, end, Math.max(8, roundHalfEven((end - start) / STEP_mm) + 1));
 }
 
-/** Give the work of a stroke over the travel, mJ: the area under the curve. */
+/** Return the work of a stroke over the travel, mJ: the area under the curve. */
 export function work_mJ(curve: Spline, travel_mm: number): number {
   const x = dense(curve, travel_mm);
   return trapezoid(x, force_cN(curve, x)) * mJ_PER_cN_mm;
 }
 
-/** Give the bump of one curve over the travel; null if it has none. */
+/** Return the bump of one curve over the travel; null if it has none. */
 export function bumpOf(curve: Spline, travel_mm: number): Bump | null {
   const x = dense(curve, travel_mm);
   return findBump(x, force_cN(curve, x));
@@ -111,7 +111,12 @@ function ofBump(bump: Bump | null) {
 
 function ofRelease(release: Spline | null, travel_mm: number, press_mJ: number) {
   if (!release) {
-    return { release_peak_cN: null, release_valley_cN: null, release_work_mJ: null, hysteresis_loss_mJ: null };
+    return {
+      release_peak_cN: null,
+      release_valley_cN: null,
+      release_work_mJ: null,
+      hysteresis_loss_mJ: null,
+    };
   }
   const x = dense(release, travel_mm);
   const force = force_cN(release, x);

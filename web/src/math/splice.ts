@@ -39,7 +39,12 @@ export interface Spliced extends Spline {
  * Throws ModelError if the segment is empty or leaves either curve, if blend_mm is not positive, or if a curve
  * that jumps would have to be raised in degree.
  */
-export function splice(base: Spline, insert: Spline, segment_mm: readonly [number, number], blend_mm = 0.1): Spliced {
+export function splice(
+  base: Spline,
+  insert: Spline,
+  segment_mm: readonly [number, number],
+  blend_mm = 0.1,
+): Spliced {
   check(base, insert, segment_mm, blend_mm);
   const k = Math.max(base.degree, insert.degree, BRIDGE_DEGREE);
   const [outer, inner] = [elevated(base, k), elevated(insert, k)];
@@ -66,7 +71,10 @@ function check(base: Spline, insert: Spline, [a, b]: readonly [number, number], 
   if (!(Number.isFinite(blend_mm) && blend_mm > NEAR_mm)) {
     throw new ModelError(`blend_mm must be positive, got ${blend_mm}`);
   }
-  for (const [which, curve] of [["edited", base], ["assigned", insert]] as const) {
+  for (const [which, curve] of [
+    ["edited", base],
+    ["assigned", insert],
+  ] as const) {
     if (a < start_mm(curve) - NEAR_mm || b > end_mm(curve) + NEAR_mm) {
       const reach = `${g(start_mm(curve))} to ${g(end_mm(curve))} mm`;
       throw new ModelError(

@@ -14,7 +14,12 @@ export interface Surface {
 }
 
 /** Sample a stroke; its rows are the velocities. Throws ModelError if the button has no such curve. */
-export function surface(button: ButtonLike, stroke: Stroke, velocity_mm_s: Numbers, displacement_mm: Numbers): Surface {
+export function surface(
+  button: ButtonLike,
+  stroke: Stroke,
+  velocity_mm_s: Numbers,
+  displacement_mm: Numbers,
+): Surface {
   const x = Float64Array.from(displacement_mm);
   const v = Float64Array.from(velocity_mm_s);
   const force = new Float64Array(x.length * v.length);
@@ -23,7 +28,7 @@ export function surface(button: ButtonLike, stroke: Stroke, velocity_mm_s: Numbe
   return { stroke, displacement_mm: x, velocity_mm_s: v, force_cN: force };
 }
 
-/** Give displacements over the travel and velocities over what was measured, for a view of rows x columns. */
+/** Return displacements over the travel and velocities over what was measured, for a view of rows x columns. */
 export function surfaceGrid(
   button: ButtonLike,
   stroke: Stroke,

@@ -7,13 +7,20 @@
 
 import { firstAbove } from "./arrays";
 import { force_cN, stiffness_cN_mm } from "./curve";
-import { type ButtonLike, type CurveLike, type Interpolation, ModelError, type Numbers, type Stroke } from "./types";
+import {
+  type ButtonLike,
+  type CurveLike,
+  type Interpolation,
+  ModelError,
+  type Numbers,
+  type Stroke,
+} from "./types";
 
 /** Force, or its derivative over displacement, at fixed displacements and any velocity. */
 export interface Blend {
-  /** Give the values at a velocity, into `out` where given. */
+  /** Return the values at a velocity, into `out` where given. */
   at(velocity_mm_s: number, out?: Float64Array): Float64Array;
-  /** Give the derivative over velocity; 0 beyond the measured velocities. */
+  /** Return the derivative over velocity; 0 beyond the measured velocities. */
   slopeAt(velocity_mm_s: number, out?: Float64Array): Float64Array;
 }
 
@@ -68,7 +75,13 @@ function locate(v: readonly number[], wanted: number): Place {
   return { lower, part: (held - v[lower]!) / h, h, outside: held !== wanted };
 }
 
-function valuesAt(at: Place, y: Float64Array[], m: Float64Array[] | null, method: Interpolation, out: Float64Array) {
+function valuesAt(
+  at: Place,
+  y: Float64Array[],
+  m: Float64Array[] | null,
+  method: Interpolation,
+  out: Float64Array,
+) {
   const { lower, part: s, h } = at;
   if (method === "nearest") {
     out.set(y[lower + (s > 0.5 ? 1 : 0)]!);
@@ -87,7 +100,13 @@ function valuesAt(at: Place, y: Float64Array[], m: Float64Array[] | null, method
   return out;
 }
 
-function slopesAt(at: Place, y: Float64Array[], m: Float64Array[] | null, method: Interpolation, out: Float64Array) {
+function slopesAt(
+  at: Place,
+  y: Float64Array[],
+  m: Float64Array[] | null,
+  method: Interpolation,
+  out: Float64Array,
+) {
   const { lower, part: s, h } = at;
   if (at.outside || method === "nearest") return out.fill(0);
   const [low, high] = [y[lower]!, y[lower + 1]!];
@@ -101,7 +120,7 @@ function slopesAt(at: Place, y: Float64Array[], m: Float64Array[] | null, method
 }
 
 /**
- * Give the PCHIP slopes over velocity, one row per curve, for 3 curves or more (Fritsch and Butland, SIAM J.
+ * Return the PCHIP slopes over velocity, one row per curve, for 3 curves or more (Fritsch and Butland, SIAM J.
  * Sci. Stat. Comput. 5, 1984).
  *
  * They are homogeneous in the secants of force, so by Euler their partial derivatives weigh the secants of
@@ -120,7 +139,8 @@ function slopes(v: readonly number[], force: Float64Array[], y: Float64Array[]):
       of[i] = (y[i + 1]![p]! - y[i]![p]!) / h[i]!;
     }
     m[0]![p] = endSlope(h[0]!, h[1]!, d[0]!, d[1]!, of[0]!, of[1]!);
-    for (let i = 1; i < n - 1; i++) m[i]![p] = innerSlope(h[i - 1]!, h[i]!, d[i - 1]!, d[i]!, of[i - 1]!, of[i]!);
+    for (let i = 1; i < n - 1; i++)
+      m[i]![p] = innerSlope(h[i - 1]!, h[i]!, d[i - 1]!, d[i]!, of[i - 1]!, of[i]!);
     m[n - 1]![p] = endSlope(h[n - 2]!, h[n - 3]!, d[n - 2]!, d[n - 3]!, of[n - 2]!, of[n - 3]!);
   }
   return m;
@@ -143,7 +163,7 @@ function endSlope(h0: number, h1: number, d0: number, d1: number, of0: number, o
   return steep ? 3 * of0 : (1 + far) * of0 - far * of1;
 }
 
-/** Give the curves of one stroke, velocities rising. */
+/** Return the curves of one stroke, velocities rising. */
 export function curvesOf<Curve extends CurveLike>(
   button: { readonly curves: readonly Curve[] },
   stroke: Stroke,
@@ -153,7 +173,7 @@ export function curvesOf<Curve extends CurveLike>(
     .sort((a, b) => (a.velocity_mm_s ?? 0) - (b.velocity_mm_s ?? 0));
 }
 
-/** Give the curve nearest in velocity, the slowest if none is asked for; null if there is none. */
+/** Return the curve nearest in velocity, the slowest if none is asked for; null if there is none. */
 export function nearest<Curve extends CurveLike>(
   button: { readonly curves: readonly Curve[] },
   stroke: Stroke,
@@ -162,7 +182,10 @@ export function nearest<Curve extends CurveLike>(
   const wanted = velocity_mm_s ?? 0;
   let best: Curve | null = null;
   for (const curve of curvesOf(button, stroke)) {
-    if (!best || Math.abs((curve.velocity_mm_s ?? 0) - wanted) < Math.abs((best.velocity_mm_s ?? 0) - wanted)) {
+    if (
+      !best ||
+      Math.abs((curve.velocity_mm_s ?? 0) - wanted) < Math.abs((best.velocity_mm_s ?? 0) - wanted)
+    ) {
       best = curve;
     }
   }

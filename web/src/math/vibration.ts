@@ -22,25 +22,29 @@ export function acceleration_m_s2(vibration: VibrationLike, t_s: Numbers): Float
   return out;
 }
 
-/** Give a vibration's acceleration (m/s²) at a rate, with silence before and after. */
-export function vibrationSamples(vibration: VibrationLike, rate_Hz = LISTEN_Hz, quiet_s = QUIET_s): Float64Array {
+/** Return a vibration's acceleration (m/s²) at a rate, with silence before and after. */
+export function vibrationSamples(
+  vibration: VibrationLike,
+  rate_Hz = LISTEN_Hz,
+  quiet_s = QUIET_s,
+): Float64Array {
   const t = new Float64Array(roundHalfEven((vibration.duration_s + 2 * quiet_s) * rate_Hz));
   for (let i = 0; i < t.length; i++) t[i] = i / rate_Hz - quiet_s;
   return acceleration_m_s2(vibration, t);
 }
 
-/** Give the largest |acceleration| of the samples at a rate, m/s². */
+/** Return the largest |acceleration| of the samples at a rate, m/s². */
 export function peak_m_s2(vibration: VibrationLike, rate_Hz = LISTEN_Hz): number {
   return vibrationSamples(vibration, rate_Hz, 0).reduce((most, a) => Math.max(most, Math.abs(a)), 0);
 }
 
-/** Give how long a vibration lasts until all its modes have fallen to a share of their amplitude, s. */
+/** Return how long a vibration lasts until all its modes have fallen to a share of their amplitude, s. */
 export function decayTime_s(vibration: VibrationLike, share = 0.01): number {
   const slowest = Math.min(...vibration.modes.map((mode) => mode.decay_1_s));
   return slowest > 0 ? Math.min(vibration.duration_s, Math.log(1 / share) / slowest) : vibration.duration_s;
 }
 
-/** Give the vibration of the stroke nearest in velocity; null if it has none. */
+/** Return the vibration of the stroke nearest in velocity; null if it has none. */
 export function nearestVibration<Of extends VibrationLike>(
   vibrations: readonly Of[],
   stroke: Stroke,

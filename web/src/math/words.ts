@@ -10,7 +10,7 @@ export function speed(velocity_mm_s: number | null): string {
   return velocity_mm_s === null ? "unknown velocity" : `${g(velocity_mm_s)} mm/s`;
 }
 
-/** Give the line that tells what went wrong, whatever was thrown. */
+/** Return the line that tells what went wrong, whatever was thrown. */
 export function lineOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

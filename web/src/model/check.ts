@@ -18,8 +18,15 @@ export function checkModel(model: FDVVModel): void {
   model.curves.forEach(checkCurve);
   model.vibrations.forEach(checkVibration);
   for (const stroke of STROKES) {
-    for (const [what, parts] of [["curve", model.curves], ["vibration", model.vibrations]] as const) {
-      checkVelocities(stroke, what, parts.filter((p) => p.stroke === stroke).map((p) => p.velocity_mm_s));
+    for (const [what, parts] of [
+      ["curve", model.curves],
+      ["vibration", model.vibrations],
+    ] as const) {
+      checkVelocities(
+        stroke,
+        what,
+        parts.filter((p) => p.stroke === stroke).map((p) => p.velocity_mm_s),
+      );
     }
   }
 }
@@ -39,7 +46,8 @@ function checkPoint(model: FDVVModel, point: "actuation" | "reset"): void {
 
 function checkVelocities(stroke: string, what: string, velocities: readonly (number | null)[]): void {
   const got = `[${velocities.map((v) => v ?? "unknown").join(", ")}] mm/s`;
-  if (new Set(velocities).size !== velocities.length) refuse(`${stroke} has two ${what}s at one velocity: ${got}`);
+  if (new Set(velocities).size !== velocities.length)
+    refuse(`${stroke} has two ${what}s at one velocity: ${got}`);
   if (velocities.includes(null) && velocities.length > 1) {
     refuse(`a ${stroke} ${what} of unknown velocity must stand alone, got ${got}`);
   }
@@ -71,9 +79,9 @@ export function checkVibration(vibration: Vibration): void {
   positive(vibration.duration_s, "duration_s");
   if (!vibration.modes.length) refuse("a vibration needs at least one mode");
   vibration.modes.forEach(checkMode);
-  const told = vibration.spread?.modes.length ?? 0;
-  if (told && told !== vibration.modes.length) {
-    refuse(`the spread tells of ${told} modes, the vibration has ${vibration.modes.length}`);
+  const count = vibration.spread?.modes.length ?? 0;
+  if (count && count !== vibration.modes.length) {
+    refuse(`the spread tells of ${count} modes, the vibration has ${vibration.modes.length}`);
   }
 }
 

@@ -1,6 +1,6 @@
 /** Edits of whole curves: assign, copy, remove, another velocity; the rules are those of `fdvv.model._edit`. */
 
-import { g, ModelError, speed, splice, type Spline, type Stroke } from "../math";
+import { g, ModelError, type Spline, type Stroke, speed, splice } from "../math";
 import type { Edit } from "./edit";
 import { curveAt, foundCurve, isAt, label, withCurve } from "./model";
 import type { CurveRef, FDVVModel, ForceCurve } from "./types";
@@ -14,13 +14,16 @@ export interface Segment {
 }
 
 /**
- * Give a model a curve, or a segment of one, as its press or release at a velocity.
+ * Return a model a curve, or a segment of one, as its press or release at a velocity.
  *
  * A whole curve that goes where it was measured keeps its spread; elsewhere, or with a segment of another curve
  * in it, it was never measured and has none.
  */
 export function assignCurve(curve: ForceCurve, to: CurveRef, segment?: Segment): Edit {
-  return { label: `assign ${label(curve)} to ${label(to)}`, change: (model) => assigned(model, curve, to, segment) };
+  return {
+    label: `assign ${label(curve)} to ${label(to)}`,
+    change: (model) => assigned(model, curve, to, segment),
+  };
 }
 
 function assigned(model: FDVVModel, curve: ForceCurve, to: CurveRef, segment?: Segment): FDVVModel {
@@ -74,7 +77,10 @@ export function removeCurve(at: CurveRef): Edit {
       if (model.curves.length === 1) {
         throw new ModelError(`the ${label(gone)} is the only curve of '${model.name}'; a model needs one`);
       }
-      return methodNoted({ ...model, curves: model.curves.filter((c) => c !== gone) }, `${label(gone)} removed`);
+      return methodNoted(
+        { ...model, curves: model.curves.filter((c) => c !== gone) },
+        `${label(gone)} removed`,
+      );
     },
   };
 }
@@ -87,7 +93,9 @@ export function moveCurve(from: CurveRef, to: CurveRef): Edit {
       const curve = foundCurve(model, from);
       if (isAt(from, to)) return model;
       if (curveAt(model, to)) {
-        throw new ModelError(`there is a ${to.stroke} curve at ${speed(to.velocity_mm_s)} already; remove it first`);
+        throw new ModelError(
+          `there is a ${to.stroke} curve at ${speed(to.velocity_mm_s)} already; remove it first`,
+        );
       }
       const curves = model.curves.map((c) => (c === curve ? moved(c, to) : c));
       return methodNoted({ ...model, curves }, `${label(from)} moved to ${label(to)}`);

@@ -8,7 +8,7 @@ import type { FDVVModel } from "./types";
 export interface Edit {
   /** For people: what undo says it takes back. */
   readonly label: string;
-  /** Give the edited model. Throws ModelError. */
+  /** Return the edited model. Throws ModelError. */
   readonly change: (model: FDVVModel) => FDVVModel;
 }
 

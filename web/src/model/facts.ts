@@ -7,7 +7,11 @@ import type { FDVVModel, Provenance } from "./types";
 /** The numbers of a model that a designer sets. */
 export type ModelNumber = "travel_mm" | "actuation_mm" | "reset_mm";
 
-const WORDS: Record<ModelNumber, string> = { travel_mm: "travel", actuation_mm: "actuation", reset_mm: "reset" };
+const WORDS: Record<ModelNumber, string> = {
+  travel_mm: "travel",
+  actuation_mm: "actuation",
+  reset_mm: "reset",
+};
 
 /** Set travel, actuation or reset; null if it is unknown. A point that is set was not measured: it has no spread. */
 export function setNumber(which: ModelNumber, value_mm: number | null): Edit {
@@ -32,7 +36,7 @@ export function setInterpolation(interpolation: Interpolation): Edit {
   return { label: `interpolate by ${interpolation}`, change: (model) => ({ ...model, interpolation }) };
 }
 
-/** Give the model another name. */
+/** Return the model another name. */
 export function renameModel(name: string): Edit {
   return { label: `rename to ${name.trim()}`, change: (model) => ({ ...model, name: name.trim() }) };
 }

@@ -3,7 +3,7 @@
 import { applyEdit, type Edit } from "./edit";
 import { same } from "./model";
 import { applyPatch, diff, invert, isEmpty, type Patch } from "./patch";
-import { StepLine, type Keeping, type MadeOf, type StepOf, type When } from "./steps";
+import { type Keeping, type MadeOf, StepLine, type StepOf, type When } from "./steps";
 import type { FDVVModel } from "./types";
 
 export type Step = StepOf<Patch>;

@@ -14,8 +14,7 @@ export {
 export { applyEdit, type Edit, together } from "./edit";
 export { addNote, type ModelNumber, renameModel, setInterpolation, setNumber, setProvenance } from "./facts";
 export { History, type HistoryRecord, type Made, type Pin, type Step } from "./history";
-export { NUDGE_s, type When } from "./steps";
-export { type Conflict, CONFLICTS, merge, type MergeOptions, mergeModels } from "./merge";
+export { CONFLICTS, type Conflict, type MergeOptions, merge, mergeModels } from "./merge";
 export {
   canonical,
   curveAt,
@@ -26,8 +25,27 @@ export {
   velocities_mm_s,
   vibrationAt,
 } from "./model";
-export { applyPatch, type CurveChange, diff, invert, isEmpty, type Patch, type VibrationChange } from "./patch";
-export { addPoint, drawCurve, movePoints, type PointValues, refitCurve, removePoint, setPoints } from "./points";
+export {
+  applyPatch,
+  type CurveChange,
+  diff,
+  invert,
+  isEmpty,
+  type Patch,
+  type VibrationChange,
+} from "./patch";
+export {
+  addPoint,
+  drawCurve,
+  movePoints,
+  type PointValues,
+  refitCurve,
+  removePoint,
+  setPoints,
+} from "./points";
+export type { Answer, Change, DocumentServer, OpenedDocument, Surroundings } from "./server";
+export { NUDGE_s, type When } from "./steps";
+export { DocumentStore, type HistoryView, type SaveState } from "./store";
 export type {
   CurveRef,
   CurveSpread,
@@ -55,5 +73,3 @@ export {
   setModes,
   setOnset,
 } from "./vibrations";
-export type { Answer, Change, DocumentServer, OpenedDocument, Surroundings } from "./server";
-export { DocumentStore, type HistoryView, type SaveState } from "./store";

@@ -36,7 +36,11 @@ export function mergeModels(others: readonly FDVVModel[], options: MergeOptions 
 /** Merge models: equal curves count once, and the one that knows its spread is kept. Throws ModelError. */
 export function merge(models: readonly FDVVModel[], name: string, options: MergeOptions = {}): FDVVModel {
   const stated = <K extends "travel_mm" | "actuation_mm" | "reset_mm" | "interpolation">(what: K) =>
-    decided(what, options[what] as FDVVModel[K] | undefined, models.map((m) => [m.name, m[what]] as const));
+    decided(
+      what,
+      options[what] as FDVVModel[K] | undefined,
+      models.map((m) => [m.name, m[what]] as const),
+    );
   const travel_mm = stated("travel_mm");
   if (travel_mm === null) throw new ModelError("a merge needs at least one curve or model, got none");
   const [actuation_mm, reset_mm] = [stated("actuation_mm"), stated("reset_mm")];
@@ -49,12 +53,23 @@ export function merge(models: readonly FDVVModel[], name: string, options: Merge
     actuation_mm,
     reset_mm,
     interpolation: stated("interpolation") ?? "pchip",
-    curves: settled("curve", models.flatMap((m) => m.curves.map((c) => [m.name, c] as const)), rule),
-    vibrations: settled("vibration", models.flatMap((m) => m.vibrations.map((v) => [m.name, v] as const)), rule),
-    provenance: joined(models.map((m) => m.provenance), `merged from ${models.map((m) => m.name).join(", ")}`),
-    ...told("travel", travel_mm, models),
-    ...told("actuation", actuation_mm, models),
-    ...told("reset", reset_mm, models),
+    curves: settled(
+      "curve",
+      models.flatMap((m) => m.curves.map((c) => [m.name, c] as const)),
+      rule,
+    ),
+    vibrations: settled(
+      "vibration",
+      models.flatMap((m) => m.vibrations.map((v) => [m.name, v] as const)),
+      rule,
+    ),
+    provenance: joined(
+      models.map((m) => m.provenance),
+      `merged from ${models.map((m) => m.name).join(", ")}`,
+    ),
+    ...mergedNumber("travel", travel_mm, models),
+    ...mergedNumber("actuation", actuation_mm, models),
+    ...mergedNumber("reset", reset_mm, models),
   };
 }
 
@@ -73,7 +88,11 @@ function decided<Value>(what: string, given: Value | undefined, stated: Stated<V
 }
 
 /** Keep one part per stroke and velocity, by the rule where two differ. */
-function settled<P extends Part>(what: string, parts: readonly (readonly [string, P])[], rule: Conflict): P[] {
+function settled<P extends Part>(
+  what: string,
+  parts: readonly (readonly [string, P])[],
+  rule: Conflict,
+): P[] {
   const kept: (readonly [string, P])[] = [];
   for (const [who, part] of parts) {
     const index = kept.findIndex(([, there]) => isAt(there, part));
@@ -87,18 +106,25 @@ function settled<P extends Part>(what: string, parts: readonly (readonly [string
     else if (alike && same(there.spread, part.spread)) continue;
     else if (rule === "refuse") {
       const sides = `one from '${earlier}', one from '${who}'`;
-      throw new ModelError(`two different ${what}s for ${label(part)}, ${sides}; choose first or last to decide`);
+      throw new ModelError(
+        `two different ${what}s for ${label(part)}, ${sides}; choose first or last to decide`,
+      );
     } else if (rule === "last") kept[index] = [who, part];
   }
   return kept.map(([, part]) => part);
 }
 
-/** Give the spread of a point from those who state it at that very place; none if they differ in it. */
-function told(point: "travel" | "actuation" | "reset", place_mm: number | null, models: readonly FDVVModel[]) {
+/** Return the spread of a point from those who state it at that very place; none if they differ in it. */
+function mergedNumber(
+  point: "travel" | "actuation" | "reset",
+  place_mm: number | null,
+  models: readonly FDVVModel[],
+) {
   const found: PointSpread[] = [];
   for (const model of models) {
     const spread = model[`${point}_spread`];
-    if (spread && model[`${point}_mm`] === place_mm && !found.some((s) => same(s, spread))) found.push(spread);
+    if (spread && model[`${point}_mm`] === place_mm && !found.some((s) => same(s, spread)))
+      found.push(spread);
   }
   return found.length === 1 ? { [`${point}_spread`]: found[0]! } : {};
 }

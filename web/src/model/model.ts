@@ -1,6 +1,6 @@
 /** Models in their one order, equality, and finding the parts of one. */
 
-import { ModelError, speed, type Stroke } from "../math";
+import { ModelError, type Stroke, speed } from "../math";
 import type { CurveRef, FDVVModel, ForceCurve, Provenance, Vibration } from "./types";
 
 /** Of a model that does not say where it comes from. */
@@ -24,7 +24,7 @@ export type FileModel = Omit<FDVVModel, "vibrations" | "provenance" | "version">
 export const POINT_SPREADS = ["travel_spread", "actuation_spread", "reset_spread"] as const;
 
 /**
- * Give a model in its one form: curves and vibrations in reading order (presses first, slow before fast),
+ * Return a model in its one form: curves and vibrations in reading order (presses first, slow before fast),
  * defaults filled in, no field for a spread that is not known, the oldest version that holds it.
  */
 export function canonical(model: FileModel): FDVVModel {
@@ -55,15 +55,22 @@ function dropAbsent<Of extends object>(from: Of, names: readonly (keyof Of)[]): 
   return kept;
 }
 
-function hasSpreads(model: Pick<FDVVModel, "curves" | "vibrations" | (typeof POINT_SPREADS)[number]>): boolean {
-  return POINT_SPREADS.some((name) => model[name]) || [...model.curves, ...model.vibrations].some((p) => p.spread);
+function hasSpreads(
+  model: Pick<FDVVModel, "curves" | "vibrations" | (typeof POINT_SPREADS)[number]>,
+): boolean {
+  return (
+    POINT_SPREADS.some((name) => model[name]) || [...model.curves, ...model.vibrations].some((p) => p.spread)
+  );
 }
 
 function readingOrder(a: CurveRef, b: CurveRef): number {
-  return Number(a.stroke !== "press") - Number(b.stroke !== "press") || (a.velocity_mm_s ?? 0) - (b.velocity_mm_s ?? 0);
+  return (
+    Number(a.stroke !== "press") - Number(b.stroke !== "press") ||
+    (a.velocity_mm_s ?? 0) - (b.velocity_mm_s ?? 0)
+  );
 }
 
-/** Tell whether two values hold the same numbers, texts and fields; an absent field counts as null. */
+/** Whether two values hold the same numbers, texts and fields; an absent field counts as null. */
 export function same(a: unknown, b: unknown): boolean {
   if (a === b || (a == null && b == null)) return true;
   if (typeof a !== "object" || typeof b !== "object" || a === null || b === null) return false;
@@ -71,10 +78,12 @@ export function same(a: unknown, b: unknown): boolean {
     return Array.isArray(a) && Array.isArray(b) && a.length === b.length && a.every((x, i) => same(x, b[i]));
   }
   const [one, other] = [a as Record<string, unknown>, b as Record<string, unknown>];
-  return [...new Set([...Object.keys(one), ...Object.keys(other)])].every((key) => same(one[key], other[key]));
+  return [...new Set([...Object.keys(one), ...Object.keys(other)])].every((key) =>
+    same(one[key], other[key]),
+  );
 }
 
-/** Tell whether a part is the one of that stroke and velocity. */
+/** Whether a part is the one of that stroke and velocity. */
 export function isAt(part: CurveRef, at: CurveRef): boolean {
   return part.stroke === at.stroke && part.velocity_mm_s === at.velocity_mm_s;
 }
@@ -106,7 +115,9 @@ export function foundVibration(model: FDVVModel, at: CurveRef): Vibration {
 
 function refuse(model: FDVVModel, what: string, at: CurveRef, there: readonly CurveRef[]): never {
   const list = there.map(label).join(", ") || "none";
-  throw new ModelError(`'${model.name}' has no ${at.stroke} ${what} at ${speed(at.velocity_mm_s)}; it has ${list}`);
+  throw new ModelError(
+    `'${model.name}' has no ${at.stroke} ${what} at ${speed(at.velocity_mm_s)}; it has ${list}`,
+  );
 }
 
 /** Copy a model with one part put at its stroke and velocity, replacing what is there. */
@@ -119,8 +130,10 @@ export function withVibration(model: FDVVModel, vibration: Vibration): FDVVModel
   return { ...model, vibrations: [...model.vibrations.filter((v) => !isAt(v, vibration)), vibration] };
 }
 
-/** Give the known velocities of one stroke, rising. */
+/** Return the known velocities of one stroke, rising. */
 export function velocities_mm_s(model: FDVVModel, stroke: Stroke): number[] {
-  const known = model.curves.flatMap((c) => (c.stroke === stroke && c.velocity_mm_s !== null ? [c.velocity_mm_s] : []));
+  const known = model.curves.flatMap((c) =>
+    c.stroke === stroke && c.velocity_mm_s !== null ? [c.velocity_mm_s] : [],
+  );
   return known.sort((a, b) => a - b);
 }

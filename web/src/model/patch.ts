@@ -64,7 +64,7 @@ export interface Patch {
   readonly vibrations?: readonly VibrationChange[];
 }
 
-/** Tell whether a patch changes nothing. */
+/** Whether a patch changes nothing. */
 export function isEmpty(patch: Patch): boolean {
   return !patch.fields && !patch.curves && !patch.vibrations;
 }
@@ -113,11 +113,13 @@ function wholeChange<Part extends CurveRef>(at: CurveRef, a: Part | null, b: Par
   return [{ ...at, ...(a ? { before: shapeOf(a) } : {}), ...(b ? { after: shapeOf(b) } : {}) }];
 }
 
-/** Give the patch that takes another one back. */
+/** Return the patch that takes another one back. */
 export function invert(patch: Patch): Patch {
   const { fields, curves, vibrations } = patch;
   return {
-    ...(fields ? { fields: Object.fromEntries(Object.entries(fields).map(([name, [a, b]]) => [name, [b, a]])) } : {}),
+    ...(fields
+      ? { fields: Object.fromEntries(Object.entries(fields).map(([name, [a, b]]) => [name, [b, a]])) }
+      : {}),
     ...(curves ? { curves: curves.map(turnedCurve) } : {}),
     ...(vibrations ? { vibrations: vibrations.map(turned) } : {}),
   };
@@ -128,7 +130,11 @@ function turnedCurve(change: CurveChange): CurveChange {
   return { ...change, points: change.points.map(([i, before, after]) => [i, after, before]) };
 }
 
-function turned<Shape>({ before, after, ...at }: CurveRef & { readonly before?: Shape; readonly after?: Shape }) {
+function turned<Shape>({
+  before,
+  after,
+  ...at
+}: CurveRef & { readonly before?: Shape; readonly after?: Shape }) {
   return { ...at, ...(after ? { before: after } : {}), ...(before ? { after: before } : {}) };
 }
 

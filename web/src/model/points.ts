@@ -21,7 +21,11 @@ export interface PointValues extends CurveRef {
 }
 
 /** Move control points, of one curve or several, by one force; what they drag along follows the constraints. */
-export function movePoints(points: readonly PointsRef[], delta_cN: number, constraints: Constraints = {}): Edit {
+export function movePoints(
+  points: readonly PointsRef[],
+  delta_cN: number,
+  constraints: Constraints = {},
+): Edit {
   const count = points.reduce((sum, { indices }) => sum + indices.length, 0);
   return {
     label: `move ${counted(count)}${ofCurves(points)}`,
@@ -34,7 +38,7 @@ export function movePoints(points: readonly PointsRef[], delta_cN: number, const
   };
 }
 
-/** Give control points exact forces. */
+/** Set control points to exact forces. */
 export function setPoints(points: readonly PointValues[], constraints: Constraints = {}): Edit {
   const all = points.flatMap(({ values_cN }) => values_cN);
   const value = all.length === 1 ? ` to ${g(all[0]![1])} cN` : "";
@@ -78,7 +82,7 @@ export function refitCurve(at: CurveRef, knots_mm: readonly number[], degree: nu
   return shaped(`refit ${label(at)}`, at, (curve) => refit(curve, knots_mm, degree));
 }
 
-/** Give a curve another shape altogether. */
+/** Return a curve another shape altogether. */
 export function drawCurve(at: CurveRef, shape: Spline, what = `draw ${label(at)}`): Edit {
   return shaped(what, at, () => shape);
 }
@@ -94,7 +98,11 @@ function shaped(what: string, at: CurveRef, make: (curve: ForceCurve) => Spline)
 }
 
 /** Put a drawn shape in the place of a curve: it was never measured, so it has no spread, and a note says so. */
-function drawn(model: FDVVModel, curve: ForceCurve, { degree, knots_mm, control_points_cN }: Spline): FDVVModel {
+function drawn(
+  model: FDVVModel,
+  curve: ForceCurve,
+  { degree, knots_mm, control_points_cN }: Spline,
+): FDVVModel {
   const { stroke, velocity_mm_s } = curve;
   const numbers = { knots_mm: plain(knots_mm), control_points_cN: plain(control_points_cN) };
   return noted(withCurve(model, { stroke, velocity_mm_s, degree, ...numbers }), `${label(curve)} drawn`);

@@ -10,7 +10,7 @@ export const NUDGE_s = 1;
 
 /** How the changes of a document are kept. */
 export interface Keeping<T, P> {
-  /** Give what leads from one state to another; null if they are the same. */
+  /** Return what leads from one state to another; null if they are the same. */
   readonly between: (before: T, after: T) => P | null;
   readonly forward: (state: T, change: P) => T;
   readonly backward: (state: T, change: P) => T;
@@ -102,7 +102,7 @@ export class StepLine<T, P> {
     return this.#mark !== null;
   }
 
-  /** Give the state after a number of steps; 0 is the opening. */
+  /** Return the state after a number of steps; 0 is the opening. */
   at(done: number): T {
     return this.#steps.slice(0, done).reduce((state, step) => this.#forward(state, step), this.opening);
   }
@@ -180,7 +180,11 @@ export class StepLine<T, P> {
     if (patch === null) return null;
     const joins = this.#joins(when);
     const before = this.#steps[this.#done - 1];
-    const step = { label, patches: joins && before ? [...before.patches, patch] : [patch], time_s: when.time_s };
+    const step = {
+      label,
+      patches: joins && before ? [...before.patches, patch] : [patch],
+      time_s: when.time_s,
+    };
     this.#steps = [...this.#steps.slice(0, this.#done - Number(joins)), step];
     this.#done = this.#steps.length;
     this.#present = after;

@@ -30,10 +30,19 @@ export type SaveState = "saved" | "saving" | "lost" | "conflict" | "refused" | "
 /** The history as a page reads it. */
 export type HistoryView = Pick<
   History,
-  "opening" | "steps" | "done" | "canUndo" | "canRedo" | "undoLabel" | "redoLabel" | "dragging" | "at" | "changed"
+  | "opening"
+  | "steps"
+  | "done"
+  | "canUndo"
+  | "canRedo"
+  | "undoLabel"
+  | "redoLabel"
+  | "dragging"
+  | "at"
+  | "changed"
 >;
 
-const IN_CONFLICT = "another tab edited this button; take theirs, or keep yours as a copy";
+const IN_CONFLICT = "another tab edited this button; use its version, or keep yours as a copy";
 
 /** An open document: its history, and its way to the server. */
 export class DocumentStore {
@@ -60,11 +69,20 @@ export class DocumentStore {
     this.#history = History.fromJSON(opened);
     this.#revision = this.#newest = opened.revision;
     this.before = this.#history.model;
-    this.#outbox = new Outbox(around, (change) => this.#post(change), () => this.#stuck(), () => this.#follow());
+    this.#outbox = new Outbox(
+      around,
+      (change) => this.#post(change),
+      () => this.#stuck(),
+      () => this.#follow(),
+    );
   }
 
   /** Open a document. Rejects as the server does. */
-  static async open(server: DocumentServer, button: string, around: Surroundings = BROWSER): Promise<DocumentStore> {
+  static async open(
+    server: DocumentServer,
+    button: string,
+    around: Surroundings = BROWSER,
+  ): Promise<DocumentStore> {
     return new DocumentStore(server, await server.open(button), around);
   }
 
@@ -162,7 +180,7 @@ export class DocumentStore {
   }
 
   /** Take the news of another tab: the document has this revision. */
-  async told(revision: number): Promise<void> {
+  async onRevision(revision: number): Promise<void> {
     this.#newest = Math.max(this.#newest, revision);
     await this.#follow();
   }

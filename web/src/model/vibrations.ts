@@ -42,7 +42,9 @@ export function setOnset(at: CurveRef, onset_mm: number): Edit {
 
 /** Set how long a vibration is. */
 export function setDuration(at: CurveRef, duration_s: number): Edit {
-  return changed(at, `set the duration of ${label(at)} to ${g(duration_s * 1000)} ms`, () => ({ duration_s }));
+  return changed(at, `set the duration of ${label(at)} to ${g(duration_s * 1000)} ms`, () => ({
+    duration_s,
+  }));
 }
 
 /** Set all modes of a vibration. */
@@ -95,7 +97,9 @@ function taken({ stroke, velocity_mm_s }: CurveRef): string {
 }
 
 function moved(vibration: Vibration, to: CurveRef): Vibration {
-  return isAt(vibration, to) ? vibration : { ...bare(vibration), stroke: to.stroke, velocity_mm_s: to.velocity_mm_s };
+  return isAt(vibration, to)
+    ? vibration
+    : { ...bare(vibration), stroke: to.stroke, velocity_mm_s: to.velocity_mm_s };
 }
 
 function bare({ spread: _spread, ...vibration }: Vibration): Vibration {

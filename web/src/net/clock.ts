@@ -16,7 +16,7 @@ export interface ClockOffset {
 /** Of each stretch only the quickest answer is kept, for waiting is never even. */
 const STRETCH_ms = 2000;
 const KEPT = 60;
-/** A slope is believed from so many stretches on, over so long, and no steeper: quartz is within 200 ppm. */
+/** A slope is accepted from so many stretches on, over so long, and no steeper: quartz is within 200 ppm. */
 const FITTED = 6;
 const LONG_ms = 15_000;
 const STEEPEST = 5e-4;
@@ -54,18 +54,20 @@ export class ClockSync {
     this.points = [];
   }
 
-  /** Give the offset at a time of the page; null before the first answer. */
+  /** Return the offset at a time of the page; null before the first answer. */
   at(page_ms: number): ClockOffset | null {
     const best = quickest(this.points);
     if (!best) return null;
     const good = this.points.filter((point) => point.trip_ms <= best.trip_ms + SLOW_ms);
     const { middle_ms, offset_ms, slope } = line(good, best);
-    const worst_ms = Math.max(...good.map((p) => Math.abs(p.offset_ms - offset_ms - slope * (p.at_ms - middle_ms))));
+    const worst_ms = Math.max(
+      ...good.map((p) => Math.abs(p.offset_ms - offset_ms - slope * (p.at_ms - middle_ms))),
+    );
     return { offset_ms: offset_ms + slope * (page_ms - middle_ms), error_ms: best.trip_ms / 2 + worst_ms };
   }
 
-  /** Give the quickest round trip, ms, and how many stretches are known. */
-  told(): { readonly trip_ms: number; readonly count: number } | null {
+  /** Return the quickest round trip, ms, and how many stretches are known. */
+  summary(): { readonly trip_ms: number; readonly count: number } | null {
     const best = quickest(this.points);
     return best ? { trip_ms: best.trip_ms, count: this.points.length } : null;
   }
@@ -76,7 +78,10 @@ function stretch(point: Point): number {
 }
 
 function quickest(points: readonly Point[]): Point | null {
-  return points.reduce<Point | null>((best, point) => (best && best.trip_ms <= point.trip_ms ? best : point), null);
+  return points.reduce<Point | null>(
+    (best, point) => (best && best.trip_ms <= point.trip_ms ? best : point),
+    null,
+  );
 }
 
 interface Line {
@@ -88,8 +93,10 @@ interface Line {
 /** Fit a line through the good points; level through the best one where they are few or close together. */
 function line(good: readonly Point[], best: Point): Line {
   const span_ms = (good.at(-1)?.at_ms ?? 0) - (good[0]?.at_ms ?? 0);
-  if (good.length < FITTED || span_ms < LONG_ms) return { middle_ms: best.at_ms, offset_ms: best.offset_ms, slope: 0 };
-  const mean = (value: (point: Point) => number) => good.reduce((sum, point) => sum + value(point), 0) / good.length;
+  if (good.length < FITTED || span_ms < LONG_ms)
+    return { middle_ms: best.at_ms, offset_ms: best.offset_ms, slope: 0 };
+  const mean = (value: (point: Point) => number) =>
+    good.reduce((sum, point) => sum + value(point), 0) / good.length;
   const middle_ms = mean((p) => p.at_ms);
   const offset_ms = mean((p) => p.offset_ms);
   const spread = mean((p) => (p.at_ms - middle_ms) ** 2);

@@ -1,12 +1,12 @@
 /** The one live connection: channels over it, opened again when it is lost. */
 
-import { signal, type Signal } from "../ui/signal";
+import { type Signal, signal } from "../ui/signal";
 import type { Channels } from "./messages";
 
 export type LiveState = "opening" | "open" | "lost";
 
 export interface Listener<K extends keyof Channels> {
-  readonly told: (message: Channels[K]["tells"]) => void;
+  readonly onMessage: (message: Channels[K]["tells"]) => void;
   /** One line that the server says of this channel. */
   readonly wrong?: (line: string) => void;
   /** The connection is there, for the first time or again: ask for what is wanted now. */
@@ -70,7 +70,7 @@ export class Live {
   private take(envelope: Envelope): void {
     for (const listener of [...(this.listeners.get(envelope.channel) ?? [])]) {
       if (envelope.error !== undefined) listener.wrong?.(envelope.error);
-      else (listener.told as (message: unknown) => void)(envelope.body);
+      else (listener.onMessage as (message: unknown) => void)(envelope.body);
     }
   }
 
@@ -88,7 +88,7 @@ export class Live {
 
 let page: Live | null = null;
 
-/** Give the page's one connection. */
+/** Return the page's one connection. */
 export function live(): Live {
   page ??= new Live(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
   return page;

@@ -1,9 +1,9 @@
 /** The page on which a designer edits a button. */
 
-import type { Page } from "../app/page";
+import type { Page } from "../app/types";
 import { h, onCleanup, scope, tell } from "../ui";
 import { chooseButton } from "./edit/choose";
-import { Desk } from "./edit/desk";
+import { EditorController } from "./edit/editor_controller";
 import { followButton, openButton } from "./edit/opening";
 import { workbench } from "./edit/workbench";
 import "./edit/edit.css";
@@ -26,7 +26,7 @@ export const page: Page = {
         if (left) return opened.store.close();
         leave = scope(() => {
           followButton(opened);
-          host.replaceChildren(workbench(new Desk(opened.store), opened.button));
+          host.replaceChildren(workbench(new EditorController(opened.store), opened.button));
         });
       },
       (error) => {

@@ -1,6 +1,6 @@
 /** The library: find buttons, compare them, begin from one. */
 
-import type { Page } from "../app/page";
+import type { Page } from "../app/types";
 import { addShortcuts, h, signal } from "../ui";
 import { compare } from "./library/compare";
 import { filters } from "./library/filters";
@@ -21,7 +21,11 @@ export const page: Page = {
       h(
         "div",
         { class: () => `lib${filtering() ? " filtering" : ""}` },
-        h("section", { class: "panel lib-filters", "aria-label": "Filters", hidden: () => !filtering() }, filters(store)),
+        h(
+          "section",
+          { class: "panel lib-filters", "aria-label": "Filters", hidden: () => !filtering() },
+          filters(store),
+        ),
         found.element,
         compare(store),
       ),
@@ -32,8 +36,8 @@ export const page: Page = {
       { keys: "F", does: "Show or hide the filters", act: toggle },
       { keys: "ArrowDown", does: "Next button", act: key },
       { keys: "ArrowUp", does: "Previous button", act: key },
-      { keys: "Space", does: "Take the button into the comparison, or out", act: key },
-      { keys: "Enter", does: "What is known of the button, and what to do with it", act: key },
+      { keys: "Space", does: "Add the button to the comparison, or remove it", act: key },
+      { keys: "Enter", does: "Details of the button, and actions", act: key },
       { keys: "L", does: "Find buttons that feel like it", act: () => like(store) },
     );
   },

@@ -1,7 +1,7 @@
 /** Live work: capture, compensate, tune, devices; with all jobs always in view. */
 
-import type { Page } from "../app/page";
-import { computed, effect, h, tabs, untracked, panel, type Child } from "../ui";
+import type { Page } from "../app/types";
+import { type Child, computed, effect, h, on, panel, tabs, untracked } from "../ui";
 import { captureForm } from "./live/captureform";
 import { choices, refreshChoices } from "./live/choices";
 import { compensateForm } from "./live/compensateform";
@@ -13,7 +13,7 @@ import { jobList } from "./live/list";
 import { tuneView } from "./live/question";
 import { captureView } from "./live/takes";
 import { tuneForm } from "./live/tuneform";
-import { goToSection, section, SECTIONS, shownJob, type Section } from "./live/where";
+import { goToSection, SECTIONS, type Section, section, shownJob } from "./live/where";
 import "./live/live.css";
 
 export const page: Page = {
@@ -28,7 +28,7 @@ export const page: Page = {
       h(
         "div",
         { class: "live" },
-        h("div", { class: "live-main stack" }, () => (place(), untracked(content))),
+        h("div", { class: "live-main stack" }, on(place, content)),
         h("aside", { class: "live-side" }, jobList()),
       ),
     );
@@ -54,18 +54,30 @@ function content(): Child {
 
 const FORMS = { compensate: compensateForm, capture: captureForm, tune: tuneForm } as const;
 const ABOUT: Readonly<Record<keyof typeof FORMS, readonly [string, string]>> = {
-  compensate: ["Compensate", "A rig adds its own mass, drag and delay. It is pressed, measured, and learns the table that makes it feel like the button."],
-  capture: ["Capture", "Press a real button at several paces, led by a moving cue; the recording becomes a model of your own."],
-  tune: ["Tune vibration", "Compare vibrations blind, two at a time; the best become the button's own."],
+  compensate: [
+    "Compensate",
+    "A rig adds its own mass, friction and delay. The studio presses it and learns the command table that makes it feel like the button.",
+  ],
+  capture: [
+    "Capture",
+    "Press a real button at several speeds, guided by a moving cue; the recording becomes your own model.",
+  ],
+  tune: ["Tune vibration", "Compare vibrations blind, two at a time; the best become the button's."],
 };
 
 function setUp(now: keyof typeof FORMS): Child {
   const [title, text] = ABOUT[now];
   const there = computed(() => choices() !== null);
-  return panel(title, h("p", { class: "muted" }, text), () => (there() ? untracked(FORMS[now]) : h("p", { class: "muted" }, "…")));
+  return panel(title, h("p", { class: "muted" }, text), () =>
+    there() ? untracked(FORMS[now]) : h("p", { class: "muted" }, "…"),
+  );
 }
 
-const VIEWS: Readonly<Record<Exclude<Section, "device">, () => Child>> = { compensate: learnView, capture: captureView, tune: tuneView };
+const VIEWS: Readonly<Record<Exclude<Section, "device">, () => Child>> = {
+  compensate: learnView,
+  capture: captureView,
+  tune: tuneView,
+};
 
 function jobView(job: string, now: Exclude<Section, "device">): Child {
   const there = computed(() => rowOf(job) !== null);

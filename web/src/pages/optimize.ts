@@ -1,6 +1,6 @@
 /** Optimise: play a task with one design after the other, and find the button that one plays best with. */
 
-import type { Page } from "../app/page";
+import type { Page } from "../app/types";
 import { h } from "../ui";
 import { runList } from "./optimize/list";
 import { runPage } from "./optimize/run";

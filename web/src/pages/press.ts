@@ -1,7 +1,7 @@
 /** Press: feel a button under a simulated finger. */
 
-import type { Page } from "../app/page";
 import { keepQuery, type Route } from "../app/route";
+import type { Page } from "../app/types";
 import { download } from "../draw";
 import { call } from "../net";
 import type { PressList } from "../net/messages";
@@ -9,7 +9,7 @@ import { addShortcuts, button, effect, h, onCleanup, scope, tell, untracked } fr
 import { Chooser, type Pick } from "./press/choose";
 import { replayPanel } from "./press/replay";
 import { rendered } from "./press/sound";
-import { pressStage, type Mode, type PressStage } from "./press/stage";
+import { type Mode, type PressStage, pressStage } from "./press/stage";
 import { wavOf } from "./press/wav";
 import "./press/press.css";
 
@@ -39,7 +39,7 @@ function begin(place: HTMLElement, stage: PressStage, list: PressList, route: Ro
   const chooser = new Chooser(list, pickOf(route), { item: SECOND, mode: "intended", rig: "paper" });
   place.prepend(chooser.element);
   stage.element.querySelector(".press-left")?.append(replayPanel(stage.session, list.traces));
-  addShortcuts({ keys: "X", does: "Exchange A and B, also while pressing", act: () => chooser.swap() });
+  addShortcuts({ keys: "X", does: "Swap A and B, also while pressing", act: () => chooser.swap() });
   effect(() => {
     const choice = chooser.choiceNow();
     const { item, mode, rig } = chooser.now();
@@ -53,7 +53,11 @@ function begin(place: HTMLElement, stage: PressStage, list: PressList, route: Ro
 /** Read from the address what to press: `#/press/builtin:mx-clear`, or what was pressed last. */
 function pickOf(route: Route): Pick {
   const item = route.id ? `button ${route.id}` : (route.query.get("press") ?? "button builtin:mx-clear");
-  return { item, mode: (route.query.get("mode") as Mode | null) ?? "intended", rig: route.query.get("rig") ?? "paper" };
+  return {
+    item,
+    mode: (route.query.get("mode") as Mode | null) ?? "intended",
+    rig: route.query.get("rig") ?? "paper",
+  };
 }
 
 function tools(stage: PressStage): HTMLElement {
@@ -63,13 +67,29 @@ function tools(stage: PressStage): HTMLElement {
     const first = signals()[0];
     if (!first) return;
     const velocity_mm_s = session.lastPress.peek()?.velocity_mm_s ?? 100;
-    download(`${session.ready.peek()?.name ?? "click"}.wav`, wavOf(await rendered(first, velocity_mm_s, RATE_Hz), RATE_Hz));
+    download(
+      `${session.ready.peek()?.name ?? "click"}.wav`,
+      wavOf(await rendered(first, velocity_mm_s, RATE_Hz), RATE_Hz),
+    );
   };
   return h(
     "div",
     { class: "row" },
-    button({ label: "Save the click", act: () => void save().catch(tell), hint: "The sound of the last press as a WAV file", disabled: () => !signals().length }),
-    button({ label: "Break its sensor", act: () => session.fail(), hint: "See what the firmware does when its position sensor dies" }),
-    button({ label: "Host event 0", act: () => session.hostEvent(0), hint: "What the computer tells a program, such as that a cooldown is over" }),
+    button({
+      label: "Save the click",
+      act: () => void save().catch(tell),
+      hint: "The sound of the last press as a WAV file",
+      disabled: () => !signals().length,
+    }),
+    button({
+      label: "Break its sensor",
+      act: () => session.fail(),
+      hint: "See what the firmware does when its position sensor dies",
+    }),
+    button({
+      label: "Host event 0",
+      act: () => session.hostEvent(0),
+      hint: "An event from the host, such as the end of a cooldown",
+    }),
   );
 }

@@ -1,11 +1,11 @@
 /** Programs: a gallery of buttons with several states, and the builder of one. */
 
-import type { Page } from "../app/page";
 import { go } from "../app/route";
+import type { Page } from "../app/types";
 import { lineOf } from "../math/words";
 import { call } from "../net";
 import type { ProgramText } from "../net/messages";
-import { button, empty, h, onCleanup, scope, type Cleanup } from "../ui";
+import { button, type Cleanup, empty, h, onCleanup, scope } from "../ui";
 import { editor } from "./programs/editor";
 import { gallery } from "./programs/gallery";
 import "./programs/programs.css";
@@ -37,7 +37,11 @@ function openProgram(host: HTMLElement, id: string, at: string): void {
   };
   const missing = (error: unknown): void =>
     place.replaceChildren(
-      empty("It cannot be opened", lineOf(error), button({ label: "All programs", act: () => go("programs") })),
+      empty(
+        "It cannot be opened",
+        lineOf(error),
+        button({ label: "All programs", act: () => go("programs") }),
+      ),
     );
   call("program.open", { program: id }).then(show, missing);
 }

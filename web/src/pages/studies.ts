@@ -1,6 +1,6 @@
 /** Studies: declare, freeze, have people sit down, see how far they are, unseal. Never what a label hides. */
 
-import type { Page } from "../app/page";
+import type { Page } from "../app/types";
 import { h } from "../ui";
 import { studyList } from "./studies/list";
 import { studyPage } from "./studies/one";

@@ -1,9 +1,9 @@
 /** The participant's screen of a study: nothing of the studio around it, and nothing that tells what a label hides. */
 
-import type { Page } from "../app/page";
+import type { Page } from "../app/types";
 import { h } from "../ui";
-import { StudySession } from "./study/session";
 import { studyScreen } from "./study/screen";
+import { StudySession } from "./study/session";
 import "./study/study.css";
 
 export const page: Page = {

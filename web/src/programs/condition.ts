@@ -42,7 +42,7 @@ export const KINDS: readonly KindOfCondition[] = [
 
 const BY_NAME = new Map(KINDS.map((known) => [known.kind, known]));
 
-/** Give what is known of the kind of a condition. */
+/** Return what is known of the kind of a condition. */
 export function kindOf(condition: Condition): KindOfCondition {
   const name = Object.keys(condition)[0] as ConditionKind | undefined;
   const known = name === undefined ? undefined : BY_NAME.get(name);
@@ -50,8 +50,8 @@ export function kindOf(condition: Condition): KindOfCondition {
   return known;
 }
 
-/** Give the value of a condition, `null` for one that takes none. */
-export function valueOf(condition: Condition): number | null {
+/** Return the value of a condition, `null` for one that takes none. */
+export function conditionValue(condition: Condition): number | null {
   const value = condition[kindOf(condition).kind];
   return typeof value === "number" ? value : null;
 }
@@ -63,13 +63,14 @@ export function condition(name: ConditionKind, value?: number): Condition {
   return { [name]: known.first === true ? true : (value ?? known.first) };
 }
 
-/** Tell what is wrong with the value of a condition, or nothing. */
-export function valueProblem(told: Condition): string | null {
-  const known = kindOf(told);
-  const value = valueOf(told);
+/** What is wrong with the value of a condition, or nothing. */
+export function valueProblem(condition: Condition): string | null {
+  const known = kindOf(condition);
+  const value = conditionValue(condition);
   if (value === null) return null;
-  if (!Number.isFinite(value)) return "give a number";
-  if (value < known.low || value > known.high) return `${plain(known.low)} to ${plain(known.high)} ${known.unit}`.trim();
+  if (!Number.isFinite(value)) return "enter a number";
+  if (value < known.low || value > known.high)
+    return `${plain(known.low)} to ${plain(known.high)} ${known.unit}`.trim();
   return known.whole && !Number.isInteger(value) ? "a whole number" : null;
 }
 
@@ -93,20 +94,20 @@ const SHORT: Readonly<Record<ConditionKind, (value: string) => string>> = {
 };
 
 /** Write a condition as short as it fits on an arrow. */
-export function shortly(told: Condition): string {
-  return SHORT[kindOf(told).kind](plain(valueOf(told) ?? 0));
+export function shortly(condition: Condition): string {
+  return SHORT[kindOf(condition).kind](plain(conditionValue(condition) ?? 0));
 }
 
 const SPEEDS: Readonly<Record<VelocitySource, string>> = {
   announced: "the announced speed",
-  decided: "the speed found in this press",
+  decided: "the speed measured in this press",
   continuous: "the speed at that instant",
 };
 
 /** Write a condition in words, as in "the cap is deeper than 1.2 mm". */
-export function inWords(told: Condition, velocity: VelocitySource = "decided"): string {
-  const value = plain(valueOf(told) ?? 0);
-  switch (kindOf(told).kind) {
+export function inWords(condition: Condition, velocity: VelocitySource = "decided"): string {
+  const value = plain(conditionValue(condition) ?? 0);
+  switch (kindOf(condition).kind) {
     case "always":
       return "at the next tick";
     case "deeper_than_mm":
@@ -124,7 +125,7 @@ export function inWords(told: Condition, velocity: VelocitySource = "decided"): 
     case "after_ms":
       return `${value} ms have passed in the state`;
     case "host_event":
-      return `the host has told event ${value}`;
+      return `the host has sent event ${value}`;
     case "risen_by_mm":
       return `the cap has risen by ${value} mm from the deepest point in the state`;
     case "fallen_by_mm":
@@ -142,14 +143,16 @@ export function transitionInWords(
   return onlyIf ? `${first}, but only while ${inWords(onlyIf, velocity)}` : first;
 }
 
-/** Give the displacement that a condition names, or null. */
-export function placeOf_mm(told: Condition): number | null {
-  const name = kindOf(told).kind;
-  return name === "deeper_than_mm" || name === "shallower_than_mm" ? valueOf(told) : null;
+/** Return the displacement that a condition names, or null. */
+export function positionOf_mm(condition: Condition): number | null {
+  const name = kindOf(condition).kind;
+  return name === "deeper_than_mm" || name === "shallower_than_mm" ? conditionValue(condition) : null;
 }
 
 /** A new arrow leads on beyond half the travel, or back above a quarter of it: far enough apart not to flutter. */
 export function firstCondition(document: ProgramDocument, from: string): Condition {
   const part_mm = (ratio: number): number => Math.round(document.travel_mm * ratio * 100) / 100;
-  return from === document.start ? condition("deeper_than_mm", part_mm(0.5)) : condition("shallower_than_mm", part_mm(0.25));
+  return from === document.start
+    ? condition("deeper_than_mm", part_mm(0.5))
+    : condition("shallower_than_mm", part_mm(0.25));
 }

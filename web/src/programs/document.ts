@@ -94,7 +94,14 @@ export interface ProgramDocument {
 }
 
 /** What a device holds at most, as protocol/fdvv.toml tells; the server's check has the last word. */
-export const MOST = { states: 16, transitions: 48, surfaces: 16, vibrations: 32, signals: 16, velocities: 16 } as const;
+export const MOST = {
+  states: 16,
+  transitions: 48,
+  surfaces: 16,
+  vibrations: 32,
+  signals: 16,
+  velocities: 16,
+} as const;
 
 /** Bounds of the fields of a document that are plain numbers: least, most. */
 export const BOUNDS = {
@@ -107,17 +114,17 @@ export const BOUNDS = {
   velocity_mm_s: [0, 4000],
 } as const satisfies Record<string, readonly [number, number]>;
 
-/** Give the transitions of a state; a file leaves out an empty list. */
+/** Return the transitions of a state; a file leaves out an empty list. */
 export function transitionsOf(state: State): readonly Transition[] {
   return state.transitions ?? [];
 }
 
-/** Give which state has a name, or undefined. */
+/** Return which state has a name, or undefined. */
 export function stateNamed(document: ProgramDocument, name: string): State | undefined {
   return document.states.find((state) => state.name === name);
 }
 
-/** Give which surface has a name, or undefined. */
+/** Return which surface has a name, or undefined. */
 export function surfaceNamed(document: ProgramDocument, name: string): Surface | undefined {
   return document.surfaces.find((surface) => surface.name === name);
 }
@@ -132,7 +139,7 @@ export function writeDocument(document: ProgramDocument): string {
   return JSON.stringify(document);
 }
 
-/** Give the first name of the row `stem`, `stem 2`, `stem 3`, … that is not taken, within 40 characters. */
+/** Return the first name of the row `stem`, `stem 2`, `stem 3`, … that is not taken, within 40 characters. */
 export function freeName(stem: string, taken: Iterable<string>): string {
   const used = new Set(taken);
   const base = stem.replace(/ \d+$/, "").slice(0, 36).trim() || "new";
@@ -142,10 +149,10 @@ export function freeName(stem: string, taken: Iterable<string>): string {
   }
 }
 
-/** Tell what is wrong with a name of a part, or nothing: the rule of the file, and that names differ. */
+/** What is wrong with a name of a part, or nothing: the rule of the file, and that names differ. */
 export function nameProblem(name: string, others: Iterable<string>): string | null {
-  if (name.trim() === "") return "give it a name";
-  if (name !== name.trim()) return "no spaces at its ends";
+  if (name.trim() === "") return "enter a name";
+  if (name !== name.trim()) return "no leading or trailing spaces";
   if ([...name].length > 40) return "at most 40 characters";
   if (/\p{C}/u.test(name)) return "printable characters only";
   return new Set(others).has(name) ? `there is already one called “${name}”` : null;

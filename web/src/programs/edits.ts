@@ -1,7 +1,7 @@
 /** Changes of a program's states and transitions: pure, every name that is referred to stays one that exists. */
 
-import { freeName, transitionsOf } from "./document";
 import type { Condition, ProgramDocument, State, Stroke, Transition, VibrationEvent } from "./document";
+import { freeName, transitionsOf } from "./document";
 
 /** Change fields of the program itself. */
 export function changeProgram(document: ProgramDocument, change: Partial<ProgramDocument>): ProgramDocument {
@@ -21,7 +21,10 @@ function withStates(document: ProgramDocument, change: (state: State) => State):
   return { ...document, states: document.states.map(change) };
 }
 
-function withTransitions(state: State, change: (list: readonly Transition[]) => readonly Transition[]): State {
+function withTransitions(
+  state: State,
+  change: (list: readonly Transition[]) => readonly Transition[],
+): State {
   return { ...state, transitions: change(transitionsOf(state)) };
 }
 
@@ -56,10 +59,13 @@ export function duplicateState(document: ProgramDocument, name: string): readonl
     name,
     document.states.map((state) => state.name),
   );
-  const turned = (way: Transition): Transition => (way.to === name ? { ...way, to: copied } : way);
+  const turned = (transition: Transition): Transition =>
+    transition.to === name ? { ...transition, to: copied } : transition;
   const fresh = withTransitions({ ...source, name: copied }, (list) => list.map(turned));
   const events = withVibrations(document, (list) =>
-    list.map((event) => (event.states?.includes(name) ? { ...event, states: [...event.states, copied] } : event)),
+    list.map((event) =>
+      event.states?.includes(name) ? { ...event, states: [...event.states, copied] } : event,
+    ),
   );
   return [{ ...events, states: [...document.states, fresh] }, copied];
 }
@@ -69,12 +75,14 @@ export function removeState(document: ProgramDocument, name: string): ProgramDoc
   if (document.states.length <= 1) return document;
   const states = document.states
     .filter((state) => state.name !== name)
-    .map((state) => withTransitions(state, (list) => list.filter((way) => way.to !== name)));
+    .map((state) => withTransitions(state, (list) => list.filter((transition) => transition.to !== name)));
   const start = document.start === name ? states[0]!.name : document.start;
   return withVibrations({ ...document, states, start }, (list) =>
     list
       .filter((event) => !(event.states?.length === 1 && event.states[0] === name))
-      .map((event) => (event.states ? { ...event, states: event.states.filter((held) => held !== name) } : event)),
+      .map((event) =>
+        event.states ? { ...event, states: event.states.filter((state) => state !== name) } : event,
+      ),
   );
 }
 
@@ -83,7 +91,7 @@ export function renameState(document: ProgramDocument, name: string, to: string)
   const turned = (held: string): string => (held === name ? to : held);
   const renamed = withStates(document, (state) =>
     withTransitions({ ...state, name: turned(state.name) }, (list) =>
-      list.map((way) => ({ ...way, to: turned(way.to) })),
+      list.map((transition) => ({ ...transition, to: turned(transition.to) })),
     ),
   );
   return withVibrations({ ...renamed, start: turned(document.start) }, (list) =>
@@ -92,7 +100,11 @@ export function renameState(document: ProgramDocument, name: string, to: string)
 }
 
 /** Change fields of a state. What does not go together is set right: a repeat needs both its fields. */
-export function changeState(document: ProgramDocument, name: string, change: Partial<State>): ProgramDocument {
+export function changeState(
+  document: ProgramDocument,
+  name: string,
+  change: Partial<State>,
+): ProgramDocument {
   return withStates(document, (state) => (state.name === name ? settled({ ...state, ...change }) : state));
 }
 
@@ -113,7 +125,12 @@ export function setStart(document: ProgramDocument, name: string): ProgramDocume
 }
 
 /** Add a way from one state to another; it is tried last. */
-export function addTransition(document: ProgramDocument, from: string, to: string, when: Condition): ProgramDocument {
+export function addTransition(
+  document: ProgramDocument,
+  from: string,
+  to: string,
+  when: Condition,
+): ProgramDocument {
   return withStates(document, (state) =>
     state.name === from ? withTransitions(state, (list) => [...list, { to, when }]) : state,
   );
@@ -135,7 +152,7 @@ export function changeTransition(
 ): ProgramDocument {
   return withStates(document, (state) =>
     state.name === from
-      ? withTransitions(state, (list) => mapAt(list, index, (way) => ({ ...way, ...change })))
+      ? withTransitions(state, (list) => mapAt(list, index, (transition) => ({ ...transition, ...change })))
       : state,
   );
 }
@@ -147,18 +164,23 @@ export function moveTransitionTo(
   index: number,
   other: string,
 ): readonly [ProgramDocument, number] {
-  const way = transitionsOf(document.states.find((state) => state.name === from)!)[index];
+  const transition = transitionsOf(document.states.find((state) => state.name === from)!)[index];
   const target = document.states.find((state) => state.name === other);
-  if (!way || !target || from === other) return [document, index];
+  if (!transition || !target || from === other) return [document, index];
   const left = removeTransition(document, from, index);
   const added = withStates(left, (state) =>
-    state.name === other ? withTransitions(state, (list) => [...list, way]) : state,
+    state.name === other ? withTransitions(state, (list) => [...list, transition]) : state,
   );
   return [added, transitionsOf(target).length];
 }
 
 /** Try a way earlier (-1) or later (+1) than its neighbour. */
-export function reorderTransition(document: ProgramDocument, from: string, index: number, by: -1 | 1): ProgramDocument {
+export function reorderTransition(
+  document: ProgramDocument,
+  from: string,
+  index: number,
+  by: -1 | 1,
+): ProgramDocument {
   return withStates(document, (state) => {
     const list = [...transitionsOf(state)];
     const other = list[index + by];

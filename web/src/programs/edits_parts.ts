@@ -1,11 +1,14 @@
 /** Changes of a program's surfaces, signals and vibrations: pure, names that are referred to stay known. */
 
-import { freeName, surfaceNamed } from "./document";
 import type { ProgramDocument, Signal, State, Stroke, Surface, Transition, VibrationEvent } from "./document";
+import { freeName, surfaceNamed } from "./document";
 import { assignSurface } from "./edits";
 
-/** Tell which states feel a surface, and in which stroke. */
-export function usesOfSurface(document: ProgramDocument, name: string): readonly { state: string; stroke: Stroke }[] {
+/** Which states feel a surface, and in which stroke. */
+export function usesOfSurface(
+  document: ProgramDocument,
+  name: string,
+): readonly { state: string; stroke: Stroke }[] {
   return document.states.flatMap((state) =>
     (["press", "release"] as const)
       .filter((stroke) => state[stroke] === name)
@@ -17,14 +20,14 @@ export function usesOfSurface(document: ProgramDocument, name: string): readonly
 export function addSurface(document: ProgramDocument, surface: Surface): readonly [ProgramDocument, string] {
   const name = freeName(
     surface.name,
-    document.surfaces.map((held) => held.name),
+    document.surfaces.map((surface) => surface.name),
   );
   return [{ ...document, surfaces: [...document.surfaces, { ...surface, name }] }, name];
 }
 
-/** Put other forces in the place of a surface; whoever refers to it feels them. */
+/** Replace the forces of a surface, for every stroke that uses it. */
 export function replaceSurface(document: ProgramDocument, name: string, surface: Surface): ProgramDocument {
-  const surfaces = document.surfaces.map((held) => (held.name === name ? { ...surface, name } : held));
+  const surfaces = document.surfaces.map((old) => (old.name === name ? { ...surface, name } : old));
   return { ...document, surfaces };
 }
 
@@ -33,7 +36,7 @@ export function renameSurface(document: ProgramDocument, name: string, to: strin
   const turned = (held: string): string => (held === name ? to : held);
   return {
     ...document,
-    surfaces: document.surfaces.map((held) => ({ ...held, name: turned(held.name) })),
+    surfaces: document.surfaces.map((surface) => ({ ...surface, name: turned(surface.name) })),
     states: document.states.map((state) => ({
       ...state,
       press: turned(state.press),
@@ -45,14 +48,18 @@ export function renameSurface(document: ProgramDocument, name: string, to: strin
 /** Remove a surface that no state feels; one in use stays. */
 export function removeSurface(document: ProgramDocument, name: string): ProgramDocument {
   if (usesOfSurface(document, name).length > 0 || document.surfaces.length <= 1) return document;
-  return { ...document, surfaces: document.surfaces.filter((held) => held.name !== name) };
+  return { ...document, surfaces: document.surfaces.filter((surface) => surface.name !== name) };
 }
 
 /**
- * Give a state's stroke a surface of its own, so that a change is felt there alone; nothing changes if no
+ * Return a state's stroke a surface of its own, so that a change is felt there alone; nothing changes if no
  * other refers to it. Gives the document and the surface's name.
  */
-export function ownSurface(document: ProgramDocument, state: string, stroke: Stroke): readonly [ProgramDocument, string] {
+export function ownSurface(
+  document: ProgramDocument,
+  state: string,
+  stroke: Stroke,
+): readonly [ProgramDocument, string] {
   const name = document.states.find((held) => held.name === state)?.[stroke] ?? "";
   const surface = surfaceNamed(document, name);
   if (!surface || usesOfSurface(document, name).length <= 1) return [document, name];
@@ -66,7 +73,10 @@ export function copySurface(
   from: { readonly state: string; readonly stroke: Stroke },
   to: { readonly state: string; readonly stroke: Stroke },
 ): ProgramDocument {
-  const source = surfaceNamed(document, document.states.find((held) => held.name === from.state)?.[from.stroke] ?? "");
+  const source = surfaceNamed(
+    document,
+    document.states.find((state) => state.name === from.state)?.[from.stroke] ?? "",
+  );
   if (!source) return document;
   const [owned, name] = ownSurface(document, to.state, to.stroke);
   return replaceSurface(owned, name, source);
@@ -83,21 +93,37 @@ export function addSignal(document: ProgramDocument, signal: Signal): readonly [
 }
 
 /** Change fields of a signal but its name. */
-export function changeSignal(document: ProgramDocument, name: string, change: Partial<Signal>): ProgramDocument {
-  const signals = (document.signals ?? []).map((held) => (held.name === name ? { ...held, ...change, name } : held));
+export function changeSignal(
+  document: ProgramDocument,
+  name: string,
+  change: Partial<Signal>,
+): ProgramDocument {
+  const signals = (document.signals ?? []).map((signal) =>
+    signal.name === name ? { ...signal, ...change, name } : signal,
+  );
   return { ...document, signals };
 }
 
 /** Rename a signal wherever it is referred to. */
 export function renameSignal(document: ProgramDocument, name: string, to: string): ProgramDocument {
   const turned = (held: string | null | undefined): string | null => (held === name ? to : (held ?? null));
-  return withSignals(document, turned, (held) => (held.name === name ? [{ ...held, name: to }] : [held]), () => true);
+  return withSignals(
+    document,
+    turned,
+    (held) => (held.name === name ? [{ ...held, name: to }] : [held]),
+    () => true,
+  );
 }
 
 /** Remove a signal and whatever plays it. */
 export function removeSignal(document: ProgramDocument, name: string): ProgramDocument {
   const turned = (held: string | null | undefined): string | null => (held === name ? null : (held ?? null));
-  return withSignals(document, turned, (held) => (held.name === name ? [] : [held]), (event) => event.signal !== name);
+  return withSignals(
+    document,
+    turned,
+    (held) => (held.name === name ? [] : [held]),
+    (event) => event.signal !== name,
+  );
 }
 
 function withSignals(
@@ -106,7 +132,7 @@ function withSignals(
   signals: (held: Signal) => Signal[],
   keep: (event: VibrationEvent) => boolean,
 ): ProgramDocument {
-  const way = (held: Transition): Transition => ({ ...held, signal: turned(held.signal) });
+  const transition = (held: Transition): Transition => ({ ...held, signal: turned(held.signal) });
   const state = (held: State): State => {
     const repeat_signal = turned(held.repeat_signal);
     return {
@@ -114,7 +140,7 @@ function withSignals(
       enter_signal: turned(held.enter_signal),
       repeat_signal,
       repeat_ms: repeat_signal ? (held.repeat_ms ?? 0) : 0,
-      transitions: (held.transitions ?? []).map(way),
+      transitions: (held.transitions ?? []).map(transition),
     };
   };
   return {
@@ -138,7 +164,9 @@ export function changeVibration(
   index: number,
   change: Partial<VibrationEvent>,
 ): ProgramDocument {
-  const vibrations = (document.vibrations ?? []).map((held, i) => (i === index ? { ...held, ...change } : held));
+  const vibrations = (document.vibrations ?? []).map((vibration, i) =>
+    i === index ? { ...vibration, ...change } : vibration,
+  );
   return { ...document, vibrations };
 }
 
@@ -147,7 +175,7 @@ export function removeVibration(document: ProgramDocument, index: number): Progr
   return { ...document, vibrations: (document.vibrations ?? []).filter((_, i) => i !== index) };
 }
 
-/** Give the vibrations that are felt in a state. */
+/** Return the vibrations that are felt in a state. */
 export function vibrationsIn(document: ProgramDocument, state: string): readonly VibrationEvent[] {
   return (document.vibrations ?? []).filter((event) => !event.states?.length || event.states.includes(state));
 }

@@ -1,6 +1,6 @@
 /** The history of a program: the states themselves are kept, for they share their parts. */
 
-import { StepLine, type Keeping } from "../model/steps";
+import { type Keeping, StepLine } from "../model/steps";
 import type { ProgramDocument } from "./document";
 
 interface Change<T> {

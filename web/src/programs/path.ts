@@ -1,7 +1,7 @@
 /** Places in a document, such as `states[1].transitions[0]`, as findings tell them. */
 
-import { transitionsOf } from "./document";
 import type { ProgramDocument } from "./document";
+import { transitionsOf } from "./document";
 
 /** What can be chosen to look at. */
 export type Choice =
@@ -15,7 +15,7 @@ export type Choice =
 /** Nothing but the program itself is chosen. */
 export const WHOLE: Choice = { kind: "program" };
 
-/** Give what a path leads to; the nearest part that is there, else the program. */
+/** Return what a path leads to; the nearest part that is there, else the program. */
 export function choiceAt(document: ProgramDocument, path: string): Choice {
   const [, part, number] = /^(states|surfaces|signals|vibrations)\[(\d+)\]/.exec(path) ?? [];
   const index = Number(number);
@@ -30,31 +30,31 @@ export function choiceAt(document: ProgramDocument, path: string): Choice {
 function stateAt(document: ProgramDocument, index: number, path: string): Choice {
   const state = document.states[index];
   if (!state) return WHOLE;
-  const way = /\.transitions\[(\d+)\]/.exec(path);
-  if (way && Number(way[1]) < transitionsOf(state).length)
-    return { kind: "transition", state: state.name, index: Number(way[1]) };
+  const transition = /\.transitions\[(\d+)\]/.exec(path);
+  if (transition && Number(transition[1]) < transitionsOf(state).length)
+    return { kind: "transition", state: state.name, index: Number(transition[1]) };
   return { kind: "state", state: state.name };
 }
 
-/** Give the path of what is chosen; empty for the program. */
+/** Return the path of what is chosen; empty for the program. */
 export function pathOf(document: ProgramDocument, choice: Choice): string {
   switch (choice.kind) {
     case "program":
       return "";
     case "state":
-      return `states[${document.states.findIndex((held) => held.name === choice.state)}]`;
+      return `states[${document.states.findIndex((state) => state.name === choice.state)}]`;
     case "transition":
-      return `states[${document.states.findIndex((held) => held.name === choice.state)}].transitions[${choice.index}]`;
+      return `states[${document.states.findIndex((state) => state.name === choice.state)}].transitions[${choice.index}]`;
     case "surface":
-      return `surfaces[${document.surfaces.findIndex((held) => held.name === choice.surface)}]`;
+      return `surfaces[${document.surfaces.findIndex((surface) => surface.name === choice.surface)}]`;
     case "signal":
-      return `signals[${(document.signals ?? []).findIndex((held) => held.name === choice.signal)}]`;
+      return `signals[${(document.signals ?? []).findIndex((signal) => signal.name === choice.signal)}]`;
     case "vibration":
       return `vibrations[${choice.index}]`;
   }
 }
 
-/** Tell whether what is chosen is still there; after an undo it may not be. */
+/** Whether what is chosen is still there; after an undo it may not be. */
 export function isThere(document: ProgramDocument, choice: Choice): boolean {
   if (choice.kind === "program") return true;
   const found = choiceAt(document, pathOf(document, choice));

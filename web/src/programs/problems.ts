@@ -1,8 +1,8 @@
 /** What is wrong with a document before it is sent anywhere: near the place, while a person types. */
 
 import { shortly, valueProblem } from "./condition";
-import { BOUNDS, MOST, transitionsOf } from "./document";
 import type { ProgramDocument, State, Surface } from "./document";
+import { BOUNDS, MOST, transitionsOf } from "./document";
 
 /** One thing that makes a document no program, with the path of the part it concerns. */
 export interface Problem {
@@ -13,7 +13,12 @@ export interface Problem {
 
 /** Find what makes a document no program, or no device could hold; empty if the server may be asked. */
 export function problemsOf(document: ProgramDocument): readonly Problem[] {
-  return [...counts(document), ...numbers(document), ...document.states.flatMap(ofState), ...document.surfaces.flatMap(ofSurface)];
+  return [
+    ...counts(document),
+    ...numbers(document),
+    ...document.states.flatMap(ofState),
+    ...document.surfaces.flatMap(ofSurface),
+  ];
 }
 
 function counts(document: ProgramDocument): Problem[] {
@@ -26,7 +31,11 @@ function counts(document: ProgramDocument): Problem[] {
   };
   return (Object.keys(taken) as (keyof typeof taken)[])
     .filter((what) => taken[what] > MOST[what])
-    .map((what) => ({ path: "", reason: `${taken[what]} ${what}, a device holds ${MOST[what]}`, remedy: "leave some out" }));
+    .map((what) => ({
+      path: "",
+      reason: `${taken[what]} ${what}, a device holds ${MOST[what]}`,
+      remedy: "remove some",
+    }));
 }
 
 function outside(value: number | undefined, [low, high]: readonly [number, number]): boolean {
@@ -48,7 +57,12 @@ function ofState(state: State, index: number): Problem[] {
       reason: `${field} is a whole number from ${BOUNDS[field][0]} to ${BOUNDS[field][1]}`,
       remedy: "change it",
     }));
-  return [...found, ...transitionsOf(state).flatMap((way, i) => ofTransition(way.when, way.only_if, `${path}.transitions[${i}]`))];
+  return [
+    ...found,
+    ...transitionsOf(state).flatMap((transition, i) =>
+      ofTransition(transition.when, transition.only_if, `${path}.transitions[${i}]`),
+    ),
+  ];
 }
 
 function ofTransition(
@@ -56,18 +70,20 @@ function ofTransition(
   onlyIf: Parameters<typeof valueProblem>[0] | null | undefined,
   path: string,
 ): Problem[] {
-  return [when, ...(onlyIf ? [onlyIf] : [])].flatMap((told) => {
-    const reason = valueProblem(told);
-    return reason ? [{ path, reason: `“${shortly(told)}”: ${reason}`, remedy: "change its value" }] : [];
+  return [when, ...(onlyIf ? [onlyIf] : [])].flatMap((problem) => {
+    const reason = valueProblem(problem);
+    return reason ? [{ path, reason: `“${shortly(problem)}”: ${reason}`, remedy: "change its value" }] : [];
   });
 }
 
 function ofSurface(surface: Surface, index: number): Problem[] {
-  const rising = (list: readonly number[]): boolean => list.every((value, i) => i === 0 || value > list[i - 1]!);
+  const rising = (list: readonly number[]): boolean =>
+    list.every((value, i) => i === 0 || value > list[i - 1]!);
   const path = `surfaces[${index}]`;
-  const told = (reason: string, remedy: string): Problem[] => [{ path, reason, remedy }];
-  if (!rising(surface.displacement_mm)) return told("displacements must rise", "move its points apart");
-  if (!rising(surface.velocity_mm_s)) return told("velocities must rise", "give each row another velocity");
-  if (!surface.force_cN.flat().every(Number.isFinite)) return told("a force is missing", "give a number");
+  const problem = (reason: string, remedy: string): Problem[] => [{ path, reason, remedy }];
+  if (!rising(surface.displacement_mm)) return problem("displacements must rise", "move its points apart");
+  if (!rising(surface.velocity_mm_s))
+    return problem("velocities must rise", "give each row a different velocity");
+  if (!surface.force_cN.flat().every(Number.isFinite)) return problem("a force is missing", "enter a number");
   return [];
 }

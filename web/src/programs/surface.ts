@@ -79,7 +79,9 @@ export function raisedSurface(surface: Surface, points: readonly ForcePoint[]): 
 }
 
 function mapForces(surface: Surface, change: (force_cN: number, column: number) => number): Surface {
-  const force_cN = surface.force_cN.map((row) => row.map((force, column) => rounded_cN(change(force, column))));
+  const force_cN = surface.force_cN.map((row) =>
+    row.map((force, column) => rounded_cN(change(force, column))),
+  );
   return { ...surface, force_cN };
 }
 
@@ -119,11 +121,17 @@ export function movedColumn(surface: Surface, column: number, to_mm: number, gap
 export function withColumn(surface: Surface, at_mm: number): Surface {
   if (surface.displacement_mm.some((x_mm) => Math.abs(x_mm - at_mm) < 1e-6)) return surface;
   const before = surface.displacement_mm.filter((x_mm) => x_mm < at_mm).length;
-  const add = (list: readonly number[], value: number): number[] => [...list.slice(0, before), value, ...list.slice(before)];
+  const add = (list: readonly number[], value: number): number[] => [
+    ...list.slice(0, before),
+    value,
+    ...list.slice(before),
+  ];
   return {
     ...surface,
     displacement_mm: add(surface.displacement_mm, at_mm),
-    force_cN: surface.force_cN.map((row) => add(row, rounded_cN(interpolate(at_mm, surface.displacement_mm, row)))),
+    force_cN: surface.force_cN.map((row) =>
+      add(row, rounded_cN(interpolate(at_mm, surface.displacement_mm, row))),
+    ),
   };
 }
 
@@ -131,7 +139,11 @@ export function withColumn(surface: Surface, at_mm: number): Surface {
 export function withoutColumn(surface: Surface, column: number): Surface {
   if (surface.displacement_mm.length <= 2) return surface;
   const leave = (list: readonly number[]): number[] => list.filter((_, i) => i !== column);
-  return { ...surface, displacement_mm: leave(surface.displacement_mm), force_cN: surface.force_cN.map(leave) };
+  return {
+    ...surface,
+    displacement_mm: leave(surface.displacement_mm),
+    force_cN: surface.force_cN.map(leave),
+  };
 }
 
 /** Add a row at a velocity: the forces stay as they are. */
@@ -141,7 +153,11 @@ export function withRow(surface: Surface, velocity_mm_s: number): Surface {
   const row = surface.displacement_mm.map((x_mm) => rounded_cN(forceAt_cN(surface, x_mm, velocity_mm_s)));
   return {
     ...surface,
-    velocity_mm_s: [...surface.velocity_mm_s.slice(0, before), velocity_mm_s, ...surface.velocity_mm_s.slice(before)],
+    velocity_mm_s: [
+      ...surface.velocity_mm_s.slice(0, before),
+      velocity_mm_s,
+      ...surface.velocity_mm_s.slice(before),
+    ],
     force_cN: [...surface.force_cN.slice(0, before), row, ...surface.force_cN.slice(before)],
   };
 }
@@ -175,7 +191,9 @@ function farthest(surface: Surface, [low, high]: [number, number]): { column: nu
   const worst = { column: low, error_cN: 0 };
   for (const row of surface.force_cN)
     for (let i = low + 1; i < high; i += 1) {
-      const error_cN = Math.abs(row[i]! - interpolate(surface.displacement_mm[i]!, ends, [row[low]!, row[high]!]));
+      const error_cN = Math.abs(
+        row[i]! - interpolate(surface.displacement_mm[i]!, ends, [row[low]!, row[high]!]),
+      );
       if (error_cN > worst.error_cN) Object.assign(worst, { column: i, error_cN });
     }
   return worst;

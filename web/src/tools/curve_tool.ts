@@ -5,14 +5,22 @@
  * between `begin` and `commit`; Escape and a lost pointer answer `cancel`, and the page goes back to its mark.
  */
 
-import { type Act, type Answer, distance_px, type Grip, type Place, type PointerRecord, wayBetween } from "./records";
 import { gripAt, pointsInBox, type Scene, TREMBLE_px } from "./reach";
+import {
+  type Act,
+  type Answer,
+  type CanvasPoint,
+  distance_px,
+  type Grip,
+  offsetBetween,
+  type PointerRecord,
+} from "./records";
 import { toggled, united } from "./selection";
 
 /** How soon and how near a second tap must be to count as double. */
-export const DOUBLE = { time_ms: 400, way_px: 12 } as const;
+export const DOUBLE = { time_ms: 400, distance_px: 12 } as const;
 
-interface Tap extends Place {
+interface Tap extends CanvasPoint {
   readonly time_ms: number;
 }
 
@@ -32,53 +40,68 @@ export type CurveToolState =
   | ({ readonly mode: "dragging" } & Hold)
   | ({ readonly mode: "boxing" } & Hold)
   | ({ readonly mode: "panning" } & Hold)
-  | { readonly mode: "pinching"; readonly from: readonly [PointerRecord, PointerRecord]; readonly now: readonly [PointerRecord, PointerRecord] };
+  | {
+      readonly mode: "pinching";
+      readonly from: readonly [PointerRecord, PointerRecord];
+      readonly now: readonly [PointerRecord, PointerRecord];
+    };
 
 /** The tool at rest. */
 export const IDLE: CurveToolState = { mode: "idle", tap: null };
 
-type Told = Answer<CurveToolState>;
+type Transition = Answer<CurveToolState>;
 
-const still = (state: CurveToolState): Told => ({ state, acts: [] });
+const stay = (state: CurveToolState): Transition => ({ state, acts: [] });
 
 /** One pointer event. */
-export function pointerStep(state: CurveToolState, event: PointerRecord, scene: Scene): Told {
-  if (state.mode === "idle") return event.kind === "down" ? pointed(state.tap, event, scene) : still(state);
-  if (state.mode === "pinching") return pinched(state, event);
-  if (event.kind === "down") return second(state, event);
-  if (event.pointerId !== state.start.pointerId) return still(state);
+export function pointerStep(state: CurveToolState, event: PointerRecord, scene: Scene): Transition {
+  if (state.mode === "idle")
+    return event.kind === "down" ? onPointerDown(state.tap, event, scene) : stay(state);
+  if (state.mode === "pinching") return onPinch(state, event);
+  if (event.kind === "down") return onSecondPointer(state, event);
+  if (event.pointerId !== state.start.pointerId) return stay(state);
   if (event.kind === "cancel") return cancelled(state);
-  if (state.mode === "pointing") return event.kind === "up" ? tapped(state, event, scene) : begun(state, event, scene);
-  return event.kind === "up" ? letGo(state, event, scene) : moved(state, event, scene);
+  if (state.mode === "pointing")
+    return event.kind === "up" ? onTap(state, event, scene) : onDragStart(state, event, scene);
+  return event.kind === "up" ? onRelease(state, event, scene) : onDrag(state, event, scene);
 }
 
 /** Escape, a lost pointer, or a page that goes away. */
-export function cancelled(state: CurveToolState): Told {
+export function cancelled(state: CurveToolState): Transition {
   if (state.mode === "dragging") return { state: IDLE, acts: [{ kind: "cancel" }] };
   if (state.mode === "boxing")
     return { state: IDLE, acts: [{ kind: "box-end" }, { kind: "select", points: state.before }] };
-  return still(IDLE);
+  return stay(IDLE);
 }
 
-function pointed(tap: Tap | null, event: PointerRecord, scene: Scene): Told {
-  if (event.button === 2) return still({ mode: "idle", tap: null });
+function onPointerDown(tap: Tap | null, event: PointerRecord, scene: Scene): Transition {
+  if (event.button === 2) return stay({ mode: "idle", tap: null });
   const pans = event.button === 1 || event.held;
   const grip: Grip = pans ? { kind: "empty" } : gripAt(scene, event, event.device);
   const hold = { start: event, last: event, grip, before: scene.selection };
-  if (pans) return still({ mode: "panning", ...hold });
+  if (pans) return stay({ mode: "panning", ...hold });
   const state: CurveToolState = { mode: "pointing", tap, ...hold };
-  if (grip.kind !== "point" || event.shift || scene.selection.includes(grip.index)) return still(state);
+  if (grip.kind !== "point" || event.shift || scene.selection.includes(grip.index)) return stay(state);
   return { state, acts: [{ kind: "select", points: [grip.index] }] };
 }
 
-function tapped(state: Extract<CurveToolState, { mode: "pointing" }>, event: PointerRecord, scene: Scene): Told {
+function onTap(
+  state: Extract<CurveToolState, { mode: "pointing" }>,
+  event: PointerRecord,
+  scene: Scene,
+): Transition {
   const { tap, start, grip } = state;
   const doubled =
-    tap !== null && start.time_ms - tap.time_ms <= DOUBLE.time_ms && distance_px(tap, start) <= DOUBLE.way_px;
+    tap !== null &&
+    start.time_ms - tap.time_ms <= DOUBLE.time_ms &&
+    distance_px(tap, start) <= DOUBLE.distance_px;
   if (doubled && grip.kind !== "point" && grip.kind !== "handle")
     return { state: IDLE, acts: [{ kind: "add", at: start }] };
   const acts = actsOfTap(grip, start.shift, scene);
-  return { state: { mode: "idle", tap: { x_px: event.x_px, y_px: event.y_px, time_ms: event.time_ms } }, acts };
+  return {
+    state: { mode: "idle", tap: { x_px: event.x_px, y_px: event.y_px, time_ms: event.time_ms } },
+    acts,
+  };
 }
 
 function actsOfTap(grip: Grip, shift: boolean, scene: Scene): Act[] {
@@ -95,59 +118,69 @@ function actsOfTap(grip: Grip, shift: boolean, scene: Scene): Act[] {
   }
 }
 
-function begun(state: Extract<CurveToolState, { mode: "pointing" }>, event: PointerRecord, scene: Scene): Told {
+function onDragStart(
+  state: Extract<CurveToolState, { mode: "pointing" }>,
+  event: PointerRecord,
+  scene: Scene,
+): Transition {
   const { start, grip, before } = state;
-  if (distance_px(start, event) <= TREMBLE_px[start.device]) return still(state);
+  if (distance_px(start, event) <= TREMBLE_px[start.device]) return stay(state);
   const hold: Hold = { start, last: event, grip, before };
   if (grip.kind === "empty" || grip.kind === "curve") {
     const mode = start.device === "touch" ? "panning" : "boxing";
-    return moved({ mode, ...hold }, event, scene);
+    return onDrag({ mode, ...hold }, event, scene);
   }
   const acts: Act[] = [];
   if (grip.kind === "point" && !scene.selection.includes(grip.index))
     acts.push({ kind: "select", points: united(scene.selection, [grip.index]) });
   acts.push({ kind: "begin", grip });
-  const after = moved({ mode: "dragging", ...hold }, event, scene);
+  const after = onDrag({ mode: "dragging", ...hold }, event, scene);
   return { state: after.state, acts: [...acts, ...after.acts] };
 }
 
 type Moving = Extract<CurveToolState, { mode: "dragging" | "boxing" | "panning" }>;
 
-function moved(was: Moving, event: PointerRecord, scene: Scene): Told {
+function onDrag(was: Moving, event: PointerRecord, scene: Scene): Transition {
   const state = { ...was, last: event };
-  const way = wayBetween(state.start, event);
-  if (state.mode === "dragging") return { state, acts: [{ kind: "shift", grip: state.grip, way }] };
-  if (state.mode === "panning") return { state, acts: [{ kind: "pan", way }] };
+  const offset = offsetBetween(state.start, event);
+  if (state.mode === "dragging") return { state, acts: [{ kind: "shift", grip: state.grip, offset }] };
+  if (state.mode === "panning") return { state, acts: [{ kind: "pan", offset }] };
   const inside = pointsInBox(scene.points, state.start, event);
   const points = state.start.shift ? united(state.before, inside) : inside;
-  return { state, acts: [{ kind: "box", from: state.start, to: event }, { kind: "select", points }] };
+  return {
+    state,
+    acts: [
+      { kind: "box", from: state.start, to: event },
+      { kind: "select", points },
+    ],
+  };
 }
 
-function letGo(state: Moving, event: PointerRecord, scene: Scene): Told {
-  const last = moved(state, event, scene).acts;
+function onRelease(state: Moving, event: PointerRecord, scene: Scene): Transition {
+  const last = onDrag(state, event, scene).acts;
   if (state.mode === "dragging") return { state: IDLE, acts: [...last, { kind: "commit" }] };
   if (state.mode === "boxing") return { state: IDLE, acts: [...last, { kind: "box-end" }] };
   return { state: IDLE, acts: last };
 }
 
 /** A second finger makes a pinch of whatever the first one does; a second mouse button changes nothing. */
-function second(state: Extract<CurveToolState, Hold>, event: PointerRecord): Told {
-  if (event.device !== "touch" || event.pointerId === state.start.pointerId) return still(state);
+function onSecondPointer(state: Extract<CurveToolState, Hold>, event: PointerRecord): Transition {
+  if (event.device !== "touch" || event.pointerId === state.start.pointerId) return stay(state);
   const from = [state.last, event] as const;
   return { state: { mode: "pinching", from, now: from }, acts: cancelled(state).acts };
 }
 
-function pinched(state: Extract<CurveToolState, { mode: "pinching" }>, event: PointerRecord): Told {
-  if (!state.now.some((p) => p.pointerId === event.pointerId)) return still(state);
-  if (event.kind === "up" || event.kind === "cancel") return still(IDLE);
+function onPinch(state: Extract<CurveToolState, { mode: "pinching" }>, event: PointerRecord): Transition {
+  if (!state.now.some((p) => p.pointerId === event.pointerId)) return stay(state);
+  if (event.kind === "up" || event.kind === "cancel") return stay(IDLE);
   const at = (p: PointerRecord): PointerRecord => (p.pointerId === event.pointerId ? event : p);
   const now = [at(state.now[0]), at(state.now[1])] as const;
   const around = middle(state.from);
-  const way = wayBetween(around, middle(now));
+  const offset = offsetBetween(around, middle(now));
   const ratio = distance_px(...now) / Math.max(1, distance_px(...state.from));
-  return { state: { ...state, now }, acts: [{ kind: "pinch", way, ratio, around }] };
+  return { state: { ...state, now }, acts: [{ kind: "pinch", offset, ratio, around }] };
 }
 
-function middle([a, b]: readonly [Place, Place]): Place {
+function middle([a, b]: readonly [CanvasPoint, CanvasPoint]): CanvasPoint {
   return { x_px: 0.5 * (a.x_px + b.x_px), y_px: 0.5 * (a.y_px + b.y_px) };
 }

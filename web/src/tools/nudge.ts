@@ -19,7 +19,12 @@ export interface Nudge {
 /** Where the keys are: how many steps, in tenths, the held arrows have gone. */
 export type NudgeState =
   | { readonly mode: "idle" }
-  | { readonly mode: "nudging"; readonly keys: readonly string[]; readonly right: number; readonly up: number };
+  | {
+      readonly mode: "nudging";
+      readonly keys: readonly string[];
+      readonly right: number;
+      readonly up: number;
+    };
 
 /** What the keys ask: `begin` sets the undo mark, `nudge` tells the total way since then. */
 export type NudgeAct =
@@ -49,8 +54,8 @@ export function nudgeStep(
 ): { readonly state: NudgeState; readonly acts: readonly NudgeAct[] } {
   if (event.kind === "up") return released(state, event.key);
   if (event.key === "Escape" && state.mode === "nudging") return { state: STILL, acts: [{ kind: "cancel" }] };
-  const way = WAYS[event.key];
-  const along = way && (axes === "x" ? way[0] : way[1]);
+  const offset = WAYS[event.key];
+  const along = offset && (axes === "x" ? offset[0] : offset[1]);
   if (!along || event.ctrl) return { state, acts: [] };
   const tenths = along * (event.shift ? 10 * TENTHS : event.alt ? 1 : TENTHS);
   const was = state.mode === "nudging" ? state : { keys: [], right: 0, up: 0 };
@@ -65,7 +70,10 @@ export function nudgeStep(
 }
 
 /** Close what is going on, as when the focus leaves. */
-export function nudgeEnd(state: NudgeState): { readonly state: NudgeState; readonly acts: readonly NudgeAct[] } {
+export function nudgeEnd(state: NudgeState): {
+  readonly state: NudgeState;
+  readonly acts: readonly NudgeAct[];
+} {
   return { state: STILL, acts: state.mode === "nudging" ? [{ kind: "commit" }] : [] };
 }
 

@@ -5,13 +5,13 @@
  */
 
 /** A place on the canvas, y downward. */
-export interface Place {
+export interface CanvasPoint {
   readonly x_px: number;
   readonly y_px: number;
 }
 
 /** One pointer event. `button` is 0 for the main one; `held` tells that the key for panning is down. */
-export interface PointerRecord extends Place {
+export interface PointerRecord extends CanvasPoint {
   readonly kind: "down" | "move" | "up" | "cancel";
   readonly pointerId: number;
   readonly device: "mouse" | "touch" | "pen";
@@ -39,7 +39,7 @@ export type Grip =
   | { readonly kind: "empty" };
 
 /** A way, from where the pointer went down to where it is. */
-export interface Way {
+export interface Offset {
   readonly dx_px: number;
   readonly dy_px: number;
 }
@@ -52,14 +52,14 @@ export type Act =
   | { readonly kind: "select"; readonly points: readonly number[] }
   | { readonly kind: "activate"; readonly curve: number }
   | { readonly kind: "begin"; readonly grip: Grip }
-  | { readonly kind: "shift"; readonly grip: Grip; readonly way: Way }
+  | { readonly kind: "shift"; readonly grip: Grip; readonly offset: Offset }
   | { readonly kind: "commit" }
   | { readonly kind: "cancel" }
-  | { readonly kind: "box"; readonly from: Place; readonly to: Place }
+  | { readonly kind: "box"; readonly from: CanvasPoint; readonly to: CanvasPoint }
   | { readonly kind: "box-end" }
-  | { readonly kind: "add"; readonly at: Place }
-  | { readonly kind: "pan"; readonly way: Way }
-  | { readonly kind: "pinch"; readonly way: Way; readonly ratio: number; readonly around: Place };
+  | { readonly kind: "add"; readonly at: CanvasPoint }
+  | { readonly kind: "pan"; readonly offset: Offset }
+  | { readonly kind: "pinch"; readonly offset: Offset; readonly ratio: number; readonly around: CanvasPoint };
 
 /** A state and what is to be done about it. */
 export interface Answer<State> {
@@ -68,11 +68,11 @@ export interface Answer<State> {
 }
 
 /** The way between two places. */
-export function wayBetween(from: Place, to: Place): Way {
+export function offsetBetween(from: CanvasPoint, to: CanvasPoint): Offset {
   return { dx_px: to.x_px - from.x_px, dy_px: to.y_px - from.y_px };
 }
 
 /** The distance between two places. */
-export function distance_px(a: Place, b: Place): number {
+export function distance_px(a: CanvasPoint, b: CanvasPoint): number {
   return Math.hypot(a.x_px - b.x_px, a.y_px - b.y_px);
 }

@@ -1,10 +1,10 @@
 /** Controls that every page uses, each with its label and its unit. */
 
-import { h, type Child } from "./element";
+import { type Child, h } from "./element";
 import { effect } from "./signal";
 
 let made = 0;
-/** Give an id that no other element has. */
+/** Return an id that no other element has. */
 export function freshId(kind: string): string {
   return `${kind}-${++made}`;
 }
@@ -179,7 +179,13 @@ export function toolbar(label: string, ...content: Child[]): HTMLElement {
 
 /** What to say where there is nothing yet, and what to do next. */
 export function empty(title: string, text: string, ...actions: Child[]): HTMLElement {
-  return h("div", { class: "empty" }, h("h2", {}, title), h("p", {}, text), h("div", { class: "row" }, actions));
+  return h(
+    "div",
+    { class: "empty" },
+    h("h2", {}, title),
+    h("p", {}, text),
+    h("div", { class: "row" }, actions),
+  );
 }
 
 /** How far long work is; of unknown length where total is null. */

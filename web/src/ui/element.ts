@@ -1,4 +1,4 @@
-/** Elements from code: never from text, so that no name of a button can become markup. */
+/** Elements from code: never from text, so that no button name can become markup. */
 
 import { effect } from "./signal";
 

@@ -1,6 +1,6 @@
 /** Shortcuts of a page, all in one list so that a help sheet can show them. */
 
-import { signal, onCleanup } from "./signal";
+import { onCleanup, signal } from "./signal";
 
 export interface Shortcut {
   /** As it is written for people: "Ctrl+Z", "Shift+ArrowUp", "/", "Space". Ctrl means Cmd on a Mac. */
@@ -36,7 +36,10 @@ export function pressedKeys(event: KeyboardEvent): string {
 }
 
 function typing(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches("input:not([type=checkbox]):not([type=range]), select, textarea, [contenteditable]");
+  return (
+    target instanceof HTMLElement &&
+    target.matches("input:not([type=checkbox]):not([type=range]), select, textarea, [contenteditable]")
+  );
 }
 
 /** Listen for shortcuts; called once by the shell. The last one added wins. */
@@ -44,9 +47,14 @@ export function listenForShortcuts(): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented) return;
     const pressed = pressedKeys(event);
-    const found = shortcuts.peek().findLast((one) => one.act && one.keys === pressed && (one.always || !typing(event.target)));
+    const found = shortcuts
+      .peek()
+      .findLast((one) => one.act && one.keys === pressed && (one.always || !typing(event.target)));
     // a focused control keeps the keys that work it
-    const own = event.target instanceof HTMLElement && event.target.matches("button, a, [role=tab], summary") && (pressed === "Space" || pressed === "Enter");
+    const own =
+      event.target instanceof HTMLElement &&
+      event.target.matches("button, a, [role=tab], summary") &&
+      (pressed === "Space" || pressed === "Enter");
     if (!found || own) return;
     event.preventDefault();
     found.act?.(event);

@@ -1,6 +1,6 @@
 /** When an effect runs that need not run at once. */
 
-/** Give the `later` of an effect whose work may wait until the next frame is painted; it runs once for all changes. */
+/** Return the `later` of an effect whose work may wait until the next frame is painted; it runs once for all changes. */
 export function afterPaint(): (run: () => void) => void {
   let waits = false;
   return (run) => {

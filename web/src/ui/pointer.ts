@@ -8,10 +8,16 @@ type Held = (event: PointerEvent) => void;
  * move: called wherever it goes, also outside the element. end: called once; kept is false where the pointer was
  * taken away, as by a gesture of the system.
  */
-export function followPointer(element: Element, down: PointerEvent, move: Held, end: (kept: boolean) => void = () => undefined): void {
+export function followPointer(
+  element: Element,
+  down: PointerEvent,
+  move: Held,
+  end: (kept: boolean) => void = () => undefined,
+): void {
   const over = new AbortController();
   const on = (name: "pointermove" | "pointerup" | "pointercancel", work: Held) => {
-    const mine = (event: Event) => (event as PointerEvent).pointerId === down.pointerId && work(event as PointerEvent);
+    const mine = (event: Event) =>
+      (event as PointerEvent).pointerId === down.pointerId && work(event as PointerEvent);
     element.addEventListener(name, mine, { signal: over.signal });
   };
   const ends = (kept: boolean) => () => {

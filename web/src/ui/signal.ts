@@ -9,11 +9,11 @@ interface Watcher {
 }
 
 export interface Signal<T> {
-  /** Give the value; an effect or computed value that reads it runs again when it changes. */
+  /** Return the value; an effect or computed value that reads it runs again when it changes. */
   (): T;
   set(value: T): void;
   update(change: (value: T) => T): void;
-  /** Give the value without following it. */
+  /** Return the value without following it. */
   peek(): T;
 }
 
@@ -37,7 +37,7 @@ function flush(): void {
   for (let rounds = 0; waiting.size; rounds++) {
     const now = [...waiting];
     waiting.clear();
-    if (rounds > 100) thrown.push(new Error("signals change each other without end"));
+    if (rounds > 100) thrown.push(new Error("signals update each other endlessly"));
     else for (const watcher of now) attempt(watcher, thrown);
   }
   flushing = false;
@@ -160,6 +160,14 @@ export function scope(work: () => void): Cleanup {
     cleanups = outside;
   }
   return () => ended(own);
+}
+
+/** Make a function that follows `source` and reads nothing else that it would follow. */
+export function on<T>(source: () => unknown, work: () => T): () => T {
+  return () => {
+    source();
+    return untracked(work);
+  };
 }
 
 /** Read signals without following them. */

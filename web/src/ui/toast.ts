@@ -3,7 +3,7 @@
 import { lineOf } from "../math/words";
 import { h } from "./element";
 
-export type ToastKind = "told" | "done" | "wrong";
+export type ToastKind = "info" | "done" | "wrong";
 
 const SHOWN_ms = 5000;
 
@@ -14,17 +14,26 @@ function place(): HTMLElement {
   );
 }
 
-/** Tell something; the function given back takes it away. */
-export function toast(text: string, kind: ToastKind = "told"): () => void {
+/** Show a notice; the returned function removes it. */
+export function toast(text: string, kind: ToastKind = "info"): () => void {
   const remove = () => note.remove();
-  const close = h("button", { type: "button", class: "button quiet glyph", "aria-label": "Close notice", on: { click: remove } }, "×");
-  const note = h("div", { class: `toast ${kind}`, role: kind === "wrong" ? "alert" : null }, h("span", {}, text), close);
+  const close = h(
+    "button",
+    { type: "button", class: "button quiet glyph", "aria-label": "Close notice", on: { click: remove } },
+    "×",
+  );
+  const note = h(
+    "div",
+    { class: `toast ${kind}`, role: kind === "wrong" ? "alert" : null },
+    h("span", {}, text),
+    close,
+  );
   place().append(note);
   if (kind !== "wrong") setTimeout(remove, SHOWN_ms);
   return remove;
 }
 
-/** Tell what went wrong, whatever was thrown. */
+/** What went wrong, whatever was thrown. */
 export function tell(error: unknown): void {
   toast(lineOf(error), "wrong");
 }

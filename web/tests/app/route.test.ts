@@ -2,18 +2,24 @@
 import { describe, expect, it } from "vitest";
 import { address, followAddress, go, keepQuery, parseRoute, route } from "../../src/app/route";
 
-const told = () => new Promise((done) => addEventListener("hashchange", done, { once: true }));
+const changed = () => new Promise((done) => addEventListener("hashchange", done, { once: true }));
 
 describe("an address", () => {
   it("is read as it was written", () => {
     for (const id of ["", "own:my button", "measured:0123/../?#%", "é"]) {
       const read = parseRoute(address("edit", id, { overlay: "a,b", q: "x&y=1" }));
-      expect([read.page, read.id, read.query.get("overlay"), read.query.get("q")]).toEqual(["edit", id, "a,b", "x&y=1"]);
+      expect([read.page, read.id, read.query.get("overlay"), read.query.get("q")]).toEqual([
+        "edit",
+        id,
+        "a,b",
+        "x&y=1",
+      ]);
     }
   });
 
   it("is read whatever a person types", () => {
-    for (const hash of ["", "#", "#/", "#/edit", "#edit/x", "#/edit/%", "#/a/b/c?d"]) expect(() => parseRoute(hash)).not.toThrow();
+    for (const hash of ["", "#", "#/", "#/edit", "#edit/x", "#/edit/%", "#/a/b/c?d"])
+      expect(() => parseRoute(hash)).not.toThrow();
     expect(parseRoute("#/edit/%").id).toBe("%");
   });
 });
@@ -28,10 +34,14 @@ describe("the state of a view", () => {
     expect([location.hash, history.length]).toEqual([address("", "", { q: "mx clear" }), steps]);
   });
 
-  it("does not write over an address the browser has not told yet", async () => {
+  it("does not write over an address the browser has not reported yet", async () => {
     followAddress();
-    for (const leave of [() => go("press", "own:a"), () => go("press", "own:a", { mode: "measured" }), () => go("library")]) {
-      const change = told();
+    for (const leave of [
+      () => go("press", "own:a"),
+      () => go("press", "own:a", { mode: "measured" }),
+      () => go("library"),
+    ]) {
+      const change = changed();
       leave();
       keepQuery({ q: "late" });
       await change;

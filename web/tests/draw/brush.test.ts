@@ -18,7 +18,9 @@ describe("the SVG brush", () => {
 
   it("closes what it clips", () => {
     const brush = new SvgBrush();
-    brush.clipped({ left: 0, top: 0, width: 5, height: 5 }, () => brush.circle({ x_px: 1, y_px: 1 }, 2, { colour: "red" }));
+    brush.clipped({ left: 0, top: 0, width: 5, height: 5 }, () =>
+      brush.circle({ x_px: 1, y_px: 1 }, 2, { colour: "red" }),
+    );
     const file = brush.file(10, 10, "white");
     expect(file.match(/<g /g)).toHaveLength(1);
     expect(file.match(/<\/g>/g)).toHaveLength(1);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { csv } from "../../src/draw/file";
-import { linear, rangeOf, ticks, tickStep, tickText } from "../../src/draw/scale";
+import { linear, rangeOf, tickStep, ticks, tickText } from "../../src/draw/scale";
 
 describe("a scale", () => {
   it("leads to the screen and back", () => {
@@ -26,7 +26,12 @@ describe("a scale", () => {
   });
 
   it("writes ticks with the decimals of their step", () => {
-    expect([tickText(0.30000000000000004, 0.1), tickText(-2, 1), tickText(1e-17, 0.5), tickText(20, 10)]).toEqual(["0.3", "−2", "0.0", "20"]);
+    expect([
+      tickText(0.30000000000000004, 0.1),
+      tickText(-2, 1),
+      tickText(1e-17, 0.5),
+      tickText(20, 10),
+    ]).toEqual(["0.3", "−2", "0.0", "20"]);
   });
 
   it("gives the range of what is finite", () => {

@@ -1,5 +1,14 @@
 import { describe, expect, test } from "vitest";
-import { basis, checkSpline, evaluate, findSpan, greville, insertKnot, ModelError, uniformKnots } from "../../src/math";
+import {
+  basis,
+  checkSpline,
+  evaluate,
+  findSpan,
+  greville,
+  insertKnot,
+  ModelError,
+  uniformKnots,
+} from "../../src/math";
 import { golden } from "../golden/golden";
 import { expectNear } from "./near";
 
@@ -29,7 +38,8 @@ describe.each(golden<Case>("splines").map((one, i) => [i, one] as const))("splin
     expect([...evaluate(t, c, k, x)].reverse()).toEqual([...evaluate(t, c, k, one.x_mm)]);
   });
 
-  test("has its control points where Python draws them", () => expectNear(greville(t, k), one.control_points_mm));
+  test("has its control points where Python draws them", () =>
+    expectNear(greville(t, k), one.control_points_mm));
 
   test("gains a knot as SciPy inserts it", () => {
     const made = insertKnot(one, one.inserted_mm);
@@ -42,7 +52,11 @@ describe.each(golden<Case>("splines").map((one, i) => [i, one] as const))("splin
       const i = findSpan(t, k, x);
       const b = basis(t, k, i, x);
       expectNear([b.reduce((sum, value) => sum + value, 0)], [1], 1e-14);
-      expectNear([b.reduce((sum, value, j) => sum + value * c[i - k + j]!, 0)], evaluate(t, c, k, [x]), 1e-12);
+      expectNear(
+        [b.reduce((sum, value, j) => sum + value * c[i - k + j]!, 0)],
+        evaluate(t, c, k, [x]),
+        1e-12,
+      );
     }
   });
 });
@@ -58,7 +72,12 @@ test.each([
   ["2 control points of degree 1 need 4 knots, got 3", [0, 0, 1], [1, 2], 1],
   ["knots_mm must not fall", [0, 0, 2, 1, 3, 3], [1, 2, 3, 4], 1],
   ["the first and last 2 knots must be equal", [0, 1, 2, 2], [1, 2], 1],
-  ["no knot may repeat more than 2 times and the curve needs a length", [0, 0, 1, 1, 1, 2, 2], [1, 2, 3, 4, 5], 1],
+  [
+    "no knot may repeat more than 2 times and the curve needs a length",
+    [0, 0, 1, 1, 1, 2, 2],
+    [1, 2, 3, 4, 5],
+    1,
+  ],
 ])("%s", (line, t, c, k) => {
   expect(() => checkSpline(t, c, k)).toThrow(new ModelError(line));
 });

@@ -3,16 +3,16 @@ import {
   acceleration_m_s2,
   blendOf,
   buttonDifference,
-  decayTime_s,
   type Difference,
+  decayTime_s,
   type Interpolation,
   type Landmarks,
   landmarks,
   linspace,
   nearest,
   peak_m_s2,
-  snap,
   type Stroke,
+  snap,
   surface,
   surfaceGrid,
   vibrationSamples,
@@ -76,7 +76,12 @@ describe.each(golden<Case>("buttons").map((one) => [one.model, one] as const))("
 test("differences are those of fdvv compare", () => {
   type Row = Difference & { names: [string, string]; stroke: Stroke; velocity_mm_s: number | null };
   for (const row of golden<Row>("differences")) {
-    const got = buttonDifference(builtIn(row.names[0]), builtIn(row.names[1]), row.stroke, row.velocity_mm_s)!;
+    const got = buttonDifference(
+      builtIn(row.names[0]),
+      builtIn(row.names[1]),
+      row.stroke,
+      row.velocity_mm_s,
+    )!;
     for (const key of ["rms_cN", "mean_cN", "max_cN"] as const) expectNear([got[key]], [row[key]]);
     for (const key of ["max_mm", "from_mm", "to_mm"] as const) expect(got[key]).toBe(row[key]);
   }
@@ -111,12 +116,20 @@ test("the work of a stroke is the landmark's", () => {
 test("a button without a press has no landmarks", () => {
   const model = builtIn("mx-clear");
   const curves = model.curves.filter((curve) => curve.stroke === "release");
-  expect(() => landmarks({ ...model, curves })).toThrow("model 'mx-clear' has no press curve to read landmarks from");
+  expect(() => landmarks({ ...model, curves })).toThrow(
+    "model 'mx-clear' has no press curve to read landmarks from",
+  );
 });
 
 test("a vibration is silent before its onset and after its duration, and has a peak and a decay", () => {
   const mode = { frequency_Hz: 250, amplitude_m_s2: 8, decay_1_s: 100, phase_rad: Math.PI / 2 };
-  const vibration = { stroke: "press" as const, velocity_mm_s: null, onset_mm: 1, duration_s: 0.05, modes: [mode] };
+  const vibration = {
+    stroke: "press" as const,
+    velocity_mm_s: null,
+    onset_mm: 1,
+    duration_s: 0.05,
+    modes: [mode],
+  };
   expect([...acceleration_m_s2(vibration, [-1e-9, 0.0500001])]).toEqual([0, 0]);
   expect(peak_m_s2(vibration)).toBeCloseTo(8, 12);
   expect(decayTime_s(vibration, Math.exp(-2))).toBeCloseTo(0.02, 12);

@@ -22,7 +22,8 @@ function randomRow(random: () => number, n: number): number[] {
 
 const squares = (a: ArrayLike<number>, b: ArrayLike<number>) =>
   Array.from(a).reduce((sum, value, i) => sum + (value - b[i]!) ** 2, 0);
-const dot = (a: ArrayLike<number>, b: ArrayLike<number>) => Array.from(a).reduce((sum, v, i) => sum + v * b[i]!, 0);
+const dot = (a: ArrayLike<number>, b: ArrayLike<number>) =>
+  Array.from(a).reduce((sum, v, i) => sum + v * b[i]!, 0);
 const rises = (c: ArrayLike<number>) => Array.from(c).every((v, i) => i === 0 || v >= c[i - 1]! - 1e-12);
 
 /** Project by brute force: minimise by many small steps of coordinate descent over the run values. */
@@ -52,7 +53,11 @@ describe("monotone", () => {
 
   test("falling is the mirror of rising", () => {
     const y = [3, 1, 4, 1, 5, 9, 2, 6];
-    expectNear(monotone(y, new Set(), "falling"), monotone(y.map((v) => -v)).map((v) => -v), 0);
+    expectNear(
+      monotone(y, new Set(), "falling"),
+      monotone(y.map((v) => -v)).map((v) => -v),
+      0,
+    );
   });
 
   test("leaves held points where they are and is nearest among all that do", () => {
@@ -65,7 +70,7 @@ describe("monotone", () => {
       expect([made[a], made[b]]).toEqual([y[a], y[b]]);
       expect(rises(made)).toBe(true);
       for (let tries = 0; tries < 30; tries++) {
-        const other = slowIsotonic(made.reduce<number[]>((row, v) => [...row, v + (random() - 0.5) * 4], []));
+        const other = slowIsotonic(Array.from(made, (v) => v + (random() - 0.5) * 4));
         other[a] = y[a]!;
         other[b] = y[b]!;
         if (rises(other)) expect(squares(other, y)).toBeGreaterThanOrEqual(squares(made, y) - 1e-9);
@@ -73,7 +78,7 @@ describe("monotone", () => {
     }
   });
 
-  test("held points that contradict each other meet half-way", () => {
+  test("held points that contradict each other compromise half-way", () => {
     expect([...monotone([0, 10, 5, 2], new Set([1, 3]))]).toEqual([0, 6, 6, 6]);
   });
 });
@@ -108,7 +113,11 @@ describe("keepWork", () => {
     expect(made[3]).toBe(c[3]);
     // the least change is along the weights
     const ratios = [...made].flatMap((v, i) => (i === 3 ? [] : [(v - c[i]!) / weights[i]!]));
-    expectNear(ratios, ratios.map(() => ratios[0]!), 1e-9);
+    expectNear(
+      ratios,
+      ratios.map(() => ratios[0]!),
+      1e-9,
+    );
   });
 });
 
@@ -163,7 +172,11 @@ describe("constrain", () => {
     const random = drawn(4);
     const least = squares(made, lifted);
     for (let i = 0; i < 300; i++) {
-      const other = keepWork(made.map((v) => v + (random() - 0.5)), work, new Set([5]));
+      const other = keepWork(
+        made.map((v) => v + (random() - 0.5)),
+        work,
+        new Set([5]),
+      );
       other[5] = made[5]!;
       const rest = work.wanted - dot(weights, other);
       if (Math.min(...other) < 30 || Math.abs(rest) > 1e-6) continue;

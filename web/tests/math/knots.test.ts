@@ -86,7 +86,9 @@ test("no other free points do better, in least squares, than those that removal 
 
 test("a curve with no point to spare keeps them", () => {
   const bare = { degree: 3, knots_mm: uniformKnots(0, 1, 4, 3), control_points_cN: [1, 2, 3, 4] };
-  expect(() => removePoint(bare, 1)).toThrow("degree 3 needs at least 4 control points, the curve has no more");
+  expect(() => removePoint(bare, 1)).toThrow(
+    "degree 3 needs at least 4 control points, the curve has no more",
+  );
 });
 
 test("a refit on knots that hold the curve's own is the curve", () => {

@@ -53,7 +53,16 @@ const at = (model: m.FDVVModel, ref: m.CurveRef) => m.curveAt(model, ref)!;
 
 describe("control points", () => {
   test("move together in several curves, the rest stays", () => {
-    const made = m.applyEdit(clear, m.movePoints([{ ...slow, indices: [2, 3] }, { ...fast, indices: [4] }], -2.5));
+    const made = m.applyEdit(
+      clear,
+      m.movePoints(
+        [
+          { ...slow, indices: [2, 3] },
+          { ...fast, indices: [4] },
+        ],
+        -2.5,
+      ),
+    );
     expect(at(made, slow).control_points_cN[2]).toBe(at(clear, slow).control_points_cN[2]! - 2.5);
     expect(at(made, fast).control_points_cN[4]).toBe(at(clear, fast).control_points_cN[4]! - 2.5);
     expect(at(made, slow).control_points_cN[4]).toBe(at(clear, slow).control_points_cN[4]);
@@ -113,13 +122,25 @@ test.each<[string, m.Edit]>([
   ["travel_mm must be positive and finite, got 0", m.setNumber("travel_mm", 0)],
   ["travel_mm must be positive and finite, got NaN", m.setNumber("travel_mm", Number.NaN)],
   ["name must be text without spaces at its ends, got ''", m.renameModel("  ")],
-  ["control_points_cN must be finite, got Infinity at index 3", m.setPoints([{ ...slow, values_cN: [[3, Infinity]] }])],
-  ["control_points_cN must stay within 1000000, got 2000000", m.setPoints([{ ...slow, values_cN: [[3, 2e6]] }])],
-  ["press curve of unknown velocity must stand alone, got [unknown, 50, 100, 150, 200] mm/s", m.setVelocity(slow, null)],
+  [
+    "control_points_cN must be finite, got Infinity at index 3",
+    m.setPoints([{ ...slow, values_cN: [[3, Infinity]] }]),
+  ],
+  [
+    "control_points_cN must stay within 1000000, got 2000000",
+    m.setPoints([{ ...slow, values_cN: [[3, 2e6]] }]),
+  ],
+  [
+    "press curve of unknown velocity must stand alone, got [unknown, 50, 100, 150, 200] mm/s",
+    m.setVelocity(slow, null),
+  ],
   ["there is a press curve at 50 mm/s already; remove it first", m.setVelocity(slow, 50)],
   ["velocity_mm_s must be positive and finite, got -3", m.setVelocity(slow, -3)],
   ["a vibration needs at least one mode", m.removeMode({ stroke: "press", velocity_mm_s: null }, 0)],
-  ["duration_s must be positive and finite, got 0", m.setDuration({ stroke: "press", velocity_mm_s: null }, 0)],
+  [
+    "duration_s must be positive and finite, got 0",
+    m.setDuration({ stroke: "press", velocity_mm_s: null }, 0),
+  ],
   [
     "'mx-clear' has no press vibration at 50 mm/s; it has press at unknown velocity, release at unknown velocity",
     m.removeVibration({ stroke: "press", velocity_mm_s: 50 }),

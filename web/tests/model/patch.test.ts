@@ -27,7 +27,10 @@ test("between any two models a patch leads exactly, there and back, also as JSON
   const models = ["mx-clear", "rubber-dome"].flatMap((name, i) => walk(builtIn(name), drawn(i), 60));
   const random = drawn(9);
   for (let i = 0; i < 200; i++) {
-    const [a, b] = [models[Math.floor(random() * models.length)]!, models[Math.floor(random() * models.length)]!];
+    const [a, b] = [
+      models[Math.floor(random() * models.length)]!,
+      models[Math.floor(random() * models.length)]!,
+    ];
     const patch = JSON.parse(JSON.stringify(diff(a, b))) as Patch;
     expect(same(applyPatch(a, patch), b)).toBe(true);
     expect(same(applyPatch(b, invert(patch)), a)).toBe(true);
@@ -41,5 +44,7 @@ test("moving a point is a patch of that point", () => {
   const points = first!.control_points_cN.map((c, i) => (i === 1 ? c + 1 : c));
   const b = { ...a, curves: [{ ...first!, control_points_cN: points }, second!] };
   const { stroke, velocity_mm_s } = first!;
-  expect(diff(a, b)).toEqual({ curves: [{ stroke, velocity_mm_s, points: [[1, points[1]! - 1, points[1]!]] }] });
+  expect(diff(a, b)).toEqual({
+    curves: [{ stroke, velocity_mm_s, points: [[1, points[1]! - 1, points[1]!]] }],
+  });
 });

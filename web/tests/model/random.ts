@@ -1,6 +1,6 @@
 /** Random edits, for properties that hold of all of them. */
 
-import { type Constraints, type Stroke, STROKES } from "../../src/math";
+import { type Constraints, STROKES, type Stroke } from "../../src/math";
 import * as m from "../../src/model";
 
 /** Draw an edit of a model; it may be one that is refused. */

@@ -25,7 +25,7 @@ export class ScriptedServer implements DocumentServer {
   troubles: (Trouble | undefined)[] = [];
   readonly copies: [string, FDVVModel][] = [];
   readonly changes: Change[] = [];
-  /** Told of each new revision, as another tab would be. */
+  /** Receives each new revision, as another tab would be. */
   readonly tabs = new Set<(revision: number) => void>();
   #known = new Map<string, number>();
   #pins: { label: string; model: FDVVModel }[] = [];
@@ -84,13 +84,13 @@ export class ScriptedServer implements DocumentServer {
     return error instanceof Unreachable;
   }
 
-  /** Tell whether the server has the model that a page shows. */
+  /** Whether the server has the model that a page shows. */
   has(model: FDVVModel): boolean {
     return same(this.history.model, model);
   }
 }
 
-/** A clock that only moves when told, ids that count, and waits that are written down. */
+/** A clock that only moves when asked, ids that count, and waits that are written down. */
 export function stillSurroundings(name: string) {
   let id = 0;
   const around = {

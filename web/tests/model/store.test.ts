@@ -199,7 +199,8 @@ describe("two tabs", () => {
     const one = await opened();
     const two = await opened(one.server, "two");
     const heard: Promise<void>[] = [];
-    for (const { store } of [one, two]) one.server.tabs.add((revision) => heard.push(store.told(revision)));
+    for (const { store } of [one, two])
+      one.server.tabs.add((revision) => heard.push(store.onRevision(revision)));
     const quiet = async () => {
       for (let i = 0; i < 5; i++) {
         await Promise.all([one.store.settled(), two.store.settled(), ...heard]);
@@ -226,7 +227,7 @@ describe("two tabs", () => {
     await quiet();
     expect([one.state, two.state]).toEqual(["saved", "conflict"]);
     expect([server.history.model.travel_mm, two.model.travel_mm]).toEqual([3.5, 3.6]);
-    expect(two.line).toBe("another tab edited this button; take theirs, or keep yours as a copy");
+    expect(two.line).toBe("another tab edited this button; use its version, or keep yours as a copy");
     two.apply(setNumber("reset_mm", 1));
     await two.settled();
     expect([two.unsaved, server.seen]).toEqual([2, ["edit"]]);
@@ -285,7 +286,7 @@ test("an edit made while the store looks at what others did is sent", async () =
     return found;
   };
   server.make({ type: "pin", label: "theirs", change_id: "x" });
-  await store.told(1);
+  await store.onRevision(1);
   await store.settled();
   expect(store.state).toBe("conflict");
   await store.takeTheirs();
@@ -315,5 +316,10 @@ test("a document that is gone is said to be, and edits are not sent into the voi
   store.gone("this button was deleted");
   store.apply(setNumber("travel_mm", 3.5));
   await store.settled();
-  expect([store.state, store.line, store.unsaved, server.seen]).toEqual(["gone", "this button was deleted", 1, []]);
+  expect([store.state, store.line, store.unsaved, server.seen]).toEqual([
+    "gone",
+    "this button was deleted",
+    1,
+    [],
+  ]);
 });

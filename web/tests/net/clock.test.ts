@@ -22,7 +22,11 @@ interface World {
 }
 
 /** Ask every 250 ms for a while in a world whose offset is known. */
-function asked(world: World, seconds: number, seed = 1): { readonly sync: ClockSync; readonly end_ms: number } {
+function asked(
+  world: World,
+  seconds: number,
+  seed = 1,
+): { readonly sync: ClockSync; readonly end_ms: number } {
   const [sync, random] = [new ClockSync(), drawn(seed)];
   const late = () => world.wait_ms * random() ** 3;
   let sent_ms = 1000;
@@ -45,11 +49,16 @@ describe("the offset of the server's clock", () => {
     const sync = new ClockSync();
     sync.take({ sent_ms: 10, back_ms: 9, server_ms: 5 });
     expect(sync.at(10)).toBeNull();
-    expect(sync.told()).toBeNull();
+    expect(sync.summary()).toBeNull();
   });
 
   it.each([1, 2, 3, 4, 5])("is found within its own bound although answers wait (seed %i)", (seed) => {
-    for (const world of [EVEN, { ...EVEN, there_ms: 0.1, back_ms: 3 }, { ...EVEN, drift: 5e-5 }, { ...EVEN, drift: -1e-4 }]) {
+    for (const world of [
+      EVEN,
+      { ...EVEN, there_ms: 0.1, back_ms: 3 },
+      { ...EVEN, drift: 5e-5 },
+      { ...EVEN, drift: -1e-4 },
+    ]) {
       const { sync, end_ms } = asked(world, 40, seed);
       const found = sync.at(end_ms);
       if (!found) throw new Error("nothing was found");

@@ -6,10 +6,21 @@ import type { StudyTask } from "../../src/net/messages";
 import { Draft } from "../../src/pages/study/answer";
 import { keepCard, keptCard } from "../../src/pages/study/keep";
 import { clock } from "../../src/pages/study/rest";
-import { languageName, word, type Word } from "../../src/pages/study/words";
+import { languageName, type Word, word } from "../../src/pages/study/words";
 
 const SCALE = { name: "realism", question: "How realistic is it?", low: "", high: "", points: 7 };
-const TASK: StudyTask = { number: 3, at: 2, of: 36, item: "MX Clear", question: "Which?", places: ["X", "A", "B"], choices: ["A", "B"], equal: "equally close", rated: ["A", "B"], scales: [SCALE] };
+const TASK: StudyTask = {
+  number: 3,
+  at: 2,
+  of: 36,
+  item: "MX Clear",
+  question: "Which?",
+  places: ["X", "A", "B"],
+  choices: ["A", "B"],
+  equal: "equally close",
+  rated: ["A", "B"],
+  scales: [SCALE],
+};
 
 function felt(task = TASK, ...labels: string[]): Draft {
   const draft = new Draft(task);
@@ -77,12 +88,30 @@ describe("a card", () => {
 
 describe("words", () => {
   const LANGUAGES = ["en", "de", "fi", "fr", "zh"];
-  const KEYS: readonly Word[] = ["begin", "cardText", "trial", "keys", "lost", "leaveSure", "breakLeft", "number"];
+  const KEYS: readonly Word[] = [
+    "begin",
+    "cardText",
+    "trial",
+    "keys",
+    "lost",
+    "leaveSure",
+    "breakLeft",
+    "number",
+  ];
 
   it.each(LANGUAGES)("of %s are its own, with the same places", (language) => {
     const places = (text: string) => text.split("|").length;
     for (const key of KEYS) {
-      const filled = { at: "|", of: "|", places: "|", digits: "|", choices: "|", time: "|", low: "|", high: "|" };
+      const filled = {
+        at: "|",
+        of: "|",
+        places: "|",
+        digits: "|",
+        choices: "|",
+        time: "|",
+        low: "|",
+        high: "|",
+      };
       expect(places(word(language, key, filled))).toBe(places(word("en", key, filled)));
       if (language !== "en") expect(word(language, key)).not.toBe(word("en", key));
     }
@@ -95,6 +124,6 @@ describe("words", () => {
   });
 });
 
-it("what is left of a break is told in minutes and seconds", () => {
+it("what is left of a break is shown in minutes and seconds", () => {
   expect([180, 61.2, 59.01, 0, -3].map(clock)).toEqual(["3:00", "1:02", "1:00", "0:00", "0:00"]);
 });

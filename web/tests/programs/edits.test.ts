@@ -1,13 +1,22 @@
 import { describe, expect, it } from "vitest";
-import { KINDS, condition, firstCondition, inWords, kindOf, shortly, transitionInWords, valueProblem } from "../../src/programs/condition";
-import { freeName, nameProblem, transitionsOf } from "../../src/programs/document";
+import {
+  condition,
+  firstCondition,
+  inWords,
+  KINDS,
+  kindOf,
+  shortly,
+  transitionInWords,
+  valueProblem,
+} from "../../src/programs/condition";
 import type { ProgramDocument } from "../../src/programs/document";
+import { freeName, nameProblem, transitionsOf } from "../../src/programs/document";
 import * as edits from "../../src/programs/edits";
 import * as parts from "../../src/programs/edits_parts";
 import { choiceAt, isThere, pathOf } from "../../src/programs/path";
 import { problemsOf } from "../../src/programs/problems";
 import { flatSurface } from "../../src/programs/surface";
-import { SHIPPED, randomProgram, seeded } from "./shipped";
+import { randomProgram, SHIPPED, seeded } from "./shipped";
 
 const [button, dwell] = [SHIPPED[0]!, SHIPPED[1]!];
 
@@ -20,20 +29,36 @@ it("begins an arrow from the start beyond half the travel, another above a quart
 
 /** Names that a document refers to and that are not there, or are there twice. */
 function dangling(document: ProgramDocument): string[] {
-  const names = (list: readonly { readonly name: string }[] | undefined): string[] => (list ?? []).map((held) => held.name);
-  const [states, surfaces, signals] = [names(document.states), names(document.surfaces), names(document.signals)];
-  const told = document.states.flatMap((state) => [
+  const names = (list: readonly { readonly name: string }[] | undefined): string[] =>
+    (list ?? []).map((held) => held.name);
+  const [states, surfaces, signals] = [
+    names(document.states),
+    names(document.surfaces),
+    names(document.signals),
+  ];
+  const places = document.states.flatMap((state) => [
     ...[state.press, state.release].filter((name) => !surfaces.includes(name)),
     ...[state.enter_signal, state.repeat_signal].filter((name) => name && !signals.includes(name)),
-    ...transitionsOf(state).filter((way) => !states.includes(way.to)).map((way) => way.to),
-    ...transitionsOf(state).filter((way) => way.signal && !signals.includes(way.signal)).map((way) => way.signal),
+    ...transitionsOf(state)
+      .filter((transition) => !states.includes(transition.to))
+      .map((transition) => transition.to),
+    ...transitionsOf(state)
+      .filter((transition) => transition.signal && !signals.includes(transition.signal))
+      .map((transition) => transition.signal),
   ]);
   const events = (document.vibrations ?? []).flatMap((event) => [
     ...(signals.includes(event.signal) ? [] : [event.signal]),
     ...(event.states ?? []).filter((name) => !states.includes(name)),
   ]);
-  const twice = [states, surfaces, signals].flatMap((list) => list.filter((name, i) => list.indexOf(name) !== i));
-  return [...told, ...events, ...twice, ...(states.includes(document.start) ? [] : [document.start])] as string[];
+  const twice = [states, surfaces, signals].flatMap((list) =>
+    list.filter((name, i) => list.indexOf(name) !== i),
+  );
+  return [
+    ...places,
+    ...events,
+    ...twice,
+    ...(states.includes(document.start) ? [] : [document.start]),
+  ] as string[];
 }
 
 describe("edits of states", () => {
@@ -45,7 +70,7 @@ describe("edits of states", () => {
     expect(JSON.stringify(dwell)).toBe(before);
   });
 
-  it("rename a state wherever it is told of", () => {
+  it("rename a state wherever it is named", () => {
     const renamed = edits.renameState(dwell, "down", "held");
     expect(dangling(renamed)).toEqual([]);
     expect(JSON.stringify(renamed)).not.toContain('"down"');
@@ -116,10 +141,14 @@ describe("edits of surfaces and signals", () => {
   });
 
   it("copy forces between states and strokes", () => {
-    const copied = parts.copySurface(button, { state: "up", stroke: "press" }, { state: "down", stroke: "release" });
+    const copied = parts.copySurface(
+      button,
+      { state: "up", stroke: "press" },
+      { state: "down", stroke: "release" },
+    );
     const name = copied.states[1]!.release;
-    const source = button.surfaces.find((held) => held.name === button.states[0]!.press)!;
-    expect(copied.surfaces.find((held) => held.name === name)!.force_cN).toEqual(source.force_cN);
+    const source = button.surfaces.find((surface) => surface.name === button.states[0]!.press)!;
+    expect(copied.surfaces.find((surface) => surface.name === name)!.force_cN).toEqual(source.force_cN);
     expect(dangling(copied)).toEqual([]);
   });
 
@@ -157,7 +186,15 @@ function edited(document: ProgramDocument, random: () => number): ProgramDocumen
     () => edits.addState(document, a)[0],
     () => edits.duplicateState(document, a)[0],
     () => edits.removeState(document, a),
-    () => edits.renameState(document, a, freeName("renamed", document.states.map((state) => state.name))),
+    () =>
+      edits.renameState(
+        document,
+        a,
+        freeName(
+          "renamed",
+          document.states.map((state) => state.name),
+        ),
+      ),
     () => edits.addTransition(document, a, b, condition(some(KINDS).kind)),
     () => edits.removeTransition(document, a, 0),
     () => edits.moveTransitionTo(document, a, 0, b)[0],
@@ -167,7 +204,12 @@ function edited(document: ProgramDocument, random: () => number): ProgramDocumen
     () => (signal ? parts.addVibration(document, { signal, at_mm: 1, states: [a] }) : document),
     () => (signal && random() < 0.2 ? parts.removeSignal(document, signal) : document),
     () => (signal ? edits.changeState(document, a, { repeat_signal: signal }) : document),
-    () => parts.addSignal(document, { name: "tick", duration_s: 0.01, modes: [{ frequency_Hz: 200, amplitude_m_s2: 5, decay_1_s: 200 }] })[0],
+    () =>
+      parts.addSignal(document, {
+        name: "tick",
+        duration_s: 0.01,
+        modes: [{ frequency_Hz: 200, amplitude_m_s2: 5, decay_1_s: 200 }],
+      })[0],
   ];
   return some(choices)();
 }
@@ -181,19 +223,20 @@ describe("names", () => {
   });
 
   it("are refused as the file refuses them", () => {
-    for (const bad of ["", " ", " a", "a ", "x".repeat(41), "a\nb", "a\u0007"]) expect(nameProblem(bad, [])).toBeTruthy();
+    for (const bad of ["", " ", " a", "a ", "x".repeat(41), "a\nb", "a\u0007"])
+      expect(nameProblem(bad, [])).toBeTruthy();
     expect(nameProblem("a", ["a"])).toContain("already");
     expect(nameProblem("half pressed – ½", ["a"])).toBeNull();
   });
 });
 
 describe("conditions", () => {
-  it("of every kind are told shortly and in words, with their unit", () => {
+  it("of every kind are described shortly and in words, with their unit", () => {
     for (const known of KINDS) {
-      const told = condition(known.kind, known.first === true ? undefined : 7);
-      expect(kindOf(told)).toBe(known);
-      expect(valueProblem(told)).toBeNull();
-      for (const words of [shortly(told), inWords(told)]) {
+      const built = condition(known.kind, known.first === true ? undefined : 7);
+      expect(kindOf(built)).toBe(known);
+      expect(valueProblem(built)).toBeNull();
+      for (const words of [shortly(built), inWords(built)]) {
         if (known.first !== true) expect(words).toContain("7");
         expect(words).toContain(known.unit);
       }
@@ -234,7 +277,7 @@ describe("problems", () => {
     for (const document of SHIPPED) expect(problemsOf(document)).toEqual([]);
   });
 
-  it("are told with their place", () => {
+  it("are reported with their place", () => {
     const far = edits.changeTransition(button, "down", 0, { when: { host_event: 40 } });
     expect(problemsOf(far).map((found) => found.path)).toEqual(["states[1].transitions[0]"]);
     expect(problemsOf({ ...button, travel_mm: 9 })[0]!.path).toBe("travel_mm");

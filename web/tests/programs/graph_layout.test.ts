@@ -1,13 +1,33 @@
 import { describe, expect, it } from "vitest";
-import { centreOf, holds, onCubic, samplesOf } from "../../src/programs/layout/geometry";
-import { graphOf, neighbour, overlapsIn } from "../../src/programs/layout/layout";
-import { sizeOfText } from "../../src/programs/layout/labels";
-import type { ProgramDocument } from "../../src/programs/document";
-import { transitionsOf } from "../../src/programs/document";
-import { SHIPPED, randomProgram } from "./shipped";
+import { type ProgramDocument, transitionsOf } from "../../src/programs/document";
+import { centreOf, contains, overlap, type Point, splineThrough } from "../../src/programs/geometry";
+import { type Graph, graphOf, neighbour, sizeOfText, withMoved } from "../../src/programs/graph_layout";
+import { randomProgram, SHIPPED } from "./shipped";
+
+/** Count the pairs of nodes and labels that cover each other. */
+function overlapsIn(graph: Graph): number {
+  const boxes = [...graph.nodes.map((node) => node.box), ...graph.edges.map((edge) => edge.label)];
+  return boxes.reduce(
+    (sum, box, i) => sum + boxes.slice(i + 1).filter((other) => overlap(box, other)).length,
+    0,
+  );
+}
+
+/** Sample the drawn arrow through points. */
+function samples(points: readonly Point[]): Point[] {
+  return splineThrough(points).flatMap(([a, b, c, d]) =>
+    Array.from({ length: 17 }, (_, i) => {
+      const [s, t] = [1 - i / 16, i / 16];
+      const mix = (key: "x" | "y") =>
+        s * s * s * a[key] + 3 * s * s * t * b[key] + 3 * s * t * t * c[key] + t * t * t * d[key];
+      return { x: mix("x"), y: mix("y") };
+    }),
+  );
+}
 
 const RANDOM = Array.from({ length: 40 }, (_, seed) => randomProgram(seed, 1 + (seed % 32), (seed * 7) % 49));
-const ways = (document: ProgramDocument): number =>
+const GRAPHS = [...SHIPPED, ...RANDOM].map((document) => [document, graphOf(document)] as const);
+const transitions = (document: ProgramDocument): number =>
   document.states.reduce((sum, state) => sum + transitionsOf(state).length, 0);
 
 describe("the layout of a program's graph", () => {
@@ -16,36 +36,37 @@ describe("the layout of a program's graph", () => {
     (_, document) => {
       const graph = graphOf(document);
       expect(graph.nodes.map((node) => node.state)).toEqual(document.states.map((state) => state.name));
-      expect(graph.edges).toHaveLength(ways(document));
+      expect(graph.edges).toHaveLength(transitions(document));
       expect(overlapsIn(graph)).toBe(0);
       expect(graph.edges.every((edge) => edge.leader === null)).toBe(true);
     },
   );
 
   it("has no words and no node of forty random programs to 32 states on each other", () => {
-    for (const document of RANDOM) expect([document.name, overlapsIn(graphOf(document))]).toEqual([document.name, 0]);
+    for (const [document, graph] of GRAPHS)
+      expect([document.name, overlapsIn(graph)]).toEqual([document.name, 0]);
   });
 
   it("is the same each time", () => {
     for (const document of RANDOM.slice(0, 8)) expect(graphOf(document)).toEqual(graphOf(document));
   });
 
-  it("has the start on the left of every state that it leads to", () => {
+  it("has the start on the left of, or above, every state that it leads to", () => {
     for (const document of SHIPPED) {
       const graph = graphOf(document);
-      const left = graph.nodes.find((node) => node.state === document.start)!.box.x;
-      for (const node of graph.nodes.filter((held) => held.state !== document.start))
-        expect(node.box.x).toBeGreaterThan(left);
+      const start = graph.nodes.find((node) => node.state === document.start)!.box;
+      const [left, top] = [start.x + start.width, start.y + start.height];
+      for (const { state, box } of graph.nodes)
+        expect(state === document.start || box.x > left || box.y > top).toBe(true);
     }
   });
 
   it("lets every arrow begin at its state and end at the one it leads to", () => {
-    for (const document of [...SHIPPED, ...RANDOM]) {
-      const graph = graphOf(document);
+    for (const [, graph] of GRAPHS) {
       const boxes = new Map(graph.nodes.map((node) => [node.state, node.box]));
       for (const edge of graph.edges) {
-        expect(holds(boxes.get(edge.state)!, edge.curve[0], 2)).toBe(true);
-        expect(holds(boxes.get(edge.to)!, edge.curve[3], 2)).toBe(true);
+        expect(contains(boxes.get(edge.state)!, edge.points[0]!, 2)).toBe(true);
+        expect(contains(boxes.get(edge.to)!, edge.points.at(-1)!, 2)).toBe(true);
       }
     }
   });
@@ -60,7 +81,7 @@ describe("the layout of a program's graph", () => {
         transitions: Array.from({ length: 5 }, (_, n) => ({ to: `state ${1 - i}`, when: { after_ms: n } })),
       })),
     };
-    const middles = graphOf(many).edges.map((edge) => onCubic(edge.curve, 0.5).y);
+    const middles = graphOf(many).edges.map((edge) => centreOf(edge.label).y);
     middles.sort((a, b) => a - b);
     for (let i = 1; i < middles.length; i += 1) expect(middles[i]! - middles[i - 1]!).toBeGreaterThan(20);
   });
@@ -69,7 +90,8 @@ describe("the layout of a program's graph", () => {
     const loops = { ...randomProgram(3, 1, 6) };
     const graph = graphOf(loops);
     expect(graph.edges).toHaveLength(6);
-    for (const edge of graph.edges) expect(holds(graph.nodes[0]!.box, onCubic(edge.curve, 0.5))).toBe(false);
+    for (const edge of graph.edges)
+      expect(contains(graph.nodes[0]!.box, edge.points[edge.points.length >> 1]!)).toBe(false);
     expect(overlapsIn(graph)).toBe(0);
   });
 
@@ -77,15 +99,15 @@ describe("the layout of a program's graph", () => {
     for (const document of SHIPPED) {
       const graph = graphOf(document);
       for (const edge of graph.edges)
-        for (const node of graph.nodes.filter((held) => held.state !== edge.state && held.state !== edge.to))
-          expect(samplesOf(edge.curve, 33).some((at) => holds(node.box, at))).toBe(false);
+        for (const node of graph.nodes.filter((node) => node.state !== edge.state && node.state !== edge.to))
+          expect(samples(edge.points).some((at) => contains(node.box, at))).toBe(false);
     }
   });
 
   it("lets a person put a node anywhere, and its words still keep clear", () => {
     const document = SHIPPED.find((held) => held.name === "multi-level")!;
     const name = document.states[1]!.name;
-    const graph = graphOf(document, new Map([[name, { x: 900, y: 333 }]]));
+    const graph = withMoved(graphOf(document), new Map([[name, { x: 900, y: 333 }]]));
     expect(centreOf(graph.nodes[1]!.box)).toEqual({ x: 900, y: 333 });
     expect(overlapsIn(graph)).toBe(0);
   });

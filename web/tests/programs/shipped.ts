@@ -6,8 +6,8 @@ import nonNewtonian from "../../../src/fdvv/program/library/non-newtonian.fdvv-p
 import rapidTrigger from "../../../src/fdvv/program/library/rapid-trigger.fdvv-program.json";
 import returningLater from "../../../src/fdvv/program/library/returning-later.fdvv-program.json";
 import { condition } from "../../src/programs/condition";
-import { readDocument } from "../../src/programs/document";
 import type { ProgramDocument, Transition } from "../../src/programs/document";
+import { readDocument } from "../../src/programs/document";
 
 /** The shipped programs, as their files hold them. */
 export const SHIPPED: readonly ProgramDocument[] = [
@@ -32,11 +32,11 @@ export function seeded(seed: number): () => number {
 }
 
 /** Draw a program of so many states and ways between any two of them, themselves included. */
-export function randomProgram(seed: number, states: number, ways: number): ProgramDocument {
+export function randomProgram(seed: number, states: number, transitions: number): ProgramDocument {
   const random = seeded(seed);
   const pick = (count: number): number => Math.floor(random() * count);
   const lists: Transition[][] = Array.from({ length: states }, () => []);
-  for (let i = 0; i < ways; i += 1) {
+  for (let i = 0; i < transitions; i += 1) {
     const when = condition("deeper_than_mm", Math.round(random() * 600) / 100);
     const guard = random() < 0.3 ? { only_if: condition("slower_than_mm_s", pick(400)) } : {};
     lists[pick(states)]!.push({ to: `state ${pick(states)}`, when, ...guard });
@@ -47,7 +47,12 @@ export function randomProgram(seed: number, states: number, ways: number): Progr
     name: `random ${seed}`,
     travel_mm: 4,
     start: `state ${pick(states)}`,
-    states: lists.map((transitions, i) => ({ name: `state ${i}`, press: "push", release: "push", transitions })),
+    states: lists.map((transitions, i) => ({
+      name: `state ${i}`,
+      press: "push",
+      release: "push",
+      transitions,
+    })),
     surfaces: [{ name: "push", displacement_mm: [0, 1], velocity_mm_s: [0], force_cN: [[40, 40]] }],
   };
 }

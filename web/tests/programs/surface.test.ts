@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import * as made from "../../src/programs/surface";
 import type { Surface } from "../../src/programs/document";
+import * as made from "../../src/programs/surface";
 import golden from "./golden_surfaces.json";
 import { SHIPPED } from "./shipped";
 
@@ -17,8 +17,14 @@ function near(found: Surface, wanted: Surface): void {
 
 describe("surfaces", () => {
   it("are what fdvv.program makes of the same numbers", () => {
-    near(made.scaledSurface(BASE, "scaled", new Map(golden.ratios as [number, number][])), golden.scaled as Surface);
-    near(made.raisedSurface({ ...BASE, name: "raised" }, golden.points as [number, number][]), golden.raised as Surface);
+    near(
+      made.scaledSurface(BASE, "scaled", new Map(golden.ratios as [number, number][])),
+      golden.scaled as Surface,
+    );
+    near(
+      made.raisedSurface({ ...BASE, name: "raised" }, golden.points as [number, number][]),
+      golden.raised as Surface,
+    );
     near(made.lineSurface("line", golden.points as [number, number][]), golden.line as Surface);
     near(made.flatSurface("flat", -20), golden.flat as Surface);
   });
@@ -35,9 +41,9 @@ describe("surfaces", () => {
         expect(few.displacement_mm.length).toBeLessThanOrEqual(surface.displacement_mm.length);
         surface.displacement_mm.forEach((x_mm, column) =>
           surface.velocity_mm_s.forEach((speed, row) =>
-            expect(Math.abs(made.forceAt_cN(few, x_mm, speed) - surface.force_cN[row]![column]!)).toBeLessThanOrEqual(
-              bound_cN + 1e-9,
-            ),
+            expect(
+              Math.abs(made.forceAt_cN(few, x_mm, speed) - surface.force_cN[row]![column]!),
+            ).toBeLessThanOrEqual(bound_cN + 1e-9),
           ),
         );
       }

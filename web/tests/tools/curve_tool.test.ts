@@ -16,9 +16,9 @@ describe("a drag", () => {
     expect(acts).toEqual([
       { kind: "select", points: [1] },
       { kind: "begin", grip },
-      { kind: "shift", grip, way: { dx_px: 9, dy_px: -11 } },
-      { kind: "shift", grip, way: { dx_px: -11, dy_px: -31 } },
-      { kind: "shift", grip, way: { dx_px: -10, dy_px: -30 } },
+      { kind: "shift", grip, offset: { dx_px: 9, dy_px: -11 } },
+      { kind: "shift", grip, offset: { dx_px: -11, dy_px: -31 } },
+      { kind: "shift", grip, offset: { dx_px: -10, dy_px: -30 } },
       { kind: "commit" },
     ]);
     expect(state).toEqual(IDLE);
@@ -71,7 +71,7 @@ describe("a drag", () => {
     const { acts } = run([pointer("down", 121, 3), pointer("move", 140, 3), pointer("up", 140, 3)]);
     const grip = { kind: "handle", name: "actuation" };
     expect(acts.map((a) => a.kind)).toEqual(["begin", "shift", "shift", "commit"]);
-    expect(acts[1]).toEqual({ kind: "shift", grip, way: { dx_px: 19, dy_px: 0 } });
+    expect(acts[1]).toEqual({ kind: "shift", grip, offset: { dx_px: 19, dy_px: 0 } });
   });
 });
 
@@ -100,12 +100,17 @@ describe("a click", () => {
       pointer("down", x_px, y_px, { time_ms }),
       pointer("up", x_px, y_px, { time_ms: time_ms + 50 }),
     ];
-    expect(run([...click(75, 0), ...click(77, 200)]).acts.at(-1)).toMatchObject({ kind: "add", at: { x_px: 77 } });
+    expect(run([...click(75, 0), ...click(77, 200)]).acts.at(-1)).toMatchObject({
+      kind: "add",
+      at: { x_px: 77 },
+    });
     expect(run([...click(75, 0, 240), ...click(77, 200, 240)]).kinds.at(-1)).toBe("add");
     expect(run([...click(75, 0), ...click(77, 600)]).kinds).not.toContain("add");
     expect(run([...click(75, 0), ...click(95, 200)]).kinds).not.toContain("add");
     expect(run([...click(50, 0, 60), ...click(50, 200, 60)]).kinds).not.toContain("add");
-    expect(run([...click(75, 0), ...click(77, 200), ...click(77, 300)]).kinds.filter((k) => k === "add")).toHaveLength(1);
+    expect(
+      run([...click(75, 0), ...click(77, 200), ...click(77, 300)]).kinds.filter((k) => k === "add"),
+    ).toHaveLength(1);
   });
 
   it("with the second button does nothing", () => {
@@ -133,9 +138,9 @@ describe("a box", () => {
 describe("panning", () => {
   it("is what the middle button, a held key and a finger on nothing do", () => {
     const ways = [{ button: 1 }, { held: true }, touch];
-    for (const way of ways) {
-      const { acts } = run([pointer("down", 75, 140, way), pointer("move", 95, 150, way)]);
-      expect(acts).toEqual([{ kind: "pan", way: { dx_px: 20, dy_px: 10 } }]);
+    for (const offset of ways) {
+      const { acts } = run([pointer("down", 75, 140, offset), pointer("move", 95, 150, offset)]);
+      expect(acts).toEqual([{ kind: "pan", offset: { dx_px: 20, dy_px: 10 } }]);
     }
     expect(run([pointer("down", 50, 60, { button: 1 }), pointer("move", 50, 90)]).kinds).toEqual(["pan"]);
   });
@@ -154,7 +159,7 @@ describe("two fingers", () => {
     ]);
     expect(acts.at(-1)).toEqual({
       kind: "pinch",
-      way: { dx_px: 10, dy_px: 0 },
+      offset: { dx_px: 10, dy_px: 0 },
       ratio: 3,
       around: { x_px: 70, y_px: 140 },
     });

@@ -7,9 +7,9 @@ function run(events: readonly KeyRecord[], axes: "x" | "y" = "y") {
   let state: NudgeState = STILL;
   const acts: NudgeAct[] = [];
   for (const event of events) {
-    const told = nudgeStep(state, event, axes);
-    state = told.state;
-    acts.push(...told.acts);
+    const step = nudgeStep(state, event, axes);
+    state = step.state;
+    acts.push(...step.acts);
   }
   return { state, acts };
 }
@@ -30,7 +30,13 @@ describe("arrow keys", () => {
   });
 
   it("are one undo step from the first key down to the last key up, and tell the total way", () => {
-    const { acts, state } = run([key("ArrowUp"), key("ArrowUp"), key("ArrowDown"), up("ArrowUp"), up("ArrowDown")]);
+    const { acts, state } = run([
+      key("ArrowUp"),
+      key("ArrowUp"),
+      key("ArrowDown"),
+      up("ArrowUp"),
+      up("ArrowDown"),
+    ]);
     expect(acts.map((a) => a.kind)).toEqual(["begin", "nudge", "nudge", "nudge", "commit"]);
     expect(acts[2]).toEqual({ kind: "nudge", by: { dx_mm: 0, dforce_cN: 2 } });
     expect(acts[3]).toEqual({ kind: "nudge", by: { dx_mm: 0, dforce_cN: 1 } });
@@ -50,6 +56,8 @@ describe("arrow keys", () => {
   });
 
   it("leave alone what is not theirs", () => {
-    expect(run([key("a"), key("Escape"), key("ArrowLeft"), key("ArrowUp", { ctrl: true }), up("ArrowUp")]).acts).toEqual([]);
+    expect(
+      run([key("a"), key("Escape"), key("ArrowLeft"), key("ArrowUp", { ctrl: true }), up("ArrowUp")]).acts,
+    ).toEqual([]);
   });
 });

@@ -8,7 +8,9 @@ describe("a typed number", () => {
   });
 
   it("is nothing else", () => {
-    expect(["", "a", "1.2.3", "0x10", "Infinity", "1e999", "--1", "1 2"].map(typed)).toEqual(Array(8).fill(null));
+    expect(["", "a", "1.2.3", "0x10", "Infinity", "1e999", "--1", "1 2"].map(typed)).toEqual(
+      Array(8).fill(null),
+    );
   });
 });
 
@@ -28,7 +30,16 @@ describe("walking a table", () => {
   });
 
   it("never leaves the table", () => {
-    for (const key of ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight", "PageUp", "PageDown", "Home", "End"]) {
+    for (const key of [
+      "ArrowUp",
+      "ArrowDown",
+      "ArrowLeft",
+      "ArrowRight",
+      "PageUp",
+      "PageDown",
+      "Home",
+      "End",
+    ]) {
       for (const row of [0, 4]) {
         for (const column of [0, 2]) {
           const cell = walked({ row, column }, key, false, extent);

@@ -1,6 +1,16 @@
 // @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import { addShortcuts, h, numberField, pressedKeys, scope, shortcuts, shown, signal, svg } from "../../src/ui";
+import {
+  addShortcuts,
+  h,
+  numberField,
+  pressedKeys,
+  scope,
+  shortcuts,
+  shown,
+  signal,
+  svg,
+} from "../../src/ui";
 
 function enter(field: HTMLElement, text: string): HTMLInputElement {
   const input = field.querySelector("input") as HTMLInputElement;
@@ -36,7 +46,15 @@ describe("elements", () => {
 describe("a number field", () => {
   const made = (over: Partial<Parameters<typeof numberField>[0]> = {}) => {
     const value = signal(1.5);
-    const field = numberField({ label: "Travel", unit: "mm", value, set: value.set, least: 0, most: 6, ...over });
+    const field = numberField({
+      label: "Travel",
+      unit: "mm",
+      value,
+      set: value.set,
+      least: 0,
+      most: 6,
+      ...over,
+    });
     return { value, field };
   };
 
@@ -48,7 +66,12 @@ describe("a number field", () => {
 
   it("refuses what is no number or out of bounds, in words beside it", () => {
     const { value, field } = made();
-    for (const [text, said] of [["x", "not a number"], ["", "not a number"], ["7", "at most 6 mm"], ["-1", "at least 0 mm"]]) {
+    for (const [text, said] of [
+      ["x", "not a number"],
+      ["", "not a number"],
+      ["7", "at most 6 mm"],
+      ["-1", "at least 0 mm"],
+    ]) {
       const input = enter(field, text as string);
       expect(field.querySelector("[role=alert]")?.textContent).toBe(said);
       expect(input.hasAttribute("aria-invalid")).toBe(true);
@@ -59,7 +82,8 @@ describe("a number field", () => {
   it("moves by its step with the arrow keys, and keeps its bounds", () => {
     const { value, field } = made({ step: 0.5 });
     const input = field.querySelector("input") as HTMLInputElement;
-    const press = (key: string, more: KeyboardEventInit = {}) => input.dispatchEvent(new KeyboardEvent("keydown", { key, ...more }));
+    const press = (key: string, more: KeyboardEventInit = {}) =>
+      input.dispatchEvent(new KeyboardEvent("keydown", { key, ...more }));
     press("ArrowUp");
     press("ArrowUp", { shiftKey: true });
     expect(value()).toBe(2);
@@ -74,7 +98,8 @@ describe("a number field", () => {
 
 describe("shortcuts", () => {
   it("are written as they are pressed", () => {
-    const event = (key: string, more: KeyboardEventInit = {}) => pressedKeys(new KeyboardEvent("keydown", { key, ...more }));
+    const event = (key: string, more: KeyboardEventInit = {}) =>
+      pressedKeys(new KeyboardEvent("keydown", { key, ...more }));
     expect(event("z", { ctrlKey: true })).toBe("Ctrl+Z");
     expect(event("z", { metaKey: true, shiftKey: true })).toBe("Ctrl+Shift+Z");
     expect(event("?", { shiftKey: true })).toBe("?");

@@ -1,13 +1,12 @@
-/** The editor's canvas: every curve of the button, the active one in the hand. */
+/** The editor's canvas: every curve of the button, and the line of numbers above it. */
 
-import { type DataPoint, palette, Plot, type Range, type View } from "../../draw";
+import { type DataPoint, Plot, palette, type Range, type View } from "../../draw";
 import { curveAt } from "../../model";
 import { computed, effect, h, type Signal, signal } from "../../ui";
-import type { Desk } from "./desk";
-import { paintBumps, paintPlaces } from "./handles";
-import { lineOf } from "./look";
+import type { EditorController } from "./editor_controller";
+import { paintBumps, paintPositions } from "./handles";
+import { lineOf, wordsOf } from "./look";
 import * as paint from "./paint";
-import { readout } from "./readout";
 import type { RigView } from "./rigs";
 import { forceNear_cN, sampled } from "./samples";
 import { timed } from "./timing";
@@ -18,46 +17,55 @@ export interface BoxDrawn {
   readonly to: { readonly x_px: number; readonly y_px: number };
 }
 
-/** What the hand does on the canvas, as far as it is drawn. */
-export interface HandShown {
+/** What is drawn of the pointer: hover, selection box, dragged handle. */
+export interface PointerOverlay {
   readonly hover: Signal<DataPoint | null>;
   readonly box: Signal<BoxDrawn | null>;
   readonly held: Signal<string | null>;
 }
 
-/** The canvas, and what is shown of the hand on it. */
-export interface EditorCanvas extends HandShown {
+/** The canvas, and what is drawn of the pointer on it. */
+export interface EditorCanvas extends PointerOverlay {
   readonly plot: Plot;
   readonly element: HTMLElement;
 }
 
 /** Make the canvas. */
-export function editorCanvas(desk: Desk, rig: RigView): EditorCanvas {
-  const hand: HandShown = { hover: signal<DataPoint | null>(null), box: signal<BoxDrawn | null>(null), held: signal<string | null>(null) };
+export function editorCanvas(editor: EditorController, rig: RigView): EditorCanvas {
+  const pointer: PointerOverlay = {
+    hover: signal<DataPoint | null>(null),
+    box: signal<BoxDrawn | null>(null),
+    held: signal<string | null>(null),
+  };
   const plot = new Plot({
     label: "Force over displacement: drag the control points of the active curve",
     x: { label: "displacement", unit: "mm" },
     y: { label: "force", unit: "cN" },
-    whole: wholeOf(desk),
-    still: (brush, view) => paintStill(desk, rig, brush, view),
-    moving: (brush, view) => timed("fdvv-draw", () => paintMoving(desk, rig, hand, brush, view)),
+    whole: wholeOf(editor),
+    still: (brush, view) => paintStill(editor, rig, brush, view),
+    moving: (brush, view) => timed("fdvv-draw", () => paintMoving(editor, rig, pointer, brush, view)),
     zoom: true,
   });
   plot.element.classList.add("edit-plot");
   plot.element.setAttribute("role", "application");
-  const element = h("div", { class: "edit-canvas" }, readout(desk, rig, hand), h("div", { class: "edit-stage" }, plot.element));
-  return { ...hand, plot, element };
+  const element = h(
+    "div",
+    { class: "edit-canvas" },
+    readout(editor, rig, pointer),
+    h("div", { class: "edit-stage" }, plot.element),
+  );
+  return { ...pointer, plot, element };
 }
 
 /** Everything there is to see, with room above for the handles of places; it stays while a drag goes on, so that the axes do not run from the hand. */
-function wholeOf(desk: Desk): () => { readonly x: Range; readonly y: Range } {
-  const ranges = signal(rangesOf(desk));
-  effect(() => ranges.set(rangesOf(desk)));
+function wholeOf(editor: EditorController): () => { readonly x: Range; readonly y: Range } {
+  const ranges = signal(rangesOf(editor));
+  effect(() => ranges.set(rangesOf(editor)));
   return computed(() => ranges());
 }
 
-function rangesOf(desk: Desk): { readonly x: Range; readonly y: Range } {
-  const model = desk.settled();
+function rangesOf(editor: EditorController): { readonly x: Range; readonly y: Range } {
+  const model = editor.settled();
   let [low, high, far] = [0, 10, model.travel_mm];
   for (const curve of model.curves) {
     const { x_mm, force_cN } = sampled(curve);
@@ -66,15 +74,18 @@ function rangesOf(desk: Desk): { readonly x: Range; readonly y: Range } {
     for (const force of curve.control_points_cN) [low, high] = [Math.min(low, force), Math.max(high, force)];
   }
   const air = 0.08 * (high - low);
-  return { x: { low: -0.03 * far, high: far * 1.06 }, y: { low: low < 0 ? low - air : -0.6 * air, high: high + 3.4 * air } };
+  return {
+    x: { low: -0.03 * far, high: far * 1.06 },
+    y: { low: low < 0 ? low - air : -0.6 * air, high: high + 3.4 * air },
+  };
 }
 
 type Brush = Parameters<typeof paint.paintBefore>[0];
 
-function paintStill(desk: Desk, rig: RigView, brush: Brush, view: View): void {
-  const { stroke, velocity_mm_s } = desk.active();
-  const before = desk.showBefore() ? curveAt(desk.before(), { stroke, velocity_mm_s }) : null;
-  paint.paintOthers(brush, view, desk.others(), desk.velocities());
+function paintStill(editor: EditorController, rig: RigView, brush: Brush, view: View): void {
+  const { stroke, velocity_mm_s } = editor.active();
+  const before = editor.showBefore() ? curveAt(editor.before(), { stroke, velocity_mm_s }) : null;
+  paint.paintOthers(brush, view, editor.others(), editor.velocities());
   if (before) paint.paintBefore(brush, view, before);
   for (const one of rig.measured()?.curves ?? []) {
     if (one.stroke !== stroke || one.velocity_mm_s !== velocity_mm_s) continue;
@@ -82,35 +93,77 @@ function paintStill(desk: Desk, rig: RigView, brush: Brush, view: View): void {
   }
 }
 
-function paintMoving(desk: Desk, rig: RigView, hand: HandShown, brush: Brush, view: View): void {
-  const [model, curve, velocities] = [desk.model(), desk.curve(), desk.velocities()];
-  const span = desk.span();
+function paintMoving(
+  editor: EditorController,
+  rig: RigView,
+  pointer: PointerOverlay,
+  brush: Brush,
+  view: View,
+): void {
+  const [model, curve, velocities] = [editor.model(), editor.curve(), editor.velocities()];
+  const span = editor.span();
   if (span) paint.paintSpan(brush, view, span.from_mm, span.to_mm);
   const made = rig.curves().find((one) => one.stroke === curve.stroke);
   for (const { start_mm, end_mm, limit } of made?.limited ?? [])
     paint.paintHatched(brush, view, start_mm, end_mm, limit === "force" ? "force limit" : "slew limit");
-  paintPlaces(brush, view, model, curve, hand.held());
-  paint.paintActive(brush, view, curve, velocities, desk.selection());
+  paintPositions(brush, view, model, curve, pointer.held());
+  paint.paintActive(brush, view, curve, velocities, editor.selection());
   if (made) paint.paintAchievable(brush, view, made.displacement_mm, made.achievable_cN);
   paint.paintName(brush, view, curve, velocities, true);
   paintBumps(brush, view, curve, model.travel_mm);
-  paintHand(desk, hand, brush, view);
+  paintPointer(editor, pointer, brush, view);
 }
 
 /** The cross under the pointer and the box that is drawn. */
-function paintHand(desk: Desk, hand: HandShown, brush: Brush, view: View): void {
+function paintPointer(editor: EditorController, pointer: PointerOverlay, brush: Brush, view: View): void {
   const { accent, muted } = palette();
-  const [hover, box] = [hand.hover(), hand.box()];
+  const [hover, box] = [pointer.hover(), pointer.box()];
   if (box) {
     const [left, right] = [Math.min(box.from.x_px, box.to.x_px), Math.max(box.from.x_px, box.to.x_px)];
     const [top, bottom] = [Math.min(box.from.y_px, box.to.y_px), Math.max(box.from.y_px, box.to.y_px)];
-    brush.rect({ left, top, width: right - left, height: bottom - top }, { colour: accent, opacity: 0.12 }, { colour: accent, dash: [4, 3] });
+    brush.rect(
+      { left, top, width: right - left, height: bottom - top },
+      { colour: accent, opacity: 0.12 },
+      { colour: accent, dash: [4, 3] },
+    );
   } else if (hover) {
     const [x, y] = [view.x.px(hover.x), view.y.px(hover.y)];
-    const on = view.y.px(forceNear_cN(sampled(desk.curve()), hover.x));
+    const on = view.y.px(forceNear_cN(sampled(editor.curve()), hover.x));
     brush.line([x, x], [view.box.top, view.box.top + view.box.height], { colour: muted, opacity: 0.5 });
     brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: muted, opacity: 0.5 });
-    const { colour } = lineOf(desk.velocities(), desk.curve());
+    const { colour } = lineOf(editor.velocities(), editor.curve());
     brush.circle({ x_px: x, y_px: on }, 3, { colour });
   }
+}
+
+/** Numbers under the pointer; why a move goes no further, where it does not. */
+function readout(editor: EditorController, rig: RigView, pointer: PointerOverlay): HTMLElement {
+  const position = () => {
+    const at = pointer.hover();
+    if (!at) return wordsOf(editor.active());
+    const force = forceNear_cN(sampled(editor.curve()), at.x);
+    return `${at.x.toFixed(3)} mm · ${at.y.toFixed(1)} cN · curve ${force.toFixed(2)} cN`;
+  };
+  return h(
+    "div",
+    { class: "edit-readout" },
+    h("span", { class: "edit-pointer", "aria-hidden": "true" }, position),
+    h("span", { class: "wrong", role: "status" }, () => editor.refusal()),
+    legend(editor, rig),
+  );
+}
+
+/** What the lines are, for those that are there. */
+function legend(editor: EditorController, rig: RigView): HTMLElement {
+  const key = (kind: string, text: string) => h("span", { class: `edit-key ${kind}` }, text);
+  return h("span", { class: "edit-legend" }, () => {
+    const measured = rig.measured();
+    const at = editor.active();
+    const here = measured?.curves.some((c) => c.stroke === at.stroke && c.velocity_mm_s === at.velocity_mm_s);
+    return [
+      editor.showBefore() ? key("before", "before") : null,
+      rig.curves().length ? key("achievable", "achievable, computed") : null,
+      here ? key("measured", measured?.simulated ? "measured, simulated" : "measured") : null,
+    ];
+  });
 }

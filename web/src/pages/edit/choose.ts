@@ -17,13 +17,14 @@ export function chooseButton(): HTMLElement {
     h("h1", {}, "Edit"),
     empty(
       "No button chosen",
-      "Begin a new one, or find one in the library and choose Edit there.",
-      button({ label: "New with a bump", kind: "main", act: () => begin("tactile") }),
+      "Start a new one, or find one in the library and choose Edit there.",
+      button({ label: "New tactile", kind: "main", act: () => begin("tactile") }),
       button({ label: "New linear", act: () => begin("linear") }),
       h("a", { class: "button", href: address("library") }, "Library"),
       h("a", { class: "button", href: address("edit", "builtin:mx-clear") }, "MX Clear, as an example"),
     ),
-    () => (own().length ? panel("Your buttons, the last one first", h("div", { class: "row" }, own().map(link))) : null),
+    () =>
+      own().length ? panel("Your buttons, newest first", h("div", { class: "row" }, own().map(link))) : null,
   );
 }
 
@@ -32,5 +33,8 @@ function link({ button: id, name }: DocumentRow): HTMLElement {
 }
 
 function begin(template: "tactile" | "linear"): void {
-  call("document.create", { name: null, template, model: null }).then((made) => go("edit", made.button), tell);
+  call("document.create", { name: null, template, model: null }).then(
+    (made) => go("edit", made.button),
+    tell,
+  );
 }

@@ -1,9 +1,18 @@
-/** What lies on the editor's desk: the button that is edited, and what of it is looked at. */
+/** The state of the editor: the button that is edited, and what of it is shown. */
 
 import { type Constraints, type Landmarks, landmarks, ModelError } from "../../math";
-import { type CurveRef, curveAt, type DocumentStore, type Edit, type FDVVModel, type ForceCurve, isAt, type SaveState } from "../../model";
-import { batch, computed, onCleanup, type Signal, signal, tell } from "../../ui";
+import {
+  type CurveRef,
+  curveAt,
+  type DocumentStore,
+  type Edit,
+  type FDVVModel,
+  type ForceCurve,
+  isAt,
+  type SaveState,
+} from "../../model";
 import { within } from "../../tools/selection";
+import { batch, computed, onCleanup, type Signal, signal, tell } from "../../ui";
 import { velocitiesOf } from "./look";
 
 /** A part of the travel that was chosen. */
@@ -13,7 +22,7 @@ export interface Span {
 }
 
 /** The state of the page; every signal can be followed by any part of it. */
-export class Desk {
+export class EditorController {
   /** The button as it is seen, a drag under way included. */
   readonly model: Signal<FDVVModel>;
   /** The button after the last finished step. */
@@ -49,7 +58,7 @@ export class Desk {
     onCleanup(store.onChange(() => this.follow()));
   }
 
-  /** Do an edit as one step; what is refused is told. True if it was not refused. */
+  /** Do an edit as one step; return false, and show why, if it is refused. */
   apply(edit: Edit, nudge?: string): boolean {
     try {
       this.store.apply(edit, nudge);
@@ -132,7 +141,8 @@ export function refOf({ stroke, velocity_mm_s }: CurveRef): CurveRef {
 }
 
 function nearestTo(model: FDVVModel, at: CurveRef): ForceCurve {
-  const off = (c: CurveRef) => Math.abs((c.velocity_mm_s ?? 0) - (at.velocity_mm_s ?? 0)) + (c.stroke === at.stroke ? 0 : 1e6);
+  const off = (c: CurveRef) =>
+    Math.abs((c.velocity_mm_s ?? 0) - (at.velocity_mm_s ?? 0)) + (c.stroke === at.stroke ? 0 : 1e6);
   return [...model.curves].sort((a, b) => off(a) - off(b))[0]!;
 }
 

@@ -4,18 +4,30 @@ import { csv, download, type Plot } from "../../draw";
 import { force_cN, places_mm } from "../../math";
 import type { FDVVModel } from "../../model";
 import { button, tell } from "../../ui";
-import type { Desk } from "./desk";
+import type { EditorController } from "./editor_controller";
 import { dropDown } from "./menu";
 
 /** A menu that opens under its name. */
-export function exportMenu(desk: Desk, plot: Plot): HTMLElement {
-  const name = () => desk.model.peek().name;
+export function exportMenu(editor: EditorController, plot: Plot): HTMLElement {
+  const name = () => editor.model.peek().name;
   const picture = () => plot.toPng().then((blob) => download(`${name()}.png`, blob), tell);
   const items = [
-    button({ label: "Model file", kind: "quiet", act: () => download(`${name()}.fdvv.json`, modelText(desk.model.peek()), "application/json") }),
-    button({ label: "Curves, CSV", kind: "quiet", act: () => download(`${name()}.csv`, curvesCsv(desk.model.peek()), "text/csv") }),
+    button({
+      label: "Model file",
+      kind: "quiet",
+      act: () => download(`${name()}.fdvv.json`, modelText(editor.model.peek()), "application/json"),
+    }),
+    button({
+      label: "Curves, CSV",
+      kind: "quiet",
+      act: () => download(`${name()}.csv`, curvesCsv(editor.model.peek()), "text/csv"),
+    }),
     button({ label: "View, PNG", kind: "quiet", act: () => void picture() }),
-    button({ label: "View, SVG", kind: "quiet", act: () => download(`${name()}.svg`, plot.toSvg(), "image/svg+xml") }),
+    button({
+      label: "View, SVG",
+      kind: "quiet",
+      act: () => download(`${name()}.svg`, plot.toSvg(), "image/svg+xml"),
+    }),
   ];
   return dropDown("Export", items);
 }

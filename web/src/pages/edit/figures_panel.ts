@@ -3,7 +3,7 @@
 import { type Landmarks, landmarks } from "../../math";
 import { curveAt } from "../../model";
 import { computed, h, panel } from "../../ui";
-import type { Desk } from "./desk";
+import type { EditorController } from "./editor_controller";
 import { wordsOf } from "./look";
 
 interface Figure {
@@ -23,37 +23,49 @@ const FIGURES: readonly Figure[] = [
   { name: "release_valley_cN", label: "Release valley", unit: "cN", digits: 2 },
   { name: "actuation_cN", label: "Force at actuation", unit: "cN", digits: 2 },
   { name: "pre_travel_mm", label: "Before actuation", unit: "mm", digits: 3 },
-  { name: "post_travel_mm", label: "Behind actuation", unit: "mm", digits: 3 },
+  { name: "post_travel_mm", label: "After actuation", unit: "mm", digits: 3 },
   { name: "bottom_out_cN", label: "Bottom-out", unit: "cN", digits: 2 },
   { name: "preload_cN", label: "Preload", unit: "cN", digits: 2 },
   { name: "pre_slope_cN_mm", label: "Slope before", unit: "cN/mm", digits: 1 },
   { name: "steepest_fall_cN_mm", label: "Steepest fall", unit: "cN/mm", digits: 1 },
   { name: "post_slope_cN_mm", label: "Slope at the end", unit: "cN/mm", digits: 1 },
   { name: "work_mJ", label: "Work of the press", unit: "mJ", digits: 4 },
-  { name: "release_work_mJ", label: "Given back", unit: "mJ", digits: 4 },
+  { name: "release_work_mJ", label: "Work returned", unit: "mJ", digits: 4 },
   { name: "hysteresis_loss_mJ", label: "Hysteresis loss", unit: "mJ", digits: 4 },
 ];
 
 /** The panel. */
-export function figuresPanel(desk: Desk): HTMLElement {
+export function figuresPanel(editor: EditorController): HTMLElement {
   const before = computed(() => {
-    const [model, at] = [desk.before(), desk.active()];
-    return model.curves.some((c) => c.stroke === "press") && curveAt(model, at) ? landmarks(model, at.velocity_mm_s) : null;
+    const [model, at] = [editor.before(), editor.active()];
+    return model.curves.some((c) => c.stroke === "press") && curveAt(model, at)
+      ? landmarks(model, at.velocity_mm_s)
+      : null;
   });
-  const rows = FIGURES.map((figure) => row(desk, figure, before));
-  const head = ["", "now", "before", "change"].map((name, i) => h("th", { scope: "col", class: i ? "number" : "" }, name));
+  const rows = FIGURES.map((figure) => row(editor, figure, before));
+  const head = ["", "now", "before", "change"].map((name, i) =>
+    h("th", { scope: "col", class: i ? "number" : "" }, name),
+  );
   return panel(
     "Figures",
-    h("p", { class: "muted" }, () => `of ${wordsOf({ ...desk.active(), stroke: "press" })} and its release`),
+    h(
+      "p",
+      { class: "muted" },
+      () => `for ${wordsOf({ ...editor.active(), stroke: "press" })} and its release`,
+    ),
     h("table", { class: "edit-figures" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)),
   );
 }
 
-function row(desk: Desk, { name, label, unit, digits }: Figure, before: () => Landmarks | null): HTMLElement {
+function row(
+  editor: EditorController,
+  { name, label, unit, digits }: Figure,
+  before: () => Landmarks | null,
+): HTMLElement {
   const value = (of: Landmarks | null) => of?.[name] ?? null;
   const text = (n: number | null) => (n === null ? "–" : n.toFixed(digits).replace("-", "−"));
   const change = () => {
-    const [now, then] = [value(desk.landmarks()), value(before())];
+    const [now, then] = [value(editor.landmarks()), value(before())];
     if (now === null || then === null) return now === then ? "" : "new or gone";
     const by = now - then;
     if (Math.abs(by) < 0.5 * 10 ** -digits) return "";
@@ -63,7 +75,7 @@ function row(desk: Desk, { name, label, unit, digits }: Figure, before: () => La
     "tr",
     {},
     h("th", { scope: "row" }, label, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
-    h("td", { class: "number" }, () => text(value(desk.landmarks()))),
+    h("td", { class: "number" }, () => text(value(editor.landmarks()))),
     h("td", { class: "number muted" }, () => text(value(before()))),
     h("td", { class: () => `number${change() ? " edit-changed" : ""}` }, change),
   );

@@ -7,12 +7,12 @@ export class Latest<Ask, Answer> {
   private closed = false;
 
   /**
-   * @param work - asks. @param told - gets every answer until it is closed.
+   * @param work - asks. @param onAnswer - gets every answer until it is closed.
    * @param wrong - gets what was thrown.
    */
   constructor(
     private readonly work: (ask: Ask) => Promise<Answer>,
-    private readonly told: (answer: Answer, ask: Ask) => void,
+    private readonly onAnswer: (answer: Answer, ask: Ask) => void,
     private readonly wrong: (error: unknown) => void,
   ) {}
 
@@ -35,7 +35,7 @@ export class Latest<Ask, Answer> {
       this.waiting = null;
       try {
         const answer = await this.work(ask);
-        if (!this.closed) this.told(answer, ask);
+        if (!this.closed) this.onAnswer(answer, ask);
       } catch (error) {
         if (!this.closed) this.wrong(error);
       }

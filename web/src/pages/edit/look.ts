@@ -17,7 +17,7 @@ export function lineOf(velocities: readonly (number | null)[], at: CurveRef): Li
   return { colour, dash: at.stroke === "release" ? RELEASE_DASH : [] };
 }
 
-/** The name that stands beside a line. */
+/** The name shown beside a line. */
 export function shortName(at: CurveRef): string {
   const speed = at.velocity_mm_s === null ? "?" : String(at.velocity_mm_s);
   return `${at.stroke === "press" ? "↓" : "↑"} ${speed}`;

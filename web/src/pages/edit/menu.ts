@@ -3,7 +3,7 @@
 import { go } from "../../app/route";
 import { call } from "../../net";
 import { button, type Child, h, tell } from "../../ui";
-import type { Desk } from "./desk";
+import type { EditorController } from "./editor_controller";
 
 /** A menu; Escape closes it and goes back to its name. */
 export function dropDown(label: string, items: readonly Child[]): HTMLElement {
@@ -25,14 +25,20 @@ export function dropDown(label: string, items: readonly Child[]): HTMLElement {
 }
 
 /** What is done with the button as a whole. */
-export function buttonMenu(desk: Desk, id: () => string): HTMLElement {
-  const input = h("input", { type: "text", "aria-label": "New name", value: desk.settled.peek().name });
+export function buttonMenu(editor: EditorController, id: () => string): HTMLElement {
+  const input = h("input", { type: "text", "aria-label": "New name", value: editor.settled.peek().name });
   const rename = () => {
-    call("document.rename", { button: id(), name: input.value.trim() }).then((made) => go("edit", made.button), tell);
+    call("document.rename", { button: id(), name: input.value.trim() }).then(
+      (made) => go("edit", made.button),
+      tell,
+    );
   };
   const duplicate = () => {
-    const model = { ...desk.settled.peek() };
-    call("document.create", { name: null, template: null, model }).then((made) => go("edit", made.button), tell);
+    const model = { ...editor.settled.peek() };
+    call("document.create", { name: null, template: null, model }).then(
+      (made) => go("edit", made.button),
+      tell,
+    );
   };
   input.addEventListener("keydown", (event) => {
     if (event.key === "Enter") rename();

@@ -16,19 +16,41 @@ export function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Li
 }
 
 /** The curves that are not edited: dimmed, each with its short name on the line, spread so that names stay apart. */
-export function paintOthers(brush: Brush, view: View, curves: readonly ForceCurve[], velocities: Velocities): void {
-  for (const curve of curves) paintCurve(brush, view, curve, { ...lineOf(velocities, curve), width_px: 1.4, opacity: DIMMED });
+export function paintOthers(
+  brush: Brush,
+  view: View,
+  curves: readonly ForceCurve[],
+  velocities: Velocities,
+): void {
+  for (const curve of curves)
+    paintCurve(brush, view, curve, { ...lineOf(velocities, curve), width_px: 1.4, opacity: DIMMED });
   for (const curve of curves) paintName(brush, view, curve, velocities, false);
 }
 
 /** The short name of a curve on its line. */
-export function paintName(brush: Brush, view: View, curve: ForceCurve, velocities: Velocities, active: boolean): void {
+export function paintName(
+  brush: Brush,
+  view: View,
+  curve: ForceCurve,
+  velocities: Velocities,
+  active: boolean,
+): void {
   const { colour } = lineOf(velocities, curve);
   const { low, high } = view.x.range;
   const rank = velocities.indexOf(curve.velocity_mm_s) + (curve.stroke === "press" ? 0 : 0.5);
-  const x_mm = low + (high - low) * (active ? 0.72 : 0.34 + (0.5 * (rank + 0.5)) / Math.max(2, velocities.length));
-  const at = { x_px: view.x.px(x_mm), y_px: view.y.px(forceNear_cN(sampled(curve), x_mm)) + (active ? 16 : -8) };
-  const style = { colour, size_px: active ? 12 : 11, weight: active ? 700 : 400, align: "center", halo: palette().surface } as const;
+  const x_mm =
+    low + (high - low) * (active ? 0.72 : 0.34 + (0.5 * (rank + 0.5)) / Math.max(2, velocities.length));
+  const at = {
+    x_px: view.x.px(x_mm),
+    y_px: view.y.px(forceNear_cN(sampled(curve), x_mm)) + (active ? 16 : -8),
+  };
+  const style = {
+    colour,
+    size_px: active ? 12 : 11,
+    weight: active ? 700 : 400,
+    align: "center",
+    halo: palette().surface,
+  } as const;
   brush.text(shortName(curve), at, style);
 }
 
@@ -59,9 +81,18 @@ export function paintBefore(brush: Brush, view: View, curve: ForceCurve): void {
 }
 
 /** What a rig can achieve. */
-export function paintAchievable(brush: Brush, view: View, x_mm: readonly number[], force_cN: readonly number[]): void {
+export function paintAchievable(
+  brush: Brush,
+  view: View,
+  x_mm: readonly number[],
+  force_cN: readonly number[],
+): void {
   const colour = palette().danger;
-  brush.line(inPixels(view.x, x_mm), inPixels(view.y, force_cN), { colour, width_px: 1.8, dash: [10, 3, 2, 3] });
+  brush.line(inPixels(view.x, x_mm), inPixels(view.y, force_cN), {
+    colour,
+    width_px: 1.8,
+    dash: [10, 3, 2, 3],
+  });
 }
 
 /** What presses gave: the band of the middle half and the median. */
@@ -73,7 +104,10 @@ export function paintMeasured(
 ): void {
   const colour = palette().good;
   const outline = [...x_mm, ...[...x_mm].reverse()];
-  brush.area(inPixels(view.x, outline), inPixels(view.y, [...low_cN, ...[...high_cN].reverse()]), { colour, opacity: 0.22 });
+  brush.area(inPixels(view.x, outline), inPixels(view.y, [...low_cN, ...[...high_cN].reverse()]), {
+    colour,
+    opacity: 0.22,
+  });
   brush.line(inPixels(view.x, x_mm), inPixels(view.y, median_cN), { colour, width_px: 1.6, dash: [3, 2] });
 }
 
@@ -88,7 +122,11 @@ export function paintHatched(brush: Brush, view: View, from_mm: number, to_mm: n
     for (let x = left - box.height; x < right; x += 14)
       brush.line([x, x + box.height], [bottom, box.top], { colour, opacity: 0.25 });
   });
-  brush.text(word, { x_px: (left + right) / 2, y_px: bottom - 8 }, { colour, align: "center", size_px: 11, halo: palette().surface });
+  brush.text(
+    word,
+    { x_px: (left + right) / 2, y_px: bottom - 8 },
+    { colour, align: "center", size_px: 11, halo: palette().surface },
+  );
 }
 
 /** A chosen part of the travel. */
@@ -96,5 +134,9 @@ export function paintSpan(brush: Brush, view: View, from_mm: number, to_mm: numb
   const colour = palette().accent;
   const [left, right] = [view.x.px(from_mm), view.x.px(to_mm)];
   const { top, height } = view.box;
-  brush.rect({ left, top, width: right - left, height }, { colour, opacity: 0.1 }, { colour, opacity: 0.6, dash: [4, 3] });
+  brush.rect(
+    { left, top, width: right - left, height },
+    { colour, opacity: 0.1 },
+    { colour, opacity: 0.6, dash: [4, 3] },
+  );
 }

@@ -1,8 +1,8 @@
 /** Find another button by its name, in place: a field and a list, nothing that covers the page. */
 
+import { canonical, type FDVVModel } from "../../model";
 import { call } from "../../net";
 import type { LibraryRow } from "../../net/messages";
-import { canonical, type FDVVModel } from "../../model";
 import { freshId, h, onCleanup, signal, tell } from "../../ui";
 import { Latest } from "./latest";
 import { filled } from "./rows";
@@ -30,12 +30,27 @@ export function pickButton(label: string, chosen: (model: FDVVModel) => void): H
     id,
     type: "search",
     autocomplete: "off",
-    placeholder: "name of a button",
+    placeholder: "button name",
     on: { input: () => searching.ask(input.value), focus: () => searching.ask(input.value) },
   });
   const entry = (row: LibraryRow) =>
-    h("li", {}, h("button", { type: "button", class: "button quiet", on: { click: () => take(row) } }, row.name, h("span", { class: "muted" }, ` ${row.collection || row.origin}`)));
-  const element = h("div", { class: "edit-pick" }, h("label", { for: id, class: "muted" }, label), input, filled(h("ul", { "aria-label": "Buttons found" }), () => rows().map(entry)));
+    h(
+      "li",
+      {},
+      h(
+        "button",
+        { type: "button", class: "button quiet", on: { click: () => take(row) } },
+        row.name,
+        h("span", { class: "muted" }, ` ${row.collection || row.origin}`),
+      ),
+    );
+  const element = h(
+    "div",
+    { class: "edit-pick" },
+    h("label", { for: id, class: "muted" }, label),
+    input,
+    filled(h("ul", { "aria-label": "Matching buttons" }), () => rows().map(entry)),
+  );
   element.addEventListener("keydown", (event) => {
     if (event.key === "Escape") rows.set([]);
   });

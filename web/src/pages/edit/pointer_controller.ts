@@ -3,14 +3,14 @@
 import type { DataPoint, View } from "../../draw";
 import { controlPoints_mm, snap } from "../../math";
 import { movePoints } from "../../model";
-import { cancelled, type CurveToolState, IDLE, pointerStep } from "../../tools/curve_tool";
+import { type CurveToolState, cancelled, IDLE, pointerStep } from "../../tools/curve_tool";
 import type { Scene } from "../../tools/reach";
-import type { Act, Grip, Place, PointerRecord, Way } from "../../tools/records";
+import type { Act, CanvasPoint, Grip, Offset, PointerRecord } from "../../tools/records";
 import { batch, onCleanup } from "../../ui";
 import type { EditorCanvas } from "./canvas";
-import { type Desk, refOf } from "./desk";
+import { type EditorController, refOf } from "./editor_controller";
 import { pointerRecord } from "./events";
-import { handlesOnCanvas, heldPlace, placeHandles, pullEdit } from "./handles";
+import { clampedPosition, handlesOnCanvas, positionHandles, pullEdit } from "./handles";
 import { addAt } from "./point_edits";
 import { away_px, inPixels, sampled } from "./samples";
 import { timed } from "./timing";
@@ -19,20 +19,20 @@ import { timed } from "./timing";
 interface Mark {
   readonly view: View;
   readonly start: DataPoint;
-  readonly curve: ReturnType<Desk["curve"]>;
-  readonly places: ReturnType<typeof placeHandles>;
+  readonly curve: ReturnType<EditorController["curve"]>;
+  readonly positions: ReturnType<typeof positionHandles>;
   readonly bumps: readonly { readonly name: string; readonly x_mm: number }[];
 }
 
 /** Listens to the pointer for as long as the page is there. */
-export class Hand {
+export class PointerController {
   private state: CurveToolState = IDLE;
   private mark: Mark | null = null;
-  private down: Place = { x_px: 0, y_px: 0 };
+  private down: CanvasPoint = { x_px: 0, y_px: 0 };
   private space = false;
 
   constructor(
-    private readonly desk: Desk,
+    private readonly editor: EditorController,
     private readonly canvas: EditorCanvas,
   ) {
     const { element } = canvas.plot;
@@ -61,9 +61,9 @@ export class Hand {
 
   /** Escape, or a page that goes away. */
   cancel(): void {
-    const told = cancelled(this.state);
-    this.state = told.state;
-    told.acts.forEach((act) => this.act(act));
+    const answer = cancelled(this.state);
+    this.state = answer.state;
+    answer.acts.forEach((act) => this.act(act));
   }
 
   private onPointer(event: PointerEvent): void {
@@ -72,15 +72,15 @@ export class Hand {
     const work = () =>
       batch(() => {
         this.canvas.hover.set(event.pointerType === "touch" ? null : at);
-        const told = pointerStep(this.state, this.record(event, at), this.scene());
-        this.state = told.state;
-        told.acts.forEach((act) => this.act(act));
+        const answer = pointerStep(this.state, this.record(event, at), this.scene());
+        this.state = answer.state;
+        answer.acts.forEach((act) => this.act(act));
       });
     if (this.state.mode === "dragging") timed("fdvv-hand", work);
     else work();
   }
 
-  private begin(event: PointerEvent, at: Place): void {
+  private begin(event: PointerEvent, at: CanvasPoint): void {
     this.down = at;
     if (this.state.mode !== "dragging") this.mark = null;
     this.canvas.plot.element.focus({ preventScroll: true });
@@ -88,7 +88,7 @@ export class Hand {
     if (event.button !== 1) this.canvas.plot.element.setPointerCapture(event.pointerId);
   }
 
-  private record(event: PointerEvent, at: Place): PointerRecord {
+  private record(event: PointerEvent, at: CanvasPoint): PointerRecord {
     const record = pointerRecord(event, at, this.space);
     // the plot pans with the middle button: to the tool it is one that does nothing
     return record.button === 1 ? { ...record, button: 2 } : record;
@@ -96,38 +96,38 @@ export class Hand {
 
   private scene(): Scene {
     const view = this.canvas.plot.view();
-    const curve = this.desk.curve();
+    const curve = this.editor.curve();
     const [x, y] = [inPixels(view.x, controlPoints_mm(curve)), inPixels(view.y, curve.control_points_cN)];
-    const others = this.desk.others();
-    const off = (at: Place) => others.map((one) => away_px(sampled(one), view.x, view.y, at));
+    const others = this.editor.others();
+    const off = (at: CanvasPoint) => others.map((other) => away_px(sampled(other), view.x, view.y, at));
     return {
       points: Array.from(x, (x_px, index) => ({ index, x_px, y_px: y[index]! })),
-      handles: handlesOnCanvas(view, this.desk.model(), curve),
+      handles: handlesOnCanvas(view, this.editor.model(), curve),
       away_px: (at) => away_px(sampled(curve), view.x, view.y, at),
       nearestCurve: (at) => {
         const away = off(at);
         const index = away.indexOf(Math.min(...away));
         return index < 0 ? null : { index, away_px: away[index]! };
       },
-      selection: this.desk.selection.peek(),
+      selection: this.editor.selection.peek(),
     };
   }
 
   private act(act: Act): void {
-    const { desk, canvas } = this;
+    const { editor, canvas } = this;
     switch (act.kind) {
       case "select":
-        return desk.selection.set(act.points);
+        return editor.selection.set(act.points);
       case "activate":
-        return desk.activate(desk.others()[act.curve]!);
+        return editor.activate(editor.others()[act.curve]!);
       case "begin":
         return this.take(act.grip);
       case "shift":
-        return this.shift(act.grip, act.way);
+        return this.shift(act.grip, act.offset);
       case "commit":
-        return this.letGo(() => desk.release());
+        return this.endDrag(() => editor.release());
       case "cancel":
-        return this.letGo(() => desk.cancel());
+        return this.endDrag(() => editor.cancel());
       case "box":
         return canvas.box.set({ from: act.from, to: act.to });
       case "box-end":
@@ -143,63 +143,73 @@ export class Hand {
   private take(grip: Grip): void {
     const view = this.canvas.plot.view();
     const { x_px, y_px } = this.down;
-    const [model, curve] = [this.desk.model(), this.desk.curve()];
+    const [model, curve] = [this.editor.model(), this.editor.curve()];
     const handles = handlesOnCanvas(view, model, curve);
     this.mark = {
       view,
       start: { x: view.x.value(x_px), y: view.y.value(y_px) },
       curve,
-      places: placeHandles(model, curve),
+      positions: positionHandles(model, curve),
       bumps: handles.map(({ name, x_px: at }) => ({ name, x_mm: view.x.value(at) })),
     };
-    this.desk.mark("drag");
+    this.editor.mark("drag");
     this.canvas.held.set(grip.kind === "handle" ? grip.name : grip.kind);
   }
 
-  private shift(grip: Grip, { dx_px, dy_px }: Way): void {
-    const { mark, desk } = this;
+  private shift(grip: Grip, { dx_px, dy_px }: Offset): void {
+    const { mark, editor } = this;
     if (!mark) return;
     const { view, curve } = mark;
     const by_cN = view.y.value(dy_px) - view.y.value(0);
-    const constraints = desk.constraints.peek();
+    const constraints = editor.constraints.peek();
     if (grip.kind === "point") {
       const step = constraints.step_cN ?? 0;
-      const points = [{ ...refOf(curve), indices: desk.selection.peek() }];
-      return desk.drag(movePoints(points, snap(by_cN, step), constraints));
+      const points = [{ ...refOf(curve), indices: editor.selection.peek() }];
+      return editor.drag(movePoints(points, snap(by_cN, step), constraints));
     }
-    if (grip.kind === "line") return desk.drag(pullEdit(curve, mark.start.x, by_cN, constraints));
+    if (grip.kind === "line") return editor.drag(pullEdit(curve, mark.start.x, by_cN, constraints));
     if (grip.kind !== "handle") return;
     const bump = grip.name === "peak" || grip.name === "valley";
     const x_mm = mark.bumps.find(({ name }) => name === grip.name)?.x_mm ?? mark.start.x;
-    if (bump) return desk.drag(pullEdit(curve, x_mm, by_cN, constraints));
-    const place = mark.places.find(({ name }) => name === grip.name);
+    if (bump) return editor.drag(pullEdit(curve, x_mm, by_cN, constraints));
+    const position = mark.positions.find(({ name }) => name === grip.name);
     const by_mm = view.x.value(dx_px) - view.x.value(0);
-    if (place) desk.drag(place.edit(heldPlace(desk.settled.peek(), place.name, place.at_mm + by_mm)));
+    if (position)
+      editor.drag(
+        position.edit(clampedPosition(editor.settled.peek(), position.name, position.at_mm + by_mm)),
+      );
   }
 
-  private letGo(end: () => void): void {
+  private endDrag(end: () => void): void {
     this.mark = null;
     this.canvas.held.set(null);
     end();
   }
 
-  private add({ x_px }: Place): void {
+  private add({ x_px }: CanvasPoint): void {
     const x_mm = snap(this.canvas.plot.view().x.value(x_px), 0.01);
-    addAt(this.desk, x_mm);
+    addAt(this.editor, x_mm);
   }
 
   /** Pan and pinch, from the view that there was when it began. */
   private look(act: Extract<Act, { readonly kind: "pan" | "pinch" }>): void {
     const { plot } = this.canvas;
-    this.mark ??= { view: plot.view(), start: { x: 0, y: 0 }, curve: this.desk.curve(), places: [], bumps: [] };
+    this.mark ??= {
+      view: plot.view(),
+      start: { x: 0, y: 0 },
+      curve: this.editor.curve(),
+      positions: [],
+      bumps: [],
+    };
     const { x, y } = this.mark.view;
-    const around = act.kind === "pinch" ? { x: x.value(act.around.x_px), y: y.value(act.around.y_px) } : { x: 0, y: 0 };
+    const around =
+      act.kind === "pinch" ? { x: x.value(act.around.x_px), y: y.value(act.around.y_px) } : { x: 0, y: 0 };
     const factor = act.kind === "pinch" ? 1 / Math.max(0.05, act.ratio) : 1;
     const moved = (scale: View["x"], px: number, at: number) => {
       const by = scale.value(px) - scale.value(0);
       const seen = (edge: number) => at + (edge - at) * factor - by * factor;
       return { low: seen(scale.range.low), high: seen(scale.range.high) };
     };
-    plot.window.set({ x: moved(x, act.way.dx_px, around.x), y: moved(y, act.way.dy_px, around.y) });
+    plot.window.set({ x: moved(x, act.offset.dx_px, around.x), y: moved(y, act.offset.dy_px, around.y) });
   }
 }

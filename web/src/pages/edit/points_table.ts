@@ -6,30 +6,40 @@ import { walked } from "../../tools/grid";
 import { toggled } from "../../tools/selection";
 import { typed } from "../../tools/typed";
 import { batch, button, computed, effect, h, shown, toast, untracked } from "../../ui";
-import { type Desk, refOf } from "./desk";
+import { type EditorController, refOf } from "./editor_controller";
 import { removeSelected } from "./point_edits";
 
 const COLUMNS = ["#", "displacement, mm", "force, cN"] as const;
 const FORCE = 2;
 
 /** The table and the buttons that change how many points there are. */
-export function pointsTable(desk: Desk): HTMLElement {
+export function pointsTable(editor: EditorController): HTMLElement {
   const body = h("tbody", {});
   const grid = h(
     "table",
     { class: "edit-points", role: "grid", "aria-label": "Control points", "aria-multiselectable": "true" },
-    h("thead", {}, h("tr", {}, COLUMNS.map((name) => h("th", { scope: "col", class: "number" }, name)))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        COLUMNS.map((name) => h("th", { scope: "col", class: "number" }, name)),
+      ),
+    ),
     body,
   );
-  const count = computed(() => desk.curve().control_points_cN.length);
+  const count = computed(() => editor.curve().control_points_cN.length);
   const at = { row: 0, column: FORCE };
   effect(() => {
     const rows = count();
-    untracked(() => body.replaceChildren(...Array.from({ length: rows }, (_, row) => rowOf(desk, row, at))));
+    untracked(() =>
+      body.replaceChildren(...Array.from({ length: rows }, (_, row) => rowOf(editor, row, at))),
+    );
   });
-  grid.addEventListener("keydown", (event) => onKey(desk, body, at, event));
-  grid.addEventListener("focusin", (event) => onFocus(desk, body, at, event.target));
-  const add = () => addBehind(desk);
+  grid.addEventListener("keydown", (event) => onKey(editor, body, at, event));
+  grid.addEventListener("focusin", (event) => onFocus(editor, body, at, event.target));
+  const add = () => addBehind(editor);
   return h(
     "div",
     { class: "stack" },
@@ -37,8 +47,13 @@ export function pointsTable(desk: Desk): HTMLElement {
     h(
       "div",
       { class: "row" },
-      button({ label: "Add point", act: add, hint: "Behind the selected one; the shape stays" }),
-      button({ label: "Remove points", act: () => removeSelected(desk), disabled: () => desk.selection().length === 0, hint: "Delete; the shape changes as little as it can" }),
+      button({ label: "Add point", act: add, hint: "After the selected one; the shape stays" }),
+      button({
+        label: "Remove points",
+        act: () => removeSelected(editor),
+        disabled: () => editor.selection().length === 0,
+        hint: "Delete; the shape changes as little as possible",
+      }),
     ),
   );
 }
@@ -48,73 +63,103 @@ interface At {
   column: number;
 }
 
-function rowOf(desk: Desk, row: number, at: At): HTMLElement {
-  const place = () => controlPoints_mm(desk.curve())[row];
+function rowOf(editor: EditorController, row: number, at: At): HTMLElement {
+  const position = () => controlPoints_mm(editor.curve())[row];
   const texts = [
     () => String(row + 1),
-    () => (place() === undefined ? "" : shown(place()!, 4)),
-    () => shown(desk.curve().control_points_cN[row] ?? 0, 4),
+    () => (position() === undefined ? "" : shown(position()!, 4)),
+    () => shown(editor.curve().control_points_cN[row] ?? 0, 4),
   ];
   const cell = (text: () => string, column: number) =>
-    h("td", { role: "gridcell", class: "number", tabindex: row === at.row && column === at.column ? 0 : -1, "aria-readonly": column === FORCE ? null : "true", on: column === FORCE ? { dblclick: (event) => open(desk, event.currentTarget as HTMLElement, row) } : {} }, text);
+    h(
+      "td",
+      {
+        role: "gridcell",
+        class: "number",
+        tabindex: row === at.row && column === at.column ? 0 : -1,
+        "aria-readonly": column === FORCE ? null : "true",
+        on:
+          column === FORCE
+            ? { dblclick: (event) => open(editor, event.currentTarget as HTMLElement, row) }
+            : {},
+      },
+      text,
+    );
   return h(
     "tr",
-    { role: "row", "aria-selected": () => String(desk.selection().includes(row)), on: { pointerdown: (event) => choose(desk, row, event) } },
+    {
+      role: "row",
+      "aria-selected": () => String(editor.selection().includes(row)),
+      on: { pointerdown: (event) => choose(editor, row, event) },
+    },
     texts.map(cell),
   );
 }
 
-function choose(desk: Desk, row: number, event: PointerEvent): void {
+function choose(editor: EditorController, row: number, event: PointerEvent): void {
   if ((event.target as HTMLElement).matches("input")) return;
-  const now = desk.selection.peek();
-  desk.selection.set(event.shiftKey || event.ctrlKey ? toggled(now, row) : [row]);
+  const now = editor.selection.peek();
+  editor.selection.set(event.shiftKey || event.ctrlKey ? toggled(now, row) : [row]);
 }
 
 function cellAt(body: HTMLElement, { row, column }: At): HTMLElement | null {
   return (body.children[row]?.children[column] as HTMLElement | undefined) ?? null;
 }
 
-function onFocus(desk: Desk, body: HTMLElement, at: At, target: EventTarget | null): void {
+function onFocus(editor: EditorController, body: HTMLElement, at: At, target: EventTarget | null): void {
   const cell = target instanceof HTMLElement ? target.closest("td") : null;
   if (!cell?.parentElement) return;
   cellAt(body, at)?.setAttribute("tabindex", "-1");
   at.row = [...body.children].indexOf(cell.parentElement);
   at.column = [...cell.parentElement.children].indexOf(cell);
   cell.tabIndex = 0;
-  if (!desk.selection.peek().includes(at.row)) desk.selection.set([at.row]);
+  if (!editor.selection.peek().includes(at.row)) editor.selection.set([at.row]);
 }
 
-function onKey(desk: Desk, body: HTMLElement, at: At, event: KeyboardEvent): void {
+function onKey(editor: EditorController, body: HTMLElement, at: At, event: KeyboardEvent): void {
   if (event.target instanceof HTMLInputElement || event.altKey) return;
-  const begins = event.key === "F2" || (event.key === "Enter" && !event.shiftKey) || (/^[0-9.,+-]$/.test(event.key) && !event.ctrlKey);
+  const begins =
+    event.key === "F2" ||
+    (event.key === "Enter" && !event.shiftKey) ||
+    (/^[0-9.,+-]$/.test(event.key) && !event.ctrlKey);
   if (begins && at.column === FORCE) {
     event.preventDefault();
-    open(desk, cellAt(body, at)!, at.row, event.key.length === 1 ? event.key : undefined);
+    open(editor, cellAt(body, at)!, at.row, event.key.length === 1 ? event.key : undefined);
     return;
   }
   if (event.key === "Delete" || event.key === "Backspace") {
     event.preventDefault();
-    removeSelected(desk);
+    removeSelected(editor);
     return;
   }
-  const to = walked(at, event.key, event.ctrlKey, { rows: body.children.length, columns: COLUMNS.length, page: 8 });
+  const to = walked(at, event.key, event.ctrlKey, {
+    rows: body.children.length,
+    columns: COLUMNS.length,
+    page: 8,
+  });
   if (!to) return;
   event.preventDefault();
-  go(desk, body, to, event.shiftKey);
+  go(editor, body, to, event.shiftKey);
 }
 
-function go(desk: Desk, body: HTMLElement, to: At, extend: boolean): void {
-  const kept = desk.selection.peek();
+function go(editor: EditorController, body: HTMLElement, to: At, extend: boolean): void {
+  const kept = editor.selection.peek();
   batch(() => {
-    desk.selection.set(extend ? [...new Set([...kept, to.row])].sort((a, b) => a - b) : [to.row]);
+    editor.selection.set(extend ? [...new Set([...kept, to.row])].sort((a, b) => a - b) : [to.row]);
     cellAt(body, to)?.focus();
   });
 }
 
 /** Type into a cell: Enter and leaving set the number, Escape takes it back. */
-function open(desk: Desk, cell: HTMLElement, row: number, first?: string): void {
-  const was = desk.curve().control_points_cN[row]!;
-  const input = h("input", { type: "text", inputmode: "decimal", class: "edit-cell", "aria-label": `force of point ${row + 1}, cN`, value: first ?? String(was) });
+function open(editor: EditorController, cell: HTMLElement, row: number, first?: string): void {
+  const was = editor.curve().control_points_cN[row]!;
+  const input = h("input", {
+    type: "text",
+    inputmode: "decimal",
+    class: "edit-cell",
+    "aria-label": `force of point ${row + 1}, cN`,
+    value: first ?? String(was),
+  });
   const content = [...cell.childNodes];
   let done = false;
   const close = (keep: boolean, back: boolean) => {
@@ -125,7 +170,10 @@ function open(desk: Desk, cell: HTMLElement, row: number, first?: string): void 
     if (back) cell.focus();
     if (!keep) return;
     if (value === null) return void toast(`"${input.value}" is not a number`, "wrong");
-    if (value !== was) desk.apply(setPoints([{ ...refOf(desk.curve()), values_cN: [[row, value]] }], desk.constraints.peek()));
+    if (value !== was)
+      editor.apply(
+        setPoints([{ ...refOf(editor.curve()), values_cN: [[row, value]] }], editor.constraints.peek()),
+      );
   };
   input.addEventListener("keydown", (event) => {
     event.stopPropagation();
@@ -143,9 +191,12 @@ function open(desk: Desk, cell: HTMLElement, row: number, first?: string): void 
 }
 
 /** Add a point half-way behind the last selected one. */
-function addBehind(desk: Desk): void {
-  const places = controlPoints_mm(desk.curve());
-  const row = Math.min(places.length - 2, desk.selection.peek().at(-1) ?? Math.floor(places.length / 2));
-  const x_mm = 0.5 * (places[row]! + places[row + 1]!);
-  if (desk.apply(addPoint(refOf(desk.curve()), Number(x_mm.toFixed(4))))) desk.selection.set([row + 1]);
+function addBehind(editor: EditorController): void {
+  const positions = controlPoints_mm(editor.curve());
+  const row = Math.min(
+    positions.length - 2,
+    editor.selection.peek().at(-1) ?? Math.floor(positions.length / 2),
+  );
+  const x_mm = 0.5 * (positions[row]! + positions[row + 1]!);
+  if (editor.apply(addPoint(refOf(editor.curve()), Number(x_mm.toFixed(4))))) editor.selection.set([row + 1]);
 }

@@ -1,11 +1,11 @@
 /** What the chosen rig makes of the active curve, asked while the hand moves, and what presses gave. */
 
 import { lineOf } from "../../math/words";
+import type { FDVVModel } from "../../model";
 import { call } from "../../net";
 import type { AchievableForce, MeasuredPresses, RigChoice } from "../../net/messages";
-import type { FDVVModel } from "../../model";
 import { effect, onCleanup, type Signal, signal, tell, untracked } from "../../ui";
-import type { Desk } from "./desk";
+import type { EditorController } from "./editor_controller";
 import { Latest } from "./latest";
 
 interface Question {
@@ -14,7 +14,7 @@ interface Question {
   readonly velocity_mm_s: number | null;
 }
 
-/** The rig's answers, for whoever draws or says them. */
+/** The rig's answers, for the canvas and the verdict. */
 export interface RigView {
   readonly rigs: Signal<readonly RigChoice[]>;
   /** Empty: no rig is looked at. */
@@ -31,7 +31,7 @@ export interface RigView {
 const CHOSEN = "fdvv-edit-rig";
 
 /** Ask for the rigs, and for what the chosen one makes of every change of the active curve. */
-export function lookAtRigs(desk: Desk, id: () => string): RigView {
+export function lookAtRigs(editor: EditorController, id: () => string): RigView {
   const view: RigView = {
     rigs: signal<readonly RigChoice[]>([]),
     rig_id: signal(localStorage.getItem(CHOSEN) ?? "shipped:default"),
@@ -45,10 +45,14 @@ export function lookAtRigs(desk: Desk, id: () => string): RigView {
     const name = id().slice(id().indexOf(":") + 1);
     call("editor.measured", { name }).then(({ found }) => view.measured.set(found), tell);
   });
-  const latest = new Latest(asked, ({ curves }) => answered(view, curves, ""), (error) => answered(view, [], lineOf(error)));
+  const latest = new Latest(
+    asked,
+    ({ curves }) => answered(view, curves, ""),
+    (error) => answered(view, [], lineOf(error)),
+  );
   onCleanup(() => latest.close());
   effect(() => {
-    const [model, rig_id, { velocity_mm_s }] = [desk.model(), view.rig_id(), desk.active()];
+    const [model, rig_id, { velocity_mm_s }] = [editor.model(), view.rig_id(), editor.active()];
     localStorage.setItem(CHOSEN, rig_id);
     if (rig_id === "") return untracked(() => answered(view, [], ""));
     if (!untracked(() => view.curves().length)) view.waiting.set(true);

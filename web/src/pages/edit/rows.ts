@@ -2,7 +2,7 @@
 
 import { effect } from "../../ui";
 
-/** Keep an element's rows as they are told; unlike a slot this puts nothing between a list and its items. */
+/** Make an element's children follow a signal; unlike a slot this puts nothing between a list and its items. */
 export function filled<E extends HTMLElement>(element: E, rows: () => readonly Node[]): E {
   effect(() => element.replaceChildren(...rows()));
   return element;

@@ -41,7 +41,12 @@ export function forceNear_cN({ x_mm, force_cN: force }: Sampled, x: number): num
 }
 
 /** How far a place is from a sampled curve on the screen, px; only the part near the place is looked at. */
-export function away_px(of: Sampled, x: Scale, y: Scale, at: { readonly x_px: number; readonly y_px: number }): number {
+export function away_px(
+  of: Sampled,
+  x: Scale,
+  y: Scale,
+  at: { readonly x_px: number; readonly y_px: number },
+): number {
   const reach = 24;
   const { x_mm, force_cN: force } = of;
   let least = Infinity;

@@ -1,6 +1,6 @@
 /** The axes of the surface view: a floor with its grid, and along its front edges the units. */
 
-import { type Brush, palette, ticks, tickStep, tickText } from "../../draw";
+import { type Brush, palette, tickStep, ticks, tickText } from "../../draw";
 import { type Corner, frontEdges, type Seen, type Turn } from "./surface_scene";
 
 /** The ranges of the box. */
@@ -18,28 +18,63 @@ const BELOW_px = 20;
 const LETTER_px = 7.4;
 
 /** Paint floor, ticks and labels; `at` gives where a corner of the box is seen. */
-export function paintAxes(brush: Brush, at: (corner: Corner) => Seen, turn: Turn, ranges: Ranges, width_px: number): void {
+export function paintAxes(
+  brush: Brush,
+  at: (corner: Corner) => Seen,
+  turn: Turn,
+  ranges: Ranges,
+  width_px: number,
+): void {
   const { displacementAtBack: back, velocityAtRight: right } = frontEdges(turn);
   const axes = [
-    { label: "displacement, mm", low: 0, high: ranges.travel_mm, place: (t: number, out: number): Corner => [t, back * out, -1], over: (t: number): Corner => [t, -back, -1] },
-    { label: "velocity, mm/s", low: ranges.velocity_mm_s[0], high: ranges.velocity_mm_s[1], place: (t: number, out: number): Corner => [right * out, t, -1], over: (t: number): Corner => [-right, t, -1] },
-    { label: "force, cN", low: ranges.force_cN[0], high: ranges.force_cN[1], place: (t: number, out: number): Corner => [-right * out, back * out, t], over: (t: number): Corner => [-right, -back, t] },
+    {
+      label: "displacement, mm",
+      low: 0,
+      high: ranges.travel_mm,
+      position: (t: number, out: number): Corner => [t, back * out, -1],
+      over: (t: number): Corner => [t, -back, -1],
+    },
+    {
+      label: "velocity, mm/s",
+      low: ranges.velocity_mm_s[0],
+      high: ranges.velocity_mm_s[1],
+      position: (t: number, out: number): Corner => [right * out, t, -1],
+      over: (t: number): Corner => [-right, t, -1],
+    },
+    {
+      label: "force, cN",
+      low: ranges.force_cN[0],
+      high: ranges.force_cN[1],
+      position: (t: number, out: number): Corner => [-right * out, back * out, t],
+      over: (t: number): Corner => [-right, -back, t],
+    },
   ];
   const { grid, muted, text } = palette();
-  for (const { label, low, high, place, over } of axes) {
+  for (const { label, low, high, position, over } of axes) {
     const range = { low, high };
     for (const value of ticks(range, COUNT)) {
       const t = (2 * (value - low)) / (high - low || 1) - 1;
-      line(brush, at(place(t, 1)), at(over(t)), grid);
-      const { x, y } = at(place(t, OUT));
-      brush.text(tickText(value, tickStep(range, COUNT)), { x_px: x, y_px: y }, { colour: muted, size_px: 11, align: "center" });
+      line(brush, at(position(t, 1)), at(over(t)), grid);
+      const { x, y } = at(position(t, OUT));
+      brush.text(
+        tickText(value, tickStep(range, COUNT)),
+        { x_px: x, y_px: y },
+        { colour: muted, size_px: 11, align: "center" },
+      );
     }
-    line(brush, at(place(-1, 1)), at(place(1, 1)), muted);
+    line(brush, at(position(-1, 1)), at(position(1, 1)), muted);
     const up = label.startsWith("force");
-    const { x, y } = at(place(0, FAR));
-    const [first, last] = [at(place(-1, 1)).x, at(place(1, 1)).x];
+    const { x, y } = at(position(0, FAR));
+    const [first, last] = [at(position(-1, 1)).x, at(position(1, 1)).x];
     const align = up ? "center" : x < (first + last) / 2 + 1 ? "right" : "left";
-    brush.text(label, { x_px: up ? x - BELOW_px : inside(x, align === "right", label, width_px), y_px: up ? y : y + BELOW_px }, { colour: text, size_px: 12, align, upwards: up });
+    brush.text(
+      label,
+      {
+        x_px: up ? x - BELOW_px : inside(x, align === "right", label, width_px),
+        y_px: up ? y : y + BELOW_px,
+      },
+      { colour: text, size_px: 12, align, upwards: up },
+    );
   }
 }
 

@@ -50,7 +50,8 @@ export function facesFromBehind(corners: readonly (readonly Seen[])[]): Face[] {
   for (let row = 0; row + 1 < corners.length; row++) {
     const [near, far] = [corners[row]!, corners[row + 1]!];
     for (let column = 0; column + 1 < near.length; column++) {
-      const behind = near[column]!.behind + near[column + 1]!.behind + far[column]!.behind + far[column + 1]!.behind;
+      const behind =
+        near[column]!.behind + near[column + 1]!.behind + far[column]!.behind + far[column + 1]!.behind;
       faces.push({ row, column, behind: behind / 4 });
     }
   }
@@ -58,7 +59,10 @@ export function facesFromBehind(corners: readonly (readonly Seen[])[]): Face[] {
 }
 
 /** The bottom edges of the box that lie in front, where axes are written: which end of the other axis each is at. */
-export function frontEdges(turn: Turn): { readonly displacementAtBack: -1 | 1; readonly velocityAtRight: -1 | 1 } {
+export function frontEdges(turn: Turn): {
+  readonly displacementAtBack: -1 | 1;
+  readonly velocityAtRight: -1 | 1;
+} {
   const behind = (right: number, back: number): number => seen([right, back, -1], turn).behind;
   return {
     displacementAtBack: behind(0, -1) < behind(0, 1) ? -1 : 1,

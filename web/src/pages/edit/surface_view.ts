@@ -1,12 +1,12 @@
 /** The whole button as a surface: force over displacement and velocity, press and release, turned by hand. */
 
 import { type Brush, CanvasBrush, palette, series } from "../../draw";
-import { INTERPOLATIONS, type Stroke, STROKES, surface, surfaceGrid } from "../../math";
+import { INTERPOLATIONS, STROKES, type Stroke, surface, surfaceGrid } from "../../math";
 import { type FDVVModel, setInterpolation, velocities_mm_s } from "../../model";
 import { button, choice, effect, empty, h, onCleanup, panel, signal, toggle } from "../../ui";
-import type { Desk } from "./desk";
+import type { EditorController } from "./editor_controller";
 import { paintAxes } from "./surface_axes";
-import { type Corner, facesFromBehind, FIRST_TURN, type Seen, seen, turned } from "./surface_scene";
+import { type Corner, FIRST_TURN, facesFromBehind, type Seen, seen, turned } from "./surface_scene";
 
 const ROWS = 22;
 const COLUMNS = 44;
@@ -22,7 +22,7 @@ interface Scene {
 }
 
 /** The panel; strokes with fewer than two known velocities have no surface. */
-export function surfacePanels(desk: Desk): HTMLElement[] {
+export function surfacePanels(editor: EditorController): HTMLElement[] {
   const shown = { press: signal(true), release: signal(true) };
   const turn = signal(FIRST_TURN);
   const canvas = h("canvas", {
@@ -35,15 +35,24 @@ export function surfacePanels(desk: Desk): HTMLElement[] {
   const observer = new ResizeObserver(() => resized.update((n) => n + 1));
   observer.observe(canvas);
   onCleanup(() => observer.disconnect());
-  const there = () => STROKES.some((stroke) => velocities_mm_s(desk.settled(), stroke).length > 1);
-  effect(() => {
-    resized();
-    const scene = sceneOf(desk.model(), STROKES.filter((stroke) => shown[stroke]()));
-    if (scene) draw(canvas, (brush, size) => paint(brush, size, scene, turn()));
-  }, (run) => void requestAnimationFrame(run));
+  const there = () => STROKES.some((stroke) => velocities_mm_s(editor.settled(), stroke).length > 1);
+  effect(
+    () => {
+      resized();
+      const scene = sceneOf(
+        editor.model(),
+        STROKES.filter((stroke) => shown[stroke]()),
+      );
+      if (scene) draw(canvas, (brush, size) => paint(brush, size, scene, turn()));
+    },
+    (run) => void requestAnimationFrame(run),
+  );
   const by = (around: number, tilt: number) => turn.update((now) => turned(now, around, tilt));
   listen(canvas, by);
-  const none = empty("No surface yet", "A stroke needs curves at two speeds or more; copy one to another speed.");
+  const none = empty(
+    "No surface yet",
+    "A stroke needs curves at two speeds or more; copy one to another speed.",
+  );
   return [
     panel(
       "Surface",
@@ -52,14 +61,16 @@ export function surfacePanels(desk: Desk): HTMLElement[] {
       h(
         "div",
         { class: "row" },
-        STROKES.map((stroke) => toggle({ label: stroke, value: () => shown[stroke](), set: (on) => shown[stroke].set(on) })),
-        button({ label: "Turn back", act: () => turn.set(FIRST_TURN) }),
+        STROKES.map((stroke) =>
+          toggle({ label: stroke, value: () => shown[stroke](), set: (on) => shown[stroke].set(on) }),
+        ),
+        button({ label: "Reset view", act: () => turn.set(FIRST_TURN) }),
       ),
       choice({
         label: "Force between the speeds",
         options: INTERPOLATIONS.map((one) => [one, one] as const),
-        value: () => desk.settled().interpolation,
-        set: (to) => void desk.apply(setInterpolation(to)),
+        value: () => editor.settled().interpolation,
+        set: (to) => void editor.apply(setInterpolation(to)),
       }),
       h("p", { class: "muted" }, "Drag or use the arrow keys to turn."),
     ),
@@ -77,13 +88,19 @@ function listen(canvas: HTMLElement, by: (around: number, tilt: number) => void)
     by((event.clientX - last.clientX) * TURN_rad_px, (event.clientY - last.clientY) * TURN_rad_px);
     last = event;
   });
-  for (const name of ["pointerup", "pointercancel"] as const) canvas.addEventListener(name, () => (last = null));
+  for (const name of ["pointerup", "pointercancel"] as const)
+    canvas.addEventListener(name, () => (last = null));
   canvas.addEventListener("keydown", (event) => {
-    const ways: Readonly<Record<string, readonly [number, number]>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-    const way = ways[event.key];
-    if (!way) return;
+    const ways: Readonly<Record<string, readonly [number, number]>> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, -1],
+      ArrowDown: [0, 1],
+    };
+    const offset = ways[event.key];
+    if (!offset) return;
     event.preventDefault();
-    by(way[0] * KEY_rad, way[1] * KEY_rad);
+    by(offset[0] * KEY_rad, offset[1] * KEY_rad);
   });
 }
 
@@ -98,7 +115,8 @@ function sceneOf(model: FDVVModel, strokes: readonly Stroke[]): Scene | null {
   const all = grids.flatMap((grid) => [...grid.velocity_mm_s]);
   const [slow, fast] = [Math.min(...all), Math.max(...all)];
   let [low, high] = [0, 1];
-  for (const { force_cN } of grids) for (const f of force_cN) [low, high] = [Math.min(low, f), Math.max(high, f)];
+  for (const { force_cN } of grids)
+    for (const f of force_cN) [low, high] = [Math.min(low, f), Math.max(high, f)];
   const part = (value: number, from: number, to: number) => (2 * (value - from)) / (to - from || 1) - 1;
   return {
     travel_mm: model.travel_mm,
@@ -107,7 +125,14 @@ function sceneOf(model: FDVVModel, strokes: readonly Stroke[]): Scene | null {
     grids: grids.map(({ stroke, displacement_mm: x, velocity_mm_s: v, force_cN: f }) => ({
       stroke,
       corners: Array.from(v, (speed, row) =>
-        Array.from(x, (at, column): Corner => [part(at, 0, model.travel_mm), part(speed, slow, fast), part(f[row * x.length + column]!, low, high)]),
+        Array.from(
+          x,
+          (at, column): Corner => [
+            part(at, 0, model.travel_mm),
+            part(speed, slow, fast),
+            part(f[row * x.length + column]!, low, high),
+          ],
+        ),
       ),
     })),
   };
@@ -138,17 +163,27 @@ function paint(brush: Brush, { width_px, height_px }: Size, scene: Scene, turn: 
   };
   paintAxes(brush, at, turn, scene, width_px);
   const faces = scene.grids.flatMap(({ stroke, corners }) => {
-    const places = corners.map((row) => row.map(at));
-    return facesFromBehind(places).map((face) => ({ ...face, places, corners, stroke }));
+    const positions = corners.map((row) => row.map(at));
+    return facesFromBehind(positions).map((face) => ({ ...face, positions, corners, stroke }));
   });
   faces.sort((a, b) => b.behind - a.behind);
   const { surface: paper } = palette();
-  for (const { row, column, places, corners, stroke } of faces) {
-    const around = [places[row]![column]!, places[row]![column + 1]!, places[row + 1]![column + 1]!, places[row + 1]![column]!];
+  for (const { row, column, positions, corners, stroke } of faces) {
+    const around = [
+      positions[row]![column]!,
+      positions[row]![column + 1]!,
+      positions[row + 1]![column + 1]!,
+      positions[row + 1]![column]!,
+    ];
     const [xs, ys] = [around.map((p) => p.x), around.map((p) => p.y)];
     const { colour } = series(stroke === "press" ? 0 : 1);
     brush.area(xs, ys, { colour: paper });
     brush.area(xs, ys, { colour, opacity: 0.2 + 0.32 * (corners[row]![column]![2] + 1) });
-    if (row % 3 === 0) brush.line(xs.slice(0, 2), ys.slice(0, 2), { colour, opacity: 0.9, dash: stroke === "press" ? [] : [4, 3] });
+    if (row % 3 === 0)
+      brush.line(xs.slice(0, 2), ys.slice(0, 2), {
+        colour,
+        opacity: 0.9,
+        dash: stroke === "press" ? [] : [4, 3],
+      });
   }
 }

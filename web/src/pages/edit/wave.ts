@@ -39,7 +39,10 @@ export function timeAt_s(mode: ModeLike, level: number, duration_s: number): num
 export function sound(vibration: VibrationLike, rate_Hz: number): Float32Array<ArrayBuffer> {
   const { duration_s } = vibration;
   const count = Math.ceil(duration_s * rate_Hz) + 1;
-  const wave = acceleration_m_s2(vibration, Float64Array.from({ length: count }, (_, i) => i / rate_Hz));
+  const wave = acceleration_m_s2(
+    vibration,
+    Float64Array.from({ length: count }, (_, i) => i / rate_Hz),
+  );
   const loudest = wave.reduce((most, a) => Math.max(most, Math.abs(a)), 0);
   if (loudest === 0) return new Float32Array(0);
   const fade = Math.min(FADE_s, 0.5 * duration_s) * rate_Hz;

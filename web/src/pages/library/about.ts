@@ -2,7 +2,7 @@
 
 import { call } from "../../net";
 import type { LibraryButton } from "../../net/messages";
-import { button, effect, h, signal, tell, type Child } from "../../ui";
+import { button, type Child, effect, h, signal, tell } from "../../ui";
 import { actions } from "./actions";
 import type { LibraryStore } from "./store";
 
@@ -21,10 +21,14 @@ export function about(store: LibraryStore): HTMLElement {
     );
     return () => stop.abort();
   });
-  return h("div", { class: "lib-scroll lib-about-panel", tabindex: 0, role: "region", "aria-label": "About this button" }, () => {
-    const now = found();
-    return now ? facts(store, now) : h("p", { class: "muted lib-hint" }, "Choose a button in the list.");
-  });
+  return h(
+    "div",
+    { class: "lib-scroll lib-about-panel", tabindex: 0, role: "region", "aria-label": "About this button" },
+    () => {
+      const now = found();
+      return now ? facts(store, now) : h("p", { class: "muted lib-hint" }, "Choose a button in the list.");
+    },
+  );
 }
 
 function facts(store: LibraryStore, now: LibraryButton): Child {
@@ -36,11 +40,26 @@ function facts(store: LibraryStore, now: LibraryButton): Child {
     ["Licence", now.licence || "not stated in the file"],
     ["Presses", now.cycles === null ? "not stated" : `mean of ${now.used} of ${now.cycles} in the file`],
     ["File of", now.date ?? "shipped with fdvv"],
-    ...now.why.map((line) => [line.slice(0, line.indexOf(":")), line.slice(line.indexOf(":") + 2)] as [string, string]),
+    ...now.why.map(
+      (line) => [line.slice(0, line.indexOf(":")), line.slice(line.indexOf(":") + 2)] as [string, string],
+    ),
   ];
   return [
-    h("div", { class: "row spread" }, h("h3", {}, now.name, now.simulated ? h("span", { class: "tag simulated" }, "simulated") : null)),
-    h("div", { class: "row lib-actions", "data-id": now.id }, actions(store, now.id), button({ label: "Compare", pressed: inside, act: () => store.toggle(now.id) })),
-    h("dl", { class: "lib-facts" }, rows.map(([term, text]) => [h("dt", {}, term), h("dd", {}, text)])),
+    h(
+      "div",
+      { class: "row spread" },
+      h("h3", {}, now.name, now.simulated ? h("span", { class: "tag simulated" }, "simulated") : null),
+    ),
+    h(
+      "div",
+      { class: "row lib-actions", "data-id": now.id },
+      actions(store, now.id),
+      button({ label: "Compare", pressed: inside, act: () => store.toggle(now.id) }),
+    ),
+    h(
+      "dl",
+      { class: "lib-facts" },
+      rows.map(([term, text]) => [h("dt", {}, term), h("dd", {}, text)]),
+    ),
   ];
 }

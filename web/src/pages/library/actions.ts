@@ -2,10 +2,10 @@
 
 import { go } from "../../app/route";
 import { call } from "../../net";
-import { button, tell, type Child } from "../../ui";
+import { button, type Child, tell } from "../../ui";
 import type { LibraryStore } from "./store";
 
-/** Give the buttons of the actions on one button of the library. */
+/** Return the buttons of the actions on one button of the library. */
 export function actions(store: LibraryStore, id: string): Child[] {
   const own = id.startsWith("own:");
   return [
@@ -13,7 +13,10 @@ export function actions(store: LibraryStore, id: string): Child[] {
       ? button({ label: "Edit", kind: "main", act: () => go("edit", id) })
       : button({ label: "Edit a copy", kind: "main", act: () => editCopy(id) }),
     button({ label: "Press it", act: () => go("press", id) }),
-    button({ label: "Find alike", act: () => store.ask({ like: id, text: "", sort: "match", descending: false }) }),
+    button({
+      label: "Find similar",
+      act: () => store.ask({ like: id, text: "", sort: "match", descending: false }),
+    }),
   ];
 }
 

@@ -6,7 +6,7 @@ import { button, effect, h, signal, tell } from "../../ui";
 import { figure } from "./columns";
 import type { LibraryStore } from "./store";
 
-/** Give the id of the button that likeness is asked of: the reference, else the row that the keys are at. */
+/** Return the id of the button that likeness is asked of: the reference, else the row that the keys are at. */
 export function asksOf(store: LibraryStore): string | null {
   return store.shown().reference ?? store.activeId();
 }
@@ -25,19 +25,32 @@ export function alikeList(store: LibraryStore): HTMLElement {
     return () => stop.abort();
   });
   const name = (id: string) => store.rows.names[store.rows.at(id)] ?? id;
-  return h("div", { class: "lib-scroll", tabindex: 0, role: "region", "aria-label": "Buttons that feel alike" }, () => {
-    const now = found();
-    if (!now) return h("p", { class: "muted lib-hint" }, "Choose a button to find those that feel like it.");
-    return [
-      h(
-        "p",
-        { class: "row spread" },
-        h("span", {}, "Nearest to ", h("strong", {}, name(now.id)), ", in just noticeable differences (JND)"),
-        button({ label: "Sort the whole list by likeness", act: () => store.ask({ like: now.id, sort: "match", descending: false }) }),
-      ),
-      table(store, now.alike),
-    ];
-  });
+  return h(
+    "div",
+    { class: "lib-scroll", tabindex: 0, role: "region", "aria-label": "Similar buttons" },
+    () => {
+      const now = found();
+      if (!now) return h("p", { class: "muted lib-hint" }, "Choose a button to find similar ones.");
+      return [
+        h(
+          "p",
+          { class: "row spread" },
+          h(
+            "span",
+            {},
+            "Nearest to ",
+            h("strong", {}, name(now.id)),
+            ", in just noticeable differences (JND)",
+          ),
+          button({
+            label: "Sort the list by similarity",
+            act: () => store.ask({ like: now.id, sort: "match", descending: false }),
+          }),
+        ),
+        table(store, now.alike),
+      ];
+    },
+  );
 }
 
 function table(store: LibraryStore, alike: readonly LibraryAlike[]): HTMLElement {
@@ -45,8 +58,26 @@ function table(store: LibraryStore, alike: readonly LibraryAlike[]): HTMLElement
   return h(
     "table",
     {},
-    h("thead", {}, h("tr", {}, heads.map((text, i) => h("th", { scope: "col", class: i > 1 && i < 6 ? "number" : "" }, text || h("span", { class: "visually-hidden" }, "Compare"))))),
-    h("tbody", {}, alike.map((one) => line(store, one))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        heads.map((text, i) =>
+          h(
+            "th",
+            { scope: "col", class: i > 1 && i < 6 ? "number" : "" },
+            text || h("span", { class: "visually-hidden" }, "Compare"),
+          ),
+        ),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      alike.map((one) => line(store, one)),
+    ),
   );
 }
 
@@ -62,6 +93,16 @@ function line(store: LibraryStore, one: LibraryAlike): HTMLElement {
     jnd(one.force_jnd),
     jnd(one.shape_jnd),
     jnd(one.landmarks_jnd),
-    h("td", {}, button({ label: `Compare ${one.row.name}`, glyph: "+", kind: "quiet", pressed: inside, act: () => store.toggle(one.row.id) })),
+    h(
+      "td",
+      {},
+      button({
+        label: `Compare ${one.row.name}`,
+        glyph: "+",
+        kind: "quiet",
+        pressed: inside,
+        act: () => store.toggle(one.row.id),
+      }),
+    ),
   );
 }

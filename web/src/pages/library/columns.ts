@@ -11,7 +11,14 @@ export interface Column {
   readonly subject: string;
 }
 
-const column = (name: string, label: string, short: string, unit: string, digits: number, subject: string): Column => ({
+const column = (
+  name: string,
+  label: string,
+  short: string,
+  unit: string,
+  digits: number,
+  subject: string,
+): Column => ({
   name,
   label,
   short,
@@ -27,8 +34,8 @@ export const COLUMNS: readonly Column[] = [
   column("peak_mm", "Peak at", "Peak at", "mm", 2, "bump"),
   column("valley_cN", "Valley force", "Valley", "cN", 1, "bump"),
   column("valley_mm", "Valley at", "Valley at", "mm", 2, "bump"),
-  column("drop_cN", "Bump (peak less valley)", "Bump", "cN", 1, "bump"),
-  column("snap_ratio", "Snap ratio (bump by peak)", "Snap ratio", "", 2, "bump"),
+  column("drop_cN", "Bump (peak minus valley)", "Bump", "cN", 1, "bump"),
+  column("snap_ratio", "Snap ratio (bump / peak)", "Snap ratio", "", 2, "bump"),
   column("release_drop_cN", "Bump of the release", "Release bump", "cN", 1, "release"),
   column("actuation_mm", "Actuation at", "Actuation", "mm", 2, "actuation"),
   column("actuation_cN", "Force at actuation", "At actuation", "cN", 1, "actuation"),
@@ -36,9 +43,9 @@ export const COLUMNS: readonly Column[] = [
   column("travel_mm", "Travel", "Travel", "mm", 2, "press"),
   column("bottom_out_cN", "Force at bottom-out", "Bottom-out", "cN", 1, "press"),
   column("pre_slope_cN_mm", "Mean slope before the peak", "Slope before", "cN/mm", 1, "press"),
-  column("post_slope_cN_mm", "Mean slope of the last quarter", "Slope after", "cN/mm", 1, "press"),
+  column("post_slope_cN_mm", "Mean slope over the last quarter", "Slope after", "cN/mm", 1, "press"),
   column("work_mJ", "Work of the press", "Work", "mJ", 2, "press"),
-  column("loss_mJ", "Work not given back (hysteresis)", "Loss", "mJ", 2, "release"),
+  column("loss_mJ", "Work lost (hysteresis)", "Loss", "mJ", 2, "release"),
 ];
 
 const BY_NAME = new Map(COLUMNS.map((one) => [one.name, one]));
@@ -48,17 +55,34 @@ export function columnOf(name: string): Column | undefined {
 }
 
 /** Those that are filters from the start, and those behind "More". */
-export const FILTERS = ["peak_cN", "drop_cN", "actuation_mm", "travel_mm", "bottom_out_cN", "snap_ratio"] as const;
-export const MORE_FILTERS = ["preload_cN", "peak_mm", "release_drop_cN", "pre_slope_cN_mm", "post_slope_cN_mm", "work_mJ", "loss_mJ"] as const;
+export const FILTERS = [
+  "peak_cN",
+  "drop_cN",
+  "actuation_mm",
+  "travel_mm",
+  "bottom_out_cN",
+  "snap_ratio",
+] as const;
+export const MORE_FILTERS = [
+  "preload_cN",
+  "peak_mm",
+  "release_drop_cN",
+  "pre_slope_cN_mm",
+  "post_slope_cN_mm",
+  "work_mJ",
+  "loss_mJ",
+] as const;
 
 /** Those that every row of the list shows. */
 export const LISTED = ["peak_cN", "drop_cN", "bottom_out_cN", "travel_mm"] as const;
 
 export function figure(value: number | null | undefined, digits: number): string {
-  return value === null || value === undefined || !Number.isFinite(value) ? "–" : value.toFixed(digits).replace("-", "−");
+  return value === null || value === undefined || !Number.isFinite(value)
+    ? "–"
+    : value.toFixed(digits).replace("-", "−");
 }
 
-/** Give the reason why a figure is not there, as the server says it. */
+/** Return the reason why a figure is not there, as the server says it. */
 export function whyNot(why: readonly string[], of: Column): string {
   const found = why.find((line) => line.startsWith(`${of.subject}: `));
   return found ? found.slice(of.subject.length + 2) : "not known";

@@ -19,7 +19,7 @@ const VIEWS: readonly (readonly [ViewName, string])[] = [
 ];
 const TABS: readonly (readonly [TabName, string])[] = [
   ["landmarks", "Landmarks"],
-  ["alike", "Feels alike"],
+  ["alike", "Similar"],
   ["about", "About"],
 ];
 
@@ -40,7 +40,11 @@ export function compare(store: LibraryStore): HTMLElement {
     h("div", { class: "lib-plot" }, overlay.plot.element, preview(overlay)),
     legend(store, overlay),
     tabs({ label: "Below the curves", tabs: TABS, value: tab, set: (next) => store.show({ tab: next }) }),
-    h("div", { class: "lib-below" }, below.map(([name, element]) => h("div", { class: "lib-tab", hidden: () => tab() !== name }, element))),
+    h(
+      "div",
+      { class: "lib-below" },
+      below.map(([name, element]) => h("div", { class: "lib-tab", hidden: () => tab() !== name }, element)),
+    ),
   );
 }
 
@@ -49,15 +53,35 @@ function controls(store: LibraryStore, overlay: Overlay): HTMLElement {
   return h(
     "div",
     { class: "lib-controls" },
-    tabs({ label: "What is drawn over displacement", tabs: VIEWS, value: () => shown().view, set: (view) => store.show({ view }) }),
+    tabs({
+      label: "What is drawn over displacement",
+      tabs: VIEWS,
+      value: () => shown().view,
+      set: (view) => store.show({ view }),
+    }),
     h("span", { class: "grow" }),
     takeAlong(store, overlay),
     toolbar(
       "Curves",
       toggle({ label: "━ Press", value: () => shown().press, set: (press) => store.show({ press }) }),
-      toggle({ label: "─ Release", hint: "Thinner and paler", value: () => shown().release, set: (release) => store.show({ release }) }),
-      toggle({ label: "Landmarks", hint: MARKS, value: () => shown().marks, set: (marks) => store.show({ marks }) }),
-      toggle({ label: "Loss", value: () => shown().loss, set: (loss) => store.show({ loss }), hint: "Fill the work that is not given back" }),
+      toggle({
+        label: "─ Release",
+        hint: "Thinner and paler",
+        value: () => shown().release,
+        set: (release) => store.show({ release }),
+      }),
+      toggle({
+        label: "Landmarks",
+        hint: MARKS,
+        value: () => shown().marks,
+        set: (marks) => store.show({ marks }),
+      }),
+      toggle({
+        label: "Loss",
+        value: () => shown().loss,
+        set: (loss) => store.show({ loss }),
+        hint: "Fill the hysteresis loop",
+      }),
       speedChoice(store),
     ),
     h("p", { class: "lib-underline muted", hidden: () => !shown().marks || shown().view !== "force" }, MARKS),
@@ -67,11 +91,16 @@ function controls(store: LibraryStore, overlay: Overlay): HTMLElement {
 function takeAlong(store: LibraryStore, overlay: Overlay): HTMLElement {
   const nothing = () => overlay.drawn().length === 0;
   return toolbar(
-    "Take along",
-    button({ label: "Fit", kind: "quiet", hint: "See the whole curves", act: () => overlay.plot.fit() }),
+    "Export",
+    button({ label: "Fit", kind: "quiet", hint: "Fit the whole curves", act: () => overlay.plot.fit() }),
     button({ label: "PNG", kind: "quiet", disabled: nothing, act: () => exportPng(overlay) }),
     button({ label: "SVG", kind: "quiet", disabled: nothing, act: () => exportSvg(overlay) }),
-    button({ label: "CSV", kind: "quiet", disabled: nothing, act: () => exportCsv(overlay, store.shown.peek().view) }),
+    button({
+      label: "CSV",
+      kind: "quiet",
+      disabled: nothing,
+      act: () => exportCsv(overlay, store.shown.peek().view),
+    }),
   );
 }
 
@@ -85,8 +114,17 @@ function speedChoice(store: LibraryStore): () => HTMLElement | null {
   return () => {
     const all = known().split(",").filter(Boolean);
     if (all.length < 2) return null;
-    const options = [["", "slowest speeds"] as const, ...all.map((v) => [v, `nearest to ${speedText(Number(v))}`] as const)];
-    return choice({ label: "Speed", bare: true, options, value, set: (text) => store.show({ velocity_mm_s: text ? Number(text) : null }) });
+    const options = [
+      ["", "slowest speeds"] as const,
+      ...all.map((v) => [v, `nearest to ${speedText(Number(v))}`] as const),
+    ];
+    return choice({
+      label: "Speed",
+      bare: true,
+      options,
+      value,
+      set: (text) => store.show({ velocity_mm_s: text ? Number(text) : null }),
+    });
   };
 }
 

@@ -13,17 +13,24 @@ export type StrokeName = "press" | "release";
 /** Slopes are of means over this width, the one over which a bump is defined. */
 const SLOPE_mm = 0.05;
 
-/** Give the stroke that was measured nearest to a speed, the slowest for null. */
-export function strokeAt(button: LibraryButton, stroke: StrokeName, velocity_mm_s: number | null): LibraryStroke | null {
+/** Return the stroke that was measured nearest to a speed, the slowest for null. */
+export function strokeAt(
+  button: LibraryButton,
+  stroke: StrokeName,
+  velocity_mm_s: number | null,
+): LibraryStroke | null {
   const wanted = velocity_mm_s ?? 0;
   const off = (one: LibraryStroke) => Math.abs((one.velocity_mm_s ?? 0) - wanted);
   const found = button.strokes.filter((one) => one.stroke === stroke);
-  return found.reduce<LibraryStroke | null>((best, one) => (best === null || off(one) < off(best) ? one : best), null);
+  return found.reduce<LibraryStroke | null>(
+    (best, one) => (best === null || off(one) < off(best) ? one : best),
+    null,
+  );
 }
 
-/** Give every speed that a button was measured at, rising. */
+/** Return every speed that a button was measured at, rising. */
 export function speeds(buttons: readonly LibraryButton[]): number[] {
-  const all = buttons.flatMap((button) => button.strokes.map((one) => one.velocity_mm_s));
+  const all = buttons.flatMap((button) => button.strokes.map((stroke) => stroke.velocity_mm_s));
   return [...new Set(all.filter((v) => v !== null))].sort((a, b) => a - b);
 }
 
@@ -31,7 +38,10 @@ export function lineOf(stroke: LibraryStroke, view: ViewName): Line {
   const force_cN = Float64Array.from(stroke.force_cN);
   const x_mm = Float64Array.from(force_cN, (_, i) => stroke.start_mm + i * stroke.step_mm);
   if (view === "force") return { x_mm, y: force_cN };
-  return { x_mm, y: view === "slope" ? slope_cN_mm(force_cN, stroke.step_mm) : work_mJ(force_cN, stroke.step_mm) };
+  return {
+    x_mm,
+    y: view === "slope" ? slope_cN_mm(force_cN, stroke.step_mm) : work_mJ(force_cN, stroke.step_mm),
+  };
 }
 
 /** Differentiate over 50 µm around every point, over what there is at the ends. */
@@ -64,9 +74,12 @@ export function valueAt(line: Line, x_mm: number): number {
   return low + (place - before) * (high - low);
 }
 
-/** Give the range that shows lines well, with zero: of slopes all but the steepest 2 % up and 0.5 % down. */
+/** Return the range that shows lines well, with zero: of slopes all but the steepest 2 % up and 0.5 % down. */
 export function seen(lines: readonly Line[], view: ViewName): { low: number; high: number } {
-  const all = lines.flatMap((line) => [...line.y]).filter(Number.isFinite).sort((a, b) => a - b);
+  const all = lines
+    .flatMap((line) => [...line.y])
+    .filter(Number.isFinite)
+    .sort((a, b) => a - b);
   if (!all.length) return { low: 0, high: view === "work" ? 2 : 100 };
   const [below, above] = view === "slope" ? [0.005, 0.02] : [0, 0];
   const low = Math.min(0, all[Math.floor(below * (all.length - 1))] as number);

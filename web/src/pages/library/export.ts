@@ -2,18 +2,24 @@
 
 import { csv, download } from "../../draw";
 import { tell } from "../../ui";
-import { AXES, type Drawn, type Overlay } from "./overlay";
 import { speedText } from "./columns";
+import { AXES, type Drawn, type Overlay } from "./overlay";
 import type { ViewName } from "./state";
 
 const NAME = "fdvv-buttons";
 
 export function exportSvg(overlay: Overlay): void {
-  download(`${NAME}.svg`, overlay.stamped(origin(), () => overlay.plot.toSvg()), "image/svg+xml");
+  download(
+    `${NAME}.svg`,
+    overlay.stamped(origin(), () => overlay.plot.toSvg()),
+    "image/svg+xml",
+  );
 }
 
 export function exportPng(overlay: Overlay): void {
-  overlay.stamped(origin(), () => overlay.plot.toPng()).then((picture) => download(`${NAME}.png`, picture), tell);
+  overlay
+    .stamped(origin(), () => overlay.plot.toPng())
+    .then((picture) => download(`${NAME}.png`, picture), tell);
 }
 
 export function exportCsv(overlay: Overlay, view: ViewName): void {

@@ -3,7 +3,7 @@
 import { palette } from "../../draw";
 import type { LibraryHistogram } from "../../net/messages";
 import { afterPaint, button, computed, effect, followPointer, h, numberField } from "../../ui";
-import { columnOf, type Column } from "./columns";
+import { type Column, columnOf } from "./columns";
 import type { RangeAsked } from "./state";
 import type { LibraryStore } from "./store";
 
@@ -41,13 +41,24 @@ export function rangeFilter(store: LibraryStore, name: string): HTMLElement {
       field("low", "at least"),
       h("span", { "aria-hidden": "true" }, "to"),
       field("high", "at most"),
-      button({ label: `Any ${column.short.toLowerCase()}`, glyph: "×", kind: "quiet", act: () => set(OPEN), disabled: () => !active() }),
+      button({
+        label: `Any ${column.short.toLowerCase()}`,
+        glyph: "×",
+        kind: "quiet",
+        act: () => set(OPEN),
+        disabled: () => !active(),
+      }),
     ),
   );
 }
 
 /** The bars; dragging over them sets the range. */
-function picture(store: LibraryStore, name: string, range: () => RangeAsked, set: (range: RangeAsked) => void): HTMLElement {
+function picture(
+  store: LibraryStore,
+  name: string,
+  range: () => RangeAsked,
+  set: (range: RangeAsked) => void,
+): HTMLElement {
   const canvas = h("canvas", { class: "lib-bars", "aria-hidden": "true" });
   effect(() => {
     const found = store.found().histograms[name];
@@ -65,7 +76,7 @@ function picture(store: LibraryStore, name: string, range: () => RangeAsked, set
   return canvas;
 }
 
-/** Give the end of the bin that an event is nearest to. */
+/** Return the end of the bin that an event is nearest to. */
 function valueAt(canvas: HTMLCanvasElement, found: LibraryHistogram, event: PointerEvent): number {
   const frame = canvas.getBoundingClientRect();
   const part = Math.min(1, Math.max(0, (event.clientX - frame.left) / frame.width));
@@ -87,7 +98,8 @@ function draw(canvas: HTMLCanvasElement, found: LibraryHistogram | undefined, ra
   const wide = SIZE_px.width / found.counts.length;
   found.counts.forEach((count, i) => {
     const middle = found.lowest + ((i + 0.5) / found.counts.length) * (found.highest - found.lowest);
-    const inside = (range.low === null || middle >= range.low) && (range.high === null || middle <= range.high);
+    const inside =
+      (range.low === null || middle >= range.low) && (range.high === null || middle <= range.high);
     // few must be seen beside many
     const tall = count ? Math.max(2, (SIZE_px.height - 2) * Math.sqrt(count / most)) : 0;
     context.fillStyle = inside ? accent : muted;

@@ -2,10 +2,10 @@
 
 import type { LibraryButton } from "../../net/messages";
 import { button, computed, h } from "../../ui";
-import { AXES, type Drawn, type Overlay } from "./overlay";
 import { figure, speedText } from "./columns";
 import { valueAt } from "./curves";
 import { DISTINCT, swatch } from "./marks";
+import { AXES, type Drawn, type Overlay } from "./overlay";
 import type { LibraryStore } from "./store";
 
 export function legend(store: LibraryStore, overlay: Overlay): HTMLElement {
@@ -13,7 +13,11 @@ export function legend(store: LibraryStore, overlay: Overlay): HTMLElement {
   const ids = computed(() => JSON.stringify(store.shown().overlay));
   return h("div", { class: "lib-legend-place" }, () => {
     const all = JSON.parse(ids()) as string[];
-    return h("ul", { class: "lib-legend", "aria-label": "Compared buttons", hidden: !all.length }, all.map((id, n) => entry(store, overlay, id, n)));
+    return h(
+      "ul",
+      { class: "lib-legend", "aria-label": "Compared buttons", hidden: !all.length },
+      all.map((id, n) => entry(store, overlay, id, n)),
+    );
   });
 }
 
@@ -32,14 +36,20 @@ function entry(store: LibraryStore, overlay: Overlay, id: string, n: number): HT
       h("span", { class: "muted" }, () => said(store, overlay, found(), id)),
     ),
     button({
-      label: `Take ${name()} as the reference`,
+      label: `Use ${name()} as the reference`,
       glyph: "Δ",
       kind: "quiet",
       pressed: reference,
-      hint: "Reference of the differences",
+      hint: "Reference for the differences",
       act: () => store.show({ reference: id }),
     }),
-    button({ label: `Take ${name()} out`, glyph: "×", kind: "quiet", hint: "Take out", act: () => store.toggle(id) }),
+    button({
+      label: `Remove ${name()}`,
+      glyph: "×",
+      kind: "quiet",
+      hint: "Remove",
+      act: () => store.toggle(id),
+    }),
   );
 }
 

@@ -3,8 +3,8 @@
 import { palette } from "../../draw";
 import { effect, h, onCleanup } from "../../ui";
 import { columnOf, figure, LISTED } from "./columns";
-import { drawThumbnail, SIZE_px } from "./thumbnail";
 import type { LibraryStore } from "./store";
+import { drawThumbnail, SIZE_px } from "./thumbnail";
 
 const ROW_px = 56;
 const AHEAD = 4;
@@ -23,7 +23,9 @@ interface RowView {
 
 /** Names of the columns that rows show now: the usual ones, and what is sorted by. */
 export function listedColumns(sort: string): readonly string[] {
-  return columnOf(sort) && !(LISTED as readonly string[]).includes(sort) ? [...LISTED.slice(0, 3), sort] : LISTED;
+  return columnOf(sort) && !(LISTED as readonly string[]).includes(sort)
+    ? [...LISTED.slice(0, 3), sort]
+    : LISTED;
 }
 
 export class ButtonList {
@@ -55,7 +57,14 @@ export class ButtonList {
       cancelAnimationFrame(this.frame);
     });
     effect(() => {
-      const [found] = [store.found(), store.answered(), store.grown(), store.shown(), palette(), store.active()];
+      const [found] = [
+        store.found(),
+        store.answered(),
+        store.grown(),
+        store.shown(),
+        palette(),
+        store.active(),
+      ];
       this.inner.style.height = `${found.positions.length * ROW_px}px`;
       this.element.ariaRowCount = String(found.positions.length);
       this.request();
@@ -111,7 +120,10 @@ export class ButtonList {
     // the rows of another question begin at the top; moved only now, for that costs a layout
     if (settled && this.element.ariaBusy === "true") this.element.scrollTop = 0;
     const first = Math.max(0, Math.floor(this.element.scrollTop / ROW_px) - AHEAD);
-    const last = Math.min(count, Math.ceil((this.element.scrollTop + this.element.clientHeight) / ROW_px) + AHEAD);
+    const last = Math.min(
+      count,
+      Math.ceil((this.element.scrollTop + this.element.clientHeight) / ROW_px) + AHEAD,
+    );
     while (this.views.length < last - first) this.views.push(this.make());
     const size = this.views.length;
     for (const [slot, view] of this.views.entries()) {
@@ -163,7 +175,10 @@ export class ButtonList {
     const { rows, found, query, shown, active } = this.store;
     const at = found.peek().positions[place] as number;
     const id = rows.ids[at];
-    if (id === undefined) return void (view.element.hidden = true);
+    if (id === undefined) {
+      view.element.hidden = true;
+      return;
+    }
     if (view.place !== place) {
       view.place = place;
       view.element.style.transform = `translateY(${place * ROW_px}px)`;
@@ -188,14 +203,20 @@ export class ButtonList {
     view.name.title = rows.names[at] ?? "";
     const kind = rows.kinds[at] as string;
     const words = [kind, rows.simulated[at] ? "simulated" : "", rows.collections[at] || rows.origins[at]];
-    view.about.textContent = (like === null ? words : [`${like.toFixed(1)} JND away`, ...words]).filter(Boolean).join(" · ");
+    view.about.textContent = (like === null ? words : [`${like.toFixed(1)} JND away`, ...words])
+      .filter(Boolean)
+      .join(" · ");
     view.about.title = view.about.textContent;
     view.figures.forEach((element, i) => {
       const column = columnOf(columns[i] as string);
       const value = column ? rows.number(column.name, at) : null;
       element.textContent = figure(value, column?.digits ?? 1);
-      element.title = column ? `${column.label}${value === null ? ": not detected or not known" : `, ${column.unit}`}` : "";
-      element.ariaLabel = column ? `${column.short} ${value === null ? "not known" : `${element.textContent} ${column.unit}`}` : "";
+      element.title = column
+        ? `${column.label}${value === null ? ": not detected" : `, ${column.unit}`}`
+        : "";
+      element.ariaLabel = column
+        ? `${column.short} ${value === null ? "not known" : `${element.textContent} ${column.unit}`}`
+        : "";
     });
   }
 }

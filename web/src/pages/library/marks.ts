@@ -1,4 +1,4 @@
-/** How the buttons of the overlay are told apart: colour and dash; more than twelve are dimmed. */
+/** How the buttons of the overlay are distinguished: colour and dash; more than twelve are dimmed. */
 
 import { palette, SERIES_DASH, type Stroke } from "../../draw";
 import { svg } from "../../ui";
@@ -6,7 +6,7 @@ import { svg } from "../../ui";
 export const DISTINCT = 12;
 const DASH_step = 3;
 
-/** Give the stroke of the n-th button of the overlay; after eight colours the dashes are others. */
+/** Return the stroke of the n-th button of the overlay; after eight colours the dashes are others. */
 export function strokeOf(n: number): Stroke {
   const { series, muted } = palette();
   if (n >= DISTINCT) return { colour: muted, opacity: 0.45, width_px: 1 };

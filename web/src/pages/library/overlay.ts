@@ -1,10 +1,10 @@
 /** The curves of the chosen buttons on the same axes: force, slope or work over displacement. */
 
-import { palette, Plot, type Brush, type Stroke, type View } from "../../draw";
+import { type Brush, Plot, palette, type Stroke, type View } from "../../draw";
 import type { LibraryButton } from "../../net/messages";
-import { computed, signal, type Signal } from "../../ui";
+import { computed, type Signal, signal } from "../../ui";
 import { speedText } from "./columns";
-import { lineOf, seen, strokeAt, valueAt, type Line, type StrokeName } from "./curves";
+import { type Line, lineOf, type StrokeName, seen, strokeAt, valueAt } from "./curves";
 import { DISTINCT, strokeOf } from "./marks";
 import { SKETCH_POINTS } from "./rows";
 import type { ViewName } from "./state";
@@ -56,7 +56,7 @@ export class Overlay {
     this.plot.element.addEventListener("pointerleave", () => this.cursor_mm.set(null));
   }
 
-  /** Give the button that the keys of the list are at, if it is not chosen anyway. */
+  /** Return the button that the keys of the list are at, if it is not chosen anyway. */
   preview(): { readonly name: string; readonly lines: readonly Line[] } | null {
     const { rows, shown } = this.store;
     const id = this.store.activeId();
@@ -66,7 +66,12 @@ export class Overlay {
     const lines = (["press", "release"] as const).flatMap((stroke) => {
       const force_cN = rows.sketch_cN(at, stroke);
       if (!force_cN) return [];
-      return [{ x_mm: Float64Array.from(force_cN, (_, i) => (travel_mm * i) / (SKETCH_POINTS - 1)), y: Float64Array.from(force_cN) }];
+      return [
+        {
+          x_mm: Float64Array.from(force_cN, (_, i) => (travel_mm * i) / (SKETCH_POINTS - 1)),
+          y: Float64Array.from(force_cN),
+        },
+      ];
     });
     return lines.length ? { name: rows.names[at] ?? "", lines } : null;
   }
@@ -90,7 +95,9 @@ export class Overlay {
       if (!button) return [];
       return names.flatMap((stroke) => {
         const found = strokeAt(button, stroke, velocity_mm_s);
-        return found ? [{ n, button, stroke, velocity_mm_s: found.velocity_mm_s, line: lineOf(found, view) }] : [];
+        return found
+          ? [{ n, button, stroke, velocity_mm_s: found.velocity_mm_s, line: lineOf(found, view) }]
+          : [];
       });
     });
   }
@@ -107,9 +114,12 @@ export class Overlay {
     const drawn = this.drawn();
     if (loss && name === "force") this.paintLoss(brush, view, drawn);
     const preview = this.preview();
-    preview?.lines.forEach((line, i) => this.paintLine(brush, view, line, { colour: palette().text, width_px: i ? 1 : 1.5, dash: [1.5, 3] }));
+    preview?.lines.forEach((line, i) =>
+      this.paintLine(brush, view, line, { colour: palette().text, width_px: i ? 1 : 1.5, dash: [1.5, 3] }),
+    );
     for (const one of [...drawn].reverse()) this.paintLine(brush, view, one.line, strokeFor(one));
-    if (marks && name === "force") for (const one of drawn) if (one.n < DISTINCT) this.paintMarks(brush, view, one);
+    if (marks && name === "force")
+      for (const one of drawn) if (one.n < DISTINCT) this.paintMarks(brush, view, one);
     const stamp = this.stamp();
     if (stamp !== null) this.paintNames(brush, view, drawn, stamp);
   }
@@ -141,18 +151,25 @@ export class Overlay {
     const round = (at: { x_px: number; y_px: number } | null, filled: boolean) =>
       at && brush.circle(at, 4, filled ? { colour } : surface, { colour, width_px: 1.5 });
     const square = (at: { x_px: number; y_px: number } | null, filled: boolean) =>
-      at && brush.rect({ left: at.x_px - 3.5, top: at.y_px - 3.5, width: 7, height: 7 }, filled ? { colour } : surface, { colour, width_px: 1.5 });
-    if (one.stroke === "release") return void square(place(numbers["reset_mm"]), false);
-    round(place(numbers["peak_mm"]), true);
-    round(place(numbers["valley_mm"]), false);
-    square(place(numbers["actuation_mm"]), true);
+      at &&
+      brush.rect(
+        { left: at.x_px - 3.5, top: at.y_px - 3.5, width: 7, height: 7 },
+        filled ? { colour } : surface,
+        { colour, width_px: 1.5 },
+      );
+    if (one.stroke === "release") return void square(place(numbers.reset_mm), false);
+    round(place(numbers.peak_mm), true);
+    round(place(numbers.valley_mm), false);
+    square(place(numbers.actuation_mm), true);
   }
 
   private paintNames(brush: Brush, view: View, drawn: readonly Drawn[], stamp: string): void {
     const { text, muted, surface } = palette();
     const left = view.box.left + 10;
     let top = view.box.top + 12;
-    const named = drawn.filter((one, i) => one.n < DISTINCT && drawn.findIndex((other) => other.n === one.n) === i);
+    const named = drawn.filter(
+      (one, i) => one.n < DISTINCT && drawn.findIndex((other) => other.n === one.n) === i,
+    );
     for (const one of named) {
       brush.line([left, left + 30], [top, top], strokeOf(one.n));
       const words = `${one.button.name}${one.button.simulated ? ", simulated" : ""} (${speedText(one.velocity_mm_s)})`;
@@ -167,10 +184,14 @@ export class Overlay {
     const at = this.cursor_mm();
     if (at === null || at < view.x.range.low || at > view.x.range.high) return;
     const x = view.x.px(at);
-    brush.line([x, x], [view.box.top, view.box.top + view.box.height], { colour: palette().muted, dash: [3, 3] });
+    brush.line([x, x], [view.box.top, view.box.top + view.box.height], {
+      colour: palette().muted,
+      dash: [3, 3],
+    });
     for (const one of this.drawn()) {
       const value = valueAt(one.line, at);
-      if (Number.isFinite(value)) brush.circle({ x_px: x, y_px: view.y.px(value) }, 3, { colour: strokeOf(one.n).colour });
+      if (Number.isFinite(value))
+        brush.circle({ x_px: x, y_px: view.y.px(value) }, 3, { colour: strokeOf(one.n).colour });
     }
   }
 }

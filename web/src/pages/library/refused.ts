@@ -16,13 +16,22 @@ export function refusedFiles(store: LibraryStore): HTMLElement {
     "details",
     { class: "lib-refused", hidden: () => count() === 0, on: { toggle: () => open.set(details.open) } },
     h("summary", {}, () => `${count()} files cannot be used`),
-    h("ul", { tabindex: 0, "aria-label": "Files that cannot be used" }, () => files().map((file) => h("li", {}, h("strong", {}, file.place), h("span", { class: "muted" }, ` ${file.reason}`)))),
+    h("ul", { tabindex: 0, "aria-label": "Files that cannot be used" }, () =>
+      files().map((file) =>
+        h("li", {}, h("strong", {}, file.place), h("span", { class: "muted" }, ` ${file.reason}`)),
+      ),
+    ),
   );
   return h(
     "div",
     { class: "lib-foot" },
     details,
     h("span", { class: "grow" }),
-    button({ label: "Look again", kind: "quiet", hint: "Look for files that came, went or changed", act: () => store.rescan() }),
+    button({
+      label: "Rescan",
+      kind: "quiet",
+      hint: "Look for new, changed and removed files",
+      act: () => store.rescan(),
+    }),
   );
 }

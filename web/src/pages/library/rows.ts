@@ -24,7 +24,7 @@ export class Rows {
     return this.ids.length;
   }
 
-  /** Give the position of a button; -1 if it is not there. */
+  /** Return the position of a button; -1 if it is not there. */
   at(id: string): number {
     return this.places.get(id) ?? -1;
   }
@@ -33,7 +33,7 @@ export class Rows {
     return this.numbers.get(name)?.[at] ?? null;
   }
 
-  /** Give the force of a stroke in cN, evenly from contact to the end of the travel; null without one. */
+  /** Return the force of a stroke in cN, evenly from contact to the end of the travel; null without one. */
   sketch_cN(at: number, stroke: "press" | "release"): Float32Array | null {
     const whole = this.sketches[at];
     const first = stroke === "press" ? 0 : SKETCH_POINTS;
@@ -47,7 +47,17 @@ export class Rows {
     if (index.first !== this.length) return;
     this.epoch = index.standing.epoch;
     index.ids.forEach((id, i) => this.places.set(id, this.length + i));
-    for (const name of ["ids", "names", "collections", "origins", "kinds", "stated", "speeds_mm_s", "dates", "simulated"] as const) {
+    for (const name of [
+      "ids",
+      "names",
+      "collections",
+      "origins",
+      "kinds",
+      "stated",
+      "speeds_mm_s",
+      "dates",
+      "simulated",
+    ] as const) {
       (this[name] as unknown[]).push(...index[name]);
     }
     for (const [name, values] of Object.entries(index.numbers)) {
@@ -59,7 +69,18 @@ export class Rows {
   }
 
   private clear(): void {
-    for (const column of [this.ids, this.names, this.collections, this.origins, this.kinds, this.stated, this.speeds_mm_s, this.dates, this.simulated, this.sketches]) {
+    for (const column of [
+      this.ids,
+      this.names,
+      this.collections,
+      this.origins,
+      this.kinds,
+      this.stated,
+      this.speeds_mm_s,
+      this.dates,
+      this.simulated,
+      this.sketches,
+    ]) {
       column.length = 0;
     }
     this.numbers.clear();

@@ -1,7 +1,6 @@
 /** What the library shows, and how that stands in the address, so that a link shows it again. */
 
-import type { LibraryFind } from "../../net/messages";
-import type { ButtonType, Origin } from "../../net/messages";
+import type { ButtonType, LibraryFind, Origin } from "../../net/messages";
 
 export type ViewName = "force" | "slope" | "work";
 export type TabName = "landmarks" | "alike" | "about";
@@ -35,7 +34,15 @@ export interface Shown {
   readonly velocity_mm_s: number | null;
 }
 
-export const EVERYTHING: Query = { text: "", kinds: [], origins: [], ranges: {}, like: null, sort: "match", descending: false };
+export const EVERYTHING: Query = {
+  text: "",
+  kinds: [],
+  origins: [],
+  ranges: {},
+  like: null,
+  sort: "match",
+  descending: false,
+};
 export const AT_FIRST: Shown = {
   overlay: [],
   reference: null,
@@ -62,7 +69,8 @@ export function writeState(query: Query, shown: Shown): URLSearchParams {
   put("q", query.text);
   put("kind", query.kinds.join(","));
   put("from", query.origins.join(","));
-  for (const [name, range] of Object.entries(query.ranges)) put(name, `${range.low ?? ""}..${range.high ?? ""}`, "..");
+  for (const [name, range] of Object.entries(query.ranges))
+    put(name, `${range.low ?? ""}..${range.high ?? ""}`, "..");
   put("like", query.like ?? "");
   put("sort", `${query.descending ? "-" : ""}${query.sort}`, "match");
   for (const id of shown.overlay) found.append("over", id);
@@ -134,7 +142,7 @@ function number(text: string | undefined): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
-/** Give the query as the server takes it. */
+/** Return the query as the server takes it. */
 export function asked(query: Query): LibraryFind {
   return { ...query };
 }

@@ -1,11 +1,11 @@
 /** What the library page knows: rows, the question and its answer, and the curves that are compared. */
 
 import { keepQuery, route } from "../../app/route";
-import { call, live, type LiveChannel } from "../../net";
-import type { LibraryButton, LibraryFound, LibraryStanding } from "../../net/messages";
-import { batch, effect, onCleanup, signal, tell, untracked, type Signal } from "../../ui";
+import { call, type LiveChannel, live } from "../../net";
+import type { LibraryButton, LibraryFound, LibraryStatus } from "../../net/messages";
+import { batch, effect, onCleanup, type Signal, signal, tell, untracked } from "../../ui";
 import { Rows } from "./rows";
-import { asked, AT_FIRST, EVERYTHING, MOST, readState, writeState, type Query, type Shown } from "./state";
+import { AT_FIRST, asked, EVERYTHING, MOST, type Query, readState, type Shown, writeState } from "./state";
 
 const KEEP_ms = 150;
 
@@ -24,7 +24,7 @@ export class LibraryStore {
   readonly rows = new Rows();
   /** Counts what came into the rows. */
   readonly grown = signal(0);
-  readonly standing: Signal<LibraryStanding | null> = signal(null);
+  readonly standing: Signal<LibraryStatus | null> = signal(null);
   readonly query: Signal<Query> = signal(EVERYTHING);
   readonly shown: Signal<Shown> = signal(AT_FIRST);
   readonly found: Signal<LibraryFound> = signal(NOTHING);
@@ -67,10 +67,13 @@ export class LibraryStore {
   toggle(id: string): void {
     const { overlay, reference } = this.shown.peek();
     const next = overlay.includes(id) ? overlay.filter((one) => one !== id) : [...overlay, id].slice(0, MOST);
-    this.show({ overlay: next, reference: reference && next.includes(reference) ? reference : (next[0] ?? null) });
+    this.show({
+      overlay: next,
+      reference: reference && next.includes(reference) ? reference : (next[0] ?? null),
+    });
   }
 
-  /** Give the id of the row that the keys are at. */
+  /** Return the id of the row that the keys are at. */
   activeId(): string | null {
     const at = this.found().positions[this.active()];
     return at === undefined ? null : (this.rows.ids[at] ?? null);
@@ -114,7 +117,7 @@ export class LibraryStore {
     let channel: LiveChannel<"library"> | null = null;
     const watch = () => channel?.send({ type: "watch" });
     channel = live().channel("library", {
-      told: (standing) => {
+      onMessage: (standing) => {
         this.standing.set(standing);
         void this.load();
       },
@@ -176,8 +179,12 @@ export class LibraryStore {
     call("library.curves", { ids })
       .then(({ buttons, missing }) =>
         batch(() => {
-          this.buttons.update((map) => new Map([...map, ...buttons.map((one) => [one.id, one] as const)]));
-          this.missing.update((map) => new Map([...map, ...missing.map((one) => [one.id, one.reason] as const)]));
+          this.buttons.update(
+            (map) => new Map([...map, ...buttons.map((button) => [button.id, button] as const)]),
+          );
+          this.missing.update(
+            (map) => new Map([...map, ...missing.map((one) => [one.id, one.reason] as const)]),
+          );
         }),
       )
       .catch(tell)

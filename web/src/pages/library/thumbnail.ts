@@ -24,7 +24,9 @@ export function drawThumbnail(canvas: HTMLCanvasElement, rows: Rows, at: number)
   const { accent, grid, muted } = palette();
   const floor = SIZE_px.height - PAD_px;
   brush.line([PAD_px, SIZE_px.width - PAD_px], [floor, floor], { colour: grid });
-  const strokes = (["release", "press"] as const).map((stroke) => [stroke, rows.sketch_cN(at, stroke)] as const);
+  const strokes = (["release", "press"] as const).map(
+    (stroke) => [stroke, rows.sketch_cN(at, stroke)] as const,
+  );
   const most_cN = Math.max(FORCE_cN, ...strokes.flatMap(([, force]) => (force ? [Math.max(...force)] : [])));
   const travel_mm = rows.number("travel_mm", at) ?? TRAVEL_mm;
   const wide_px = (SIZE_px.width - 2 * PAD_px) * Math.min(1, travel_mm / Math.max(TRAVEL_mm, travel_mm));

@@ -34,18 +34,63 @@ export function captureForm(): HTMLElement {
     [
       textField({ label: "Name of the button", ...bound(draft.name) }),
       choice({ label: "Bench", options: deviceOptions(found, "bench"), ...bound(draft.device) }),
-      only(choice({ label: "Simulated switch", options: found.switches.map((name) => [name, name]), ...bound(draft.switch_) })),
-      only(choice({ label: "Simulated participant", options: found.participants.map((name) => [name, name]), ...bound(draft.participant) })),
-      speedsField({ label: "Paces", ...bound(draft.paces), least_mm_s: 20 }),
-      numberField({ label: "Presses", unit: "per pace", ...bound(draft.presses), least: 1, most: 200, digits: 0 }),
-      numberField({ label: "A bad press is asked again", unit: "times", ...bound(draft.repeats), least: 0, most: 20, digits: 0 }),
-      numberField({ label: "Pace may miss by", unit: "%", ...bound(draft.pace_percent), least: 5, most: 100, digits: 0 }),
-      only(numberField({ label: "Seed of the simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 })),
+      only(
+        choice({
+          label: "Simulated switch",
+          options: found.switches.map((name) => [name, name]),
+          ...bound(draft.switch_),
+        }),
+      ),
+      only(
+        choice({
+          label: "Simulated participant",
+          options: found.participants.map((name) => [name, name]),
+          ...bound(draft.participant),
+        }),
+      ),
+      speedsField({ label: "Speeds", ...bound(draft.paces), least_mm_s: 20 }),
+      numberField({
+        label: "Presses",
+        unit: "per speed",
+        ...bound(draft.presses),
+        least: 1,
+        most: 200,
+        digits: 0,
+      }),
+      numberField({
+        label: "Retries of a bad press",
+        unit: "times",
+        ...bound(draft.repeats),
+        least: 0,
+        most: 20,
+        digits: 0,
+      }),
+      numberField({
+        label: "Speed tolerance",
+        unit: "%",
+        ...bound(draft.pace_percent),
+        least: 5,
+        most: 100,
+        digits: 0,
+      }),
+      only(
+        numberField({
+          label: "Seed of the simulation",
+          unit: "",
+          ...bound(draft.seed),
+          least: 0,
+          most: 2 ** 31,
+          digits: 0,
+        }),
+      ),
       toggle({ label: "A slow probe first", ...bound(draft.probe) }),
-      toggle({ label: "Paces mixed", ...bound(draft.shuffled) }),
-      only(toggle({ label: "Show the cue in a person's time", ...bound(draft.watch) })),
+      toggle({ label: "Speeds in random order", ...bound(draft.shuffled) }),
+      only(toggle({ label: "Show the cue in real time", ...bound(draft.watch) })),
     ],
-    [button({ label: "Start the capture", kind: "main", act: () => void start() }), h("span", { class: "muted" }, () => lasts(twin()))],
+    [
+      button({ label: "Start the capture", kind: "main", act: () => void start() }),
+      h("span", { class: "muted" }, () => lasts(twin())),
+    ],
   );
 }
 

@@ -1,10 +1,10 @@
 /** Set up learning, or judging what was learned. */
 
 import type { WorkChoices } from "../../net";
-import { button, choice, computed, h, numberField, signal, type Signal } from "../../ui";
+import { button, choice, computed, h, numberField, type Signal, signal } from "../../ui";
 import { buttonOptions, choices, deviceOptions, nameFor } from "./choices";
 import { form, speedsField, textField } from "./fields";
-import { startJob, type Order } from "./jobs";
+import { type Order, startJob } from "./jobs";
 import { askedButton, goToJob } from "./where";
 
 type Compensate = Extract<Order, { type: "compensate" }>;
@@ -36,39 +36,89 @@ export function compensateForm(): HTMLElement {
   draft.button.set(first);
   if (!draft.name.peek()) draft.name.set(nameFor(first, ""));
   const paper = computed(() => draft.method() === "paper");
-  const tables = [["", "its own force, uncompensated"], ...found.actuations.map((name): [string, string] => [name, name])] as const;
-  const judged = choice({ label: "or only judge, on fresh presses,", options: tables, ...bound(draft.actuation) });
+  const tables = [
+    ["", "own force, uncompensated"],
+    ...found.actuations.map((name): [string, string] => [name, name]),
+  ] as const;
+  const judged = choice({
+    label: "or only evaluate, with the table",
+    options: tables,
+    ...bound(draft.actuation),
+  });
   return form(
     "Compensate a button on a rig",
     [
       choice({ label: "Button", options: buttonOptions(found), value: () => draft.button(), set: setButton }),
       textField({ label: "Name of the result", ...bound(draft.name) }),
       choice({ label: "Device", options: deviceOptions(found, "rig"), ...bound(draft.device) }),
-      choice({ label: "Simulated rig", options: found.rigs.map((name) => [name, name]), ...bound(draft.rig) }),
+      choice({
+        label: "Simulated rig",
+        options: found.rigs.map((name) => [name, name]),
+        ...bound(draft.rig),
+      }),
       speedsField({ label: "Speeds", ...bound(draft.speeds), least_mm_s: 5 }),
       choice({ label: "Method", options: METHODS, ...bound(draft.method) }),
       numberField({ label: "Rounds", unit: "", ...bound(draft.rounds), least: 0, most: 20, digits: 0 }),
-      h("span", { hidden: () => !paper() }, numberField({ label: "Presses per round", unit: "", ...bound(draft.presses), least: 1, most: 100, digits: 0 })),
+      h(
+        "span",
+        { hidden: () => !paper() },
+        numberField({
+          label: "Presses per round",
+          unit: "",
+          ...bound(draft.presses),
+          least: 1,
+          most: 100,
+          digits: 0,
+        }),
+      ),
       h("span", { hidden: paper }, knownRigs(found)),
-      numberField({ label: "Fresh presses to judge", unit: "per speed", ...bound(draft.probe_presses), least: 0, most: 100, digits: 0 }),
-      numberField({ label: "Pace may miss by", unit: "%", ...bound(draft.pace_percent), least: 5, most: 100, digits: 0 }),
-      numberField({ label: "Seed of the simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 }),
+      numberField({
+        label: "Held-out presses",
+        unit: "per speed",
+        ...bound(draft.probe_presses),
+        least: 0,
+        most: 100,
+        digits: 0,
+      }),
+      numberField({
+        label: "Speed tolerance",
+        unit: "%",
+        ...bound(draft.pace_percent),
+        least: 5,
+        most: 100,
+        digits: 0,
+      }),
+      numberField({
+        label: "Seed of the simulation",
+        unit: "",
+        ...bound(draft.seed),
+        least: 0,
+        most: 2 ** 31,
+        digits: 0,
+      }),
     ],
     [
       button({ label: "Start learning", kind: "main", act: () => void start() }),
       judged,
-      button({ label: "Judge", act: () => void startProbe(), hint: "What the rig makes of the button with this table" }),
+      button({
+        label: "Evaluate",
+        act: () => void startProbe(),
+        hint: "How the rig renders the button with this table",
+      }),
     ],
   );
 }
 
 const METHODS = [
-  ["rig-aware", "rig-aware: knows the rig, then learns the rest"],
+  ["rig-aware", "rig-aware: starts from a model of the rig"],
   ["paper", "the paper's iterative law"],
 ] as const;
 
 function knownRigs(found: WorkChoices): HTMLElement {
-  const options = [["", "identify it first"], ...found.known_rigs.map((name): [string, string] => [name, name])] as const;
+  const options = [
+    ["", "identify it first"],
+    ...found.known_rigs.map((name): [string, string] => [name, name]),
+  ] as const;
   return choice({ label: "Known rig", options, ...bound(draft.known_rig) });
 }
 
@@ -97,7 +147,14 @@ async function startProbe(): Promise<void> {
   const actuation = draft.actuation();
   const name = actuation || `${draft.name().trim()} uncompensated`;
   // what judges is never the chance that was learned from
-  await begin({ type: "probe", ...shared(), name, actuation, seed: draft.seed() + 1, presses: Math.max(1, draft.probe_presses()) });
+  await begin({
+    type: "probe",
+    ...shared(),
+    name,
+    actuation,
+    seed: draft.seed() + 1,
+    presses: Math.max(1, draft.probe_presses()),
+  });
 }
 
 function shared() {

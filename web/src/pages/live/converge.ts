@@ -1,8 +1,8 @@
 /** How the error falls: one small plot for each speed, both strokes, with what a person would just notice. */
 
-import { palette, Plot, rangeOf, series, type Brush, type Range, type View } from "../../draw";
-import type { CurveStanding } from "../../net";
-import { computed, h, type Child } from "../../ui";
+import { type Brush, Plot, palette, type Range, rangeOf, series, type View } from "../../draw";
+import type { CurveProgress } from "../../net";
+import { type Child, computed, h } from "../../ui";
 import { watched } from "./jobs";
 import { curveKey, type Stage, type StrokeName } from "./picture";
 
@@ -13,7 +13,12 @@ const FEWEST = 4;
 /** Plots of all speeds; made anew only when a speed is added. */
 export function convergence(stage: Stage): Child {
   const speeds = speedsKey();
-  return () => h("div", { class: "multiples" }, listOf(speeds()).map((speed) => multiple(stage, speed)));
+  return () =>
+    h(
+      "div",
+      { class: "multiples" },
+      listOf(speeds()).map((speed) => multiple(stage, speed)),
+    );
 }
 
 /** The speeds of the job that is looked at, as a text that changes only when they do. */
@@ -42,7 +47,9 @@ function errorsOf(stage: Stage, stroke: StrokeName, velocity_mm_s: number): read
 }
 
 function pressRange(stage: Stage, velocity_mm_s: number): Range {
-  const last = watched().picture.presses.findLast(({ press }) => press.stage === stage && press.velocity_mm_s === velocity_mm_s);
+  const last = watched().picture.presses.findLast(
+    ({ press }) => press.stage === stage && press.velocity_mm_s === velocity_mm_s,
+  );
   const made = STROKES.map((stroke) => errorsOf(stage, stroke, velocity_mm_s).length);
   const most = Math.max(FEWEST, last?.press.wanted ?? 0, ...made);
   return { low: 0.5, high: most + 0.5 };
@@ -64,7 +71,11 @@ function drawErrors(brush: Brush, view: View, stage: Stage, velocity_mm_s: numbe
     const at = errors.map((_, n) => view.x.px(n + 1));
     const high = errors.map((error) => view.y.px(error));
     brush.line(at, high, { colour, dash, width_px: 2 });
-    errors.forEach((_, n) => brush.circle({ x_px: at[n] as number, y_px: high[n] as number }, 2.5, i ? null : { colour }, { colour }));
+    errors.forEach((_, n) =>
+      brush.circle({ x_px: at[n] as number, y_px: high[n] as number }, 2.5, i ? null : { colour }, {
+        colour,
+      }),
+    );
   });
 }
 
@@ -77,57 +88,94 @@ function drawNoticeable(brush: Brush, view: View, velocity_mm_s: number): void {
   const y = view.y.px(bound_cN);
   brush.line([left, left + width], [y, y], { colour: muted, dash: [2, 3] });
   const below = { x_px: left + width - 3, y_px: y - 3 };
-  brush.text(`noticed ${bound_cN.toFixed(1)}`, below, { colour: muted, align: "right", base: "bottom", size_px: 10, halo: palette().surface });
+  brush.text(`noticed ${bound_cN.toFixed(1)}`, below, {
+    colour: muted,
+    align: "right",
+    base: "bottom",
+    size_px: 10,
+    halo: palette().surface,
+  });
 }
 
 /** What the lines mean, in words. */
 export function convergenceLegend(stage: Stage): HTMLElement {
-  const who = stage === "probe" ? "in true displacement, on fresh presses" : "as the rig measured it while it learned";
+  const who =
+    stage === "probe" ? "in true displacement, on held-out presses" : "as measured by the rig while learning";
   return h(
     "p",
     { class: "legend" },
     swatch(0, "press"),
     swatch(1, "release"),
-    h("span", { class: "muted" }, `Error of each press, ${who}. Dotted: 7 % of the mean force, just noticeable (Pang, Tan, Durlach 1991).`),
+    h(
+      "span",
+      { class: "muted" },
+      `Error of each press, ${who}. Dotted: 7 % of the mean force, just noticeable (Pang, Tan, Durlach 1991).`,
+    ),
   );
 }
 
 /** A line as it is drawn, and its name. */
 export function swatch(n: number, name: string): HTMLElement {
-  return h("span", { class: `swatch swatch-${n + 1}` }, h("span", { class: "swatch-line", "aria-hidden": "true" }), name);
+  return h(
+    "span",
+    { class: `swatch swatch-${n + 1}` },
+    h("span", { class: "swatch-line", "aria-hidden": "true" }),
+    name,
+  );
 }
 
 /** A table of the figures: the same for those who do not see the plots. */
 export function errorTable(stage: Stage, label: string): Child {
   return () => {
-    const curves = [...watched().picture.curves.entries()].filter(([key]) => key.startsWith(`${stage} `)).map(([, c]) => c);
+    const curves = [...watched().picture.curves.entries()]
+      .filter(([key]) => key.startsWith(`${stage} `))
+      .map(([, c]) => c);
     return curves.length ? table(label, curves) : null;
   };
 }
 
-function table(label: string, curves: readonly CurveStanding[]): HTMLElement {
-  const sorted = [...curves].sort((a, b) => a.velocity_mm_s - b.velocity_mm_s || a.stroke.localeCompare(b.stroke));
-  const cell = (value: number | null | undefined) => h("td", { class: "number" }, value === null || value === undefined ? "–" : value.toFixed(2));
-  const heads = ["first", "last", "mean", "largest"].map((text) => h("th", { class: "number", scope: "col" }, `${text}, cN`));
+function table(label: string, curves: readonly CurveProgress[]): HTMLElement {
+  const sorted = [...curves].sort(
+    (a, b) => a.velocity_mm_s - b.velocity_mm_s || a.stroke.localeCompare(b.stroke),
+  );
+  const cell = (value: number | null | undefined) =>
+    h("td", { class: "number" }, value === null || value === undefined ? "–" : value.toFixed(2));
+  const heads = ["first", "last", "mean", "largest"].map((text) =>
+    h("th", { class: "number", scope: "col" }, `${text}, cN`),
+  );
   return h(
     "div",
     { class: "scroll-x" },
     h(
       "table",
       { "aria-label": label },
-      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "curve"), h("th", { class: "number", scope: "col" }, "presses"), heads)),
-      h("tbody", {}, sorted.map((c) =>
+      h(
+        "thead",
+        {},
         h(
           "tr",
           {},
-          h("th", { scope: "row" }, `${c.velocity_mm_s} mm/s ${c.stroke}`),
-          h("td", { class: "number" }, c.error_cN.length),
-          cell(c.error_cN[0]),
-          cell(c.error_cN.at(-1)),
-          cell(c.mean_error_cN),
-          cell(c.max_error_cN),
+          h("th", { scope: "col" }, "curve"),
+          h("th", { class: "number", scope: "col" }, "presses"),
+          heads,
         ),
-      )),
+      ),
+      h(
+        "tbody",
+        {},
+        sorted.map((c) =>
+          h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, `${c.velocity_mm_s} mm/s ${c.stroke}`),
+            h("td", { class: "number" }, c.error_cN.length),
+            cell(c.error_cN[0]),
+            cell(c.error_cN.at(-1)),
+            cell(c.mean_error_cN),
+            cell(c.max_error_cN),
+          ),
+        ),
+      ),
     ),
   );
 }

@@ -1,21 +1,46 @@
 /** A device held open: connect, look at it, upload, press, arm, stop; one key brings zero force. */
 
-import { call, type Calls, type DeviceStanding, type SelfTest, type WorkChoices } from "../../net";
-import { addShortcuts, button, choice, computed, effect, empty, h, numberField, panel, signal, tell, untracked, type Child } from "../../ui";
+import { type Calls, call, type DeviceStatus, type SelfTest, type WorkChoices } from "../../net";
+import {
+  addShortcuts,
+  button,
+  type Child,
+  choice,
+  computed,
+  effect,
+  empty,
+  h,
+  numberField,
+  panel,
+  signal,
+  tell,
+  untracked,
+} from "../../ui";
 import { buttonOptions, choices, deviceOptions, refreshChoices } from "./choices";
 import { bound } from "./compensateform";
 import { followDevice, standing } from "./looking";
 import { pressPanel } from "./pressview";
 import { scopePanel } from "./scopeview";
 
-const draft = { device: signal("host"), rig: signal("default"), seed: signal(0), button: signal(""), actuation: signal(""), speed: signal(100) };
+const draft = {
+  device: signal("host"),
+  rig: signal("default"),
+  seed: signal(0),
+  button: signal(""),
+  actuation: signal(""),
+  speed: signal(100),
+};
 const facts = signal<readonly (readonly [string, string])[]>([]);
 const tested = signal<SelfTest | null>(null);
 
 export function deviceView(): Child {
   followDevice();
   const connected = computed(() => standing().device);
-  addShortcuts({ keys: "Escape", does: "Zero force at once", act: () => void (connected() && ask("device.stop", {})) });
+  addShortcuts({
+    keys: "Escape",
+    does: "Zero force now",
+    act: () => void (connected() && ask("device.stop", {})),
+  });
   effect(() => {
     connected();
     facts.set([]);
@@ -29,7 +54,7 @@ type DeviceCall = Exclude<Extract<keyof Calls, `device.${string}`>, "device.fact
 /** Ask something of the device; what it is like afterwards is shown. */
 async function ask<K extends DeviceCall>(name: K, about: Calls[K]["ask"]): Promise<void> {
   try {
-    standing.set((await call(name, about)) as DeviceStanding);
+    standing.set((await call(name, about)) as DeviceStatus);
   } catch (error) {
     tell(error);
   }
@@ -41,13 +66,13 @@ function connectView(): Child {
     const found = choices();
     return found ? connectFields(found) : h("p", { class: "muted" }, "…");
   };
-  const again = button({ label: "Look again", act: refreshChoices, hint: "List the serial ports again" });
+  const again = button({ label: "Rescan", act: refreshChoices, hint: "List the serial ports again" });
   return h(
     "div",
     { class: "stack" },
     gone,
     panel("Connect a device", fields, h("div", { class: "row" }, again)),
-    empty("No device is connected", "Connect one to see what it senses and does, test it, and press a button on it."),
+    empty("No device is connected", "Connect one to monitor it, test it, and press a button on it."),
   );
 }
 
@@ -55,19 +80,46 @@ function connectFields(found: WorkChoices): Child {
   const start = button({
     label: "Connect",
     kind: "main",
-    act: () => void ask("device.connect", { device: draft.device.peek(), rig: draft.rig.peek(), seed: draft.seed.peek() }),
+    act: () =>
+      void ask("device.connect", {
+        device: draft.device.peek(),
+        rig: draft.rig.peek(),
+        seed: draft.seed.peek(),
+      }),
   });
   return [
     h(
       "div",
       { class: "work-fields" },
       choice({ label: "Device", options: deviceOptions(found, "rig"), ...bound(draft.device) }),
-      choice({ label: "Simulated rig", options: found.rigs.map((name) => [name, name]), ...bound(draft.rig) }),
-      numberField({ label: "Seed of the simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 }),
+      choice({
+        label: "Simulated rig",
+        options: found.rigs.map((name) => [name, name]),
+        ...bound(draft.rig),
+      }),
+      numberField({
+        label: "Seed of the simulation",
+        unit: "",
+        ...bound(draft.seed),
+        least: 0,
+        most: 2 ** 31,
+        digits: 0,
+      }),
       start,
     ),
     found.note ? h("p", { class: "muted" }, found.note) : null,
-    h("ul", { class: "device-list" }, found.devices.map((one) => h("li", {}, h("strong", {}, one.device), ` ${one.about}${one.used_by ? `; in use by ${one.used_by}` : ""}`))),
+    h(
+      "ul",
+      { class: "device-list" },
+      found.devices.map((device) =>
+        h(
+          "li",
+          {},
+          h("strong", {}, device.device),
+          ` ${device.about}${device.used_by ? `; in use by ${device.used_by}` : ""}`,
+        ),
+      ),
+    ),
   ];
 }
 
@@ -82,7 +134,7 @@ function connectedView(): Child {
 function status(): Child {
   const s = standing;
   const counted = () =>
-    `${s().missing_ticks} ticks missing, ${s().late_ticks} late, ${s().missing_frames} frames lost, ${s().lost_records} records without room`;
+    `${s().missing_ticks} ticks missing, ${s().late_ticks} late, ${s().missing_frames} frames lost, ${s().lost_records} records dropped`;
   return h(
     "div",
     { class: "stack" },
@@ -92,10 +144,18 @@ function status(): Child {
       h("strong", {}, () => s().name),
       h("span", { class: "tag simulated", hidden: () => !s().simulated }, "simulated"),
       h("span", { class: () => `job-state mode-${s().mode}`, hidden: () => !s().mode }, () => s().mode),
-      h("span", { class: "muted" }, () => (s().programmed ? `program: ${s().programmed}, travel ${s().travel_mm?.toFixed(2) ?? "?"} mm` : "no program yet")),
+      h("span", { class: "muted" }, () =>
+        s().programmed
+          ? `program: ${s().programmed}, travel ${s().travel_mm?.toFixed(2) ?? "?"} mm`
+          : "no program yet",
+      ),
     ),
     h("p", { class: "muted", hidden: () => !s().streams }, counted),
-    h("p", { class: "wrong", role: "alert", hidden: () => !s().fault }, () => `Fell to zero force: ${s().fault}`),
+    h(
+      "p",
+      { class: "wrong", role: "alert", hidden: () => !s().fault },
+      () => `Fault, zero force: ${s().fault}`,
+    ),
   );
 }
 
@@ -108,10 +168,27 @@ function controls(): Child {
       "div",
       { class: "row" },
       h("span", { hidden: () => standing().person }, pressControl()),
-      h("span", { hidden: () => !streams() }, button({ label: "Arm", act: () => void ask("device.arm", {}), disabled: () => !standing().programmed, hint: "Render the program until it is stopped" })),
-      h("span", { hidden: () => !streams() }, button({ label: "Zero force (Esc)", kind: "danger", act: () => void ask("device.stop", {}) })),
+      h(
+        "span",
+        { hidden: () => !streams() },
+        button({
+          label: "Arm",
+          act: () => void ask("device.arm", {}),
+          disabled: () => !standing().programmed,
+          hint: "Render the program until you stop it",
+        }),
+      ),
+      h(
+        "span",
+        { hidden: () => !streams() },
+        button({ label: "Zero force (Esc)", kind: "danger", act: () => void ask("device.stop", {}) }),
+      ),
       h("span", { hidden: () => !standing().fault }, clear),
-      button({ label: "Disconnect", act: () => void ask("device.disconnect", {}).then(refreshChoices), hint: "Zero force, and let it go" }),
+      button({
+        label: "Disconnect",
+        act: () => void ask("device.disconnect", {}).then(refreshChoices),
+        hint: "Zero force, then disconnect",
+      }),
     ),
   ];
 }
@@ -121,8 +198,12 @@ function programFields(): Child {
   if (!found) return "…";
   const options = buttonOptions(found);
   if (!draft.button.peek()) draft.button.set(options[0]?.[0] ?? "");
-  const tables = [["", "its own force"], ...found.actuations.map((name): [string, string] => [name, name])] as const;
-  const upload = () => ask("device.upload", { button: draft.button.peek(), actuation: draft.actuation.peek() });
+  const tables = [
+    ["", "own force"],
+    ...found.actuations.map((name): [string, string] => [name, name]),
+  ] as const;
+  const upload = () =>
+    ask("device.upload", { button: draft.button.peek(), actuation: draft.actuation.peek() });
   return [
     choice({ label: "Button", options, ...bound(draft.button) }),
     choice({ label: "Learned table", options: tables, ...bound(draft.actuation) }),
@@ -136,15 +217,20 @@ function pressControl(): HTMLElement {
     kind: "main",
     disabled: () => !standing().programmed,
     act: () => void ask("device.press", { velocity_mm_s: draft.speed.peek() }),
-    hint: "The simulated person presses",
+    hint: "The simulated finger presses",
   });
-  return h("span", { class: "row" }, numberField({ label: "at", unit: "mm/s", ...bound(draft.speed), least: 5, most: 500, digits: 0 }), press);
+  return h(
+    "span",
+    { class: "row" },
+    numberField({ label: "at", unit: "mm/s", ...bound(draft.speed), least: 5, most: 500, digits: 0 }),
+    press,
+  );
 }
 
 function aboutView(): Child {
   const read = async () => {
     try {
-      facts.set((await call("device.facts", {})).facts.map((one) => [one.name, one.value]));
+      facts.set((await call("device.facts", {})).facts.map((fact) => [fact.name, fact.value]));
     } catch (error) {
       tell(error);
     }
@@ -159,7 +245,12 @@ function aboutView(): Child {
   return h(
     "div",
     { class: "stack" },
-    h("div", { class: "row" }, button({ label: "Read", act: () => void read() }), button({ label: "Self-test", act: () => void test() })),
+    h(
+      "div",
+      { class: "row" },
+      button({ label: "Read", act: () => void read() }),
+      button({ label: "Self-test", act: () => void test() }),
+    ),
     () => verdicts(tested()),
     () => factList(facts()),
   );
@@ -167,13 +258,27 @@ function aboutView(): Child {
 
 function factList(found: readonly (readonly [string, string])[]): Child {
   if (!found.length) return null;
-  return h("dl", { class: "facts" }, found.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
+  return h(
+    "dl",
+    { class: "facts" },
+    found.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+  );
 }
 
 function verdicts(found: SelfTest | null): Child {
   if (!found) return null;
   if (found.note) return h("p", { class: "muted" }, found.note);
-  return h("ul", { class: "verdicts" }, found.parts.map((one) =>
-    h("li", { class: one.verdict }, h("span", {}, one.part.replace(/_/g, " ")), h("strong", {}, one.verdict.replace(/_/g, " ")), h("span", { class: "muted" }, `${one.value}`)),
-  ));
+  return h(
+    "ul",
+    { class: "verdicts" },
+    found.parts.map((part) =>
+      h(
+        "li",
+        { class: part.verdict },
+        h("span", {}, part.part.replace(/_/g, " ")),
+        h("strong", {}, part.verdict.replace(/_/g, " ")),
+        h("span", { class: "muted" }, `${part.value}`),
+      ),
+    ),
+  );
 }

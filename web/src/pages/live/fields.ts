@@ -42,9 +42,9 @@ export function speedsOf(text: string, least_mm_s: number): readonly number[] | 
   const speeds = parts.map(Number);
   if (!speeds.length || speeds.length > MOST_SPEEDS) return `give 1 to ${MOST_SPEEDS} speeds`;
   if (!speeds.every((v) => Number.isFinite(v) && v >= least_mm_s && v <= MOST_mm_s)) {
-    return `use numbers of ${least_mm_s} to ${MOST_mm_s} mm/s`;
+    return `use numbers from ${least_mm_s} to ${MOST_mm_s} mm/s`;
   }
-  if (new Set(speeds).size !== speeds.length) return "a speed is there twice";
+  if (new Set(speeds).size !== speeds.length) return "a speed is listed twice";
   return speeds;
 }
 
@@ -64,7 +64,10 @@ export function speedsField(o: SpeedsOptions): HTMLElement {
     o.set(found);
   });
   effect(() => {
-    input.value = o.value().map((v) => shown(v)).join(", ");
+    input.value = o
+      .value()
+      .map((v) => shown(v))
+      .join(", ");
   });
   const unit = h("span", { class: "unit", "aria-hidden": "true" }, "mm/s");
   return h(

@@ -1,12 +1,12 @@
 /** The jobs as the server tells them: all rows, and the events of the one that is looked at. */
 
-import { call, live, type JobRow, type LiveChannel, type StartJob } from "../../net";
-import { signal, tell, toast, untracked, type Signal } from "../../ui";
+import { call, type JobRow, type LiveChannel, live, type StartJob } from "../../net";
+import { type Signal, signal, tell, toast, untracked } from "../../ui";
 import { emptyPicture, fold, type JobEvent, type JobPicture } from "./picture";
 
 export type Order = StartJob["order"];
 
-/** All jobs, newest first; null until the server has told. */
+/** All jobs, newest first; null until the server has answered. */
 export const rows: Signal<readonly JobRow[] | null> = signal<readonly JobRow[] | null>(null);
 
 /** The job that is looked at and what its events come to; a new object with every change. */
@@ -23,7 +23,7 @@ export interface Watched {
 let channel: LiveChannel<"jobs"> | null = null;
 channel = live().channel("jobs", {
   opened: begin,
-  told: (message) => {
+  onMessage: (message) => {
     if (message.type === "jobs") rows.set(message.jobs);
     else if (message.type === "job") changed(message.row);
     else take(message.job, message.from_event, message.events);
@@ -43,7 +43,7 @@ function changed(row: JobRow): void {
   rows.set(there ? known.map((one) => (one.job === row.job ? row : one)) : [row, ...known]);
 }
 
-/** Look at a job: its events so far are told, and then each as it comes. Empty looks at none. */
+/** Look at a job: its events so far arrive first, then each new one. Empty looks at none. */
 export function watchJob(job: string): void {
   if (untracked(() => watched().job) === job) return;
   watched.set({ job, events: 0, picture: emptyPicture() });
@@ -73,7 +73,7 @@ export function isUnderWay(row: JobRow): boolean {
   return row.state === "waiting" || row.state === "running" || row.state === "needs you";
 }
 
-/** Begin work; null if the studio refused, which has been told. */
+/** Begin work; null if the studio refused, which is then shown. */
 export async function startJob(order: Order): Promise<JobRow | null> {
   return done(call("jobs.start", { order }));
 }

@@ -1,15 +1,15 @@
-/** The view of a job that learns or judges: convergence, what was felt, every press, the outcome. */
+/** The view of a job that learns or evaluates: convergence, rendered forces, every press, the outcome. */
 
 import type { JobOutcome } from "../../net";
-import { computed, h, panel, signal, tabs, type Child } from "../../ui";
+import { type Child, computed, h, panel, signal, tabs } from "../../ui";
 import { convergence, convergenceLegend, errorTable } from "./converge";
-import { feltPanel } from "./felt";
 import { watched } from "./jobs";
 import type { Stage } from "./picture";
-import { pressTable } from "./presses";
 import { pressCue } from "./presscue";
+import { pressTable } from "./presses";
+import { renderedPanel } from "./rendered";
 
-type Part = "learn" | "judge";
+type Part = "learn" | "evaluate";
 /** What a person has chosen to see; null follows the work. */
 const chosen = signal<Part | null>(null);
 
@@ -18,8 +18,8 @@ export function learnView(): Child {
   const shown = computed(part);
   return [
     pressCue(),
-    panel("Convergence", partTabs(), () => stageView(shown() === "judge" ? "probe" : "compensate")),
-    h("div", { class: "two" }, panel("Intended and felt", feltPanel()), outcomes()),
+    panel("Convergence", partTabs(), () => stageView(shown() === "evaluate" ? "probe" : "compensate")),
+    h("div", { class: "two" }, panel("Target and rendered", renderedPanel()), outcomes()),
     panel("Presses", pressTable()),
   ];
 }
@@ -27,15 +27,18 @@ export function learnView(): Child {
 function part(): Part {
   const { presses } = watched().picture;
   const judged = presses.at(-1)?.press.stage === "probe";
-  return chosen() ?? (judged && !presses.some((one) => one.press.stage === "compensate") ? "judge" : "learn");
+  return (
+    chosen() ??
+    (judged && !presses.some((press) => press.press.stage === "compensate") ? "evaluate" : "learn")
+  );
 }
 
 function partTabs(): HTMLElement {
   return tabs<Part>({
-    label: "Part of the work",
+    label: "Phase",
     tabs: [
-      ["learn", "While it learns"],
-      ["judge", "On fresh presses"],
+      ["learn", "Learning"],
+      ["evaluate", "Held-out presses"],
     ],
     value: part,
     set: (value) => chosen.set(value),
@@ -43,21 +46,27 @@ function partTabs(): HTMLElement {
 }
 
 function stageView(stage: Stage): Child {
-  const some = () => watched().picture.presses.some((one) => one.press.stage === stage && !one.press.skipped);
-  const none = stage === "probe" ? "Not judged yet: fresh presses come once it has learned." : "No press yet.";
+  const some = () =>
+    watched().picture.presses.some((press) => press.press.stage === stage && !press.press.skipped);
+  const none =
+    stage === "probe" ? "Not evaluated yet: held-out presses follow the learning." : "No presses yet.";
   return h(
     "div",
     { class: "stack" },
     convergenceLegend(stage),
     convergence(stage),
-    h("details", {}, h("summary", {}, "Figures"), () => (some() ? errorTable(stage, "Errors of every curve") : h("p", { class: "muted" }, none))),
+    h("details", {}, h("summary", {}, "Figures"), () =>
+      some() ? errorTable(stage, "Errors of every curve") : h("p", { class: "muted" }, none),
+    ),
   );
 }
 
 function outcomes(): HTMLElement {
-  return panel("What came out", () => {
+  return panel("Result", () => {
     const found = watched().picture.outcomes;
-    return found.length ? found.map(outcome) : h("p", { class: "muted" }, "Told once the learning, and then the judging, is over.");
+    return found.length
+      ? found.map(outcome)
+      : h("p", { class: "muted" }, "Shown after the learning, and after the evaluation.");
   });
 }
 
@@ -67,7 +76,7 @@ function outcome(one: JobOutcome): HTMLElement {
   return h(
     "div",
     { class: "outcome" },
-    h("h3", {}, one.stage === "probe" ? "Judged on fresh presses" : "Learned", simulated),
+    h("h3", {}, one.stage === "probe" ? "Evaluated on held-out presses" : "Learned", simulated),
     h("p", {}, `${one.sentence.replace(/\+-/g, "±")}. ${counted}.`),
   );
 }

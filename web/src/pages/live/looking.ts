@@ -1,10 +1,10 @@
 /** What the connected device tells while it is looked at. */
 
-import { live, type DeviceStanding, type LiveChannel, type PressSeen } from "../../net";
-import { effect, onCleanup, signal, toast, type Signal } from "../../ui";
+import { type DeviceStatus, type LiveChannel, live, type PressSeen } from "../../net";
+import { effect, onCleanup, type Signal, signal, toast } from "../../ui";
 import { addBins, emptyBins, type ScopeBins } from "./scope";
 
-/** Pixel columns that a device's ticks are told in. */
+/** Pixel columns that a device's ticks are sent in. */
 export const COLUMNS = 600;
 
 export const span_s: Signal<number> = signal(5);
@@ -12,11 +12,11 @@ export const seen: Signal<PressSeen | null> = signal<PressSeen | null>(null);
 /** The bins of now; a new object each time that some were added. */
 export const scope: Signal<{ readonly bins: ScopeBins }> = signal({ bins: emptyBins(5 / COLUMNS) });
 
-const NONE: DeviceStanding = { type: "standing" };
-const told = signal<DeviceStanding>(NONE);
+const NONE: DeviceStatus = { type: "standing" };
+const received = signal<DeviceStatus>(NONE);
 
-export type Standing = Required<DeviceStanding>;
-const DEFAULTS: Standing = {
+export type Status = Required<DeviceStatus>;
+const DEFAULTS: Status = {
   type: "standing",
   device: "",
   name: "",
@@ -36,8 +36,8 @@ const DEFAULTS: Standing = {
 };
 
 /** How the device is. */
-export const standing = Object.assign((): Standing => ({ ...DEFAULTS, ...told() }), {
-  set: (value: DeviceStanding) => told.set(value),
+export const standing = Object.assign((): Status => ({ ...DEFAULTS, ...received() }), {
+  set: (value: DeviceStatus) => received.set(value),
 });
 
 /** Look on for as long as the scope in which this is called lasts. */
@@ -46,8 +46,8 @@ export function followDevice(): void {
   let channel: LiveChannel<"scope"> | null = null;
   channel = live().channel("scope", {
     opened: () => begin(),
-    told: (message) => {
-      if (message.type === "standing") told.set(message);
+    onMessage: (message) => {
+      if (message.type === "standing") received.set(message);
       else if (message.type === "press_seen") seen.set(message);
       else {
         const { bins } = scope.peek();

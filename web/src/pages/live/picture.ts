@@ -1,26 +1,26 @@
 /** What a job's events come to: everything its views draw. Folded event by event, so that a reload gives the same. */
 
 import type {
-  CueBegun,
+  CueStarted,
   CurveIntended,
-  CurveStanding,
-  EventsTold,
+  CurveProgress,
+  JobEvents,
   JobOutcome,
-  PaceTold,
+  PaceProgress,
   PressAsked,
-  PressTold,
+  PressEvent,
   QuestionAsked,
   TakeAsked,
-  TakeTold,
+  TakeEvent,
   TuneRanking,
 } from "../../net";
 
-export type JobEvent = EventsTold["events"][number];
+export type JobEvent = JobEvents["events"][number];
 
 /** A press and its number among all of the job, from 1. */
 export interface NumberedPress {
   readonly number: number;
-  readonly press: PressTold;
+  readonly press: PressEvent;
 }
 
 export interface JobPicture {
@@ -32,21 +32,21 @@ export interface JobPicture {
   readonly intended: Map<number, CurveIntended>;
   readonly presses: NumberedPress[];
   /** The newest standing of each curve, by curveKey. */
-  readonly curves: Map<string, CurveStanding>;
+  readonly curves: Map<string, CurveProgress>;
   readonly outcomes: JobOutcome[];
   pressAsked: PressAsked | null;
   takeAsked: TakeAsked | null;
   /** Counts the cues that began: a change means that one begins now. */
   cues: number;
-  readonly takes: TakeTold[];
-  paces: readonly PaceTold[];
+  readonly takes: TakeEvent[];
+  paces: readonly PaceProgress[];
   question: QuestionAsked | null;
   answers: number;
   rankings: readonly TuneRanking[];
 }
 
-export type Stage = PressTold["stage"];
-export type StrokeName = CurveStanding["stroke"];
+export type Stage = PressEvent["stage"];
+export type StrokeName = CurveProgress["stroke"];
 
 export function emptyPicture(): JobPicture {
   return {
@@ -100,7 +100,14 @@ export function fold(picture: JobPicture, event: JobEvent): void {
   }
 }
 
-type Step = PressAsked | PressTold | TakeAsked | CueBegun | TakeTold | QuestionAsked | Extract<JobEvent, { type: "answered" }>;
+type Step =
+  | PressAsked
+  | PressEvent
+  | TakeAsked
+  | CueStarted
+  | TakeEvent
+  | QuestionAsked
+  | Extract<JobEvent, { type: "answered" }>;
 
 function foldStep(picture: JobPicture, event: Step): void {
   switch (event.type) {
@@ -131,7 +138,7 @@ function foldStep(picture: JobPicture, event: Step): void {
   }
 }
 
-function foldPress(picture: JobPicture, press: PressTold): void {
+function foldPress(picture: JobPicture, press: PressEvent): void {
   picture.pressAsked = null;
   picture.presses.push({ number: picture.presses.length + 1, press });
   keep(picture, press.stage, press.curves);
@@ -144,7 +151,7 @@ function foldOutcome(picture: JobPicture, outcome: JobOutcome): void {
   if (outcome.rankings?.length) picture.rankings = outcome.rankings;
 }
 
-function keep(picture: JobPicture, stage: string, curves: readonly CurveStanding[]): void {
+function keep(picture: JobPicture, stage: string, curves: readonly CurveProgress[]): void {
   for (const curve of curves) picture.curves.set(curveKey(stage, curve.stroke, curve.velocity_mm_s), curve);
 }
 

@@ -1,6 +1,6 @@
 /** The presses, newest first, with the reason of each that was not used. */
 
-import { h, signal, toggle, type Child } from "../../ui";
+import { type Child, h, signal, toggle } from "../../ui";
 import { watched } from "./jobs";
 import type { NumberedPress, StrokeName } from "./picture";
 
@@ -21,7 +21,11 @@ export function pressTable(): Child {
       "div",
       { class: "row spread" },
       h("span", { class: "muted" }, () => said()),
-      toggle({ label: "Only those not used", value: () => onlySkipped(), set: (on) => onlySkipped.set(on) }),
+      toggle({
+        label: "Only rejected presses",
+        value: () => onlySkipped(),
+        set: (on) => onlySkipped.set(on),
+      }),
     ),
     h(
       "div",
@@ -29,7 +33,16 @@ export function pressTable(): Child {
       h(
         "table",
         { "aria-label": "Presses, newest first" },
-        h("thead", {}, h("tr", {}, heads.map((text, i) => h("th", { scope: "col", class: i === 1 ? "" : "number" }, text)), h("th", { scope: "col" }, "what came of it"))),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            heads.map((text, i) => h("th", { scope: "col", class: i === 1 ? "" : "number" }, text)),
+            h("th", { scope: "col" }, "outcome"),
+          ),
+        ),
         h("tbody", {}, () => rows().map(line)),
       ),
     ),
@@ -40,23 +53,25 @@ function said(): string {
   const all = watched().picture.presses;
   const skipped = all.filter((one) => one.press.skipped).length;
   const counted = `${all.length} ${all.length === 1 ? "press" : "presses"}`;
-  return skipped ? `${counted}, ${skipped} of them not used` : counted;
+  return skipped ? `${counted}, ${skipped} rejected` : counted;
 }
 
 function line({ number, press }: NumberedPress): HTMLElement {
   const error = (stroke: StrokeName) => {
-    const found = press.skipped ? undefined : press.curves.find((curve) => curve.stroke === stroke)?.error_cN.at(-1);
+    const found = press.skipped
+      ? undefined
+      : press.curves.find((curve) => curve.stroke === stroke)?.error_cN.at(-1);
     return h("td", { class: "number" }, found === undefined ? "–" : found.toFixed(2));
   };
   return h(
     "tr",
     { class: press.skipped ? "skipped" : "" },
     h("td", { class: "number" }, number),
-    h("td", {}, press.stage === "probe" ? "judge" : "learn"),
+    h("td", {}, press.stage === "probe" ? "evaluate" : "learn"),
     h("td", { class: "number" }, press.velocity_mm_s),
     h("td", { class: "number" }, press.achieved_mm_s === null ? "–" : press.achieved_mm_s.toFixed(0)),
     error("press"),
     error("release"),
-    h("td", {}, press.skipped ? `not used: ${press.skipped}` : press.told),
+    h("td", {}, press.skipped ? `rejected: ${press.skipped}` : press.told),
   );
 }

@@ -1,7 +1,7 @@
 /** The view of a tuning: play what was pressed, say which is closer, blind; what the answers come to so far. */
 
 import type { PlayedWave, QuestionAsked, TuneRanking } from "../../net";
-import { addShortcuts, button, computed, h, panel, signal, tell, untracked, type Child } from "../../ui";
+import { addShortcuts, button, type Child, computed, h, panel, signal, tell, untracked } from "../../ui";
 import { answerJob, watched } from "./jobs";
 import { pressCue } from "./presscue";
 import { peakOf, play } from "./sound";
@@ -29,7 +29,7 @@ function questionPanel(question: QuestionAsked): Child {
   const pair = question.waves.length === 2;
   addKeys(question, pair);
   const said = pair
-    ? "Which is closer to the real button? Both were pressed; they bear no names, so that nothing leads you."
+    ? "Which is closer to the real button? Both were pressed; they are unnamed to keep you unbiased."
     : "How close is it to the real button? 1 is not at all, 7 is the same.";
   void playBoth(question);
   return panel(
@@ -37,17 +37,31 @@ function questionPanel(question: QuestionAsked): Child {
     h("p", { class: "wanted" }, said),
     players(question),
     pair ? pairAnswers(question) : ratings(question),
-    h("p", { class: "muted" }, pair ? "Keys: 1 first, 2 second, 0 neither; Space plays again; R presses again." : "Keys: 1 to 7; Space plays again; R presses again."),
+    h(
+      "p",
+      { class: "muted" },
+      pair
+        ? "Keys: 1 first, 2 second, 0 neither; Space plays again; R presses again."
+        : "Keys: 1 to 7; Space plays again; R presses again.",
+    ),
   );
 }
 
 function addKeys(question: QuestionAsked, pair: boolean): void {
   const give = (answer: string) => () => void answer_(question, answer);
   const keys = pair
-    ? [["1", "The first is closer", "first"], ["2", "The second is closer", "second"], ["0", "Neither is closer", "neither"]]
+    ? [
+        ["1", "The first is closer", "first"],
+        ["2", "The second is closer", "second"],
+        ["0", "Neither is closer", "neither"],
+      ]
     : Array.from({ length: 7 }, (_, i) => [`${i + 1}`, `Rate ${i + 1}`, `${i + 1}`]);
   addShortcuts(
-    ...keys.map(([key, does, answer]) => ({ keys: key as string, does: does as string, act: give(answer as string) })),
+    ...keys.map(([key, does, answer]) => ({
+      keys: key as string,
+      does: does as string,
+      act: give(answer as string),
+    })),
     { keys: "Space", does: "Play again", act: () => void playBoth(question) },
     { keys: "R", does: "Press again", act: give("again") },
   );
@@ -63,7 +77,11 @@ async function answer_(question: QuestionAsked, answer: string): Promise<void> {
 function players(question: QuestionAsked): HTMLElement {
   const peak = peakOf([...question.waves, question.measured]);
   const player = (name: string, wave: PlayedWave) =>
-    button({ label: `Play ${name}`, act: () => void playOne(name, wave, peak), pressed: () => playing() === name });
+    button({
+      label: `Play ${name}`,
+      act: () => void playOne(name, wave, peak),
+      pressed: () => playing() === name,
+    });
   return h(
     "div",
     { class: "row players" },
@@ -110,9 +128,19 @@ function pairAnswers(question: QuestionAsked): HTMLElement {
 }
 
 function ratings(question: QuestionAsked): HTMLElement {
-  const one = (rating: number) => button({ label: `${rating}`, act: () => void answer_(question, `${rating}`) });
-  const again = button({ label: "Press again (R)", kind: "plain", act: () => void answer_(question, "again") });
-  return h("div", { class: "row answers", role: "group", "aria-label": "How close" }, Array.from({ length: 7 }, (_, i) => one(i + 1)), again);
+  const one = (rating: number) =>
+    button({ label: `${rating}`, act: () => void answer_(question, `${rating}`) });
+  const again = button({
+    label: "Press again (R)",
+    kind: "plain",
+    act: () => void answer_(question, "again"),
+  });
+  return h(
+    "div",
+    { class: "row answers", role: "group", "aria-label": "How close" },
+    Array.from({ length: 7 }, (_, i) => one(i + 1)),
+    again,
+  );
 }
 
 /** What the answers come to; closed while they are given, for looking may lead them. */
@@ -124,7 +152,7 @@ function ranking(): Child {
       ? h(
           "details",
           { class: "panel", open: over() },
-          h("summary", {}, over() ? "Ranking" : "Ranking so far (looking may lead your answers)"),
+          h("summary", {}, over() ? "Ranking" : "Ranking so far (seeing it may bias your answers)"),
           rankings().map(rankingTable),
         )
       : null;
@@ -132,7 +160,8 @@ function ranking(): Child {
 
 function rankingTable(found: TuneRanking): HTMLElement {
   const heads = ["Hz", "m/s²", "score", "standard error"];
-  const number = (value: number | null, digits: number) => h("td", { class: "number" }, value === null ? "–" : value.toFixed(digits));
+  const number = (value: number | null, digits: number) =>
+    h("td", { class: "number" }, value === null ? "–" : value.toFixed(digits));
   const sorted = [...found.candidates].sort((a, b) => b.score - a.score);
   return h(
     "div",
@@ -141,19 +170,33 @@ function rankingTable(found: TuneRanking): HTMLElement {
     h(
       "table",
       { "aria-label": `Ranking at ${found.velocity_mm_s} mm/s` },
-      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "vibration"), heads.map((text) => h("th", { scope: "col", class: "number" }, text)), h("th", { scope: "col" }, ""))),
-      h("tbody", {}, sorted.map((one) =>
+      h(
+        "thead",
+        {},
         h(
           "tr",
           {},
-          h("th", { scope: "row" }, one.name),
-          number(one.frequency_Hz, 0),
-          number(one.amplitude_m_s2, 1),
-          number(one.score, 2),
-          number(one.error, 2),
-          h("td", {}, one.best ? "kept" : one.alike ? "cannot be told from the best" : ""),
+          h("th", { scope: "col" }, "vibration"),
+          heads.map((text) => h("th", { scope: "col", class: "number" }, text)),
+          h("th", { scope: "col" }, ""),
         ),
-      )),
+      ),
+      h(
+        "tbody",
+        {},
+        sorted.map((one) =>
+          h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, one.name),
+            number(one.frequency_Hz, 0),
+            number(one.amplitude_m_s2, 1),
+            number(one.score, 2),
+            number(one.error, 2),
+            h("td", {}, one.best ? "kept" : one.alike ? "tied with the best" : ""),
+          ),
+        ),
+      ),
     ),
   );
 }

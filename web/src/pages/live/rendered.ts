@@ -1,7 +1,7 @@
-/** What was intended and what the finger felt of the last presses at one speed. */
+/** Target and rendered forces of the last presses at one speed. */
 
-import { Plot, rangeOf, series, type Brush, type Range, type View } from "../../draw";
-import { choice, h, signal, type Child } from "../../ui";
+import { type Brush, Plot, type Range, rangeOf, series, type View } from "../../draw";
+import { type Child, choice, h, signal } from "../../ui";
 import { listOf, speedsKey, swatch } from "./converge";
 import { watched } from "./jobs";
 import type { NumberedPress } from "./picture";
@@ -10,7 +10,7 @@ const SHOWN = 3;
 /** Speed that is looked at; "last" follows the presses. */
 const chosen = signal("last");
 
-export function feltPanel(): Child {
+export function renderedPanel(): Child {
   const speeds = speedsKey();
   return () => view(listOf(speeds()));
 }
@@ -18,7 +18,7 @@ export function feltPanel(): Child {
 function view(speeds: readonly number[]): HTMLElement {
   chosen.set("last");
   const plot = new Plot({
-    label: "Force over displacement: intended, and felt in the last presses",
+    label: "Force over displacement: target, and rendered in the last presses",
     x: { label: "displacement", unit: "mm" },
     y: { label: "force", unit: "cN" },
     whole,
@@ -28,11 +28,20 @@ function view(speeds: readonly number[]): HTMLElement {
   });
   const pick = choice({
     label: "Speed",
-    options: [["last", "of the last press"], ...speeds.map((v): [string, string] => [String(v), `${v} mm/s`])],
+    options: [
+      ["last", "of the last press"],
+      ...speeds.map((v): [string, string] => [String(v), `${v} mm/s`]),
+    ],
     value: () => chosen(),
     set: (value) => chosen.set(value),
   });
-  const legend = h("span", { class: "legend" }, swatch(0, "intended"), swatch(1, "felt, press"), swatch(2, "felt, release"));
+  const legend = h(
+    "span",
+    { class: "legend" },
+    swatch(0, "intended"),
+    swatch(1, "rendered, press"),
+    swatch(2, "rendered, release"),
+  );
   return h("div", { class: "stack" }, h("div", { class: "row spread" }, pick, legend), plot.element);
 }
 
@@ -43,7 +52,9 @@ function speed(): number | null {
 }
 
 function lastPresses(velocity_mm_s: number): readonly NumberedPress[] {
-  return watched().picture.presses.filter((one) => one.press.velocity_mm_s === velocity_mm_s && one.press.felt).slice(-SHOWN);
+  return watched()
+    .picture.presses.filter((press) => press.press.velocity_mm_s === velocity_mm_s && press.press.felt)
+    .slice(-SHOWN);
 }
 
 function whole(): { x: Range; y: Range } {

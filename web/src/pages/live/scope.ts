@@ -1,6 +1,6 @@
 /** What a device tells of its ticks: kept as bins of one pixel column each, the least and the most of all in it. */
 
-import type { ScopeTold } from "../../net";
+import type { ScopeFrame } from "../../net";
 
 /** Columns of one quantity: the least and the most of each bin. */
 export interface Band {
@@ -21,21 +21,29 @@ export interface ScopeBins {
 const band = (): Band => ({ low: [], high: [] });
 
 export function emptyBins(bin_s: number): ScopeBins {
-  return { bin_s, bin: [], displacement_mm: band(), force_cN: band(), commanded_cN: band(), state: [], cut: [] };
+  return {
+    bin_s,
+    bin: [],
+    displacement_mm: band(),
+    force_cN: band(),
+    commanded_cN: band(),
+    state: [],
+    cut: [],
+  };
 }
 
 /** Add bins and forget those that are out of sight; bins of another width are not taken. */
-export function addBins(kept: ScopeBins, told: ScopeTold, most: number): void {
-  if (told.bin_s !== kept.bin_s) return;
-  kept.bin.push(...told.bin);
-  kept.displacement_mm.low.push(...told.displacement_low_mm);
-  kept.displacement_mm.high.push(...told.displacement_high_mm);
-  kept.force_cN.low.push(...told.force_low_cN.map((v) => v ?? NaN));
-  kept.force_cN.high.push(...told.force_high_cN.map((v) => v ?? NaN));
-  kept.commanded_cN.low.push(...told.commanded_low_cN);
-  kept.commanded_cN.high.push(...told.commanded_high_cN);
-  kept.state.push(...told.state);
-  kept.cut.push(...told.cut);
+export function addBins(kept: ScopeBins, bins: ScopeFrame, most: number): void {
+  if (bins.bin_s !== kept.bin_s) return;
+  kept.bin.push(...bins.bin);
+  kept.displacement_mm.low.push(...bins.displacement_low_mm);
+  kept.displacement_mm.high.push(...bins.displacement_high_mm);
+  kept.force_cN.low.push(...bins.force_low_cN.map((v) => v ?? NaN));
+  kept.force_cN.high.push(...bins.force_high_cN.map((v) => v ?? NaN));
+  kept.commanded_cN.low.push(...bins.commanded_low_cN);
+  kept.commanded_cN.high.push(...bins.commanded_high_cN);
+  kept.state.push(...bins.state);
+  kept.cut.push(...bins.cut);
   forget(kept, most);
 }
 
@@ -45,7 +53,8 @@ function forget(kept: ScopeBins, most: number): void {
   const from = kept.bin.findIndex((bin) => bin > last - most);
   if (from <= 0) return;
   const bands = [kept.displacement_mm, kept.force_cN, kept.commanded_cN];
-  for (const column of [kept.bin, kept.state, kept.cut, ...bands.flatMap((b) => [b.low, b.high])]) column.splice(0, from);
+  for (const column of [kept.bin, kept.state, kept.cut, ...bands.flatMap((b) => [b.low, b.high])])
+    column.splice(0, from);
 }
 
 /** The line through least and most of every bin; broken where bins are missing. x is time before the newest, s. */

@@ -9,7 +9,7 @@ const LOUDNESS = 0.5;
 
 let context: AudioContext | null = null;
 
-/** Give the one audio context; browsers start it with the first key or click. */
+/** Return the one audio context; browsers start it with the first key or click. */
 function audio(): AudioContext {
   context ??= new AudioContext();
   if (context.state === "suspended") void context.resume();

@@ -1,7 +1,7 @@
-/** The view of a capture: what to do next, the moving pace, each take's verdict, how far every pace is. */
+/** The view of a capture: what to do next, the moving cue, each take's verdict, the progress of each speed. */
 
-import type { PaceTold, TakeAsked, TakeTold } from "../../net";
-import { computed, h, panel, untracked, type Child } from "../../ui";
+import type { PaceProgress, TakeAsked, TakeEvent } from "../../net";
+import { type Child, computed, h, panel, untracked } from "../../ui";
 import { beepToggle, cueView } from "./cue";
 import { watched } from "./jobs";
 import { timeText } from "./motion";
@@ -11,7 +11,12 @@ const SHOWN = 60;
 export function captureView(): Child {
   return [
     nextPanel(),
-    h("div", { class: "two" }, panel("Paces", () => paceTable(watched().picture.paces)), panel("Takes", takesTable())),
+    h(
+      "div",
+      { class: "two" },
+      panel("Speeds", () => speedTable(watched().picture.paces)),
+      panel("Takes", takesTable()),
+    ),
     outcome(),
   ];
 }
@@ -24,21 +29,33 @@ function nextPanel(): Child {
     if (!ask) return null;
     const said = h("p", { class: "wanted", role: "status" }, wanted(ask));
     const again = ask.again ? h("p", { class: "wrong" }, `Once more: ${ask.again}.`) : null;
-    return panel(`Take ${ask.number} of ${ask.total}`, said, again, untracked(() => paced(ask, cues)), beepToggle());
+    return panel(
+      `Take ${ask.number} of ${ask.total}`,
+      said,
+      again,
+      untracked(() => cued(ask, cues)),
+      beepToggle(),
+    );
   };
 }
 
-function paced(ask: TakeAsked, cues: () => number): Child {
+function cued(ask: TakeAsked, cues: () => number): Child {
   if (ask.contact_s === null || ask.bottom_s === null) return h("p", { class: "hands-off" }, "Hands off");
   const stroke_s = ask.bottom_s - ask.contact_s;
-  return cueView({ travel_mm: ask.travel_mm, contact_s: ask.contact_s, stroke_s, length_s: ask.length_s }, cues);
+  return cueView(
+    { travel_mm: ask.travel_mm, contact_s: ask.contact_s, stroke_s, length_s: ask.length_s },
+    cues,
+  );
 }
 
 function wanted(ask: TakeAsked): string {
   if (ask.velocity_mm_s === null || ask.contact_s === null || ask.bottom_s === null) {
-    return `Take the finger off the button and wait ${timeText(ask.length_s)}.`;
+    return `Take your finger off the button and wait ${timeText(ask.length_s)}.`;
   }
-  const how = ask.step === "probe" ? "Slowly: lead the cap down to the stop and as slowly back" : "Press down to the stop and let go";
+  const how =
+    ask.step === "probe"
+      ? "Slowly: move the cap down to the stop and back as slowly"
+      : "Press down to the stop, then release";
   return `${how}: ${ask.velocity_mm_s} mm/s, ${ask.travel_mm.toFixed(1)} mm in ${timeText(ask.bottom_s - ask.contact_s)}.`;
 }
 
@@ -49,24 +66,43 @@ function median(values: readonly number[]): string {
   return ((low + high) / 2).toFixed(1);
 }
 
-function paceTable(paces: readonly PaceTold[]): HTMLElement {
-  if (!paces.length) return h("p", { class: "muted" }, "Rest and a slow probe come first; then presses at each pace.");
+function speedTable(paces: readonly PaceProgress[]): HTMLElement {
+  if (!paces.length)
+    return h("p", { class: "muted" }, "First a rest and a slow probe, then presses at each speed.");
   const heads = ["good", "of", "takes", "missed", "median, mm/s", "least", "most"];
-  const row = (pace: PaceTold) => {
-    const speeds = pace.achieved_mm_s;
-    const extreme = (pick: (...values: number[]) => number) => (speeds.length ? pick(...speeds).toFixed(1) : "–");
-    const cells = [pace.good, pace.wanted, pace.made, pace.missed, median(speeds), extreme(Math.min), extreme(Math.max)];
+  const row = (speed: PaceProgress) => {
+    const speeds = speed.achieved_mm_s;
+    const extreme = (pick: (...values: number[]) => number) =>
+      speeds.length ? pick(...speeds).toFixed(1) : "–";
+    const cells = [
+      speed.good,
+      speed.wanted,
+      speed.made,
+      speed.missed,
+      median(speeds),
+      extreme(Math.min),
+      extreme(Math.max),
+    ];
     return h(
       "tr",
       {},
-      h("th", { scope: "row" }, `${pace.velocity_mm_s} mm/s`),
+      h("th", { scope: "row" }, `${speed.velocity_mm_s} mm/s`),
       cells.map((cell) => h("td", { class: "number" }, cell)),
     );
   };
   return h(
     "table",
-    { "aria-label": "How far every pace is" },
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "pace"), heads.map((text) => h("th", { scope: "col", class: "number" }, text)))),
+    { "aria-label": "Progress of each speed" },
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("th", { scope: "col" }, "speed"),
+        heads.map((text) => h("th", { scope: "col", class: "number" }, text)),
+      ),
+    ),
     h("tbody", {}, paces.map(row)),
   );
 }
@@ -75,7 +111,7 @@ const NAMES = { rest: "at rest", probe: "slow probe", press: "" } as const;
 
 function takesTable(): Child {
   const rows = () => watched().picture.takes.slice(-SHOWN).reverse();
-  const line = (take: TakeTold) =>
+  const line = (take: TakeEvent) =>
     h(
       "tr",
       { class: take.ok ? "" : "skipped" },
@@ -83,7 +119,7 @@ function takesTable(): Child {
       h("td", {}, NAMES[take.step] || `${take.velocity_mm_s ?? "?"} mm/s`),
       h("td", { class: "number" }, take.achieved_mm_s === null ? "–" : take.achieved_mm_s.toFixed(0)),
       h("td", { class: "number" }, take.travel_mm === null ? "–" : take.travel_mm.toFixed(2)),
-      h("td", {}, take.ok ? "good" : `${take.reason}${take.missed ? "; enough tries, it goes on without" : ""}`),
+      h("td", {}, take.ok ? "good" : `${take.reason}${take.missed ? "; too many tries, skipped" : ""}`),
     );
   const heads = ["take", "asked", "achieved, mm/s", "travel, mm"];
   return h(
@@ -92,7 +128,16 @@ function takesTable(): Child {
     h(
       "table",
       { "aria-label": "Takes, newest first" },
-      h("thead", {}, h("tr", {}, heads.map((text, i) => h("th", { scope: "col", class: i === 1 ? "" : "number" }, text)), h("th", { scope: "col" }, "verdict"))),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          heads.map((text, i) => h("th", { scope: "col", class: i === 1 ? "" : "number" }, text)),
+          h("th", { scope: "col" }, "verdict"),
+        ),
+      ),
       h("tbody", {}, () => rows().map(line)),
     ),
   );
@@ -104,6 +149,10 @@ function outcome(): Child {
     if (!found) return null;
     const warnings = (found.warnings ?? []).map((text) => h("li", {}, text));
     const simulated = found.simulated ? h("span", { class: "tag simulated" }, "simulated") : null;
-    return panel("The model", h("p", {}, `${found.sentence}. `, simulated), warnings.length ? h("ul", { class: "job-notices" }, warnings) : null);
+    return panel(
+      "The model",
+      h("p", {}, `${found.sentence}. `, simulated),
+      warnings.length ? h("ul", { class: "job-notices" }, warnings) : null,
+    );
   };
 }

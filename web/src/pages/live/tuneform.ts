@@ -1,8 +1,8 @@
 /** Set up a tuning of vibrations. */
 
+import { go } from "../../app/route";
 import type { WorkChoices } from "../../net";
 import { button, choice, computed, empty, h, numberField, signal } from "../../ui";
-import { go } from "../../app/route";
 import { buttonOptions, choices, deviceOptions, nameFor } from "./choices";
 import { begin, bound } from "./compensateform";
 import { form, speedsField, textField } from "./fields";
@@ -25,11 +25,11 @@ const draft = {
 const ADDED = " tuned";
 const OBSERVERS = [
   ["person", "you"],
-  ["simulated observer", "a simulated observer (evidence of nothing)"],
+  ["simulated observer", "a simulated observer (no evidence)"],
 ] as const;
 const ASKING = [
-  ["compare", "two after another: which is closer"],
-  ["rate", "each by itself, 1 to 7"],
+  ["compare", "pairs: which is closer"],
+  ["rate", "ratings from 1 to 7"],
 ] as const;
 
 export function tuneForm(): HTMLElement {
@@ -40,7 +40,10 @@ export function tuneForm(): HTMLElement {
   draft.button.set(first);
   if (!draft.name.peek()) draft.name.set(nameFor(first, ADDED));
   const rating = computed(() => draft.asking() === "rate");
-  const tables = [["", "its own force"], ...found.actuations.map((name): [string, string] => [name, name])] as const;
+  const tables = [
+    ["", "own force"],
+    ...found.actuations.map((name): [string, string] => [name, name]),
+  ] as const;
   return form(
     "Tune the vibration of a button",
     [
@@ -48,21 +51,59 @@ export function tuneForm(): HTMLElement {
       textField({ label: "Name of the result", ...bound(draft.name) }),
       choice({ label: "Learned table", options: tables, ...bound(draft.actuation) }),
       choice({ label: "Device", options: deviceOptions(found, "rig"), ...bound(draft.device) }),
-      choice({ label: "Simulated rig", options: found.rigs.map((name) => [name, name]), ...bound(draft.rig) }),
+      choice({
+        label: "Simulated rig",
+        options: found.rigs.map((name) => [name, name]),
+        ...bound(draft.rig),
+      }),
       speedsField({ label: "Speeds", ...bound(draft.speeds), least_mm_s: 5 }),
       choice({ label: "Answers come from", options: OBSERVERS, ...bound(draft.observer) }),
-      choice({ label: "Asked", options: ASKING, ...bound(draft.asking) }),
-      h("span", { hidden: rating }, numberField({ label: "Questions at most", unit: "per speed, 0: three for each", ...bound(draft.comparisons), least: 0, most: 1000, digits: 0 })),
-      h("span", { hidden: () => !rating() }, numberField({ label: "Each is rated", unit: "times", ...bound(draft.repeats), least: 2, most: 20, digits: 0 })),
-      numberField({ label: "Seed of order and simulation", unit: "", ...bound(draft.seed), least: 0, most: 2 ** 31, digits: 0 }),
+      choice({ label: "Questions", options: ASKING, ...bound(draft.asking) }),
+      h(
+        "span",
+        { hidden: rating },
+        numberField({
+          label: "Maximum questions",
+          unit: "per speed, 0: three per vibration",
+          ...bound(draft.comparisons),
+          least: 0,
+          most: 1000,
+          digits: 0,
+        }),
+      ),
+      h(
+        "span",
+        { hidden: () => !rating() },
+        numberField({
+          label: "Ratings of each",
+          unit: "times",
+          ...bound(draft.repeats),
+          least: 2,
+          most: 20,
+          digits: 0,
+        }),
+      ),
+      numberField({
+        label: "Seed",
+        unit: "",
+        ...bound(draft.seed),
+        least: 0,
+        most: 2 ** 31,
+        digits: 0,
+      }),
     ],
-    [button({ label: "Start tuning", kind: "main", act: () => void start() }), h("span", { class: "muted" }, byEar)],
+    [
+      button({ label: "Start tuning", kind: "main", act: () => void start() }),
+      h("span", { class: "muted" }, byEar),
+    ],
   );
 }
 
 function byEar(): string {
   const simulated = !draft.device().startsWith("serial:");
-  return simulated && draft.observer() === "person" ? "Nobody can feel a simulated device: you compare by ear." : "";
+  return simulated && draft.observer() === "person"
+    ? "A simulated device cannot be felt: you compare by ear."
+    : "";
 }
 
 function setButton(value: string): void {
@@ -73,7 +114,11 @@ function setButton(value: string): void {
 
 function nothingVibrates(): HTMLElement {
   const open = button({ label: "Open the editor", kind: "main", act: () => go("edit") });
-  return empty("No button with a vibration", "Give a button a vibration of the press first, or capture one with a microphone.", open);
+  return empty(
+    "No button with a vibration",
+    "Add a press vibration to a button first, or capture one with a microphone.",
+    open,
+  );
 }
 
 async function start(): Promise<void> {

@@ -1,11 +1,10 @@
 /** Where one plays: the strip, the place for the hand, and what is said between rounds. */
 
 import { call } from "../../net";
-import { button, h, onCleanup, signal, tell, toggle, type Signal } from "../../ui";
-import { addShortcuts } from "../../ui";
-import type { Hand } from "./game";
+import { addShortcuts, button, h, onCleanup, type Signal, signal, tell, toggle } from "../../ui";
+import type { InputDevice } from "./game";
 import { Play } from "./play";
-import { named, scoreText, type RunStore } from "./store";
+import { named, type RunStore, scoreText } from "./store";
 import { stripView } from "./strip";
 import { SIMULATED, table } from "./table";
 
@@ -21,7 +20,8 @@ export interface Board {
 }
 
 export function board(store: RunStore): Board {
-  const strip = () => store.detail()?.strip ?? { pixels: 144, zone_px: 100, zone_half_px: 5, speed_px_s: 100 };
+  const strip = () =>
+    store.detail()?.strip ?? { pixels: 144, zone_px: 100, zone_half_px: 5, speed_px_s: 100 };
   const lights = stripView(strip);
   const scores = signal(localStorage.getItem(SCORES) !== "no");
   const last = signal<number | null>(null);
@@ -36,8 +36,13 @@ export function board(store: RunStore): Board {
   });
   const busy = () => play.standing() !== "away";
   const beside = table(busy);
-  const where = () => (play.device() === SIMULATED ? "Press here, or the space bar" : "Press the button on the table");
-  const pad = h("div", { class: "opt-pad", hidden: () => !busy(), tabindex: 0, role: "application", "aria-label": where }, h("p", { "aria-hidden": "true" }, where));
+  const where = () =>
+    play.device() === SIMULATED ? "Press here, or the space bar" : "Press the button on the table";
+  const pad = h(
+    "div",
+    { class: "opt-pad", hidden: () => !busy(), tabindex: 0, role: "application", "aria-label": where },
+    h("p", { "aria-hidden": "true" }, where),
+  );
   const start = startButton(store, play, pad, last, beside.device);
   follow(play, pad);
   const setScores = (on: boolean) => {
@@ -56,15 +61,33 @@ export function board(store: RunStore): Board {
       start,
       beside.element,
       pauseButton(play, pad),
-      () => (busy() ? button({ label: "Stop", act: () => play.close(), hint: "The presses so far are kept, but do not count" }) : abandonButton(store)),
+      () =>
+        busy()
+          ? button({
+              label: "Stop",
+              act: () => play.close(),
+              hint: "The presses so far are kept, but do not count",
+            })
+          : abandonButton(store),
       () => (beside.device() === SIMULATED ? soundToggle(play) : null),
-      toggle({ label: "Show scores", value: scores, set: setScores, hint: "After each trial; without, nothing tells you how well you did" }),
+      toggle({
+        label: "Show scores",
+        value: scores,
+        set: setScores,
+        hint: "After each trial; without it, you do not see how well you did",
+      }),
     ),
   );
   return { element, play, busy, scores };
 }
 
-function startButton(store: RunStore, play: Play, pad: HTMLElement, last: Signal<number | null>, device: () => string): HTMLButtonElement {
+function startButton(
+  store: RunStore,
+  play: Play,
+  pad: HTMLElement,
+  last: Signal<number | null>,
+  device: () => string,
+): HTMLButtonElement {
   const asking = signal(false);
   const begin = async () => {
     asking.set(true);
@@ -87,7 +110,13 @@ function startButton(store: RunStore, play: Play, pad: HTMLElement, last: Signal
   };
   return h(
     "button",
-    { type: "button", class: "button main", hidden: () => play.standing() !== "away" || spent(store), disabled: asking, on: { click: () => void begin() } },
+    {
+      type: "button",
+      class: "button main",
+      hidden: () => play.standing() !== "away" || spent(store),
+      disabled: asking,
+      on: { click: () => void begin() },
+    },
     label,
   );
 }
@@ -104,15 +133,27 @@ function pauseButton(play: Play, pad: HTMLElement): HTMLElement {
     play.resume();
     pad.focus({ preventScroll: true });
   };
-  addShortcuts({ keys: "Escape", does: "Pause, or go on", act: () => play.standing.peek() === "there" && act() }, { keys: "Space, while the bullet flies", does: "Press" });
-  return h("button", { type: "button", class: "button", hidden: () => play.standing() !== "there", on: { click: act } }, () => (paused() ? "Go on" : "Pause"));
+  addShortcuts(
+    { keys: "Escape", does: "Pause or resume", act: () => play.standing.peek() === "there" && act() },
+    { keys: "Space, while the bullet flies", does: "Press" },
+  );
+  return h(
+    "button",
+    { type: "button", class: "button", hidden: () => play.standing() !== "there", on: { click: act } },
+    () => (paused() ? "Go on" : "Pause"),
+  );
 }
 
 function abandonButton(store: RunStore): HTMLElement | null {
   const open = store.open();
   if (!open) return null;
-  const act = () => void call("optimize.abandon", { run: store.run, trial: open.number }).then(() => store.refresh(), tell);
-  return button({ label: "Abandon this trial", act, hint: "It teaches the engine nothing and does not count" });
+  const act = () =>
+    void call("optimize.abandon", { run: store.run, trial: open.number }).then(() => store.refresh(), tell);
+  return button({
+    label: "Abandon this trial",
+    act,
+    hint: "It is not scored and does not count",
+  });
 }
 
 function soundToggle(play: Play): HTMLElement {
@@ -121,7 +162,12 @@ function soundToggle(play: Play): HTMLElement {
     on.set(sound);
     play.clicker.muted = !sound;
   };
-  return toggle({ label: "Click sound", value: on, set, hint: "The button's vibration; the only thing of it that a keyboard can give you" });
+  return toggle({
+    label: "Click sound",
+    value: on,
+    set,
+    hint: "The button's vibration as sound: all that a keyboard can render",
+  });
 }
 
 /** Have the hand heard: space bar anywhere, mouse, touch and pen on the pad. */
@@ -153,30 +199,37 @@ function follow(play: Play, pad: HTMLElement): void {
     event.preventDefault();
     play.press(event.timeStamp, handOf(event));
   });
-  for (const end of ["pointerup", "pointercancel", "pointerleave"] as const) pad.addEventListener(end, (event) => play.release(event.timeStamp));
+  for (const end of ["pointerup", "pointercancel", "pointerleave"] as const)
+    pad.addEventListener(end, (event) => play.release(event.timeStamp));
 }
 
-function handOf(event: PointerEvent): Hand {
+function handOf(event: PointerEvent): InputDevice {
   return event.pointerType === "touch" || event.pointerType === "pen" ? event.pointerType : "mouse";
 }
 
 /** What is said below the strip. */
 function line(store: RunStore, play: Play, last: number | null, scores: boolean): string {
   const game = play.game();
-  if (play.standing() === "opening") return "The button is put under your finger …";
-  if (game) return game.phase === "pause" ? `Paused after ${game.kept} of ${game.rounds} presses` : `Press ${Math.min(game.kept + 1, game.rounds)} of ${game.rounds}`;
+  if (play.standing() === "opening") return "Loading the button …";
+  if (game)
+    return game.phase === "pause"
+      ? `Paused after ${game.kept} of ${game.rounds} presses`
+      : `Press ${Math.min(game.kept + 1, game.rounds)} of ${game.rounds}`;
   if (play.reason()) return play.reason();
   const trial = last === null ? undefined : store.detail()?.trials[last];
-  if (trial) return `${told(store, trial.number, scores)} ${spent(store) ? "The budget is spent: look at the result." : "Take a breath, then play the next one."}`;
-  if (spent(store)) return "The budget is spent: look at the result.";
-  return "Press so that the key goes down as the bullet reaches the marked middle of the zone.";
+  if (trial)
+    return `${statusLine(store, trial.number, scores)} ${spent(store) ? "The budget is used up: see the result." : "Play the next one when you are ready."}`;
+  if (spent(store)) return "The budget is used up: see the result.";
+  return "Press so that the key goes down as the bullet reaches the middle of the zone.";
 }
 
-function told(store: RunStore, number: number, scores: boolean): string {
+function statusLine(store: RunStore, number: number, scores: boolean): string {
   const trial = store.detail()?.trials[number];
   const name = store.objective();
   const { label, unit } = named(name);
   if (trial?.state === "shown") return `Trial ${number + 1} is being scored.`;
   if (!scores || !trial) return `Trial ${number + 1} is done.`;
-  return trial.state === "done" ? `Trial ${number + 1}: ${label} ${scoreText(trial.scores[name], unit)}.` : `Trial ${number + 1} failed: ${trial.reason}.`;
+  return trial.state === "done"
+    ? `Trial ${number + 1}: ${label} ${scoreText(trial.scores[name], unit)}.`
+    : `Trial ${number + 1} failed: ${trial.reason}.`;
 }

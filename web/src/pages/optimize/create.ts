@@ -3,11 +3,11 @@
 import { go } from "../../app/route";
 import { call } from "../../net";
 import type { OptimizeCreate, OptimizeOffer, OptimizeOffers } from "../../net/messages";
-import { button, choice, h, numberField, onCleanup, signal, tell, toggle, type Signal } from "../../ui";
+import { button, choice, h, numberField, onCleanup, type Signal, signal, tell, toggle } from "../../ui";
 
 type Kind = "play" | "prefer" | "simulated";
 const KINDS: readonly (readonly [Kind, string])[] = [
-  ["play", "I play, my timing is scored"],
+  ["play", "I play and my timing is scored"],
   ["prefer", "I compare two at a time"],
   ["simulated", "A simulated person plays"],
 ];
@@ -83,9 +83,17 @@ export function newRun(): HTMLElement {
     "section",
     { class: "panel opt-new", "aria-label": "New run" },
     h("h2", {}, "New run"),
-    h("p", { class: "muted" }, "A bullet flies along a strip; the key should go down as it reaches the zone. Twenty presses score a design, then the engine suggests the next one."),
+    h(
+      "p",
+      { class: "muted" },
+      "A bullet flies along a strip; the key should go down as it reaches the zone. Twenty presses score a design, then the engine suggests the next one.",
+    ),
     () => fields(form, offers()),
-    h("div", { class: "row" }, button({ label: "Begin", kind: "main", act: () => void begin(), disabled: () => busy() || !offers() })),
+    h(
+      "div",
+      { class: "row" },
+      button({ label: "Begin", kind: "main", act: () => void begin(), disabled: () => busy() || !offers() }),
+    ),
   );
 }
 
@@ -101,25 +109,65 @@ function fields(form: Form, offers: OptimizeOffers | null): HTMLElement {
     "div",
     { class: "opt-fields" },
     choice({ label: "How", options: kinds, value: form.kind, set }),
-    choice({ label: "Designs", options: told(offers.spaces), value: form.space, set: form.space.set }),
+    choice({ label: "Designs", options: options(offers.spaces), value: form.space, set: form.space.set }),
     () =>
       scored()
-        ? choice({ label: "Engine", options: told(offers.engines), value: form.engine, set: form.engine.set })
-        : choice({ label: "Engine", options: told(offers.pair_engines), value: form.pairEngine, set: form.pairEngine.set }),
+        ? choice({
+            label: "Engine",
+            options: options(offers.engines),
+            value: form.engine,
+            set: form.engine.set,
+          })
+        : choice({
+            label: "Engine",
+            options: options(offers.pair_engines),
+            value: form.pairEngine,
+            set: form.pairEngine.set,
+          }),
     () => (form.varies() ? startChoice(form, offers) : null),
-    choice({ label: "Rig", options: [["", "any: felt as intended"], ...offers.rigs.map((one) => [one.name, `must be rendered by ${one.told}`] as const)], value: form.rig, set: form.rig.set }),
+    choice({
+      label: "Rig",
+      options: [
+        ["", "any: rendered as designed"],
+        ...offers.rigs.map((rig) => [rig.name, `must be rendered by ${rig.told}`] as const),
+      ],
+      value: form.rig,
+      set: form.rig.set,
+    }),
     () => (scored() ? scoredFields(form, offers) : null),
     () => (form.listens() ? othersChoice(form, offers) : null),
-    numberField({ label: "Budget", unit: "at most", value: form.budget, set: form.budget.set, least: 1, most: 500, digits: 0 }),
-    numberField({ label: "Seed", unit: "", value: form.seed, set: form.seed.set, least: 0, most: 2 ** 31, digits: 0 }),
+    numberField({
+      label: "Budget",
+      unit: "at most",
+      value: form.budget,
+      set: form.budget.set,
+      least: 1,
+      most: 500,
+      digits: 0,
+    }),
+    numberField({
+      label: "Seed",
+      unit: "",
+      value: form.seed,
+      set: form.seed.set,
+      least: 0,
+      most: 2 ** 31,
+      digits: 0,
+    }),
     titleField(form),
   );
 }
 
 function startChoice(form: Form, offers: OptimizeOffers): HTMLElement {
-  const starts = offers.starts.map((one) => [one.name, one.told] as const);
-  const options = () => (form.space() === "paper" ? [["", "what the engine suggests"] as const, ...starts] : starts);
-  return choice({ label: form.space() === "paper" ? "Start from" : "Vary", options: options(), value: form.start, set: form.start.set });
+  const starts = offers.starts.map((start) => [start.name, start.told] as const);
+  const options = () =>
+    form.space() === "paper" ? [["", "what the engine suggests"] as const, ...starts] : starts;
+  return choice({
+    label: form.space() === "paper" ? "Start from" : "Vary",
+    options: options(),
+    value: form.start,
+    set: form.start.set,
+  });
 }
 
 /** What simulated people scored before: with it an engine that learns begins where most of them did best. */
@@ -128,28 +176,59 @@ function othersChoice(form: Form, offers: OptimizeOffers): HTMLElement {
     return h(
       "p",
       { class: "muted" },
-      "A run may begin from what simulated people scored; tried on simulated ones, that saves more than half of the trials. In this project's folder: ",
+      "A run may start from the scores of simulated people; in simulation, that saves more than half of the trials. In this project's folder: ",
       h("code", {}, "fdvv optimize population others/easy --people 24 --grid 512 --level easy"),
       ".",
     );
-  return choice({ label: "Others", options: [["", "begin from nothing"], ...told(offers.others)], value: form.others, set: form.others.set });
+  return choice({
+    label: "Others",
+    options: [["", "start from scratch"], ...options(offers.others)],
+    value: form.others,
+    set: form.others.set,
+  });
 }
 
 function scoredFields(form: Form, offers: OptimizeOffers): HTMLElement[] {
-  const levels = offers.levels.map((one) => [one.name as "easy" | "hard", `${one.name}: ${one.told}`] as const);
-  const also = (name: string) => (on: boolean) => form.also.update((now) => (on ? [...now, name] : now.filter((one) => one !== name)));
+  const levels = offers.levels.map(
+    (one) => [one.name as "easy" | "hard", `${one.name}: ${one.told}`] as const,
+  );
+  const also = (name: string) => (on: boolean) =>
+    form.also.update((now) => (on ? [...now, name] : now.filter((one) => one !== name)));
   return [
     choice({ label: "Level", options: levels, value: form.level, set: form.level.set }),
-    numberField({ label: "Score after", unit: "presses", value: form.presses, set: form.presses.set, least: 2, most: 100, digits: 0 }),
-    ...offers.objectives.map((one) => toggle({ label: `also: ${one.told}`, value: () => form.also().includes(one.name), set: also(one.name), hint: "Several objectives make a front of compromises to pick from" })),
+    numberField({
+      label: "Score after",
+      unit: "presses",
+      value: form.presses,
+      set: form.presses.set,
+      least: 2,
+      most: 100,
+      digits: 0,
+    }),
+    ...offers.objectives.map((objective) =>
+      toggle({
+        label: `also: ${objective.told}`,
+        value: () => form.also().includes(objective.name),
+        set: also(objective.name),
+        hint: "Several objectives give a Pareto front to choose from",
+      }),
+    ),
   ];
 }
 
 function titleField(form: Form): HTMLElement {
-  const input: HTMLInputElement = h("input", { type: "text", id: "opt-title", maxlength: 100, autocomplete: "off", on: { input: () => form.title.set(input.value.trim()) } });
+  const input: HTMLInputElement = h("input", {
+    type: "text",
+    id: "opt-title",
+    maxlength: 100,
+    autocomplete: "off",
+    on: { input: () => form.title.set(input.value.trim()) },
+  });
   return h("span", { class: "field" }, h("label", { for: "opt-title" }, "Name"), input);
 }
 
-function told(offers: readonly OptimizeOffer[]): (readonly [string, string])[] {
-  return offers.map((one) => [one.name, one.told ? `${one.name}: ${one.told}` : one.name] as const);
+function options(offers: readonly OptimizeOffer[]): (readonly [string, string])[] {
+  return offers.map(
+    (offer) => [offer.name, offer.told ? `${offer.name}: ${offer.told}` : offer.name] as const,
+  );
 }

@@ -1,7 +1,7 @@
 /** Delays between page and person: what is stated until somebody measures it, kept in this browser. */
 
-import { signal, type Signal } from "../../ui";
-import type { Hand } from "./game";
+import { type Signal, signal } from "../../ui";
+import type { InputDevice } from "./game";
 
 /** A delay and how far it may be off, ms. */
 export interface Delay {
@@ -12,7 +12,7 @@ export interface Delay {
 export interface Delays {
   /** From drawing a picture to its light; null: as the screen's pace lets expect. */
   readonly display: Delay | null;
-  readonly input: Readonly<Record<Hand, Delay>>;
+  readonly input: Readonly<Record<InputDevice, Delay>>;
 }
 
 const KEY = "fdvv-delays";
@@ -38,7 +38,7 @@ export function setDelays(next: Delays): void {
   localStorage.setItem(KEY, JSON.stringify(next));
 }
 
-/** Give the display delay that is used with a screen of a pace: measured if it was, else stated to a frame. */
+/** Return the display delay that is used with a screen of a pace: measured if it was, else stated to a frame. */
 export function displayDelay(now: Delays, frame_ms: number): Delay {
   return now.display ?? { ms: FRAMES * frame_ms + PANEL_ms, error_ms: frame_ms };
 }
@@ -48,7 +48,9 @@ export function readDelays(text: string | null): Delays {
   try {
     const found = JSON.parse(text ?? "null") as Delays | null;
     const known = found && (found.display === null || whole(found.display));
-    return known && Object.keys(STATED.input).every((hand) => whole(found.input[hand as Hand])) ? found : STATED;
+    return known && Object.keys(STATED.input).every((hand) => whole(found.input[hand as InputDevice]))
+      ? found
+      : STATED;
   } catch {
     return STATED;
   }
@@ -63,7 +65,7 @@ function whole(delay: Delay | undefined): boolean {
 }
 
 /** The pace of a screen from the times of its pictures: their middle distance, steadier than any single one. */
-export class FramePace {
+export class FrameClock {
   private readonly last: number[] = [];
 
   take(now_ms: number): void {
@@ -71,9 +73,12 @@ export class FramePace {
     if (this.last.length > 61) this.last.shift();
   }
 
-  /** Give the time between two pictures; 60 Hz until some were seen. */
+  /** Return the time between two pictures; 60 Hz until some were seen. */
   frame_ms(): number {
-    const gaps = this.last.slice(1).map((at, i) => at - (this.last[i] as number)).sort((a, b) => a - b);
+    const gaps = this.last
+      .slice(1)
+      .map((at, i) => at - (this.last[i] as number))
+      .sort((a, b) => a - b);
     return gaps.length < 5 ? 1000 / 60 : (gaps[gaps.length >> 1] as number);
   }
 }

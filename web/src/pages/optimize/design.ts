@@ -2,8 +2,19 @@
 
 import { call } from "../../net";
 import type { OptimizeDetail, OptimizeTrial } from "../../net/messages";
-import { button, computed, h, numberField, panel, shown, signal, tell, untracked, type Signal } from "../../ui";
-import { named, type Design, type RunStore } from "./store";
+import {
+  button,
+  computed,
+  h,
+  numberField,
+  panel,
+  type Signal,
+  shown,
+  signal,
+  tell,
+  untracked,
+} from "../../ui";
+import { type Design, named, type RunStore } from "./store";
 
 export function designPanel(store: RunStore): HTMLElement {
   // made anew with the trial or its state, not with every number that is typed
@@ -13,7 +24,9 @@ export function designPanel(store: RunStore): HTMLElement {
   });
   return panel("Design", askRow(store), () => {
     if (!key()) return h("p", { class: "muted" }, "No design yet.");
-    return untracked(() => content(store, store.detail.peek() as OptimizeDetail, store.trial() as OptimizeTrial));
+    return untracked(() =>
+      content(store, store.detail.peek() as OptimizeDetail, store.trial() as OptimizeTrial),
+    );
   });
 }
 
@@ -33,7 +46,16 @@ function askRow(store: RunStore): HTMLElement {
     }
   };
   const full = () => (store.detail()?.row.spent ?? 0) >= (store.detail()?.row.budget ?? 1);
-  return h("div", { class: "row", hidden: () => !!store.open() || full() }, button({ label: "Show the next design", act: () => void ask(), disabled: busy, hint: "To look at it, and to change it, before it is played" }));
+  return h(
+    "div",
+    { class: "row", hidden: () => !!store.open() || full() },
+    button({
+      label: "Show the next design",
+      act: () => void ask(),
+      disabled: busy,
+      hint: "Look at it, or change it, before you play it",
+    }),
+  );
 }
 
 function content(store: RunStore, detail: OptimizeDetail, trial: OptimizeTrial): HTMLElement {
@@ -43,22 +65,58 @@ function content(store: RunStore, detail: OptimizeDetail, trial: OptimizeTrial):
   return h(
     "div",
     { class: "opt-design" },
-    h("p", { class: "muted" }, `Trial ${trial.number + 1}, ${by}${trial.edited ? ", edited by you" : ""}.`, editable ? " You may change it before it is played." : ""),
-    h("div", { class: "opt-numbers" }, detail.parameters.map((one) => (editable ? field(one, draft) : figure(one.name, trial.design)))),
+    h(
+      "p",
+      { class: "muted" },
+      `Trial ${trial.number + 1}, ${by}${trial.edited ? ", edited by you" : ""}.`,
+      editable ? " You may change it before it is played." : "",
+    ),
+    h(
+      "div",
+      { class: "opt-numbers" },
+      detail.parameters.map((parameter) =>
+        editable ? field(parameter, draft) : figure(parameter.name, trial.design),
+      ),
+    ),
     editable ? saveRow(store, trial, draft) : null,
-    detail.rules.length ? h("details", {}, h("summary", {}, "What every design must hold"), h("ul", {}, detail.rules.map((rule) => h("li", {}, rule)))) : null,
+    detail.rules.length
+      ? h(
+          "details",
+          {},
+          h("summary", {}, "Constraints of every design"),
+          h(
+            "ul",
+            {},
+            detail.rules.map((rule) => h("li", {}, rule)),
+          ),
+        )
+      : null,
   );
 }
 
 function field(one: OptimizeDetail["parameters"][number], draft: Signal<Design>): HTMLElement {
   const { label, unit } = named(one.name);
   const set = (value: number) => draft.update((now) => ({ ...now, [one.name]: value }));
-  return numberField({ label, unit, value: () => draft()[one.name] ?? null, set, least: one.low, most: one.high, step: unit === "cN" ? 5 : 0.1, digits: 2 });
+  return numberField({
+    label,
+    unit,
+    value: () => draft()[one.name] ?? null,
+    set,
+    least: one.low,
+    most: one.high,
+    step: unit === "cN" ? 5 : 0.1,
+    digits: 2,
+  });
 }
 
 function figure(name: string, design: Design): HTMLElement {
   const { label, unit } = named(name);
-  return h("span", { class: "opt-figure" }, h("span", { class: "muted" }, label), ` ${shown(design[name] ?? NaN, 2)} ${unit}`);
+  return h(
+    "span",
+    { class: "opt-figure" },
+    h("span", { class: "muted" }, label),
+    ` ${shown(design[name] ?? NaN, 2)} ${unit}`,
+  );
 }
 
 function saveRow(store: RunStore, trial: OptimizeTrial, draft: Signal<Design>): HTMLElement {

@@ -8,17 +8,17 @@ export interface Strip {
   readonly speed_px_s: number;
 }
 
-export type Hand = "key" | "mouse" | "touch" | "pen";
+export type InputDevice = "key" | "mouse" | "touch" | "pen";
 
 /** Something the hand did, on the page's clock. */
 export interface Press {
   readonly at_ms: number;
-  readonly hand: Hand;
+  readonly hand: InputDevice;
 }
 
 /**
  * wait: the strip is dark. fly: the bullet is under way. after: it is gone, a late press still counts.
- * keep: the round is told to the server, which answers once it is on the disk. pause, over: nothing moves.
+ * keep: the round is sent to the server, which answers once it is on the disk. pause, over: nothing moves.
  */
 export type Phase = "wait" | "fly" | "after" | "keep" | "pause" | "over";
 
@@ -33,14 +33,14 @@ export interface Game {
   readonly presses: readonly Press[];
 }
 
-/** A round that is over, as the server is told of it; times of the page. */
+/** A round that is over, as it is sent to the server; times of the page. */
 export interface Round {
   readonly number: number;
   readonly start_ms: number;
   /** When the bullet was drawn in the zone's middle. */
   readonly target_ms: number;
   readonly end_ms: number;
-  readonly hand: Hand;
+  readonly hand: InputDevice;
 }
 
 /** The dark before a bullet lasts from the first to the sum of both, so that nobody counts it out. */
@@ -48,7 +48,7 @@ const WAIT_ms = [500, 700] as const;
 /** How long after the bullet left the strip a press is waited for. */
 const AFTER_ms = 450;
 
-export function begun(strip: Strip, rounds: number): Game {
+export function newGame(strip: Strip, rounds: number): Game {
   return { phase: "wait", strip, rounds, kept: 0, from_ms: null, presses: [] };
 }
 
@@ -66,7 +66,7 @@ function waited(game: Game, now_ms: number, luck: number): Game {
   return now_ms < game.from_ms ? game : { ...game, phase: "fly", from_ms: now_ms };
 }
 
-/** Give the pixel that is lit at now_ms, or null. */
+/** Return the pixel that is lit at now_ms, or null. */
 export function lit_px(game: Game, now_ms: number): number | null {
   if (game.phase !== "fly" || game.from_ms === null) return null;
   const at = Math.floor(((now_ms - game.from_ms) / 1000) * game.strip.speed_px_s);
@@ -83,7 +83,7 @@ export function pressed(game: Game, press: Press): Game {
   return listens(game) ? { ...game, presses: [...game.presses, press] } : game;
 }
 
-/** Give the round to be kept; null unless it is over. */
+/** Return the round to be kept; null unless it is over. */
 export function round(game: Game): Round | null {
   if (game.phase !== "keep" || game.from_ms === null) return null;
   return {
@@ -104,7 +104,9 @@ export function kept(game: Game, number: number): Game {
 
 /** Stop for a while: a bullet under way is flown again, a round that is being kept is waited for. */
 export function paused(game: Game): Game {
-  return game.phase === "over" || game.phase === "keep" ? game : { ...game, phase: "pause", from_ms: null, presses: [] };
+  return game.phase === "over" || game.phase === "keep"
+    ? game
+    : { ...game, phase: "pause", from_ms: null, presses: [] };
 }
 
 export function resumed(game: Game): Game {

@@ -25,12 +25,17 @@ export function runList(host: HTMLElement): void {
 
 function listed(rows: readonly OptimizeRow[] | null): HTMLElement {
   if (!rows) return h("p", { class: "muted" }, "…");
-  if (!rows.length) return empty("No runs yet", "Choose what to optimise, and begin: each run stays here and goes on where you left it.");
+  if (!rows.length)
+    return empty(
+      "No runs yet",
+      "Choose what to optimise and begin: runs stay here, and you can resume them.",
+    );
   return h("ul", { class: "opt-runs" }, rows.map(item));
 }
 
 function item(row: OptimizeRow): HTMLElement {
-  if (row.problem) return h("li", { class: "opt-run" }, h("strong", {}, row.title), h("p", { class: "wrong" }, row.problem));
+  if (row.problem)
+    return h("li", { class: "opt-run" }, h("strong", {}, row.title), h("p", { class: "wrong" }, row.problem));
   const what = row.preference ? "comparisons" : "trials";
   return h(
     "li",
@@ -38,8 +43,17 @@ function item(row: OptimizeRow): HTMLElement {
     h(
       "a",
       { class: "opt-run", href: address("optimize", String(row.run)) },
-      h("span", { class: "row spread" }, h("strong", {}, row.title), row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null),
-      h("span", { class: "muted" }, `${row.engine}, ${row.preference ? "preference" : row.level}, ${row.spent} of ${row.budget} ${what}`),
+      h(
+        "span",
+        { class: "row spread" },
+        h("strong", {}, row.title),
+        row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null,
+      ),
+      h(
+        "span",
+        { class: "muted" },
+        `${row.engine}, ${row.preference ? "preference" : row.level}, ${row.spent} of ${row.budget} ${what}`,
+      ),
       row.best ? h("span", {}, `best score ${scoreText(row.best, "ms")}`) : null,
     ),
   );

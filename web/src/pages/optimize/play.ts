@@ -1,12 +1,25 @@
 /** One trial that is played: the channel to the button under test, the clocks, and the game on the screen. */
 
-import { ClockSync, live, type LiveChannel } from "../../net";
+import { ClockSync, type LiveChannel, live } from "../../net";
 import type { Channels, PlayKept, PlayReady } from "../../net/messages";
-import { onCleanup, signal, type Signal } from "../../ui";
+import { onCleanup, type Signal, signal } from "../../ui";
 import { Clicker } from "../press/stage";
-import { delays, displayDelay, FramePace } from "./delays";
+import { delays, displayDelay, FrameClock } from "./delays";
+import {
+  drawn,
+  type Game,
+  type InputDevice,
+  kept,
+  listens,
+  lit_px,
+  newGame,
+  paused,
+  pressed,
+  resumed,
+  round,
+  type Strip,
+} from "./game";
 import { SIMULATED } from "./table";
-import { begun, drawn, kept, listens, lit_px, paused, pressed, resumed, round, type Game, type Hand, type Strip } from "./game";
 
 /** A clock that is not known yet is asked often, later now and then; this tells the server too that somebody is here. */
 const SOON_ms = 80;
@@ -22,10 +35,10 @@ export interface PlayOptions {
 }
 
 /** A button under test is put away, is being fetched, is there. */
-export type Standing = "away" | "opening" | "there";
+export type PlayStatus = "away" | "opening" | "there";
 
 export class Play {
-  readonly standing: Signal<Standing> = signal<Standing>("away");
+  readonly standing: Signal<PlayStatus> = signal<PlayStatus>("away");
   readonly game: Signal<Game | null> = signal<Game | null>(null);
   readonly trial: Signal<number | null> = signal<number | null>(null);
   readonly reason: Signal<string> = signal("");
@@ -34,7 +47,7 @@ export class Play {
   /** The device that is pressed; empty: what the hand does on the page is a press. */
   readonly device: Signal<string> = signal(SIMULATED);
   readonly clock = new ClockSync();
-  readonly pace = new FramePace();
+  readonly frameClock = new FrameClock();
   readonly clicker = new Clicker();
   private readonly channel: LiveChannel<"play">;
   private run = 0;
@@ -45,14 +58,15 @@ export class Play {
 
   constructor(private readonly options: PlayOptions) {
     this.channel = live().channel("play", {
-      told: (message) => this.take(message),
+      onMessage: (message) => this.take(message),
       wrong: (line) => this.away(line),
       opened: () => {
         this.clock.reset();
         // asked for before there was a connection
         if (this.standing.peek() === "opening") this.ask();
       },
-      lost: () => this.standing.peek() !== "away" && this.away("The connection was lost: this trial begins anew."),
+      lost: () =>
+        this.standing.peek() !== "away" && this.away("The connection was lost: this trial starts again."),
     });
     const hidden = () => document.hidden && this.pause();
     document.addEventListener("visibilitychange", hidden);
@@ -84,7 +98,12 @@ export class Play {
   }
 
   private ask(): boolean {
-    return this.channel.send({ type: "open", run: this.run, trial: this.trial.peek() ?? 0, device: this.device.peek() });
+    return this.channel.send({
+      type: "open",
+      run: this.run,
+      trial: this.trial.peek() ?? 0,
+      device: this.device.peek(),
+    });
   }
 
   /** Put the button away; rounds of an unfinished trial are kept and do not count. */
@@ -103,7 +122,7 @@ export class Play {
   }
 
   /** The hand pressed, at an event's time. */
-  press(at_ms: number, hand: Hand): void {
+  press(at_ms: number, hand: InputDevice): void {
     const game = this.game.peek();
     if (!game || !listens(game) || this.down || this.device.peek() !== SIMULATED) return;
     this.down = true;
@@ -112,7 +131,7 @@ export class Play {
     this.clicker.wake();
   }
 
-  /** The hand let go. */
+  /** The key or pointer was released. */
   release(at_ms: number): void {
     if (!this.down) return;
     this.down = false;
@@ -129,10 +148,11 @@ export class Play {
   }
 
   private begin(ready: PlayReady): void {
-    if (ready.run !== this.run || ready.trial !== this.trial.peek() || this.standing.peek() !== "opening") return;
+    if (ready.run !== this.run || ready.trial !== this.trial.peek() || this.standing.peek() !== "opening")
+      return;
     this.clicker.load(ready.signals);
     this.luck = lots((ready.run * 1009 + ready.trial) * 1013 + ready.attempt);
-    this.game.set(begun(this.options.strip(), ready.rounds));
+    this.game.set(newGame(this.options.strip(), ready.rounds));
     this.standing.set("there");
     cancelAnimationFrame(this.pictures);
     this.pictures = requestAnimationFrame((now_ms) => this.picture(now_ms));
@@ -142,7 +162,7 @@ export class Play {
   private picture(now_ms: number): void {
     const game = this.game.peek();
     if (!game) return;
-    this.pace.take(now_ms);
+    this.frameClock.take(now_ms);
     const next = drawn(game, now_ms, game.phase === "wait" && game.from_ms === null ? this.luck() : 0);
     this.options.draw(lit_px(next, now_ms));
     if (next !== game) this.game.set(next);
@@ -154,7 +174,7 @@ export class Play {
     const over = round(game);
     if (!over) return;
     this.release(performance.now());
-    const frame_ms = this.pace.frame_ms();
+    const frame_ms = this.frameClock.frame_ms();
     const clock = this.clock.at(performance.now());
     const beside = this.device.peek() !== SIMULATED;
     this.channel.send({

@@ -2,8 +2,22 @@
 
 import { call } from "../../net";
 import type { OptimizeAnswer, OptimizePair } from "../../net/messages";
-import { addShortcuts, button, computed, effect, empty, h, onCleanup, panel, progress, signal, tell, untracked, type Signal } from "../../ui";
-import { pressStage, type PressStage } from "../press/stage";
+import {
+  addShortcuts,
+  button,
+  computed,
+  effect,
+  empty,
+  h,
+  onCleanup,
+  panel,
+  progress,
+  type Signal,
+  signal,
+  tell,
+  untracked,
+} from "../../ui";
+import { type PressStage, pressStage } from "../press/stage";
 import type { RunStore } from "./store";
 
 /** Enough for the stiffest design of the paper's space, 310 cN at any place. */
@@ -12,20 +26,22 @@ type Side = "A" | "B";
 type Answer = OptimizeAnswer["answer"];
 
 export function preferView(store: RunStore): HTMLElement {
-  const number = computed(() => store.detail()?.pairs.find((one) => one.answer === null)?.number ?? null);
+  const number = computed(() => store.detail()?.pairs.find((pair) => pair.answer === null)?.number ?? null);
   const full = computed(() => (store.detail()?.row.spent ?? 0) >= (store.detail()?.row.budget ?? 1));
   effect(() => {
-    // the next two are asked for as soon as the last were told apart
-    if (number() === null && !full()) untracked(() => void call("optimize.pair", { run: store.run }).then(() => store.refresh(), tell));
+    // the next two are asked for as soon as the last were compared
+    if (number() === null && !full())
+      untracked(() => void call("optimize.pair", { run: store.run }).then(() => store.refresh(), tell));
   });
   return h(
     "div",
     { class: "opt-run-page" },
     () => {
       const now = number();
-      if (now !== null) return untracked(() => asking(store, store.detail.peek()?.pairs[now] as OptimizePair));
+      if (now !== null)
+        return untracked(() => asking(store, store.detail.peek()?.pairs[now] as OptimizePair));
       return full()
-        ? empty("All comparisons are made", "Look at the result: the design that your answers speak for.")
+        ? empty("All comparisons are made", "See the result: the design that your answers favour.")
         : h("p", { class: "muted", role: "status" }, "The engine chooses two designs …");
     },
     made(store),
@@ -40,7 +56,8 @@ function asking(store: RunStore, pair: OptimizePair): HTMLElement {
   const stage = pressStage(host, { compact: true, push_cN: PUSH_cN });
   followSide(store, pair, side, stage);
   effect(() => {
-    if (stage.session.actuations()) tried.update((all) => (all.has(side.peek()) ? all : new Set([...all, side.peek()])));
+    if (stage.session.actuations())
+      tried.update((all) => (all.has(side.peek()) ? all : new Set([...all, side.peek()])));
   });
   const unready = () => busy() || tried().size < 2;
   const say = async (answer: Answer) => {
@@ -56,23 +73,37 @@ function asking(store: RunStore, pair: OptimizePair): HTMLElement {
     }
   };
   addShortcuts(
-    { keys: "X", does: "Exchange A and B", act: () => side.update((now) => (now === "A" ? "B" : "A")) },
+    { keys: "X", does: "Swap A and B", act: () => side.update((now) => (now === "A" ? "B" : "A")) },
     { keys: "1", does: "I prefer A", act: () => void say("first") },
     { keys: "2", does: "I prefer B", act: () => void say("second") },
     { keys: "0", does: "No difference", act: () => void say("equal") },
   );
-  const one = (name: Side) => button({ label: `${name} under the finger`, act: () => side.set(name), pressed: () => side() === name, hint: "X exchanges A and B" });
-  const reply = (label: string, answer: Answer) => button({ label, kind: "main", act: () => void say(answer), disabled: unready });
+  const one = (name: Side) =>
+    button({
+      label: `${name} under the finger`,
+      act: () => side.set(name),
+      pressed: () => side() === name,
+      hint: "X swaps A and B",
+    });
+  const reply = (label: string, answer: Answer) =>
+    button({ label, kind: "main", act: () => void say(answer), disabled: unready });
   return panel(
     `Comparison ${pair.number + 1}`,
-    h("div", { class: "row", role: "group", "aria-label": "Which one is under the finger" }, one("A"), one("B")),
+    h(
+      "div",
+      { class: "row", role: "group", "aria-label": "Which one is under the finger" },
+      one("A"),
+      one("B"),
+    ),
     h(
       "div",
       { class: "row" },
       reply("I prefer A", "first"),
       reply("I prefer B", "second"),
       reply("No difference", "equal"),
-      h("span", { class: "muted", role: "status" }, () => (tried().size < 2 ? "Press both until their key goes down, then answer." : "")),
+      h("span", { class: "muted", role: "status" }, () =>
+        tried().size < 2 ? "Press both until their key goes down, then answer." : "",
+      ),
     ),
     host,
   );
@@ -88,12 +119,19 @@ function followSide(store: RunStore, pair: OptimizePair, side: Signal<Side>, sta
     const put = (model: Readonly<Record<string, unknown>>) => {
       if (!gone && side.peek() === now) stage.start({ what: { model }, mode: "intended", rig: "paper" });
     };
-    void call("optimize.model", { run: store.run, design, name: now }).then((found) => put(found.model), tell);
+    void call("optimize.model", { run: store.run, design, name: now }).then(
+      (found) => put(found.model),
+      tell,
+    );
   });
 }
 
 function made(store: RunStore): HTMLElement {
   const spent = () => store.detail()?.row.spent ?? 0;
   const budget = () => store.detail()?.row.budget ?? null;
-  return panel("Progress", progress("Comparisons made", spent, budget), h("p", { class: "muted" }, () => `${spent()} of ${budget() ?? "…"} comparisons`));
+  return panel(
+    "Progress",
+    progress("Comparisons made", spent, budget),
+    h("p", { class: "muted" }, () => `${spent()} of ${budget() ?? "…"} comparisons`),
+  );
 }

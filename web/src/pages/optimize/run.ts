@@ -31,7 +31,15 @@ export function runPage(host: HTMLElement, run: number): void {
     const row = store.detail()?.row;
     return row?.preference ? "prefer" : row?.simulated ? "simulated" : "play";
   });
-  host.append(h("div", { class: "opt-run-page" }, () => (there() ? kind() === "prefer" ? comparing(store, tab, set) : whole(store, tab, set, kind() === "simulated") : waiting(store))));
+  host.append(
+    h("div", { class: "opt-run-page" }, () =>
+      there()
+        ? kind() === "prefer"
+          ? comparing(store, tab, set)
+          : whole(store, tab, set, kind() === "simulated")
+        : waiting(store),
+    ),
+  );
 }
 
 function waiting(store: RunStore): HTMLElement {
@@ -47,13 +55,27 @@ function whole(store: RunStore, tab: () => Tab, set: (tab: Tab) => void, simulat
   return h(
     "div",
     { class: "opt-run-page" },
-    h("div", { class: () => `row spread ${quiet()}` }, heading(store), h("a", { href: address("optimize") }, "All runs")),
-    h("div", { class: quiet }, tabs({ label: "Run", tabs: simulated ? TABS.slice(0, 2) : TABS, value: tab, set })),
+    h(
+      "div",
+      { class: () => `row spread ${quiet()}` },
+      heading(store),
+      h("a", { href: address("optimize") }, "All runs"),
+    ),
+    h(
+      "div",
+      { class: quiet },
+      tabs({ label: "Run", tabs: simulated ? TABS.slice(0, 2) : TABS, value: tab, set }),
+    ),
     h(
       "div",
       { class: "opt-run-page", role: "tabpanel", "aria-label": "Play", hidden: () => tab() !== "play" },
       first,
-      h("div", { class: () => `opt-two ${quiet()}` }, progressPanel(store, played.scores), designPanel(store)),
+      h(
+        "div",
+        { class: () => `opt-two ${quiet()}` },
+        progressPanel(store, played.scores),
+        designPanel(store),
+      ),
     ),
     () => (tab() === "result" ? resultView(store) : tab() === "timing" ? timingPanel(played.play) : null),
   );
@@ -66,7 +88,15 @@ function comparing(store: RunStore, tab: () => Tab, set: (tab: Tab) => void): HT
     "div",
     { class: "opt-run-page" },
     h("div", { class: "row spread" }, heading(store), h("a", { href: address("optimize") }, "All runs")),
-    tabs({ label: "Run", tabs: [["play", "Compare"], ["result", "Result"]], value: shown, set }),
+    tabs({
+      label: "Run",
+      tabs: [
+        ["play", "Compare"],
+        ["result", "Result"],
+      ],
+      value: shown,
+      set,
+    }),
     () => (shown() === "result" ? resultView(store) : preferView(store)),
   );
 }
@@ -76,7 +106,15 @@ function heading(store: RunStore): HTMLElement {
     const row = store.detail()?.row;
     const what = row?.preference ? "preference" : row?.level;
     const others = store.detail()?.others;
-    return row ? `${row.engine}, ${what}, seed ${store.detail()?.seed ?? 0}${others ? `; begun from ${others}` : ""}` : "";
+    return row
+      ? `${row.engine}, ${what}, seed ${store.detail()?.seed ?? 0}${others ? `; begun from ${others}` : ""}`
+      : "";
   };
-  return h("div", { class: "row" }, h("h1", {}, () => store.detail()?.row.title ?? ""), h("span", { class: "muted" }, said), () => (store.detail()?.row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null));
+  return h(
+    "div",
+    { class: "row" },
+    h("h1", {}, () => store.detail()?.row.title ?? ""),
+    h("span", { class: "muted" }, said),
+    () => (store.detail()?.row.simulated ? h("span", { class: "tag simulated" }, "simulated") : null),
+  );
 }

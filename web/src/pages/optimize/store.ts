@@ -1,9 +1,9 @@
 /** One run as the server knows it, and followed while the page is open. */
 
 import { Followed } from "../../app/followed";
-import { call, live, type LiveChannel } from "../../net";
+import { call, type LiveChannel, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
-import { onCleanup, signal, type Signal } from "../../ui";
+import { onCleanup, type Signal, signal } from "../../ui";
 
 export type Design = Readonly<Record<string, number>>;
 
@@ -17,7 +17,7 @@ export class RunStore extends Followed<OptimizeDetail> {
     const watch = () => void channel?.send({ type: "watch" });
     channel = live().channel("optimize", {
       opened: watch,
-      told: (news) => {
+      onMessage: (news) => {
         if (news.type === "watching" || news.run === run) void this.refresh();
       },
     });
@@ -26,15 +26,17 @@ export class RunStore extends Followed<OptimizeDetail> {
     void this.refresh();
   }
 
-  /** Give the trial that is looked at. */
+  /** Return the trial that is looked at. */
   trial(): OptimizeTrial | null {
     const trials = this.detail()?.trials ?? [];
     return trials[this.chosen() ?? trials.length - 1] ?? trials.at(-1) ?? null;
   }
 
-  /** Give the trial that waits or is under way. */
+  /** Return the trial that waits or is under way. */
   open(): OptimizeTrial | null {
-    return this.detail()?.trials.find((one) => one.state === "suggested" || one.state === "shown") ?? null;
+    return (
+      this.detail()?.trials.find((trial) => trial.state === "suggested" || trial.state === "shown") ?? null
+    );
   }
 
   /** Name of the first objective. */
@@ -44,19 +46,29 @@ export class RunStore extends Followed<OptimizeDetail> {
 
   /** How many trials are done, or comparisons answered. */
   count(): number {
-    return this.done().length + (this.detail()?.pairs.filter((one) => one.answer !== null).length ?? 0);
+    return this.done().length + (this.detail()?.pairs.filter((pair) => pair.answer !== null).length ?? 0);
   }
 
   done(): readonly OptimizeTrial[] {
-    return (this.detail()?.trials ?? []).filter((one) => one.state === "done");
+    return (this.detail()?.trials ?? []).filter((trial) => trial.state === "done");
   }
 }
 
-const UNITS: Readonly<Record<string, string>> = { mm: "mm", cN: "cN", ms: "ms", ratio: "", Hz: "Hz", N_s: "N s", mm_s: "mm/s" };
+const UNITS: Readonly<Record<string, string>> = {
+  mm: "mm",
+  cN: "cN",
+  ms: "ms",
+  ratio: "",
+  Hz: "Hz",
+  N_s: "N s",
+  mm_s: "mm/s",
+};
 
 /** Write a name with its unit for people: "asynchrony_ms" is "asynchrony" in "ms". */
 export function named(name: string): { readonly label: string; readonly unit: string } {
-  const suffix = Object.keys(UNITS).filter((one) => name.endsWith(`_${one}`)).sort((a, b) => b.length - a.length)[0];
+  const suffix = Object.keys(UNITS)
+    .filter((one) => name.endsWith(`_${one}`))
+    .sort((a, b) => b.length - a.length)[0];
   if (suffix === undefined) return { label: name.replaceAll("_", " "), unit: "" };
   return { label: name.slice(0, -suffix.length - 1).replaceAll("_", " "), unit: UNITS[suffix] as string };
 }
@@ -71,7 +83,10 @@ function round(value: number): string {
   return value.toFixed(Math.abs(value) < 10 ? 2 : 1).replace("-", "−");
 }
 
-/** Give places and forces of a small picture's curve. */
-export function curveLine(curve: OptimizeCurve): { readonly x_mm: number[]; readonly y_cN: readonly number[] } {
+/** Return positions and forces of a small picture's curve. */
+export function curveLine(curve: OptimizeCurve): {
+  readonly x_mm: number[];
+  readonly y_cN: readonly number[];
+} {
   return { x_mm: curve.force_cN.map((_, i) => i * curve.step_mm), y_cN: curve.force_cN };
 }

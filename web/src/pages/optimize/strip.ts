@@ -1,6 +1,6 @@
 /** The strip of lights on the screen: a row of pixels, the zone, the bullet. */
 
-import { CanvasBrush, palette, type Brush } from "../../draw";
+import { type Brush, CanvasBrush, palette } from "../../draw";
 import { effect, h, onCleanup } from "../../ui";
 import type { Strip } from "./game";
 
@@ -22,7 +22,10 @@ export function stripView(strip: () => Strip): StripView {
   let last: number | null = null;
   const draw = (lit_px: number | null) => {
     last = lit_px;
-    painted(moving, (brush, width, height) => lit_px !== null && bullet(brush, strip(), lit_px, width, height));
+    painted(
+      moving,
+      (brush, width, height) => lit_px !== null && bullet(brush, strip(), lit_px, width, height),
+    );
   };
   const paint = () => {
     painted(still, (brush, width, height) => row(brush, strip(), width, height));
@@ -39,7 +42,10 @@ export function stripView(strip: () => Strip): StripView {
   return { element, draw };
 }
 
-function painted(canvas: HTMLCanvasElement, work: (brush: Brush, width_px: number, height_px: number) => void): void {
+function painted(
+  canvas: HTMLCanvasElement,
+  work: (brush: Brush, width_px: number, height_px: number) => void,
+): void {
   const { clientWidth: width, clientHeight: height } = canvas;
   const context = canvas.getContext("2d");
   if (!context || width < 2 || height < 2) return;
@@ -51,7 +57,7 @@ function painted(canvas: HTMLCanvasElement, work: (brush: Brush, width_px: numbe
   work(new CanvasBrush(context), width, height);
 }
 
-/** Give the box of a pixel. */
+/** Return the box of a pixel. */
 function box(strip: Strip, at: number, width_px: number, height_px: number) {
   const pitch = width_px / strip.pixels;
   const side = pitch * (1 - GAP_ratio);
@@ -65,17 +71,26 @@ function row(brush: Brush, strip: Strip, width_px: number, height_px: number): v
   const { zone_px, zone_half_px } = strip;
   for (let at = 0; at < strip.pixels; at++) {
     const zone = Math.abs(at - zone_px) <= zone_half_px;
-    brush.rect(box(strip, at, width_px, height_px), zone ? { colour: good, opacity: ZONE_opacity } : { colour: muted, opacity: DARK_opacity });
+    brush.rect(
+      box(strip, at, width_px, height_px),
+      zone ? { colour: good, opacity: ZONE_opacity } : { colour: muted, opacity: DARK_opacity },
+    );
   }
   const x = (zone_px + 0.5) * pitch;
   // the zone is marked by shape too, above and below its middle
-  for (const [from, to] of [[0, 0.16], [0.84, 1]] as const)
+  for (const [from, to] of [
+    [0, 0.16],
+    [0.84, 1],
+  ] as const)
     brush.line([x, x], [from * height_px, to * height_px], { colour: good, width_px: 3 });
 }
 
 function bullet(brush: Brush, strip: Strip, at: number, width_px: number, height_px: number): void {
   const { left, top, width, height } = box(strip, at, width_px, height_px);
   const colour = palette().accent;
-  brush.rect({ left: left - width, top: top - width, width: 3 * width, height: height + 2 * width }, { colour, opacity: 0.25 });
+  brush.rect(
+    { left: left - width, top: top - width, width: 3 * width, height: height + 2 * width },
+    { colour, opacity: 0.25 },
+  );
   brush.rect({ left: left - 1, top: top - 1, width: width + 2, height: height + 2 }, { colour });
 }

@@ -2,11 +2,11 @@
 
 import { call } from "../../net";
 import type { OptimizeOffer } from "../../net/messages";
-import { choice, h, signal, type Signal } from "../../ui";
+import { choice, h, type Signal, signal } from "../../ui";
 
 /** No device: the simulated button. */
 export const SIMULATED = "";
-const HERE = "a simulated button, by key, mouse or touch";
+const HERE = "a simulated button, with key, mouse or touch";
 
 export interface Table {
   /** The device that is pressed; SIMULATED if none is. */
@@ -19,8 +19,20 @@ export function table(busy: () => boolean): Table {
   const device = signal(SIMULATED);
   const devices = signal<readonly OptimizeOffer[]>([]);
   // without devices there is nothing to choose, whatever the reason
-  call("optimize.devices", {}).then((found) => devices.set(found.devices), () => undefined);
-  const options = () => [[SIMULATED, HERE] as const, ...devices().map((one) => [one.name, one.told ? `${one.name}, ${one.told}` : one.name] as const)];
-  const element = h("span", {}, () => (devices().length && !busy() ? choice({ label: "Pressed is", options: options(), value: device, set: device.set }) : null));
+  call("optimize.devices", {}).then(
+    (found) => devices.set(found.devices),
+    () => undefined,
+  );
+  const options = () => [
+    [SIMULATED, HERE] as const,
+    ...devices().map(
+      (device) => [device.name, device.told ? `${device.name}, ${device.told}` : device.name] as const,
+    ),
+  ];
+  const element = h("span", {}, () =>
+    devices().length && !busy()
+      ? choice({ label: "Press on", options: options(), value: device, set: device.set })
+      : null,
+  );
   return { device, element };
 }

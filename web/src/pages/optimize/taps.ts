@@ -1,6 +1,6 @@
 /** What taps along with a regular flash tell of the delays between page and person. */
 
-/** People tap ahead of a beat, and do not notice: 20 to 80 ms in the literature. It cannot be told from a delay. */
+/** People tap ahead of a beat, and do not notice: 20 to 80 ms in the literature. It cannot be distinguished from a delay. */
 export const AHEAD = { ms: 50, error_ms: 30 } as const;
 const LEAST = 8;
 /** The first taps only find the beat. */
@@ -41,7 +41,7 @@ export function tapped(taps_ms: readonly number[], start_ms: number, period_ms: 
   };
 }
 
-/** Give how far a time is from the nearest flash: from minus to plus half a period. */
+/** Return how far a time is from the nearest flash: from minus to plus half a period. */
 function wrapped(since_ms: number, period_ms: number): number {
   return since_ms - period_ms * Math.round(since_ms / period_ms);
 }

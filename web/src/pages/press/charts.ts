@@ -1,6 +1,6 @@
-/** What the finger feels: force over displacement beside what is meant, and over time. */
+/** The rendered force: over displacement beside the target, and over time. */
 
-import { palette, Plot, series, type Brush, type View } from "../../draw";
+import { type Brush, Plot, palette, series, type View } from "../../draw";
 import { effect, h } from "../../ui";
 import type { PressSession } from "./session";
 
@@ -14,15 +14,18 @@ function calm(): boolean {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
 
-/** Force over displacement: the slow curves as meant, and the trail of what was felt. */
-export function feltPlot(session: PressSession, height_px: number | null): Plot {
+/** Force over displacement: the target of slow presses, and the trail of the rendered force. */
+export function forcePlot(session: PressSession, height_px: number | null): Plot {
   const plot = new Plot({
-    label: "Force that the simulated finger feels over displacement, beside the force as meant",
+    label: "Rendered force over displacement, beside the target force",
     x: { label: "displacement", unit: "mm" },
     y: { label: "force, simulated", unit: "cN" },
     whole: () => {
       const { least_cN, most_cN } = extent(session);
-      return { x: { low: -0.3, high: (session.ready()?.travel_mm ?? 4) + 0.4 }, y: { low: least_cN - 5, high: most_cN } };
+      return {
+        x: { low: -0.3, high: (session.ready()?.travel_mm ?? 4) + 0.4 },
+        y: { low: least_cN - 5, high: most_cN },
+      };
     },
     still: (brush, view) => drawMeant(brush, view, session),
     moving: (brush, view) => drawTrail(brush, view, session),
@@ -37,18 +40,18 @@ export function feltPlot(session: PressSession, height_px: number | null): Plot 
 
 /** The forces that axes are made for: those of a slow press, with room for what a finger adds at the stop. */
 function extent(session: PressSession): { readonly least_cN: number; readonly most_cN: number } {
-  const meant = session.ready()?.meant;
-  const all = [...(meant?.press_cN ?? []), ...(meant?.release_cN ?? [])];
+  const target = session.ready()?.meant;
+  const all = [...(target?.press_cN ?? []), ...(target?.release_cN ?? [])];
   return { least_cN: Math.min(0, ...all), most_cN: 1.5 * Math.max(60, ...all) };
 }
 
 function drawMeant(brush: Brush, view: View, session: PressSession): void {
-  const [ready, meant] = [session.ready(), session.meant()];
-  if (!ready || !meant) return;
-  const x = meant.displacement_mm.map(view.x.px);
+  const [ready, target] = [session.ready(), session.target()];
+  if (!ready || !target) return;
+  const x = target.displacement_mm.map(view.x.px);
   const { colour } = series(0);
-  brush.line(x, meant.press_cN.map(view.y.px), { colour, width_px: 2 });
-  brush.line(x, meant.release_cN.map(view.y.px), { colour, width_px: 2, dash: [7, 3] });
+  brush.line(x, target.press_cN.map(view.y.px), { colour, width_px: 2 });
+  brush.line(x, target.release_cN.map(view.y.px), { colour, width_px: 2, dash: [7, 3] });
   const stop = view.x.px(ready.travel_mm);
   const { top, height } = view.box;
   brush.line([stop, stop], [top, top + height], { colour: palette().danger, dash: [2, 3] });
@@ -63,19 +66,35 @@ function drawTrail(brush: Brush, view: View, session: PressSession): void {
   const now_s = session.rows.now_s();
   const old = session.rows.since(now_s - TRAIL_s);
   const line = (rows: typeof old, opacity: number, width_px: number) =>
-    brush.line(rows.displacement_mm.map(view.x.px), rows.force_cN.map(view.y.px), { colour, width_px, opacity });
+    brush.line(rows.displacement_mm.map(view.x.px), rows.force_cN.map(view.y.px), {
+      colour,
+      width_px,
+      opacity,
+    });
   line(old, 0.4, 1.25);
   line(session.rows.since(now_s - 0.25), 1, 2.25);
   const here = session.rows.since(now_s);
   const [x, y] = [here.displacement_mm.at(-1), here.force_cN.at(-1)];
   if (x === undefined || y === undefined) return;
-  brush.circle({ x_px: view.x.px(x), y_px: view.y.px(y) }, 5, { colour }, { colour: palette().surface, width_px: 1.5 });
+  brush.circle(
+    { x_px: view.x.px(x), y_px: view.y.px(y) },
+    5,
+    { colour },
+    { colour: palette().surface, width_px: 1.5 },
+  );
 }
 
 /** Force and displacement over the last seconds. */
 export function timePlots(session: PressSession): HTMLElement {
   let drawn_s = 0;
-  const make = (label: string, axis: { label: string; unit: string }, range: () => [number, number], which: "force_cN" | "displacement_mm", n: number, height_px: number) =>
+  const make = (
+    label: string,
+    axis: { label: string; unit: string },
+    range: () => [number, number],
+    which: "force_cN" | "displacement_mm",
+    n: number,
+    height_px: number,
+  ) =>
     new Plot({
       label,
       x: { label: "time before now", unit: "s" },
@@ -86,21 +105,43 @@ export function timePlots(session: PressSession): HTMLElement {
       },
       still: (brush, view) => {
         const at = { x_px: view.box.left + 6, y_px: view.box.top + 7 };
-        brush.text(`${axis.label}, ${axis.unit}`, at, { colour: palette().muted, size_px: 11, halo: palette().surface });
+        brush.text(`${axis.label}, ${axis.unit}`, at, {
+          colour: palette().muted,
+          size_px: 11,
+          halo: palette().surface,
+        });
       },
       moving: (brush, view) => {
         const rows = session.rows.since(session.rows.now_s() - SHOWN_s, 4);
         const now_s = session.rows.now_s();
         const { colour, dash } = series(n);
-        brush.line(rows.t_s.map((t) => view.x.px(t - now_s)), rows[which].map(view.y.px), { colour, dash, width_px: 1.5 });
+        brush.line(
+          rows.t_s.map((t) => view.x.px(t - now_s)),
+          rows[which].map(view.y.px),
+          { colour, dash, width_px: 1.5 },
+        );
       },
       height_px,
       small: true,
     });
   const travel = () => session.ready()?.travel_mm ?? 4;
   const most = () => extent(session).most_cN;
-  const force = make("Force over the last seconds, simulated", { label: "force", unit: "cN" }, () => [-5, most()], "force_cN", 1, 92);
-  const place = make("Displacement over the last seconds, simulated", { label: "displacement", unit: "mm" }, () => [-0.3, travel() + 0.6], "displacement_mm", 2, 84);
+  const force = make(
+    "Force over the last seconds, simulated",
+    { label: "force", unit: "cN" },
+    () => [-5, most()],
+    "force_cN",
+    1,
+    92,
+  );
+  const place = make(
+    "Displacement over the last seconds, simulated",
+    { label: "displacement", unit: "mm" },
+    () => [-0.3, travel() + 0.6],
+    "displacement_mm",
+    2,
+    84,
+  );
   effect(() => {
     session.frame();
     const now_s = session.rows.now_s();

@@ -1,11 +1,11 @@
 /** What is pressed: buttons and programs, how they are brought to the finger, two of them to compare. */
 
 import type { PressItem, PressList } from "../../net/messages";
-import { button, choice, computed, h, signal, type Signal } from "../../ui";
+import { button, choice, computed, h, type Signal, signal } from "../../ui";
 import type { Choice, Mode, What } from "./session";
 
 const MODES: readonly (readonly [Mode, string])[] = [
-  ["intended", "as intended"],
+  ["intended", "as designed"],
   ["compensated", "on a rig, compensated"],
   ["rendered", "on a rig, not compensated"],
 ];
@@ -34,9 +34,24 @@ export class Chooser {
     this.element = h(
       "div",
       { class: "press-choose" },
-      h("div", { class: "row", role: "group", "aria-label": "Compare two" }, this.sideButton("A"), this.sideButton("B")),
-      choice({ label: "Press", options: this.options(), value: () => this.now().item, set: (item) => this.change({ item }) }),
-      choice({ label: "how", options: MODES, value: () => this.now().mode, set: (mode) => this.change({ mode }) }),
+      h(
+        "div",
+        { class: "row", role: "group", "aria-label": "Compare two" },
+        this.sideButton("A"),
+        this.sideButton("B"),
+      ),
+      choice({
+        label: "Press",
+        options: this.options(),
+        value: () => this.now().item,
+        set: (item) => this.change({ item }),
+      }),
+      choice({
+        label: "how",
+        options: MODES,
+        value: () => this.now().mode,
+        set: (mode) => this.change({ mode }),
+      }),
       () =>
         this.now().mode === "intended"
           ? null
@@ -46,7 +61,11 @@ export class Chooser {
               value: () => this.now().rig,
               set: (rig) => this.change({ rig }),
             }),
-      h("p", { class: "press-hint" }, computed(() => this.hint())),
+      h(
+        "p",
+        { class: "press-hint" },
+        computed(() => this.hint()),
+      ),
     );
   }
 
@@ -66,7 +85,12 @@ export class Chooser {
 
   private sideButton(side: Side): HTMLElement {
     const name = () => this.nameOf(this.picks[side]().item);
-    const made = button({ label: side, act: () => this.side.set(side), hint: "X exchanges A and B, also while pressing", pressed: () => this.side() === side });
+    const made = button({
+      label: side,
+      act: () => this.side.set(side),
+      hint: "X swaps A and B, also while pressing",
+      pressed: () => this.side() === side,
+    });
     made.append(h("span", {}, () => ` ${name()}`));
     return made;
   }
@@ -76,8 +100,12 @@ export class Chooser {
   }
 
   private options(): (readonly [string, string])[] {
-    const named = (kind: string, group: string) => (item: PressItem) => [`${kind} ${item.id}`, `${group}: ${item.name}`] as const;
-    const listed = [...this.list.buttons.map(named("button", "Button")), ...this.list.programs.map(named("program", "Program"))];
+    const named = (kind: string, group: string) => (item: PressItem) =>
+      [`${kind} ${item.id}`, `${group}: ${item.name}`] as const;
+    const listed = [
+      ...this.list.buttons.map(named("button", "Button")),
+      ...this.list.programs.map(named("program", "Program")),
+    ];
     // a measured button that the address names is on no list
     const { item } = this.picks.A.peek();
     return this.found(item) ? listed : [[item, this.nameOf(item)], ...listed];

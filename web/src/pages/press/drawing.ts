@@ -1,6 +1,6 @@
 /** The button from the side: finger, cap, stop, and the places of the stroke, at the scale of the ruler. */
 
-import { CanvasBrush, linear, palette, series, type Brush, type Scale } from "../../draw";
+import { type Brush, CanvasBrush, linear, palette, type Scale, series } from "../../draw";
 import type { PressFrame, PressReady } from "../../net/messages";
 import { effect, h, onCleanup, shown } from "../../ui";
 
@@ -20,7 +20,7 @@ export interface Seen {
   readonly blind?: boolean;
 }
 
-/** Give the scale of the drawing: displacement downwards. */
+/** Return the scale of the drawing: displacement downwards. */
 export function stageScale(travel_mm: number, height_px: number): Scale {
   return linear({ low: -ABOVE_mm, high: travel_mm + BELOW_mm }, 0, height_px);
 }
@@ -73,7 +73,13 @@ function drawStage(brush: Brush, seen: Seen, width_px: number, height_px: number
   const wide_px = Math.min(width_px, WIDEST_px);
   const left_px = (width_px - wide_px) / 2;
   // the ruler needs room beside the key
-  const place = { y, width_px: wide_px, height_px, left_px, middle_px: left_px + wide_px * (seen.blind ? 0.5 : 0.42) };
+  const place = {
+    y,
+    width_px: wide_px,
+    height_px,
+    left_px,
+    middle_px: left_px + wide_px * (seen.blind ? 0.5 : 0.42),
+  };
   drawHousing(brush, place, seen.ready.travel_mm);
   drawCap(brush, place, cap_mm, (seen.frame?.key ?? 0) > 0, !seen.blind);
   drawFinger(brush, place, finger_mm, cap_mm);
@@ -105,7 +111,11 @@ function drawHousing(brush: Brush, p: Place, travel_mm: number): void {
   const top = p.y.px(CAP.height_mm * 0.55);
   for (const left of [p.middle_px - half, p.middle_px + half - wall])
     brush.rect({ left, top, width: wall, height: stop_px - top }, { colour: raised }, { colour: line });
-  brush.rect({ left: p.middle_px - half, top: stop_px, width: 2 * half, height: p.height_px - stop_px + 4 }, { colour: raised }, { colour: line });
+  brush.rect(
+    { left: p.middle_px - half, top: stop_px, width: 2 * half, height: p.height_px - stop_px + 4 },
+    { colour: raised },
+    { colour: line },
+  );
 }
 
 function drawCap(brush: Brush, p: Place, cap_mm: number, on: boolean, said: boolean): void {
@@ -119,7 +129,12 @@ function drawCap(brush: Brush, p: Place, cap_mm: number, on: boolean, said: bool
   brush.line(x, sides, { colour: on ? accent : text, width_px: on ? 2.5 : 1.5 });
   if (!said) return;
   const at = { x_px: p.middle_px, y_px: (top + bottom) / 2 };
-  brush.text(on ? "ON" : "off", at, { colour: on ? text : palette().muted, align: "center", weight: on ? 700 : 400, size_px: 15 });
+  brush.text(on ? "ON" : "off", at, {
+    colour: on ? text : palette().muted,
+    align: "center",
+    weight: on ? 700 : 400,
+    size_px: 15,
+  });
 }
 
 /** The fingertip; pulp that is squeezed lies flat on the cap. */
@@ -149,10 +164,18 @@ function drawForce(brush: Brush, p: Place, force_cN: number, cap_mm: number): vo
   const [x, foot] = [p.left_px + p.width_px * 0.065, p.y.px(cap_mm)];
   if (length > 2) {
     brush.line([x, x], [foot, foot - length], { colour, width_px: 4 });
-    brush.line([x - 6, x, x + 6], [foot - length + 8, foot - length - 2, foot - length + 8], { colour, width_px: 3 });
+    brush.line([x - 6, x, x + 6], [foot - length + 8, foot - length - 2, foot - length + 8], {
+      colour,
+      width_px: 3,
+    });
   }
   const at = { x_px: p.left_px + 4, y_px: foot + 14 };
-  brush.text(`${shown(force_cN, 0)} cN`, at, { colour: palette().text, weight: 600, size_px: 13, halo: palette().surface });
+  brush.text(`${shown(force_cN, 0)} cN`, at, {
+    colour: palette().text,
+    weight: 600,
+    size_px: 13,
+    halo: palette().surface,
+  });
 }
 
 /** Travel with its marks; the place of the cap's top beside it. */
@@ -165,11 +188,22 @@ function drawRuler(brush: Brush, p: Place, ready: Seen["ready"], cap_mm: number)
     brush.line([x, x + (long ? 8 : 4)], [y, y], { colour: muted });
     if (long) brush.text(`${mm}`, { x_px: x - 6, y_px: y }, { colour: muted, align: "right", size_px: 11 });
   }
-  brush.line([x - 4, x + 12], [p.y.px(ready.travel_mm), p.y.px(ready.travel_mm)], { colour: danger, width_px: 2 });
-  brush.text("stop", { x_px: x + 15, y_px: p.y.px(ready.travel_mm) + 2 }, { colour: danger, size_px: 11, base: "top" });
+  brush.line([x - 4, x + 12], [p.y.px(ready.travel_mm), p.y.px(ready.travel_mm)], {
+    colour: danger,
+    width_px: 2,
+  });
+  brush.text(
+    "stop",
+    { x_px: x + 15, y_px: p.y.px(ready.travel_mm) + 2 },
+    { colour: danger, size_px: 11, base: "top" },
+  );
   for (const mark of spread(ready, p.y)) {
     const at = p.y.px(mark.place_mm);
-    brush.line([x - 4, x + 12, x + 18], [at, at, mark.y_px], { colour: accent, width_px: 1.5, dash: mark.up ? [4, 3] : [] });
+    brush.line([x - 4, x + 12, x + 18], [at, at, mark.y_px], {
+      colour: accent,
+      width_px: 1.5,
+      dash: mark.up ? [4, 3] : [],
+    });
     brush.text(mark.label, { x_px: x + 20, y_px: mark.y_px }, { colour: text, size_px: 11, halo: surface });
   }
   const now = p.y.px(cap_mm);
@@ -187,7 +221,9 @@ interface Mark {
 /** Put labels of places that lie close together under each other; those of programs are too long to be named. */
 function spread(ready: Seen["ready"], y: Scale): Mark[] {
   const plain = ready.places.filter((place) => place.label === "actuation" || place.label === "reset");
-  const places = plain.length ? plain : ready.places.map((place) => ({ ...place, label: `${shown(place.place_mm, 2)} mm` }));
+  const places = plain.length
+    ? plain
+    : ready.places.map((place) => ({ ...place, label: `${shown(place.place_mm, 2)} mm` }));
   const seen = new Set<string>();
   const unique = places.filter((place) => !seen.has(place.label) && seen.add(place.label));
   let [free, marks] = [-Infinity, [] as Mark[]];
@@ -202,5 +238,9 @@ function drawAim(brush: Brush, p: Place, aim_mm: number): void {
   const { accent } = palette();
   const y = p.y.px(aim_mm);
   const half = p.width_px * 0.2;
-  brush.line([p.middle_px - half, p.middle_px + half], [y, y], { colour: accent, width_px: 1.5, dash: [5, 4] });
+  brush.line([p.middle_px - half, p.middle_px + half], [y, y], {
+    colour: accent,
+    width_px: 1.5,
+    dash: [5, 4],
+  });
 }

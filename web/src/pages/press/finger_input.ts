@@ -1,7 +1,7 @@
 /** What leads the finger: pointer height, pressure, a hold that grows, keys. All may be used at any time. */
 
-import { addShortcuts, onCleanup, signal, type Signal } from "../../ui";
 import type { Scale } from "../../draw";
+import { addShortcuts, onCleanup, type Signal, signal } from "../../ui";
 
 /** The twin's finger gives way by so much, 450 N/m, and its pulp by some half a millimetre. */
 const YIELD_mm_cN = 1 / 45;
@@ -23,7 +23,7 @@ const LISTED = [
 ];
 
 /** What hands lead: a session with a simulated finger. */
-export interface Led {
+export interface FingerTarget {
   /** Of what is under the finger; null while nothing is. */
   travel_mm(): number | null;
   lead(referent_mm: number, velocity_mm_s: number, at_ms: number, near_1_s?: number): void;
@@ -33,7 +33,7 @@ export interface Led {
 
 export interface HandOptions {
   /** How fast the space bar presses, mm/s, and with what push at the bottom, cN. */
-  readonly pace_mm_s: () => number;
+  readonly speed_mm_s: () => number;
   readonly push_cN: () => number;
   /** The page is used: sound may begin. */
   readonly used: () => void;
@@ -41,7 +41,7 @@ export interface HandOptions {
 
 export type How = "" | "height" | "pressure" | "hold" | "key";
 
-export class Hands {
+export class FingerInput {
   /** Where the finger is aimed at, mm; null where nothing leads it or a force does. */
   readonly aim_mm: Signal<number | null> = signal<number | null>(null);
   readonly how: Signal<How> = signal<How>("");
@@ -50,7 +50,7 @@ export class Hands {
   private held: { readonly at_ms: number; readonly mm: number } | null = null;
 
   constructor(
-    private readonly session: Led,
+    private readonly session: FingerTarget,
     private readonly options: HandOptions,
   ) {
     onCleanup(() => cancelAnimationFrame(this.growing));
@@ -75,15 +75,20 @@ export class Hands {
       else if (this.how.peek() === "height") this.height(mm(event), event.timeStamp);
     });
     for (const end of ["pointerup", "pointercancel"] as const)
-      element.addEventListener(end, (event) => element.hasPointerCapture(event.pointerId) && this.lift(event.timeStamp));
+      element.addEventListener(
+        end,
+        (event) => element.hasPointerCapture(event.pointerId) && this.lift(event.timeStamp),
+      );
   }
 
   /** Follow the space bar and the arrows wherever the page has the focus, unless something else uses them. */
   onKeys(): void {
     const down = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || taken(event.target)) return;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || taken(event.target))
+        return;
       if (event.key === " ") event.repeat || this.key(event.timeStamp);
-      else if (event.key === "ArrowDown" || event.key === "ArrowUp") this.nudge(event.key === "ArrowDown" ? STEP_mm : -STEP_mm, event.timeStamp);
+      else if (event.key === "ArrowDown" || event.key === "ArrowUp")
+        this.nudge(event.key === "ArrowDown" ? STEP_mm : -STEP_mm, event.timeStamp);
       else if (event.key === "Escape" && this.how.peek()) this.lift(event.timeStamp);
       else return;
       event.preventDefault();
@@ -138,7 +143,7 @@ export class Hands {
 
   private height(mm: number, at_ms: number): void {
     if (this.how.peek() !== "height") this.begin("height");
-    // a hand that has stopped sends no more: a speed is believed only while moves follow each other
+    // a hand that has stopped sends no more: a speed is valid only while moves follow each other
     const since_ms = this.held ? at_ms - this.held.at_ms : Infinity;
     const speed = since_ms > 0 && since_ms < 40 && this.held ? ((mm - this.held.mm) / since_ms) * 1000 : 0;
     this.held = { at_ms, mm };
@@ -150,7 +155,9 @@ export class Hands {
   private settle(mm: number): void {
     cancelAnimationFrame(this.growing);
     this.growing = requestAnimationFrame(() => {
-      this.growing = requestAnimationFrame((now_ms) => this.how.peek() === "height" && this.aim(mm, now_ms, 0));
+      this.growing = requestAnimationFrame(
+        (now_ms) => this.how.peek() === "height" && this.aim(mm, now_ms, 0),
+      );
     });
   }
 
@@ -181,7 +188,7 @@ export class Hands {
   }
 
   private rate(way_mm: number): number {
-    return (RATE_PER_SPEED * this.options.pace_mm_s()) / Math.max(1, way_mm);
+    return (RATE_PER_SPEED * this.options.speed_mm_s()) / Math.max(1, way_mm);
   }
 
   private nudge(by_mm: number, at_ms: number): void {
@@ -196,9 +203,15 @@ export class Hands {
 /** Pens tell how hard they press; fingers do where the screen can, else 0 or 0.5 for every touch. */
 function hasPressure(event: PointerEvent): boolean {
   const { pressure } = event;
-  return event.pointerType === "pen" || (event.pointerType === "touch" && pressure > 0 && pressure < 1 && pressure !== 0.5);
+  return (
+    event.pointerType === "pen" ||
+    (event.pointerType === "touch" && pressure > 0 && pressure < 1 && pressure !== 0.5)
+  );
 }
 
 function taken(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches("button, a, input, select, textarea, summary, [role=tab], [contenteditable]");
+  return (
+    target instanceof HTMLElement &&
+    target.matches("button, a, input, select, textarea, summary, [role=tab], [contenteditable]")
+  );
 }

@@ -25,11 +25,12 @@ export class Latency {
     return now_ms - at_ms;
   }
 
-  /** Give how many delays were found, their middle and the one that 99 of 100 stay below; null before the first. */
-  told(): { readonly count: number; readonly median_ms: number; readonly p99_ms: number } | null {
+  /** Return how many delays were found, their middle and the one that 99 of 100 stay below; null before the first. */
+  summary(): { readonly count: number; readonly median_ms: number; readonly p99_ms: number } | null {
     if (!this.found_ms.length) return null;
     const sorted = [...this.found_ms].sort((a, b) => a - b);
-    const at = (part: number) => sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] as number;
+    const at = (part: number) =>
+      sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] as number;
     return { count: sorted.length, median_ms: at(0.5), p99_ms: at(0.99) };
   }
 }

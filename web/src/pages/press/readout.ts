@@ -1,6 +1,6 @@
 /** What the button says: lamp, counters, the last press, the program's state, limits and faults. */
 
-import { button, h, shown, type Child } from "../../ui";
+import { button, type Child, h, shown } from "../../ui";
 import type { PressSession } from "./session";
 
 const DERATED = 4;
@@ -15,7 +15,12 @@ export function readout(session: PressSession): HTMLElement {
   return h(
     "div",
     { class: "press-readout" },
-    h("div", { class: () => `press-lamp${on() ? " on" : ""}`, "data-key": () => String(session.frame()?.key ?? 0) }, h("i", { "aria-hidden": "true" }), key),
+    h(
+      "div",
+      { class: () => `press-lamp${on() ? " on" : ""}`, "data-key": () => String(session.frame()?.key ?? 0) },
+      h("i", { "aria-hidden": "true" }),
+      key,
+    ),
     h(
       "dl",
       {},
@@ -23,19 +28,31 @@ export function readout(session: PressSession): HTMLElement {
       pair("presses", () => String(session.presses()), "presses"),
       pair("last press", () => lastPress(session), "last-press"),
       // a plain button's states are up and down, as the lamp says
-      pair("state", () => stateName(session), "state", () => session.ready()?.actuation_mm !== null),
+      pair(
+        "state",
+        () => stateName(session),
+        "state",
+        () => session.ready()?.actuation_mm !== null,
+      ),
     ),
     h("p", { class: "press-limit" }, () => limits(session)),
   );
 }
 
-function pair(label: string, value: () => string, name: string, hidden: () => boolean = () => false): HTMLElement {
+function pair(
+  label: string,
+  value: () => string,
+  name: string,
+  hidden: () => boolean = () => false,
+): HTMLElement {
   return h("div", { hidden }, h("dt", {}, label), h("dd", { "data-value": name }, value));
 }
 
 function lastPress(session: PressSession): string {
   const press = session.lastPress();
-  return press ? `${shown(press.displacement_mm, 2)} mm at ${shown(press.velocity_mm_s, 0)} mm/s` : "none yet";
+  return press
+    ? `${shown(press.displacement_mm, 2)} mm at ${shown(press.velocity_mm_s, 0)} mm/s`
+    : "none yet";
 }
 
 function stateName(session: PressSession): string {
@@ -46,11 +63,11 @@ function stateName(session: PressSession): string {
 function limits(session: PressSession): string {
   const frame = session.frame();
   if (!frame) return "";
-  const told = [];
-  if (frame.saturated) told.push("the command is cut at a limit of the rig");
-  if (frame.mode === DERATED) told.push("the coil is warm: less force");
-  if (frame.dropped_s > 0) told.push(`${shown(frame.dropped_s, 2)} s dropped: this machine was busy`);
-  return told.join("; ");
+  const notes = [];
+  if (frame.saturated) notes.push("the command is clipped at a limit of the rig");
+  if (frame.mode === DERATED) notes.push("the coil is warm: less force");
+  if (frame.dropped_s > 0) notes.push(`${shown(frame.dropped_s, 2)} s dropped: this machine was busy`);
+  return notes.join("; ");
 }
 
 /** Faults with their reason, and the way out; how the press stands otherwise. */
@@ -60,13 +77,13 @@ export function standing(session: PressSession): HTMLElement {
     const reason = session.reason();
     switch (session.standing()) {
       case "starting":
-        return h("p", { class: "muted" }, "putting it under the finger …");
+        return h("p", { class: "muted" }, "loading …");
       case "paused":
-        return h("p", { class: "muted" }, "paused; it goes on when you touch it");
+        return h("p", { class: "muted" }, "paused; touch it to resume");
       case "lost":
-        return h("p", { class: "press-wrong" }, "no connection; it begins anew when the studio is back");
+        return h("p", { class: "press-wrong" }, "no connection; it restarts when the studio is back");
       case "over":
-        return h("p", { class: "press-wrong" }, reason || "nothing is under the finger");
+        return h("p", { class: "press-wrong" }, reason || "no button loaded");
       default:
         return reason ? h("p", { class: "press-wrong" }, reason) : null;
     }

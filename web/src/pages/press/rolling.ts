@@ -28,7 +28,7 @@ export class Rolling {
     return this.count ? (this.t_s[(this.count - 1) % KEPT] as number) : 0;
   }
 
-  /** Give every `every`-th row since a time, the last one always, oldest first. */
+  /** Return every `every`-th row since a time, the last one always, oldest first. */
   since(from_s: number, every = 1): { t_s: number[]; displacement_mm: number[]; force_cN: number[] } {
     const found = { t_s: [] as number[], displacement_mm: [] as number[], force_cN: [] as number[] };
     const oldest = Math.max(0, this.count - KEPT);

@@ -1,8 +1,15 @@
 /** One live press: the channel to the simulated rig, and all that the page knows of it, as signals. */
 
-import { live, type LiveChannel } from "../../net";
-import type { Channels, PressFrame, PressHappened, PressMeant, PressReady, PressStart } from "../../net/messages";
-import { batch, onCleanup, signal, type Signal } from "../../ui";
+import { type LiveChannel, live } from "../../net";
+import type {
+  Channels,
+  PressFrame,
+  PressHappened,
+  PressMeant,
+  PressReady,
+  PressStart,
+} from "../../net/messages";
+import { batch, onCleanup, type Signal, signal } from "../../ui";
 import { Latency } from "./latency";
 import { Rolling } from "./rolling";
 
@@ -16,17 +23,17 @@ export interface Choice {
   readonly rig: string;
 }
 
-export type Standing = "empty" | "starting" | "running" | "paused" | "lost" | "over";
+export type SessionStatus = "empty" | "starting" | "running" | "paused" | "lost" | "over";
 
 /** A page that is looked at says so this often; the server waits three times as long. */
 const HERE_ms = 1000;
 
 export class PressSession {
-  readonly standing: Signal<Standing> = signal<Standing>("empty");
+  readonly standing: Signal<SessionStatus> = signal<SessionStatus>("empty");
   readonly reason: Signal<string> = signal("");
   readonly ready: Signal<PressReady | null> = signal<PressReady | null>(null);
-  /** What is meant to be felt at the speed of the last press; at first when pressed slowly. */
-  readonly meant: Signal<PressMeant | null> = signal<PressMeant | null>(null);
+  /** Target force at the speed of the last press; at first when pressed slowly. */
+  readonly target: Signal<PressMeant | null> = signal<PressMeant | null>(null);
   /** The last frame. */
   readonly frame: Signal<PressFrame | null> = signal<PressFrame | null>(null);
   readonly presses: Signal<number> = signal(0);
@@ -35,7 +42,7 @@ export class PressSession {
   readonly fault: Signal<string> = signal("");
   readonly rows = new Rolling();
   readonly latency = new Latency();
-  /** Called with every frame as soon as it is told. */
+  /** Called with every frame as soon as it arrives. */
   onFrame: (frame: PressFrame) => void = () => undefined;
   /** Called when something new is under the finger. */
   onReady: (ready: PressReady) => void = () => undefined;
@@ -45,7 +52,7 @@ export class PressSession {
 
   constructor() {
     this.channel = live().channel("press", {
-      told: (message) => this.take(message),
+      onMessage: (message) => this.take(message),
       wrong: (line) => this.over(line),
       opened: () => this.choice && this.start(this.choice),
       lost: () => this.choice && this.standing.set("lost"),
@@ -85,7 +92,11 @@ export class PressSession {
     this.send({ type: "lift", sequence: this.next(at_ms) });
   }
 
-  replay(trace: { readonly name: string; readonly t_s?: readonly number[]; readonly displacement_mm?: readonly number[] }): void {
+  replay(trace: {
+    readonly name: string;
+    readonly t_s?: readonly number[];
+    readonly displacement_mm?: readonly number[];
+  }): void {
     this.send({ type: "replay", ...trace });
   }
 
@@ -115,7 +126,7 @@ export class PressSession {
   private take(message: Channels["press"]["tells"]): void {
     if (message.type === "frame") this.takeFrame(message);
     else if (message.type === "ready") this.takeReady(message);
-    else if (message.type === "meant") this.meant.set(message);
+    else if (message.type === "meant") this.target.set(message);
     else if (message.type === "refused") this.reason.set(message.reason);
     else if (message.reason) this.over(message.reason);
   }
@@ -124,7 +135,7 @@ export class PressSession {
     this.rows.clear();
     batch(() => {
       this.ready.set(ready);
-      this.meant.set(ready.meant);
+      this.target.set(ready.meant);
       this.frame.set(null);
       this.standing.set("running");
       this.presses.set(0);

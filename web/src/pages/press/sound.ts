@@ -7,7 +7,7 @@ import type { ShakeSignal } from "../../net/messages";
 export const FULL_m_s2 = 20;
 /** Speed of a press at which a click is as loud as its model says. */
 export const AS_MODELLED_mm_s = 100;
-/** What a moment of the simulation is heard after it was told; steadies what the network does not. */
+/** What a moment of the simulation is heard after it was reported; steadies what the network does not. */
 export const DELAY_s = 0.04;
 /** Clocks that moved so far apart were stopped; between two frames good ones drift by so much at most. */
 const APART_s = 0.1;
@@ -15,7 +15,7 @@ const DRIFT_s = 2e-6;
 /** Silence before and after a click in a file. */
 export const QUIET_s = 0.02;
 
-/** Give how loud a press of a speed is against the model: in proportion, within a factor of three either way. */
+/** Return how loud a press of a speed is against the model: in proportion, within a factor of three either way. */
 export function loudness(velocity_mm_s: number): number {
   return Math.min(3, Math.max(1 / 3, Math.abs(velocity_mm_s) / AS_MODELLED_mm_s));
 }
@@ -24,14 +24,23 @@ export function loudness(velocity_mm_s: number): number {
 export function bufferOf(context: BaseAudioContext, signal: ShakeSignal): AudioBuffer {
   const like = { ...signal, stroke: "press" as const, velocity_mm_s: null, onset_mm: 0 };
   const count = Math.round(signal.duration_s * context.sampleRate) + 1;
-  const samples = acceleration_m_s2(like, Float64Array.from({ length: count }, (_, i) => i / context.sampleRate));
+  const samples = acceleration_m_s2(
+    like,
+    Float64Array.from({ length: count }, (_, i) => i / context.sampleRate),
+  );
   const buffer = context.createBuffer(1, count, context.sampleRate);
   buffer.getChannelData(0).set(Float32Array.from(samples, (a) => a / FULL_m_s2));
   return buffer;
 }
 
 /** Play a buffer at a time of the context: the one graph for loudspeaker and file. */
-export function playAt(context: BaseAudioContext, to: AudioNode, buffer: AudioBuffer, at_s: number, gain: number): void {
+export function playAt(
+  context: BaseAudioContext,
+  to: AudioNode,
+  buffer: AudioBuffer,
+  at_s: number,
+  gain: number,
+): void {
   const source = new AudioBufferSourceNode(context, { buffer });
   const level = new GainNode(context, { gain });
   source.connect(level).connect(to);
@@ -39,7 +48,11 @@ export function playAt(context: BaseAudioContext, to: AudioNode, buffer: AudioBu
 }
 
 /** Render a click as it is played, with silence around it. */
-export async function rendered(signal: ShakeSignal, velocity_mm_s: number, rate_Hz = 48_000): Promise<Float32Array> {
+export async function rendered(
+  signal: ShakeSignal,
+  velocity_mm_s: number,
+  rate_Hz = 48_000,
+): Promise<Float32Array> {
   const count = Math.round((signal.duration_s + 2 * QUIET_s) * rate_Hz);
   const context = new OfflineAudioContext(1, count, rate_Hz);
   playAt(context, context.destination, bufferOf(context, signal), QUIET_s, loudness(velocity_mm_s));
@@ -57,7 +70,7 @@ export class Steady {
     else this.least_s = Math.min(apart_s, this.least_s + DRIFT_s);
   }
 
-  /** Give how far apart they are by the last reading; 0 before the first. */
+  /** Return how far apart they are by the last reading; 0 before the first. */
   now_s(): number {
     return this.least_s ?? 0;
   }
@@ -102,7 +115,7 @@ export class Clicker {
     if (this.context) this.heard.take(page_s - this.context.currentTime);
   }
 
-  /** Play a slot that starts at t_s of the simulation, on the clock that follow() is told of. */
+  /** Play a slot that starts at t_s of the simulation, on the clock that follow() is given. */
   click(slot: number, t_s: number, velocity_mm_s: number): void {
     const [context, buffer] = [this.context, this.buffers[slot]];
     if (!context || !buffer || this.muted || context.state !== "running") return;

@@ -1,18 +1,18 @@
 /** A button to press: drawn, felt as curves, heard. Any page may put one up and start things on it. */
 
-import { h, numberField, onCleanup, shown, signal, toggle, type Child, type Signal } from "../../ui";
-import { feltPlot, timePlots } from "./charts";
-import { Clicker } from "./sound";
-import { Hands } from "./hands";
-import { readout, standing } from "./readout";
-import { PressSession, type Choice } from "./session";
+import { type Child, h, numberField, onCleanup, type Signal, shown, signal, toggle } from "../../ui";
+import { forcePlot, timePlots } from "./charts";
 import { stageCanvas, stageScale } from "./drawing";
+import { FingerInput } from "./finger_input";
+import { readout, standing } from "./readout";
+import { type Choice, PressSession } from "./session";
+import { Clicker } from "./sound";
 import "./stage.css";
 
 export { stageCanvas, stageScale } from "./drawing";
-export { Hands, type Led } from "./hands";
-export { Clicker } from "./sound";
+export { FingerInput, type FingerTarget } from "./finger_input";
 export type { Choice, Mode, What } from "./session";
+export { Clicker } from "./sound";
 
 export interface StageOptions {
   /** What is under the finger at once; later by start(). */
@@ -28,7 +28,7 @@ export interface StageOptions {
 export interface PressStage {
   readonly element: HTMLElement;
   readonly session: PressSession;
-  readonly hands: Hands;
+  readonly hands: FingerInput;
   readonly clicker: Clicker;
   /** Put something under the finger; what leads the finger goes on leading it. */
   start(choice: Choice): void;
@@ -38,28 +38,31 @@ export interface PressStage {
 export function pressStage(host: HTMLElement, options: StageOptions = {}): PressStage {
   const session = new PressSession();
   const clicker = new Clicker();
-  const pace_mm_s = signal(120);
+  const speed_mm_s = signal(120);
   const push_cN = signal(options.push_cN ?? 120);
   const used = () => clicker.wake();
-  const hands = new Hands(session, { pace_mm_s, push_cN, used });
+  const hands = new FingerInput(session, { speed_mm_s, push_cN, used });
   hear(session, clicker, hands);
 
   const view = stageView(session, hands);
   const stage: PressStage = {
-    element: h("section", { class: `press-stage${options.compact ? " compact" : ""}`, "aria-label": "Button to press, simulated" }),
+    element: h("section", {
+      class: `press-stage${options.compact ? " compact" : ""}`,
+      "aria-label": "Button to press, simulated",
+    }),
     session,
     hands,
     clicker,
     start: (choice) => session.start(choice),
   };
-  const felt = feltPlot(session, options.compact ? 220 : null);
+  const felt = forcePlot(session, options.compact ? 220 : null);
   stage.element.append(
     h(
       "div",
       { class: "press-left" },
       view,
       standing(session),
-      handTools(hands, pace_mm_s, push_cN, used),
+      handTools(hands, speed_mm_s, push_cN, used),
       soundTools(clicker),
       ...[options.extra?.(stage)].filter((extra) => extra instanceof Node),
     ),
@@ -67,7 +70,12 @@ export function pressStage(host: HTMLElement, options: StageOptions = {}): Press
       "div",
       { class: "press-right" },
       readout(session),
-      h("p", { class: "press-told" }, h("span", { class: "tag simulated" }, "simulated"), () => ` ${session.ready()?.told ?? ""}`),
+      h(
+        "p",
+        { class: "press-told" },
+        h("span", { class: "tag simulated" }, "simulated"),
+        () => ` ${session.ready()?.told ?? ""}`,
+      ),
       felt.element,
       h("div", { class: "press-foot" }, legend(session), latencyLine(session)),
       options.compact ? null : timePlots(session),
@@ -80,7 +88,7 @@ export function pressStage(host: HTMLElement, options: StageOptions = {}): Press
 }
 
 /** The drawing under the hand. */
-function stageView(session: PressSession, hands: Hands): HTMLElement {
+function stageView(session: PressSession, hands: FingerInput): HTMLElement {
   const see = () => {
     const ready = session.ready();
     return ready && { ready, frame: session.frame(), aim_mm: hands.aim_mm() };
@@ -90,8 +98,13 @@ function stageView(session: PressSession, hands: Hands): HTMLElement {
     if (frame) session.latency.drawn(frame.sequence, performance.now());
   };
   const canvas = stageCanvas(see, drawn);
-  const label = () => `${session.ready()?.name ?? "no button"} under a simulated finger: press with the space bar, move with the arrow keys`;
-  const element = h("div", { class: "press-view", tabindex: 0, role: "application", "aria-label": label }, canvas);
+  const label = () =>
+    `${session.ready()?.name ?? "no button"} under a simulated finger: press with the space bar, move with the arrow keys`;
+  const element = h(
+    "div",
+    { class: "press-view", tabindex: 0, role: "application", "aria-label": label },
+    canvas,
+  );
   const scale = () => stageScale(session.ready.peek()?.travel_mm ?? 4, element.clientHeight);
   const cap_mm = () => session.frame.peek()?.displacement_mm.at(-1) ?? 0;
   hands.onPointer(element, scale, cap_mm);
@@ -99,7 +112,7 @@ function stageView(session: PressSession, hands: Hands): HTMLElement {
   return element;
 }
 
-function hear(session: PressSession, clicker: Clicker, hands: Hands): void {
+function hear(session: PressSession, clicker: Clicker, hands: FingerInput): void {
   session.onReady = (ready) => {
     clicker.load(ready.signals);
     hands.resume();
@@ -108,17 +121,23 @@ function hear(session: PressSession, clicker: Clicker, hands: Hands): void {
     // time that was dropped has passed for the ear all the same
     clicker.follow(session.rows.now_s() + frame.dropped_s);
     for (const event of frame.events)
-      if (event.kind === "vibration") clicker.click(event.number, event.t_s + frame.dropped_s, event.velocity_mm_s);
+      if (event.kind === "vibration")
+        clicker.click(event.number, event.t_s + frame.dropped_s, event.velocity_mm_s);
   };
 }
 
-function handTools(hands: Hands, pace_mm_s: Signal<number>, push_cN: Signal<number>, used: () => void): HTMLElement {
+function handTools(
+  hands: FingerInput,
+  speed_mm_s: Signal<number>,
+  push_cN: Signal<number>,
+  used: () => void,
+): HTMLElement {
   const hold = h(
     "button",
     {
       type: "button",
       class: "button press-hold",
-      title: "The push grows as long as this is held",
+      title: "The push grows while you hold this",
       on: {
         pointerdown: (event) => {
           used();
@@ -142,13 +161,35 @@ function handTools(hands: Hands, pace_mm_s: Signal<number>, push_cN: Signal<numb
   return h(
     "div",
     { class: "press-hands" },
-    h("p", { class: "muted" }, "Drag the finger; hold the cap, and the push grows; a pen pushes as you do. Space presses, arrows move, Escape lifts."),
+    h(
+      "p",
+      { class: "muted" },
+      "Drag the finger, or hold the cap to push harder; a pen uses its pressure. Space presses, arrows move, Escape lifts.",
+    ),
     h(
       "div",
       { class: "row" },
       hold,
-      numberField({ label: "Space bar", unit: "mm/s", value: pace_mm_s, set: pace_mm_s.set, least: 5, most: 600, step: 10, digits: 0 }),
-      numberField({ label: "push", unit: "cN", value: push_cN, set: push_cN.set, least: 10, most: 400, step: 10, digits: 0 }),
+      numberField({
+        label: "Space bar",
+        unit: "mm/s",
+        value: speed_mm_s,
+        set: speed_mm_s.set,
+        least: 5,
+        most: 600,
+        step: 10,
+        digits: 0,
+      }),
+      numberField({
+        label: "push",
+        unit: "cN",
+        value: push_cN,
+        set: push_cN.set,
+        least: 10,
+        most: 400,
+        step: 10,
+        digits: 0,
+      }),
     ),
   );
 }
@@ -169,24 +210,44 @@ function soundTools(clicker: Clicker): HTMLElement {
     clicker.muted = !sound;
     clicker.wake();
   };
-  return h("div", { class: "row press-sound" }, toggle({ label: "Click sound", value: on, set, hint: "The button's vibration, as loud as you press fast" }), volume);
+  return h(
+    "div",
+    { class: "row press-sound" },
+    toggle({
+      label: "Click sound",
+      value: on,
+      set,
+      hint: "The button's vibration, louder for faster presses",
+    }),
+    volume,
+  );
 }
 
 function legend(session: PressSession): HTMLElement {
-  const one = (kind: string, text: Child) => h("span", { class: `press-key ${kind}` }, h("i", { "aria-hidden": "true" }), text);
+  const one = (kind: string, text: Child) =>
+    h("span", { class: `press-key ${kind}` }, h("i", { "aria-hidden": "true" }), text);
   const at = () => {
-    const speed = session.meant()?.velocity_mm_s ?? 0;
+    const speed = session.target()?.velocity_mm_s ?? 0;
     return speed ? ` at ${shown(speed, 0)} mm/s` : ", slowly";
   };
-  return h("p", { class: "press-legend" }, one("press", ["meant, press", at]), one("release", ["meant, release", at]), one("felt", "felt, simulated"));
+  return h(
+    "p",
+    { class: "press-legend" },
+    one("press", ["target, press", at]),
+    one("release", ["target, release", at]),
+    one("felt", "rendered, simulated"),
+  );
 }
 
 /** How long it takes from the hand to the screen. */
 function latencyLine(session: PressSession): HTMLElement {
   const said = signal("");
   const timer = setInterval(() => {
-    const told = session.latency.told();
-    if (told) said.set(`hand to screen ${told.median_ms.toFixed(0)} ms, 99 % within ${told.p99_ms.toFixed(0)} ms (${told.count} moves)`);
+    const summary = session.latency.summary();
+    if (summary)
+      said.set(
+        `hand to screen ${summary.median_ms.toFixed(0)} ms, 99 % within ${summary.p99_ms.toFixed(0)} ms (${summary.count} moves)`,
+      );
   }, 1000);
   onCleanup(() => clearInterval(timer));
   return h("p", { class: "muted press-latency" }, said);

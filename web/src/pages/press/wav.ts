@@ -5,7 +5,8 @@ const FLOATS = 3;
 
 export function wavOf(samples: Float32Array, rate_Hz: number): Blob {
   const view = new DataView(new ArrayBuffer(HEAD_bytes + 4 * samples.length));
-  const text = (at: number, letters: string) => [...letters].forEach((c, i) => view.setUint8(at + i, c.charCodeAt(0)));
+  const text = (at: number, letters: string) =>
+    [...letters].forEach((c, i) => view.setUint8(at + i, c.charCodeAt(0)));
   text(0, "RIFF");
   view.setUint32(4, view.byteLength - 8, true);
   text(8, "WAVEfmt ");

@@ -1,12 +1,12 @@
 /** An open program: its history, what is chosen in it, what the check says of it, and its way to the server. */
 
-import type { ProgramCheck, ProgramFinding, ProgramText } from "../../net/messages";
 import { lineOf } from "../../math/words";
-import { computed, signal, type Signal } from "../../ui/signal";
-import { readDocument, writeDocument, type ProgramDocument } from "../../programs/document";
+import type { ProgramCheck, ProgramFinding, ProgramText } from "../../net/messages";
+import { type ProgramDocument, readDocument, writeDocument } from "../../programs/document";
 import { historyOf, type ProgramHistory } from "../../programs/history";
-import { isThere, WHOLE, type Choice } from "../../programs/path";
+import { type Choice, isThere, WHOLE } from "../../programs/path";
 import { problemsOf } from "../../programs/problems";
+import { computed, type Signal, signal } from "../../ui/signal";
 
 /** What a book needs of a server; all reject with one line for the person. */
 export interface ProgramServer {
@@ -88,7 +88,7 @@ export class ProgramBook {
     this.history.mark(label);
   }
 
-  /** Show what a drag gives so far, told from the document as it was when it began. */
+  /** Show what a drag gives so far, computed from the document at its start. */
   drag(change: (before: ProgramDocument) => ProgramDocument): void {
     this.document.set(this.history.show(change));
   }
@@ -204,5 +204,13 @@ function unchecked(line: string): ProgramCheck {
     remedy: "it is checked again after the next edit",
     at_mm: null,
   };
-  return { accepted: false, findings: [finding], sizes: [], surfaces: [], return_s: null, stiffness_cN_mm: null, rise_K: null };
+  return {
+    accepted: false,
+    findings: [finding],
+    sizes: [],
+    surfaces: [],
+    return_s: null,
+    stiffness_cN_mm: null,
+    rise_K: null,
+  };
 }

@@ -4,16 +4,29 @@ import { go, keepQuery } from "../../app/route";
 import { download } from "../../draw";
 import { call } from "../../net";
 import type { ProgramText } from "../../net/messages";
-import type { Point } from "../../programs/layout/geometry";
-import { choiceAt, pathOf, type Choice } from "../../programs/path";
-import { addShortcuts, button, effect, h, onCleanup, panel, signal, tabs, tell, toast, toolbar, untracked } from "../../ui";
+import type { Point } from "../../programs/geometry";
+import { type Choice, choiceAt, pathOf } from "../../programs/path";
+import {
+  addShortcuts,
+  button,
+  effect,
+  h,
+  onCleanup,
+  panel,
+  signal,
+  tabs,
+  tell,
+  toast,
+  toolbar,
+  untracked,
+} from "../../ui";
 import { ProgramBook, type SaveState } from "./book";
 import { findingsPanel } from "./findings";
 import { ForcePanel } from "./forces";
 import { GraphPanel } from "./graph";
 import { inspector } from "./inspector";
-import { keptPlaces, keepPlaces } from "./places";
-import { SERVER, refreshRows } from "./server";
+import { savedPositions, savePositions } from "./positions";
+import { refreshRows, SERVER } from "./server";
 import { tryPanel } from "./try";
 
 /** Mount an opened program; `at` is the path of the part to show first. */
@@ -21,13 +34,13 @@ export function editor(host: HTMLElement, opened: ProgramText, at: string): void
   const book = new ProgramBook(SERVER, opened);
   refreshRows();
   const live = signal<string | null>(null);
-  const moved = keptPlaces(book.id);
+  const moved = savedPositions(book.id);
   const graph = new GraphPanel({ book, moved, live });
   const state = signal(book.document.peek().start);
   const forces = new ForcePanel(book, state);
   book.choose(at ? choiceAt(book.document.peek(), at) : { kind: "state", state: book.document.peek().start });
   followChoice(book, (name) => state.set(name));
-  effect(() => keepPlaces(book.id, moved()));
+  effect(() => savePositions(book.id, moved()));
   keys(book, graph);
   guardTab(book);
   host.append(
@@ -68,7 +81,9 @@ function followChoice(book: ProgramBook, show: (state: string) => void): void {
     const [choice, document] = [book.choice(), book.document()];
     if (choice.kind === "state" || choice.kind === "transition") show(choice.state);
     else if (choice.kind === "surface") {
-      const feels = document.states.find((held) => held.press === choice.surface || held.release === choice.surface);
+      const feels = document.states.find(
+        (held) => held.press === choice.surface || held.release === choice.surface,
+      );
       if (feels) show(feels.name);
     }
     const path = pathOf(document, choice);
@@ -85,13 +100,23 @@ const SAID: Readonly<Record<SaveState["kind"], string>> = {
   saved: "saved",
   waiting: "not saved yet",
   saving: "saving…",
-  scratch: "shipped: what you change stays on this page until you keep it",
+  scratch: "shipped: your changes stay on this page until you save a copy",
   refused: "not saved: ",
 };
 
 function titleRow(book: ProgramBook): HTMLElement {
-  const undo = button({ label: "Undo", glyph: "↶", disabled: () => book.undoLabel() === null, act: () => book.undo() });
-  const redo = button({ label: "Redo", glyph: "↷", disabled: () => book.redoLabel() === null, act: () => book.redo() });
+  const undo = button({
+    label: "Undo",
+    glyph: "↶",
+    disabled: () => book.undoLabel() === null,
+    act: () => book.undo(),
+  });
+  const redo = button({
+    label: "Redo",
+    glyph: "↷",
+    disabled: () => book.redoLabel() === null,
+    act: () => book.redo(),
+  });
   return h(
     "div",
     { class: "row spread title-row" },
@@ -100,8 +125,14 @@ function titleRow(book: ProgramBook): HTMLElement {
       { class: "row" },
       button({ label: "All programs", kind: "quiet", act: () => go("programs") }),
       h("h1", {}, () => book.document().name),
-      h("span", { class: () => `save-state ${book.saved().kind}`, role: "status" }, () => SAID[book.saved().kind] + book.saved().line),
-      h("span", {}, () => (book.saved().kind === "refused" ? button({ label: "Save again", act: () => void book.save() }) : null)),
+      h(
+        "span",
+        { class: () => `save-state ${book.saved().kind}`, role: "status" },
+        () => SAID[book.saved().kind] + book.saved().line,
+      ),
+      h("span", {}, () =>
+        book.saved().kind === "refused" ? button({ label: "Save again", act: () => void book.save() }) : null,
+      ),
     ),
     toolbar("Program", undo, redo, keepIt(book), exportIt(book), linkIt()),
   );
@@ -113,7 +144,11 @@ function keepIt(book: ProgramBook): HTMLElement {
     const kept = await call("program.keep", { text: book.text });
     go("programs", kept.program);
   };
-  return button({ label: book.own ? "Keep as another" : "Keep as my own", kind: book.own ? "plain" : "main", act: () => void keep().catch(tell) });
+  return button({
+    label: book.own ? "Save as" : "Save as my own",
+    kind: book.own ? "plain" : "main",
+    act: () => void keep().catch(tell),
+  });
 }
 
 function exportIt(book: ProgramBook): HTMLElement {
@@ -121,26 +156,51 @@ function exportIt(book: ProgramBook): HTMLElement {
     // what is on the server is the canonical text; a shipped one may have changed on this page
     await book.save();
     const text = book.own ? (await call("program.open", { program: book.id })).text : `${book.text}\n`;
-    download(`${book.document.peek().name.replace(/[^\w .-]/g, "-")}.fdvv-program.json`, text, "application/json");
+    download(
+      `${book.document.peek().name.replace(/[^\w .-]/g, "-")}.fdvv-program.json`,
+      text,
+      "application/json",
+    );
   };
   return button({ label: "Export file", act: () => void act().catch(tell) });
 }
 
 function linkIt(): HTMLElement {
-  const act = (): void => void navigator.clipboard.writeText(location.href).then(() => toast("Link copied.", "done"), tell);
-  return button({ label: "Copy link", hint: "To this program with what is chosen", act });
+  const act = (): void =>
+    void navigator.clipboard.writeText(location.href).then(() => toast("Link copied.", "done"), tell);
+  return button({ label: "Copy link", hint: "To this program with the current selection", act });
 }
 
-function graphPanel(book: ProgramBook, graph: GraphPanel, moved: ReturnType<typeof keptPlaces>): HTMLElement {
+function graphPanel(
+  book: ProgramBook,
+  graph: GraphPanel,
+  moved: ReturnType<typeof savedPositions>,
+): HTMLElement {
   const tools = toolbar(
     "Graph",
     button({ label: "Add state", hint: "N, or a double click", act: () => void graph.addState() }),
-    button({ label: "Add transition", hint: "T on a state, or drag the dot at its edge", disabled: () => book.choice().kind !== "state", act: () => graph.begin() }),
-    button({ label: "Program", hint: "Name, travel, signals and vibrations", kind: "quiet", act: () => book.choose({ kind: "program" }) }),
+    button({
+      label: "Add transition",
+      hint: "T on a state, or drag the dot at its edge",
+      disabled: () => book.choice().kind !== "state",
+      act: () => graph.begin(),
+    }),
+    button({
+      label: "Program",
+      hint: "Name, travel, signals and vibrations",
+      kind: "quiet",
+      act: () => book.choose({ kind: "program" }),
+    }),
     button({ label: "Zoom in", glyph: "+", kind: "quiet", act: () => graph.view.zoomBy(1.25) }),
     button({ label: "Zoom out", glyph: "−", kind: "quiet", act: () => graph.view.zoomBy(0.8) }),
     button({ label: "Fit", kind: "quiet", act: () => graph.view.fit() }),
-    button({ label: "Tidy", hint: "Put every state where it stood at first", kind: "quiet", disabled: () => moved().size === 0, act: () => tidy(graph, moved) }),
+    button({
+      label: "Tidy",
+      hint: "Reset every state to its automatic position",
+      kind: "quiet",
+      disabled: () => moved().size === 0,
+      act: () => tidy(graph, moved),
+    }),
   );
   const found = panel("States", tools, graph.element);
   found.classList.add("states");
@@ -159,10 +219,18 @@ function keys(book: ProgramBook, graph: GraphPanel): void {
     { keys: "Ctrl+Y", does: "Redo", act: () => book.redo() },
     { keys: "Ctrl+S", does: "Save now", act: () => void book.save(), always: true },
     { keys: "N", does: "Add a state", act: () => void graph.addState() },
-    { keys: "T", does: "Begin a transition at the chosen state; Enter on another ends it", act: () => graph.begin() },
-    { keys: "G", does: "Go to what is chosen in the graph; arrows walk, Shift+arrows move it", act: () => graph.focusChosen() },
-    { keys: "Delete", does: "Remove what is chosen", act: () => graph.remove() },
-    { keys: "Escape", does: "Let go of a transition that was begun", act: () => graph.drawing.set(null) },
+    {
+      keys: "T",
+      does: "Begin a transition at the chosen state; Enter on another ends it",
+      act: () => graph.begin(),
+    },
+    {
+      keys: "G",
+      does: "Focus the selection in the graph; arrows walk, Shift+arrows move it",
+      act: () => graph.focusChosen(),
+    },
+    { keys: "Delete", does: "Remove the selection", act: () => graph.remove() },
+    { keys: "Escape", does: "Cancel a new transition", act: () => graph.drawing.set(null) },
   );
 }
 
@@ -186,5 +254,5 @@ function offerToKeep(book: ProgramBook): void {
     close();
     call("program.keep", { text: book.text }).then((kept) => go("programs", kept.program), tell);
   };
-  document.querySelector("#toasts > :last-child span")?.append(" ", button({ label: "Keep as another", act: keep }));
+  document.querySelector("#toasts > :last-child span")?.append(" ", button({ label: "Save as", act: keep }));
 }

@@ -1,10 +1,10 @@
 /** Fields that the inspector uses in several places. */
 
-import { KINDS, condition, kindOf, valueOf } from "../../programs/condition";
-import { nameProblem, type Condition, type ConditionKind } from "../../programs/document";
+import { condition, conditionValue, KINDS, kindOf } from "../../programs/condition";
+import { type Condition, type ConditionKind, nameProblem } from "../../programs/document";
 import { choice, freshId, h, numberField } from "../../ui";
 
-/** A line of text with a label; what is wrong with it stands beside it, and then nothing is set. */
+/** A line of text with a label; an error is shown beside it, and then nothing is set. */
 export function textField(o: {
   readonly label: string;
   readonly value: () => string;
@@ -38,8 +38,17 @@ export function textField(o: {
 }
 
 /** A field for the name of a part that has others beside it. */
-export function nameField(label: string, value: string, others: () => readonly string[], set: (name: string) => void): HTMLElement {
-  const problem = (text: string): string | null => nameProblem(text, others().filter((name) => name !== value));
+export function nameField(
+  label: string,
+  value: string,
+  others: () => readonly string[],
+  set: (name: string) => void,
+): HTMLElement {
+  const problem = (text: string): string | null =>
+    nameProblem(
+      text,
+      others().filter((name) => name !== value),
+    );
   return textField({ label, value: () => value, set, problem });
 }
 
@@ -58,29 +67,34 @@ export function nameChoice(
 /** A condition: its kind, and its value with the unit if it takes one. */
 export function conditionField(
   label: string,
-  told: () => Condition | null | undefined,
-  set: (told: Condition | null) => void,
+  get: () => Condition | null | undefined,
+  set: (get: Condition | null) => void,
   optional = false,
 ): HTMLElement {
   const options = [
     ...(optional ? [["", "always"] as const] : []),
     ...KINDS.map((known) => [known.kind, known.label] as const),
   ];
-  const held = told();
+  const held = get();
   const kinds = choice<string>({
     label,
     options,
-    value: () => (told() ? kindOf(told()!).kind : ""),
+    value: () => (get() ? kindOf(get()!).kind : ""),
     set: (kind) => set(kind === "" ? null : condition(kind as ConditionKind)),
   });
-  return h("div", { class: "row condition" }, kinds, held && valueOf(held) !== null ? valueField(label, held, told, set) : null);
+  return h(
+    "div",
+    { class: "row condition" },
+    kinds,
+    held && conditionValue(held) !== null ? valueField(label, held, get, set) : null,
+  );
 }
 
 function valueField(
   label: string,
   held: Condition,
-  told: () => Condition | null | undefined,
-  set: (told: Condition) => void,
+  get: () => Condition | null | undefined,
+  set: (get: Condition) => void,
 ): HTMLElement {
   const known = kindOf(held);
   return numberField({
@@ -92,8 +106,8 @@ function valueField(
     most: known.high,
     step: known.unit === "mm" ? 0.05 : known.unit === "" ? 1 : 10,
     value: () => {
-      const now = told();
-      return now ? valueOf(now) : null;
+      const now = get();
+      return now ? conditionValue(now) : null;
     },
     set: (value) => set(condition(known.kind, known.whole ? Math.round(value) : value)),
   });

@@ -1,7 +1,7 @@
 /** What the check says: each finding leads to its place; and how much of a device the program takes. */
 
 import type { ProgramCheck, ProgramFinding, ProgramSize } from "../../net/messages";
-import { choiceAt, type Choice } from "../../programs/path";
+import { type Choice, choiceAt } from "../../programs/path";
 import { h, panel, shown } from "../../ui";
 import type { ProgramBook } from "./book";
 
@@ -11,13 +11,20 @@ const SIZES: Readonly<Record<string, string>> = {
   columns: "columns of a surface",
 };
 
-/** The list of findings; `lead` is told what a finding that was clicked is about. */
-export function findingsPanel(book: ProgramBook, lead: (choice: Choice, finding: ProgramFinding) => void): HTMLElement {
+/** The list of findings; `lead` is called with the subject of a clicked finding. */
+export function findingsPanel(
+  book: ProgramBook,
+  lead: (choice: Choice, finding: ProgramFinding) => void,
+): HTMLElement {
   const found = panel(
     "Check",
     h("p", { class: () => `verdict ${verdictKind(book)}`, role: "status" }, () => verdict(book)),
-    h("div", { class: "findings", role: "list", hidden: () => book.findings().length === 0 }, () => book.findings().map((finding) => row(book, finding, lead))),
-    h("div", { class: "sizes", role: "group", "aria-label": "How much of a device it takes" }, () => sizes(book.check())),
+    h("div", { class: "findings", role: "list", hidden: () => book.findings().length === 0 }, () =>
+      book.findings().map((finding) => row(book, finding, lead)),
+    ),
+    h("div", { class: "sizes", role: "group", "aria-label": "Device resources used" }, () =>
+      sizes(book.check()),
+    ),
   );
   found.classList.add("check");
   return found;
@@ -31,13 +38,20 @@ function verdictKind(book: ProgramBook): string {
 function verdict(book: ProgramBook): string {
   const check = book.check();
   const refused = book.findings().filter((finding) => finding.severity === "refused").length;
-  if (refused) return refused === 1 ? "A device would refuse it, for one reason:" : `A device would refuse it, for ${refused} reasons:`;
+  if (refused)
+    return refused === 1
+      ? "A device would refuse it, for one reason:"
+      : `A device would refuse it, for ${refused} reasons:`;
   if (!check) return "Checking…";
-  const back = check.return_s === null ? "" : `; with the finger off it is back within ${shown(check.return_s)} s`;
+  const back = check.return_s === null ? "" : `; once released it returns within ${shown(check.return_s)} s`;
   return `Accepted${back}.`;
 }
 
-function row(book: ProgramBook, finding: ProgramFinding, lead: (choice: Choice, finding: ProgramFinding) => void): HTMLElement {
+function row(
+  book: ProgramBook,
+  finding: ProgramFinding,
+  lead: (choice: Choice, finding: ProgramFinding) => void,
+): HTMLElement {
   const where = finding.state ? `${finding.state}, ${finding.place}` : finding.place;
   const follow = (): void => lead(choiceOf(book, finding), finding);
   return h(
@@ -71,6 +85,10 @@ function meter(size: ProgramSize): HTMLElement {
     { class: `size${full > 1 ? " over" : ""}` },
     h("span", {}, what),
     h("meter", { min: 0, max: size.most, value: size.taken ?? 0, high: 0.9 * size.most, "aria-label": what }),
-    h("span", { class: "number" }, size.taken === null ? `– of ${size.most}` : `${size.taken} of ${size.most}`),
+    h(
+      "span",
+      { class: "number" },
+      size.taken === null ? `– of ${size.most}` : `${size.taken} of ${size.most}`,
+    ),
   );
 }

@@ -1,13 +1,26 @@
 /** The forces of the chosen state beside the graph: its curves, its points to pull, where it leads on. */
 
-import { Plot, rangeOf, type Range } from "../../draw";
-import { surfaceNamed, type Stroke, type Surface } from "../../programs/document";
+import { Plot, type Range, rangeOf } from "../../draw";
+import { type Stroke, type Surface, surfaceNamed } from "../../programs/document";
 import { usesOfSurface } from "../../programs/edits_parts";
 import { movedColumn } from "../../programs/surface";
-import { button, choice, computed, effect, h, numberField, panel, shown, signal, toggle, toolbar, type Signal } from "../../ui";
+import {
+  button,
+  choice,
+  computed,
+  effect,
+  h,
+  numberField,
+  panel,
+  type Signal,
+  shown,
+  signal,
+  toggle,
+  toolbar,
+} from "../../ui";
 import type { ProgramBook } from "./book";
 import { drawCurves, drawHeat, drawPoints, type ForcePicture } from "./forces_draw";
-import { PointEdits, type Editing } from "./forces_edits";
+import { type Editing, PointEdits } from "./forces_edits";
 import { pullByHand } from "./forces_hand";
 import { surfaceTools } from "./forces_tools";
 
@@ -35,9 +48,15 @@ export class ForcePanel {
     private readonly book: ProgramBook,
     state: Signal<string>,
   ) {
-    this.editing = { state, stroke: signal<Stroke>("press"), row: signal(0), column: signal(0), reach_mm: signal(0) };
+    this.editing = {
+      state,
+      stroke: signal<Stroke>("press"),
+      row: signal(0),
+      column: signal(0),
+      reach_mm: signal(0),
+    };
     this.surface = computed(() => {
-      const held = book.document().states.find((one) => one.name === this.editing.state());
+      const held = book.document().states.find((state) => state.name === this.editing.state());
       return (held && surfaceNamed(book.document(), held[this.editing.stroke()])) ?? null;
     });
     this.edits = new PointEdits(book, this.editing, this.surface);
@@ -59,7 +78,13 @@ export class ForcePanel {
       height_px: 280,
     });
     this.plot.element.classList.add("curves");
-    this.element = panel("Forces of the state", this.controls(), this.picturesElement(), this.values(), surfaceTools(book, this.editing, this.surface));
+    this.element = panel(
+      "Forces of the state",
+      this.controls(),
+      this.picturesElement(),
+      this.values(),
+      surfaceTools(book, this.editing, this.surface),
+    );
     this.element.classList.add("forces");
     pullByHand(this.plot, this.edits, (pulling) => this.frozen.set(pulling ? this.whole() : null));
   }
@@ -77,7 +102,10 @@ export class ForcePanel {
       y: { label: "velocity", unit: "mm/s" },
       whole: () => {
         const speeds = this.surface()?.velocity_mm_s ?? [0];
-        return { x: { low: 0, high: this.book.document().travel_mm }, y: { low: 0, high: Math.max(FASTEST_mm_s, ...speeds) } };
+        return {
+          x: { low: 0, high: this.book.document().travel_mm },
+          y: { low: 0, high: Math.max(FASTEST_mm_s, ...speeds) },
+        };
       },
       still: (brush, view) => {
         const picture = this.picture();
@@ -94,7 +122,7 @@ export class ForcePanel {
 
   private pictured(): ForcePicture | null {
     const document = this.book.document();
-    const state = document.states.find((one) => one.name === this.editing.state());
+    const state = document.states.find((state) => state.name === this.editing.state());
     if (!state) return null;
     return {
       document,
@@ -117,17 +145,32 @@ export class ForcePanel {
 
   private controls(): HTMLElement {
     const { editing, book } = this;
-    const names = computed(() => book.document().states.map((state) => state.name).join("\n"));
-    const strokes = [["press", "press"], ["release", "release"]] as const;
+    const names = computed(() =>
+      book
+        .document()
+        .states.map((state) => state.name)
+        .join("\n"),
+    );
+    const strokes = [
+      ["press", "press"],
+      ["release", "release"],
+    ] as const;
     // text, for a choice that is made anew would lose the keyboard at every edit
-    const speeds = computed(() => (this.surface()?.velocity_mm_s ?? [0]).map((speed) => `${shown(speed)} mm/s`).join("\n"));
-    const rows = (): readonly (readonly [string, string])[] => speeds().split("\n").map((speed, i) => [String(i), speed] as const);
+    const speeds = computed(() =>
+      (this.surface()?.velocity_mm_s ?? [0]).map((speed) => `${shown(speed)} mm/s`).join("\n"),
+    );
+    const rows = (): readonly (readonly [string, string])[] =>
+      speeds()
+        .split("\n")
+        .map((speed, i) => [String(i), speed] as const);
     return toolbar(
       "Which forces",
       h("span", {}, () =>
         choice({
           label: "State",
-          options: names().split("\n").map((name) => [name, name] as const),
+          options: names()
+            .split("\n")
+            .map((name) => [name, name] as const),
           value: () => editing.state(),
           set: (name) => book.choose({ kind: "state", state: name }),
         }),
@@ -136,9 +179,19 @@ export class ForcePanel {
       h("span", {}, () =>
         rows().length < 2
           ? null
-          : choice({ label: "at", options: rows(), value: () => String(editing.row()), set: (row) => editing.row.set(Number(row)) }),
+          : choice({
+              label: "at",
+              options: rows(),
+              value: () => String(editing.row()),
+              set: (row) => editing.row.set(Number(row)),
+            }),
       ),
-      toggle({ label: "Map", value: this.heat, set: (on) => this.heat.set(on), hint: "All velocities at once, as a map" }),
+      toggle({
+        label: "Map",
+        value: this.heat,
+        set: (on) => this.heat.set(on),
+        hint: "All velocities at once, as a map",
+      }),
       button({ label: "Fit", kind: "quiet", act: () => this.fit() }),
       h("span", { class: "muted uses" }, () => this.uses()),
     );
@@ -154,7 +207,7 @@ export class ForcePanel {
     const surface = this.surface();
     if (!surface) return "";
     const count = usesOfSurface(this.book.document(), surface.name).length;
-    return count > 1 ? `“${surface.name}”, felt in ${count} places` : `“${surface.name}”, felt here only`;
+    return count > 1 ? `“${surface.name}”, used in ${count} places` : `“${surface.name}”, used here only`;
   }
 
   private values(): HTMLElement {
@@ -168,7 +221,8 @@ export class ForcePanel {
         digits: 4,
         step: 0.01,
         value: () => this.surface()?.displacement_mm[edits.column] ?? null,
-        set: (x_mm) => edits.change("move a point", (held) => movedColumn(held, edits.column, x_mm), "column"),
+        set: (x_mm) =>
+          edits.change("move a point", (held) => movedColumn(held, edits.column, x_mm), "column"),
       }),
       numberField({
         label: "force",

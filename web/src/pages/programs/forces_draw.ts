@@ -1,9 +1,15 @@
 /** Drawing the forces of a state: curves per velocity, where it leads on, where it vibrates, what was found. */
 
-import { palette, series, type Brush, type View } from "../../draw";
+import { type Brush, palette, series, type View } from "../../draw";
 import type { ProgramFinding } from "../../net/messages";
-import { placeOf_mm, shortly } from "../../programs/condition";
-import { transitionsOf, type ProgramDocument, type State, type Stroke, type Surface } from "../../programs/document";
+import { positionOf_mm, shortly } from "../../programs/condition";
+import {
+  type ProgramDocument,
+  type State,
+  type Stroke,
+  type Surface,
+  transitionsOf,
+} from "../../programs/document";
 import { vibrationsIn } from "../../programs/edits_parts";
 import { forceAt_cN } from "../../programs/surface";
 import { shown } from "../../ui";
@@ -35,14 +41,20 @@ export function drawCurves(brush: Brush, view: View, picture: ForcePicture): voi
 
 function drawZero(brush: Brush, view: View): void {
   const y = view.y.px(0);
-  brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: palette().muted, opacity: 0.6 });
+  brush.line([view.box.left, view.box.left + view.box.width], [y, y], {
+    colour: palette().muted,
+    opacity: 0.6,
+  });
 }
 
 function drawTravel(brush: Brush, view: View, { document }: ForcePicture): void {
   const left = view.x.px(document.travel_mm);
   const width = view.box.left + view.box.width - left;
   if (width <= 0) return;
-  brush.rect({ left, top: view.box.top, width, height: view.box.height }, { colour: palette().muted, opacity: 0.16 });
+  brush.rect(
+    { left, top: view.box.top, width, height: view.box.height },
+    { colour: palette().muted, opacity: 0.16 },
+  );
 }
 
 function drawStroke(brush: Brush, view: View, picture: ForcePicture, stroke: Stroke): void {
@@ -53,18 +65,29 @@ function drawStroke(brush: Brush, view: View, picture: ForcePicture, stroke: Str
     const { colour } = series(stroke === "press" ? 2 * i : 2 * i + 1);
     const places = [view.x.range.low, ...surface.displacement_mm, view.x.range.high];
     const forces = [row[0]!, ...row, row[row.length - 1]!];
-    brush.line(places.map((x_mm) => view.x.px(x_mm)), forces.map((cN) => view.y.px(cN)), {
-      colour,
-      width_px: edited ? 2.5 : 1.4,
-      opacity: edited ? 1 : 0.75,
-      ...(stroke === "release" ? { dash: RELEASE_DASH } : {}),
-    });
+    brush.line(
+      places.map((x_mm) => view.x.px(x_mm)),
+      forces.map((cN) => view.y.px(cN)),
+      {
+        colour,
+        width_px: edited ? 2.5 : 1.4,
+        opacity: edited ? 1 : 0.75,
+        ...(stroke === "release" ? { dash: RELEASE_DASH } : {}),
+      },
+    );
     label(brush, view, surface, stroke, i, colour);
   });
 }
 
 /** Name a curve on itself, at a place of its own, so that colour is not all that tells them apart. */
-function label(brush: Brush, view: View, surface: Surface, stroke: Stroke, row: number, colour: string): void {
+function label(
+  brush: Brush,
+  view: View,
+  surface: Surface,
+  stroke: Stroke,
+  row: number,
+  colour: string,
+): void {
   const count = surface.velocity_mm_s.length;
   const ratio = (stroke === "press" ? 0.3 : 0.55) + (0.3 * row) / Math.max(1, count);
   const x_mm = view.x.range.low + ratio * (view.x.range.high - view.x.range.low);
@@ -78,16 +101,22 @@ function label(brush: Brush, view: View, surface: Surface, stroke: Stroke, row: 
 /** A line at every displacement that leads on, with where to; words of neighbours stand below each other. */
 function drawWays(brush: Brush, view: View, { state }: ForcePicture): void {
   const colour = palette().accent;
-  transitionsOf(state).forEach((way, i) => {
-    const told = [way.when, way.only_if ?? null].find((held) => held && placeOf_mm(held) !== null);
-    const x_mm = told ? placeOf_mm(told) : null;
-    if (!told || x_mm === null) return;
+  transitionsOf(state).forEach((transition, i) => {
+    const threshold = [transition.when, transition.only_if ?? null].find(
+      (held) => held && positionOf_mm(held) !== null,
+    );
+    const x_mm = threshold ? positionOf_mm(threshold) : null;
+    if (!threshold || x_mm === null) return;
     const x = view.x.px(x_mm);
     const below = view.box.top + 10 + 15 * (i % 5);
-    brush.line([x, x], [view.box.top, view.box.top + view.box.height], { colour, dash: [3, 3], opacity: 0.8 });
+    brush.line([x, x], [view.box.top, view.box.top + view.box.height], {
+      colour,
+      dash: [3, 3],
+      opacity: 0.8,
+    });
     const right = x < view.box.left + view.box.width * 0.7;
     const at = { x_px: x + (right ? 5 : -5), y_px: below };
-    const words = `${shortly(told)} → ${way.to}`;
+    const words = `${shortly(threshold)} → ${transition.to}`;
     brush.text(words, at, { colour, size_px: 11, align: right ? "left" : "right", halo: palette().surface });
   });
 }
@@ -99,7 +128,11 @@ function drawVibrations(brush: Brush, view: View, { document, state }: ForcePict
     const x = view.x.px(event.at_mm);
     brush.line([x, x], [bottom, bottom - 26], { colour, width_px: 2 });
     const arrow = { press: "↓", release: "↑", either: "↕" }[event.stroke ?? "press"];
-    brush.text(`♪${arrow}`, { x_px: x + 4, y_px: bottom - 20 }, { colour, size_px: 12, halo: palette().surface });
+    brush.text(
+      `♪${arrow}`,
+      { x_px: x + 4, y_px: bottom - 20 },
+      { colour, size_px: 12, halo: palette().surface },
+    );
   });
 }
 
@@ -110,7 +143,13 @@ function drawFindings(brush: Brush, view: View, { state, findings }: ForcePictur
       const refused = found.severity === "refused";
       const colour = refused ? palette().danger : palette().warning;
       const at = { x_px: view.x.px(found.at_mm!), y_px: view.box.top + view.box.height - 8 };
-      brush.text(refused ? "✕" : "!", at, { colour, size_px: 14, weight: 700, align: "center", halo: palette().surface });
+      brush.text(refused ? "✕" : "!", at, {
+        colour,
+        size_px: 14,
+        weight: 700,
+        align: "center",
+        halo: palette().surface,
+      });
     });
 }
 
@@ -134,17 +173,29 @@ export function drawHeat(brush: Brush, view: View, picture: ForcePicture): void 
   if (!surface) return;
   const strongest_cN = Math.max(1, ...surface.force_cN.map((row) => Math.max(...row.map(Math.abs))));
   const { accent, danger } = palette();
-  const [columns, rows] = [edges(view.box.left, view.box.width, CELLS.x), edges(view.box.top, view.box.height, CELLS.y)];
+  const [columns, rows] = [
+    edges(view.box.left, view.box.width, CELLS.x),
+    edges(view.box.top, view.box.height, CELLS.y),
+  ];
   for (let i = 0; i < CELLS.x; i += 1)
     for (let j = 0; j < CELLS.y; j += 1) {
-      const box = { left: columns[i]!, top: rows[j]!, width: columns[i + 1]! - columns[i]!, height: rows[j + 1]! - rows[j]! };
+      const box = {
+        left: columns[i]!,
+        top: rows[j]!,
+        width: columns[i + 1]! - columns[i]!,
+        height: rows[j + 1]! - rows[j]!,
+      };
       const at = [view.x.value(box.left + box.width / 2), view.y.value(box.top + box.height / 2)] as const;
       const force_cN = forceAt_cN(surface, ...at);
       brush.rect(box, { colour: force_cN < 0 ? danger : accent, opacity: Math.abs(force_cN) / strongest_cN });
     }
   for (const speed of surface.velocity_mm_s) {
     const y = view.y.px(speed);
-    brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: palette().text, dash: [2, 4], opacity: 0.7 });
+    brush.line([view.box.left, view.box.left + view.box.width], [y, y], {
+      colour: palette().text,
+      dash: [2, 4],
+      opacity: 0.7,
+    });
   }
   mapWords(brush, view, `darkest: ${shown(strongest_cN, 0)} cN; dashed: velocities that have a row`);
 }
@@ -156,5 +207,9 @@ function edges(from: number, size: number, count: number): readonly number[] {
 
 function mapWords(brush: Brush, view: View, words: string): void {
   const { text, surface } = palette();
-  brush.text(words, { x_px: view.box.left + 8, y_px: view.box.top + 14 }, { colour: text, halo: surface, size_px: 12 });
+  brush.text(
+    words,
+    { x_px: view.box.left + 8, y_px: view.box.top + 14 },
+    { colour: text, halo: surface, size_px: 12 },
+  );
 }

@@ -1,6 +1,6 @@
 /** What is done to the points of the line of forces that is edited. */
 
-import { surfaceNamed, type Stroke, type Surface } from "../../programs/document";
+import { type Stroke, type Surface, surfaceNamed } from "../../programs/document";
 import { replaceSurface } from "../../programs/edits_parts";
 import { pulledSurface, withColumn, withoutColumn } from "../../programs/surface";
 import type { Signal } from "../../ui";
@@ -54,14 +54,23 @@ export class PointEdits {
   /** Pull the chosen point to a force, its neighbours with it. */
   pull(force_cN: number): void {
     const { row, column, reach_mm } = this;
-    this.change("pull a point", (held) => pulledSurface(held, row, column, force_cN, reach_mm), `pull ${column}`);
+    this.change(
+      "pull a point",
+      (held) => pulledSurface(held, row, column, force_cN, reach_mm),
+      `pull ${column}`,
+    );
   }
 
   /** Add a point on the line, and choose it. */
   add(at_mm: number): void {
     this.change("add a point", (held) => withColumn(held, at_mm));
     const places = this.surface()?.displacement_mm ?? [];
-    this.editing.column.set(Math.max(0, places.findIndex((x_mm) => Math.abs(x_mm - at_mm) < 1e-6)));
+    this.editing.column.set(
+      Math.max(
+        0,
+        places.findIndex((x_mm) => Math.abs(x_mm - at_mm) < 1e-6),
+      ),
+    );
   }
 
   /** Add a point half-way to the next one. */

@@ -10,7 +10,7 @@ import { nearestHandle } from "./forces_points";
 
 const NEAR_px = 22;
 
-/** Let points be pulled on a plot. pulling: told true when a point is taken, false when it is let go. */
+/** Let points be dragged on a plot. pulling: called with true on drag start, with false on release. */
 export function pullByHand(plot: Plot, edits: PointEdits, pulling: (on: boolean) => void): void {
   const { element } = plot;
   element.addEventListener("pointerdown", (event) => {
@@ -29,7 +29,13 @@ export function pullByHand(plot: Plot, edits: PointEdits, pulling: (on: boolean)
   element.addEventListener("dblclick", (event) => edits.add(Number(plot.at(event).x.toFixed(3))));
 }
 
-function pull(plot: Plot, edits: PointEdits, event: PointerEvent, surface: Surface, pulling: (on: boolean) => void): void {
+function pull(
+  plot: Plot,
+  edits: PointEdits,
+  event: PointerEvent,
+  surface: Surface,
+  pulling: (on: boolean) => void,
+): void {
   const { book, row, column, reach_mm } = edits;
   const [begin, first_cN] = [plot.at(event), surface.force_cN[row]![column]!];
   pulling(true);

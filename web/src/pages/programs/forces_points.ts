@@ -5,7 +5,7 @@ import type { Surface } from "../../programs/document";
 
 const MOST = 26;
 
-/** Give the columns that have a handle, first and last included. */
+/** Return the columns that have a handle, first and last included. */
 export function handlesOf(surface: Surface): readonly number[] {
   const count = surface.displacement_mm.length;
   const shown = Math.min(count, MOST);

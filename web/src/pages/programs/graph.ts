@@ -1,12 +1,12 @@
 /** The graph of a program: nodes and arrows to choose, to drag and to draw. */
 
 import { firstCondition } from "../../programs/condition";
-import { transitionsOf } from "../../programs/document";
+import { type ProgramDocument, transitionsOf } from "../../programs/document";
 import { addState, addTransition, removeState, removeTransition } from "../../programs/edits";
-import { centreOf, holds, type Point } from "../../programs/layout/geometry";
-import { graphOf, neighbour, type Graph } from "../../programs/layout/layout";
+import { centreOf, contains, type Point } from "../../programs/geometry";
+import { type Graph, graphOf, neighbour, withMoved } from "../../programs/graph_layout";
 import type { Choice } from "../../programs/path";
-import { computed, effect, h, signal, svg, type Signal } from "../../ui";
+import { computed, effect, h, type Signal, signal, svg } from "../../ui";
 import type { ProgramBook } from "./book";
 import { drawnGraph, keyOf } from "./graph_parts";
 import { GraphView } from "./graph_view";
@@ -31,7 +31,13 @@ const ARROWS: Readonly<Record<string, Point>> = {
 
 /** What the hand does: a press may become a drag of a node, a new arrow, or a move of the view. */
 type Hand =
-  | { readonly kind: "node"; readonly state: string; readonly from: Point; readonly grab: Point; dragging: boolean }
+  | {
+      readonly kind: "node";
+      readonly state: string;
+      readonly from: Point;
+      readonly grab: Point;
+      dragging: boolean;
+    }
   | { readonly kind: "arrow"; readonly state: string }
   | { readonly kind: "view"; readonly client: Point; readonly origin: Point };
 
@@ -48,11 +54,28 @@ export class GraphPanel {
   private hand: Hand | null = null;
 
   constructor(private readonly options: GraphOptions) {
-    this.graph = computed(() => graphOf(options.book.document(), options.moved()));
+    // one computed value, not two: what draws the graph must never see it older than the document
+    let laidOut: { readonly document: ProgramDocument; readonly graph: Graph } | null = null;
+    this.graph = computed(() => {
+      const document = options.book.document();
+      if (laidOut?.document !== document) laidOut = { document, graph: graphOf(document) };
+      return withMoved(laidOut.graph, options.moved());
+    });
     this.scene = svg("g");
-    this.root = svg("svg", { class: "graph", role: "group", "aria-label": "States and the transitions between them" }, this.scene);
+    this.root = svg(
+      "svg",
+      { class: "graph", role: "group", "aria-label": "States and the transitions between them" },
+      this.scene,
+    );
     this.view = new GraphView(this.root, this.graph);
-    this.element = h("div", { class: "graph-frame" }, this.root, h("p", { class: () => `graph-hint${this.drawing() ? "" : " visually-hidden"}`, role: "status" }, () => this.hint()));
+    this.element = h(
+      "div",
+      { class: "graph-frame" },
+      this.root,
+      h("p", { class: () => `graph-hint${this.drawing() ? "" : " visually-hidden"}`, role: "status" }, () =>
+        this.hint(),
+      ),
+    );
     effect(() => this.draw());
     this.listen();
   }
@@ -76,7 +99,7 @@ export class GraphPanel {
   connect(from: string, to: string): void {
     const { book } = this.options;
     book.edit(`add ${from} → ${to}`, (held) => addTransition(held, from, to, firstCondition(held, from)));
-    const state = book.document.peek().states.find((held) => held.name === from);
+    const state = book.document.peek().states.find((state) => state.name === from);
     if (state) book.choose({ kind: "transition", state: from, index: transitionsOf(state).length - 1 });
     this.drawing.set(null);
     this.pointer.set(null);
@@ -92,7 +115,8 @@ export class GraphPanel {
   remove(): void {
     const { book } = this.options;
     const choice = book.choice.peek();
-    if (choice.kind === "state") book.edit(`remove ${choice.state}`, (held) => removeState(held, choice.state));
+    if (choice.kind === "state")
+      book.edit(`remove ${choice.state}`, (held) => removeState(held, choice.state));
     if (choice.kind !== "transition") return;
     book.edit("remove a transition", (held) => removeTransition(held, choice.state, choice.index));
     book.choose({ kind: "state", state: choice.state });
@@ -101,15 +125,19 @@ export class GraphPanel {
 
   private hint(): string {
     const from = this.drawing();
-    return from ? `Where does it lead from “${from}”? Choose a state, or Escape.` : "";
+    return from ? `Where does it lead from “${from}”? Choose a state, or press Escape.` : "";
   }
 
   private draw(): void {
     const { book, live } = this.options;
-    const focused = this.root.contains(document.activeElement) ? document.activeElement?.getAttribute("data-key") : null;
+    const focused = this.root.contains(document.activeElement)
+      ? document.activeElement?.getAttribute("data-key")
+      : null;
     const graph = this.graph();
     const document_ = book.document();
-    this.scene.replaceChildren(...drawnGraph({ graph, document: document_, choice: book.choice, findings: book.findings, live }));
+    this.scene.replaceChildren(
+      ...drawnGraph({ graph, document: document_, choice: book.choice, findings: book.findings, live }),
+    );
     effect(() => this.drawLoose(graph));
     if (focused) this.focus(focused);
   }
@@ -118,22 +146,26 @@ export class GraphPanel {
   private drawLoose(graph: Graph): void {
     const [from, at] = [this.drawing(), this.pointer()];
     this.scene.querySelector(".loose")?.remove();
-    const node = graph.nodes.find((held) => held.state === from);
+    const node = graph.nodes.find((node) => node.state === from);
     if (!node || !at) return;
     const begin = centreOf(node.box);
     this.scene.append(svg("line", { class: "loose", x1: begin.x, y1: begin.y, x2: at.x, y2: at.y }));
   }
 
   private focus(key: string): void {
-    [...this.scene.querySelectorAll<SVGElement>("[data-key]")].find((held) => held.dataset["key"] === key)?.focus();
+    [...this.scene.querySelectorAll<SVGElement>("[data-key]")]
+      .find((held) => held.dataset.key === key)
+      ?.focus();
   }
 
   private move(state: string, to: Point): void {
-    this.options.moved.update((held) => new Map(held).set(state, { x: Math.round(to.x), y: Math.round(to.y) }));
+    this.options.moved.update((held) =>
+      new Map(held).set(state, { x: Math.round(to.x), y: Math.round(to.y) }),
+    );
   }
 
   private stateAt(at: Point): string | null {
-    return this.graph().nodes.find((node) => holds(node.box, at))?.state ?? null;
+    return this.graph().nodes.find((node) => contains(node.box, at))?.state ?? null;
   }
 
   private listen(): void {
@@ -154,10 +186,10 @@ export class GraphPanel {
     if (this.view.pinching) return this.drop();
     const at = this.view.at(event);
     const target = (event.target as Element).closest<SVGElement>("[data-key]");
-    const state = target?.dataset["state"];
-    const node = state === undefined ? undefined : this.graph().nodes.find((held) => held.state === state);
+    const state = target?.dataset.state;
+    const node = state === undefined ? undefined : this.graph().nodes.find((node) => node.state === state);
     this.root.setPointerCapture(event.pointerId);
-    if (target && target.dataset["way"] !== undefined) return this.choose(event, target);
+    if (target && target.dataset.way !== undefined) return this.choose(event, target);
     if (!node || !target) {
       this.hand = { kind: "view", client: { x: event.clientX, y: event.clientY }, origin: this.view.origin };
       return;
@@ -176,8 +208,12 @@ export class GraphPanel {
 
   private choose(event: Event, target: SVGElement): void {
     event.preventDefault();
-    const [state, way] = [target.dataset["state"] ?? "", target.dataset["way"]];
-    this.options.book.choose(way === undefined ? { kind: "state", state } : { kind: "transition", state, index: Number(way) });
+    const [state, transition] = [target.dataset.state ?? "", target.dataset.way];
+    this.options.book.choose(
+      transition === undefined
+        ? { kind: "state", state }
+        : { kind: "transition", state, index: Number(transition) },
+    );
     this.focusChosen();
   }
 
@@ -185,7 +221,8 @@ export class GraphPanel {
     const at = this.view.at(event);
     if (this.drawing.peek()) this.pointer.set(at);
     const hand = this.hand;
-    if (hand?.kind === "view") this.view.moveFrom(hand.origin, event.clientX - hand.client.x, event.clientY - hand.client.y);
+    if (hand?.kind === "view")
+      this.view.moveFrom(hand.origin, event.clientX - hand.client.x, event.clientY - hand.client.y);
     if (hand?.kind !== "node") return;
     if (!hand.dragging && Math.hypot(at.x - hand.from.x, at.y - hand.from.y) > DRAG_px / this.view.zoom) {
       this.view.hold();
@@ -200,10 +237,10 @@ export class GraphPanel {
     if (hand?.kind !== "arrow") return;
     const at = this.view.at(event);
     const to = this.stateAt(at);
-    const node = this.graph().nodes.find((held) => held.state === hand.state);
+    const node = this.graph().nodes.find((node) => node.state === hand.state);
     // let go on the handle itself: the arrow's end is chosen by the next press
     if (to === hand.state && node && at.x > node.box.x + node.box.width - 16) return;
-    if (!to && node && holds(node.box, at, 20)) return;
+    if (!to && node && contains(node.box, at, 20)) return;
     this.connect(hand.state, to ?? this.addState(at));
   }
 
@@ -215,7 +252,7 @@ export class GraphPanel {
 
   private key(event: KeyboardEvent): void {
     const target = (event.target as Element).closest<SVGElement>("[data-key]");
-    const state = target?.dataset["state"];
+    const state = target?.dataset.state;
     if (!target || state === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     const arrow = ARROWS[event.key];
     if (arrow) this.step(state, arrow, event.shiftKey);
@@ -230,14 +267,14 @@ export class GraphPanel {
 
   private enter(event: KeyboardEvent, target: SVGElement, state: string): void {
     const from = this.drawing.peek();
-    if (from && target.dataset["way"] === undefined) {
+    if (from && target.dataset.way === undefined) {
       this.connect(from, state);
       this.focusChosen();
     } else this.choose(event, target);
   }
 
   private step(state: string, arrow: Point, moving: boolean): void {
-    const node = this.graph().nodes.find((held) => held.state === state);
+    const node = this.graph().nodes.find((node) => node.state === state);
     if (moving && node) {
       const at = centreOf(node.box);
       return this.move(state, { x: at.x + arrow.x * STEP_px, y: at.y + arrow.y * STEP_px });

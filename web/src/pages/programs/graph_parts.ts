@@ -2,10 +2,10 @@
 
 import type { ProgramFinding } from "../../net/messages";
 import { transitionInWords } from "../../programs/condition";
-import { transitionsOf, type ProgramDocument, type State } from "../../programs/document";
-import { centreOf, pathOfCubic, type Box } from "../../programs/layout/geometry";
-import type { Graph, GraphEdge, GraphNode } from "../../programs/layout/layout";
-import { pathOf, type Choice } from "../../programs/path";
+import { type ProgramDocument, type State, transitionsOf } from "../../programs/document";
+import { type Box, centreOf, type Point, svgPath } from "../../programs/geometry";
+import type { Graph, GraphEdge, GraphNode } from "../../programs/graph_layout";
+import { type Choice, pathOf } from "../../programs/path";
 import { effect, svg } from "../../ui";
 
 /** Everything that a drawing shows; functions follow signals. */
@@ -17,7 +17,7 @@ export interface Drawn {
   readonly live: () => string | null;
 }
 
-/** Give a name to what can be focused, the same before and after it is drawn again. */
+/** Return a name to what can be focused, the same before and after it is drawn again. */
 export function keyOf(choice: Choice): string {
   if (choice.kind === "state") return `state ${choice.state}`;
   return choice.kind === "transition" ? `way ${choice.index} ${choice.state}` : "";
@@ -40,15 +40,17 @@ function chosen(drawn: Drawn, key: string): boolean {
   return keyOf(drawn.choice()) === key;
 }
 
-/** Tell how bad what was found at a path is: itself or in it. */
+/** How bad what was found at a path is: itself or in it. */
 function flaw(drawn: Drawn, path: string, state: string | null): "refused" | "warning" | "" {
-  const found = drawn.findings().filter((finding) => finding.path === path || (state !== null && finding.state === state));
+  const found = drawn
+    .findings()
+    .filter((finding) => finding.path === path || (state !== null && finding.state === state));
   if (found.some((finding) => finding.severity === "refused")) return "refused";
   return found.length > 0 ? "warning" : "";
 }
 
 function nodeButton(drawn: Drawn, node: GraphNode): SVGElement {
-  const state = drawn.document.states.find((held) => held.name === node.state)!;
+  const state = drawn.document.states.find((state) => state.name === node.state)!;
   const choice: Choice = { kind: "state", state: state.name };
   const [key, path] = [keyOf(choice), pathOf(drawn.document, choice)];
   const { box } = node;
@@ -56,7 +58,13 @@ function nodeButton(drawn: Drawn, node: GraphNode): SVGElement {
   return svg(
     "g",
     {
-      class: () => ["node", start ? "start" : "", drawn.live() === state.name ? "live" : "", flaw(drawn, path, state.name)].join(" "),
+      class: () =>
+        [
+          "node",
+          start ? "start" : "",
+          drawn.live() === state.name ? "live" : "",
+          flaw(drawn, path, state.name),
+        ].join(" "),
       role: "button",
       tabindex: 0,
       "aria-pressed": () => String(chosen(drawn, key)),
@@ -83,13 +91,13 @@ function startMark(box: Box): SVGElement {
 }
 
 function nodeWords(drawn: Drawn, state: State, start: boolean, found: keyof typeof MARKS): string {
-  const ways = transitionsOf(state).length;
+  const transitions = transitionsOf(state).length;
   return [
     // what is seen comes first, so that speech input finds it
     `${short(state.name)} ${notes(state)} ${MARKS[found]}`.trim(),
     `state ${state.name}`,
     start ? "the start" : "",
-    ways === 1 ? "one way out" : `${ways || "no"} ways out`,
+    transitions === 1 ? "1 transition out" : `${transitions || "no"} transitions out`,
     found,
     drawn.live() === state.name ? "the press is here" : "",
   ]
@@ -110,12 +118,12 @@ function short(name: string): string {
 
 function arrow(drawn: Drawn, edge: GraphEdge): SVGElement {
   const key = keyOf({ kind: "transition", state: edge.state, index: edge.index });
-  const [, , before, end] = edge.curve;
+  const [before, end] = edge.points.slice(-2) as [Point, Point];
   const length = Math.hypot(end.x - before.x, end.y - before.y) || 1;
   const [dx, dy] = [(end.x - before.x) / length, (end.y - before.y) / length];
   const back = { x: end.x - dx * HEAD.length, y: end.y - dy * HEAD.length };
   const head = `M${end.x} ${end.y}L${back.x - dy * HEAD.half} ${back.y + dx * HEAD.half}L${back.x + dy * HEAD.half} ${back.y - dx * HEAD.half}Z`;
-  const d = pathOfCubic(edge.curve);
+  const d = svgPath(edge.points);
   return svg(
     "g",
     {
@@ -140,8 +148,8 @@ function leader(edge: GraphEdge): SVGElement {
 function edgeButton(drawn: Drawn, edge: GraphEdge): SVGElement {
   const choice: Choice = { kind: "transition", state: edge.state, index: edge.index };
   const [key, path] = [keyOf(choice), pathOf(drawn.document, choice)];
-  const state = drawn.document.states.find((held) => held.name === edge.state)!;
-  const way = transitionsOf(state)[edge.index]!;
+  const state = drawn.document.states.find((state) => state.name === edge.state)!;
+  const transition = transitionsOf(state)[edge.index]!;
   const { label } = edge;
   const first = label.y + label.height / 2 - ((edge.lines.length - 1) * 17) / 2 + 4;
   return svg(
@@ -154,7 +162,7 @@ function edgeButton(drawn: Drawn, edge: GraphEdge): SVGElement {
       "aria-label": () =>
         [
           edge.lines.join(" "),
-          `from ${edge.state} to ${edge.to} ${transitionInWords(way.when, way.only_if, state.velocity)}`,
+          `from ${edge.state} to ${edge.to} ${transitionInWords(transition.when, transition.only_if, state.velocity)}`,
           flaw(drawn, path, null),
         ]
           .filter(Boolean)

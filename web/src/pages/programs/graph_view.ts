@@ -1,7 +1,7 @@
 /** What of a graph is seen: all of it until a person pans or zooms. */
 
-import type { Point } from "../../programs/layout/geometry";
-import type { Graph } from "../../programs/layout/layout";
+import type { Point } from "../../programs/geometry";
+import type { Graph } from "../../programs/graph_layout";
 import { effect, onCleanup, signal } from "../../ui";
 
 const AIR = 26;
@@ -26,7 +26,10 @@ export class GraphView {
     effect(() => {
       const { width, height } = this.size();
       const { origin, zoom } = this.seen();
-      root.setAttribute("viewBox", [origin.x, origin.y, width / zoom, height / zoom].map((n) => n.toFixed(2)).join(" "));
+      root.setAttribute(
+        "viewBox",
+        [origin.x, origin.y, width / zoom, height / zoom].map((n) => n.toFixed(2)).join(" "),
+      );
     });
   }
 
@@ -44,7 +47,10 @@ export class GraphView {
   at(event: { readonly clientX: number; readonly clientY: number }): Point {
     const frame = this.root.getBoundingClientRect();
     const { origin, zoom } = this.seen();
-    return { x: origin.x + (event.clientX - frame.left) / zoom, y: origin.y + (event.clientY - frame.top) / zoom };
+    return {
+      x: origin.x + (event.clientX - frame.left) / zoom,
+      y: origin.y + (event.clientY - frame.top) / zoom,
+    };
   }
 
   /** See everything, and go on seeing everything. */
@@ -64,7 +70,10 @@ export class GraphView {
     const next = Math.min(4, Math.max(SMALLEST, zoom * factor));
     const at = around ?? { x: origin.x + width / zoom / 2, y: origin.y + height / zoom / 2 };
     const ratio = zoom / next;
-    this.held.set({ zoom: next, origin: { x: at.x + (origin.x - at.x) * ratio, y: at.y + (origin.y - at.y) * ratio } });
+    this.held.set({
+      zoom: next,
+      origin: { x: at.x + (origin.x - at.x) * ratio, y: at.y + (origin.y - at.y) * ratio },
+    });
   }
 
   /** Move what is seen from an origin, by pixels of the screen. */
@@ -98,7 +107,10 @@ export class GraphView {
   /** Two fingers zoom around the place between them, and take it along. */
   private listenForPinch(): void {
     const lift = (event: PointerEvent): void => void this.fingers.delete(event.pointerId);
-    this.root.addEventListener("pointerdown", (event) => event.pointerType === "touch" && this.fingers.set(event.pointerId, event));
+    this.root.addEventListener(
+      "pointerdown",
+      (event) => event.pointerType === "touch" && this.fingers.set(event.pointerId, event),
+    );
     this.root.addEventListener("pointerup", lift);
     this.root.addEventListener("pointercancel", lift);
     this.root.addEventListener("pointermove", (event) => {
@@ -108,7 +120,11 @@ export class GraphView {
       const after = this.pinch();
       if (!before || !after) return;
       this.zoomBy(after.apart / before.apart, this.at(after.middle));
-      this.moveFrom(this.origin, after.middle.clientX - before.middle.clientX, after.middle.clientY - before.middle.clientY);
+      this.moveFrom(
+        this.origin,
+        after.middle.clientX - before.middle.clientX,
+        after.middle.clientY - before.middle.clientY,
+      );
     });
   }
 
@@ -123,6 +139,7 @@ export class GraphView {
   private measure(): void {
     const { clientWidth: width, clientHeight: height } = this.root;
     const now = this.size.peek();
-    if (width > 0 && height > 0 && (now.width !== width || now.height !== height)) this.size.set({ width, height });
+    if (width > 0 && height > 0 && (now.width !== width || now.height !== height))
+      this.size.set({ width, height });
   }
 }

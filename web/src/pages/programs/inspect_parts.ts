@@ -1,6 +1,13 @@
 /** Fields of the program itself, of its surfaces, signals and vibrations. */
 
-import { BOUNDS, type During, type Mode, type ProgramDocument, type Signal, type VibrationEvent } from "../../programs/document";
+import {
+  BOUNDS,
+  type During,
+  type Mode,
+  type ProgramDocument,
+  type Signal,
+  type VibrationEvent,
+} from "../../programs/document";
 import { changeProgram } from "../../programs/edits";
 import * as parts from "../../programs/edits_parts";
 import type { Choice } from "../../programs/path";
@@ -20,8 +27,17 @@ export function programFields(book: ProgramBook): readonly HTMLElement[] {
     book.edit(label, (held) => changeProgram(held, fields), nudge);
   const document = book.document();
   return [
-    nameField("Name", document.name, () => [], (name) => change("rename the program", { name })),
-    textField({ label: "What it does", value: () => book.document().description ?? "", set: (description) => change("description", { description }) }),
+    nameField(
+      "Name",
+      document.name,
+      () => [],
+      (name) => change("rename the program", { name }),
+    ),
+    textField({
+      label: "What it does",
+      value: () => book.document().description ?? "",
+      set: (description) => change("description", { description }),
+    }),
     numberField({
       label: "Travel",
       unit: "mm",
@@ -32,13 +48,28 @@ export function programFields(book: ProgramBook): readonly HTMLElement[] {
       value: () => book.document().travel_mm,
       set: (travel_mm) => change("travel", { travel_mm }, "travel"),
     }),
-    list(book, "Surfaces", document.surfaces.map((held) => [held.name, { kind: "surface", surface: held.name }]), null),
-    list(book, "Signals", (document.signals ?? []).map((held) => [held.name, { kind: "signal", signal: held.name }]), () => addClick(book)),
-    list(book, "Vibrations at displacements", (document.vibrations ?? []).map((held, index) => [told(held), { kind: "vibration", index }]), () => tie(book)),
+    list(
+      book,
+      "Surfaces",
+      document.surfaces.map((held) => [held.name, { kind: "surface", surface: held.name }]),
+      null,
+    ),
+    list(
+      book,
+      "Signals",
+      (document.signals ?? []).map((held) => [held.name, { kind: "signal", signal: held.name }]),
+      () => addClick(book),
+    ),
+    list(
+      book,
+      "Vibrations at displacements",
+      (document.vibrations ?? []).map((held, index) => [eventText(held), { kind: "vibration", index }]),
+      () => tie(book),
+    ),
   ];
 }
 
-function told(event: VibrationEvent): string {
+function eventText(event: VibrationEvent): string {
   return `${event.signal} at ${event.at_mm} mm, ${event.stroke ?? "press"}`;
 }
 
@@ -46,12 +77,25 @@ type Row = readonly [string, Choice];
 
 function list(book: ProgramBook, title: string, rows: readonly Row[], add: (() => void) | null): HTMLElement {
   const items = rows.map(([words, choice_]) =>
-    h("li", {}, h("button", { type: "button", class: "button quiet way", on: { click: () => book.choose(choice_) } }, words)),
+    h(
+      "li",
+      {},
+      h(
+        "button",
+        { type: "button", class: "button quiet way", on: { click: () => book.choose(choice_) } },
+        words,
+      ),
+    ),
   );
   return h(
     "div",
     {},
-    h("div", { class: "row spread" }, h("h3", {}, title), add ? button({ label: `Add to ${title.toLowerCase()}`, glyph: "+", kind: "quiet", act: add }) : null),
+    h(
+      "div",
+      { class: "row spread" },
+      h("h3", {}, title),
+      add ? button({ label: `Add to ${title.toLowerCase()}`, glyph: "+", kind: "quiet", act: add }) : null,
+    ),
     items.length > 0 ? h("ul", { class: "ways" }, items) : h("p", { class: "muted" }, "none"),
   );
 }
@@ -75,21 +119,40 @@ function tie(book: ProgramBook): void {
 /** Name of a surface and who feels it; its forces are drawn. */
 export function surfaceFields(book: ProgramBook, name: string): readonly HTMLElement[] {
   const document = book.document();
-  const surface = document.surfaces.find((held) => held.name === name);
+  const surface = document.surfaces.find((surface) => surface.name === name);
   const uses = parts.usesOfSurface(document, name);
   const rename = (to: string): void => {
     book.edit(`rename ${name}`, (held) => parts.renameSurface(held, name, to));
     book.choose({ kind: "surface", surface: to });
   };
   return [
-    nameField("Name", name, () => book.document().surfaces.map((held) => held.name), rename),
-    h("p", { class: "muted" }, `${surface?.displacement_mm.length ?? 0} points at ${surface?.velocity_mm_s.length ?? 0} velocities`),
-    h("p", {}, uses.length ? `Felt in ${uses.map((use) => `${use.state} (${use.stroke})`).join(", ")}.` : "No state feels it."),
+    nameField("Name", name, () => book.document().surfaces.map((surface) => surface.name), rename),
+    h(
+      "p",
+      { class: "muted" },
+      `${surface?.displacement_mm.length ?? 0} points at ${surface?.velocity_mm_s.length ?? 0} velocities`,
+    ),
+    h(
+      "p",
+      {},
+      uses.length
+        ? `Used in ${uses.map((use) => `${use.state} (${use.stroke})`).join(", ")}.`
+        : "No state uses it.",
+    ),
     h(
       "div",
       { class: "row" },
-      ...uses.slice(0, 1).map((use) => button({ label: "See its forces", act: () => book.choose({ kind: "state", state: use.state }) })),
-      button({ label: "Remove surface", kind: "danger", disabled: uses.length > 0, act: () => book.edit(`remove ${name}`, (held) => parts.removeSurface(held, name)) }),
+      ...uses
+        .slice(0, 1)
+        .map((use) =>
+          button({ label: "See its forces", act: () => book.choose({ kind: "state", state: use.state }) }),
+        ),
+      button({
+        label: "Remove surface",
+        kind: "danger",
+        disabled: uses.length > 0,
+        act: () => book.edit(`remove ${name}`, (held) => parts.removeSurface(held, name)),
+      }),
       back(book),
     ),
   ];
@@ -101,7 +164,8 @@ function back(book: ProgramBook): HTMLElement {
 
 /** A signal: its length and its damped sinusoids. */
 export function signalFields(book: ProgramBook, name: string): readonly HTMLElement[] {
-  const signal = (): Signal => (book.document().signals ?? []).find((held) => held.name === name) ?? CLICK;
+  const signal = (): Signal =>
+    (book.document().signals ?? []).find((signal) => signal.name === name) ?? CLICK;
   const change = (label: string, fields: Partial<Signal>, nudge?: string): void =>
     book.edit(`${label} of ${name}`, (held) => parts.changeSignal(held, name, fields), nudge);
   const rename = (to: string): void => {
@@ -110,7 +174,7 @@ export function signalFields(book: ProgramBook, name: string): readonly HTMLElem
   };
   const modes = signal().modes.map((_, i) => modeFields(i, signal, change));
   return [
-    nameField("Name", name, () => (book.document().signals ?? []).map((held) => held.name), rename),
+    nameField("Name", name, () => (book.document().signals ?? []).map((signal) => signal.name), rename),
     numberField({
       label: "Length",
       unit: "ms",
@@ -123,8 +187,15 @@ export function signalFields(book: ProgramBook, name: string): readonly HTMLElem
     h(
       "div",
       { class: "row" },
-      button({ label: "Add a mode", act: () => change("modes", { modes: [...signal().modes, CLICK.modes[0]!] }) }),
-      button({ label: "Remove signal", kind: "danger", act: () => book.edit(`remove ${name}`, (held) => parts.removeSignal(held, name)) }),
+      button({
+        label: "Add a mode",
+        act: () => change("modes", { modes: [...signal().modes, CLICK.modes[0]!] }),
+      }),
+      button({
+        label: "Remove signal",
+        kind: "danger",
+        act: () => book.edit(`remove ${name}`, (held) => parts.removeSignal(held, name)),
+      }),
       back(book),
     ),
   ];
@@ -137,16 +208,32 @@ const MODE: readonly (readonly [keyof Mode, string, string, number, number, numb
   ["phase_rad", "Phase", "rad", -7, 7, 0.1],
 ];
 
-function modeFields(index: number, signal: () => Signal, change: (label: string, fields: Partial<Signal>, nudge?: string) => void): HTMLElement {
+function modeFields(
+  index: number,
+  signal: () => Signal,
+  change: (label: string, fields: Partial<Signal>, nudge?: string) => void,
+): HTMLElement {
   const set = (fields: Partial<Mode>, nudge: string): void =>
-    change("mode", { modes: signal().modes.map((mode, i) => (i === index ? { ...mode, ...fields } : mode)) }, nudge);
+    change(
+      "mode",
+      { modes: signal().modes.map((mode, i) => (i === index ? { ...mode, ...fields } : mode)) },
+      nudge,
+    );
   const remove = (): void => change("modes", { modes: signal().modes.filter((_, i) => i !== index) });
   return h(
     "fieldset",
     { class: "grid" },
     h("legend", {}, `Mode ${index + 1}`),
     MODE.map(([field, label, unit, least, most, step]) =>
-      numberField({ label, unit, least, most, step, value: () => signal().modes[index]?.[field] ?? 0, set: (value) => set({ [field]: value }, `${index} ${field}`) }),
+      numberField({
+        label,
+        unit,
+        least,
+        most,
+        step,
+        value: () => signal().modes[index]?.[field] ?? 0,
+        set: (value) => set({ [field]: value }, `${index} ${field}`),
+      }),
     ),
     button({ label: "Remove mode", kind: "quiet", disabled: () => signal().modes.length < 2, act: remove }),
   );
@@ -163,28 +250,67 @@ export function vibrationFields(book: ProgramBook, index: number): readonly HTML
   const event = (): VibrationEvent => book.document().vibrations?.[index] ?? { signal: "", at_mm: 0 };
   const change = (fields: Partial<VibrationEvent>, nudge?: string): void =>
     book.edit("vibration", (held) => parts.changeVibration(held, index, fields), nudge);
-  const signals = (book.document().signals ?? []).map((held) => [held.name, held.name] as const);
-  const number = (field: "at_mm" | "slowest_mm_s" | "fastest_mm_s", label: string, unit: string): HTMLElement => {
+  const signals = (book.document().signals ?? []).map((signal) => [signal.name, signal.name] as const);
+  const number = (
+    field: "at_mm" | "slowest_mm_s" | "fastest_mm_s",
+    label: string,
+    unit: string,
+  ): HTMLElement => {
     const [least, most] = BOUNDS[field === "at_mm" ? "at_mm" : "velocity_mm_s"];
-    return numberField({ label, unit, least, most, step: unit === "mm" ? 0.05 : 10, value: () => event()[field] ?? null, set: (value) => change({ [field]: value }, field) });
+    return numberField({
+      label,
+      unit,
+      least,
+      most,
+      step: unit === "mm" ? 0.05 : 10,
+      value: () => event()[field] ?? null,
+      set: (value) => change({ [field]: value }, field),
+    });
   };
   return [
     h(
       "div",
       { class: "grid" },
-      choice({ label: "Signal", options: signals, value: () => event().signal, set: (signal) => change({ signal }) }),
-      number("at_mm", "felt at", "mm"),
-      choice({ label: "in the", options: STROKES, value: () => event().stroke ?? "press", set: (stroke) => change({ stroke }) }),
+      choice({
+        label: "Signal",
+        options: signals,
+        value: () => event().signal,
+        set: (signal) => change({ signal }),
+      }),
+      number("at_mm", "at", "mm"),
+      choice({
+        label: "in the",
+        options: STROKES,
+        value: () => event().stroke ?? "press",
+        set: (stroke) => change({ stroke }),
+      }),
       number("slowest_mm_s", "from", "mm/s"),
       number("fastest_mm_s", "below", "mm/s"),
-      button({ label: "Any velocity", kind: "quiet", act: () => change({ slowest_mm_s: null, fastest_mm_s: null }) }),
+      button({
+        label: "Any velocity",
+        kind: "quiet",
+        act: () => change({ slowest_mm_s: null, fastest_mm_s: null }),
+      }),
     ),
     inStates(book, event, change),
-    h("div", { class: "row" }, button({ label: "Remove vibration", kind: "danger", act: () => book.edit("remove a vibration", (held) => parts.removeVibration(held, index)) }), back(book)),
+    h(
+      "div",
+      { class: "row" },
+      button({
+        label: "Remove vibration",
+        kind: "danger",
+        act: () => book.edit("remove a vibration", (held) => parts.removeVibration(held, index)),
+      }),
+      back(book),
+    ),
   ];
 }
 
-function inStates(book: ProgramBook, event: () => VibrationEvent, change: (fields: Partial<VibrationEvent>) => void): HTMLElement {
+function inStates(
+  book: ProgramBook,
+  event: () => VibrationEvent,
+  change: (fields: Partial<VibrationEvent>) => void,
+): HTMLElement {
   const names = book.document().states.map((state) => state.name);
   const held = (name: string): boolean => !event().states?.length || event().states!.includes(name);
   const set = (name: string, on: boolean): void => {
@@ -192,5 +318,10 @@ function inStates(book: ProgramBook, event: () => VibrationEvent, change: (field
     // none named means all
     change({ states: now.length === names.length || now.length === 0 ? [] : now });
   };
-  return h("fieldset", { class: "row" }, h("legend", {}, "In the states"), names.map((name) => toggle({ label: name, value: () => held(name), set: (on) => set(name, on) })));
+  return h(
+    "fieldset",
+    { class: "row" },
+    h("legend", {}, "In the states"),
+    names.map((name) => toggle({ label: name, value: () => held(name), set: (on) => set(name, on) })),
+  );
 }

@@ -1,11 +1,11 @@
 /** The inspector: exact numbers of what is chosen in the graph. */
 
+import type { Choice } from "../../programs/path";
 import { computed, effect, h, panel, untracked } from "../../ui";
 import type { ProgramBook } from "./book";
 import { programFields, signalFields, surfaceFields, vibrationFields } from "./inspect_parts";
 import { stateFields } from "./inspect_state";
 import { transitionFields } from "./inspect_transition";
-import type { Choice } from "../../programs/path";
 
 const TITLES: Readonly<Record<Choice["kind"], string>> = {
   program: "Program",
@@ -38,7 +38,11 @@ export function inspector(book: ProgramBook, edges: { readonly remove: () => voi
   return found;
 }
 
-function fieldsOf(book: ProgramBook, choice: Choice, edges: { readonly remove: () => void }): readonly HTMLElement[] {
+function fieldsOf(
+  book: ProgramBook,
+  choice: Choice,
+  edges: { readonly remove: () => void },
+): readonly HTMLElement[] {
   switch (choice.kind) {
     case "program":
       return programFields(book);
@@ -64,7 +68,11 @@ function partsOf(book: ProgramBook): string {
       state.name,
       state.repeat_signal ?? null,
       (state.bias_ms ?? 0) > 0,
-      (state.transitions ?? []).map((way) => [way.to, Object.keys(way.when), way.only_if ? Object.keys(way.only_if) : null]),
+      (state.transitions ?? []).map((transition) => [
+        transition.to,
+        Object.keys(transition.when),
+        transition.only_if ? Object.keys(transition.only_if) : null,
+      ]),
     ]),
     document.surfaces.map((surface) => surface.name),
     (document.signals ?? []).map((signal) => [signal.name, signal.modes.length]),

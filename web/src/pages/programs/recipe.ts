@@ -3,7 +3,7 @@
 import { go } from "../../app/route";
 import { call } from "../../net";
 import type { ProgramParameter, ProgramRecipe } from "../../net/messages";
-import { button, choice, computed, effect, h, numberField, signal, tell, type Signal } from "../../ui";
+import { button, choice, computed, effect, h, numberField, type Signal, signal, tell } from "../../ui";
 import { bases } from "./server";
 
 const UNITS: readonly (readonly [string, string])[] = [
@@ -17,14 +17,14 @@ const UNITS: readonly (readonly [string, string])[] = [
 /** How many levels multi-level has unless a person says otherwise. */
 const LEVELS = 3;
 
-/** Give the words and the unit of a parameter's name, whose last part is the unit. */
+/** Return the words and the unit of a parameter's name, whose last part is the unit. */
 export function wordsOf(name: string): { readonly label: string; readonly unit: string } {
   const [ending, unit] = UNITS.find(([held]) => name.endsWith(held)) ?? ["", ""];
   const label = name.slice(0, name.length - ending.length).replaceAll("_", " ");
   return { label: label.charAt(0).toUpperCase() + label.slice(1), unit };
 }
 
-/** Give a step that suits a range. */
+/** Return a step that suits a range. */
 export function stepOf(parameter: ProgramParameter): number {
   if (parameter.whole) return parameter.high > 100 ? 10 : 1;
   return parameter.high - parameter.low > 20 ? 5 : 0.05;
@@ -35,13 +35,18 @@ export function recipeForm(recipe: ProgramRecipe): HTMLElement {
   const base = signal("builtin:mx-red");
   const parameters = signal(recipe.parameters);
   const values = signal<Readonly<Record<string, number>>>({});
-  const levels = computed(() => values()["levels"] ?? LEVELS);
+  const levels = computed(() => values().levels ?? LEVELS);
   effect(() => {
     const asked = { recipe: recipe.name, base: base(), levels: levels() };
-    if (recipe.parameters.length > 0) call("program.ranges", asked).then((found) => parameters.set(found.parameters), tell);
+    if (recipe.parameters.length > 0)
+      call("program.ranges", asked).then((found) => parameters.set(found.parameters), tell);
   });
   const make = async (): Promise<void> => {
-    const made = await call("program.recipe", { recipe: recipe.name, base: base.peek(), parameters: values.peek() });
+    const made = await call("program.recipe", {
+      recipe: recipe.name,
+      base: base.peek(),
+      parameters: values.peek(),
+    });
     const kept = await call("program.keep", { text: made.text });
     go("programs", kept.program);
   };
@@ -50,10 +55,24 @@ export function recipeForm(recipe: ProgramRecipe): HTMLElement {
     { class: "card", "aria-label": `Recipe ${recipe.name}` },
     h("h3", {}, recipe.name),
     h("p", {}, recipe.summary),
-    h("details", {}, h("summary", {}, "What its numbers mean"), h("p", { class: "muted" }, recipe.details)),
-    h("span", {}, () => choice({ label: "Over the button", options: bases(), value: base, set: base.set })),
-    h("div", { class: "grid" }, recipe.parameters.map((first, i) => parameterField(first, () => parameters()[i] ?? first, values))),
-    button({ label: "Make it", kind: "main", hint: `Make ${recipe.name}`, act: () => void make().catch(tell) }),
+    h(
+      "details",
+      {},
+      h("summary", {}, "What the parameters mean"),
+      h("p", { class: "muted" }, recipe.details),
+    ),
+    h("span", {}, () => choice({ label: "Based on", options: bases(), value: base, set: base.set })),
+    h(
+      "div",
+      { class: "grid" },
+      recipe.parameters.map((first, i) => parameterField(first, () => parameters()[i] ?? first, values)),
+    ),
+    button({
+      label: "Create",
+      kind: "main",
+      hint: `Make ${recipe.name}`,
+      act: () => void make().catch(tell),
+    }),
   );
 }
 
@@ -70,7 +89,11 @@ function parameterField(
     digits: first.whole ? 0 : 3,
     step: stepOf(first),
     value: () => values()[first.name] ?? first.default,
-    set: (value) => values.update((held) => ({ ...held, [first.name]: clamp(first.whole ? Math.round(value) : value, now()) })),
+    set: (value) =>
+      values.update((held) => ({
+        ...held,
+        [first.name]: clamp(first.whole ? Math.round(value) : value, now()),
+      })),
   });
   const range = h("span", { class: "muted range" }, () => `${tidy(now().low)} to ${tidy(now().high)}`);
   return h("span", { class: "parameter" }, field, range);

@@ -13,7 +13,7 @@ export const SERVER: ProgramServer = {
 
 const held = signal<ProgramRows | null>(null);
 
-/** Everything there is to begin with; null until it has been told. */
+/** Everything there is to begin with; null until the server has answered. */
 export function rows(): ProgramRows | null {
   return held();
 }

@@ -1,12 +1,12 @@
 /** A finger on the program as it is being edited; the state it is in shows in the graph. */
 
-import { kindOf, valueOf } from "../../programs/condition";
-import { transitionsOf, type ProgramDocument } from "../../programs/document";
+import { conditionValue, kindOf } from "../../programs/condition";
+import { type ProgramDocument, transitionsOf } from "../../programs/document";
 import { button, computed, effect, h, onCleanup, panel, untracked } from "../../ui";
-import { pressStage, type PressStage } from "../press/stage";
+import { type PressStage, pressStage } from "../press/stage";
 import type { ProgramBook } from "./book";
 
-/** Put the program under a simulated finger; call in a scope. `live` is told the state that the press is in. */
+/** Put the program under a simulated finger; call in a scope. `live` is called with the state of the press. */
 export function tryPanel(book: ProgramBook, live: (state: string | null) => void): HTMLElement {
   const host = h("div", {});
   const stage = pressStage(host, { compact: true, extra: (held) => hostEvents(book, held) });
@@ -16,7 +16,11 @@ export function tryPanel(book: ProgramBook, live: (state: string | null) => void
     live((frame && ready?.states[frame.state]) ?? null);
   });
   onCleanup(() => live(null));
-  const found = panel("Press it", h("p", { class: "muted", role: "status" }, () => standing(book)), host);
+  const found = panel(
+    "Press it",
+    h("p", { class: "muted", role: "status" }, () => standing(book)),
+    host,
+  );
   found.classList.add("try");
   return found;
 }
@@ -24,8 +28,8 @@ export function tryPanel(book: ProgramBook, live: (state: string | null) => void
 function standing(book: ProgramBook): string {
   const refused = book.findings().some((finding) => finding.severity === "refused");
   return refused
-    ? "A device would refuse it as it is now; under the finger is what it was before."
-    : "Every edit is under the finger as soon as it is checked.";
+    ? "A device would refuse this version; you are pressing the last accepted one."
+    : "You press every edit as soon as it is checked.";
 }
 
 /** What was checked and accepted goes under the finger, saved or not. */
@@ -45,15 +49,22 @@ function hostEvents(book: ProgramBook, stage: PressStage): HTMLElement {
     numbers()
       .split(" ")
       .filter(Boolean)
-      .map((number) => button({ label: `Tell event ${number}`, act: () => stage.session.hostEvent(Number(number)) })),
+      .map((number) =>
+        button({ label: `Send event ${number}`, act: () => stage.session.hostEvent(Number(number)) }),
+      ),
   );
 }
 
-/** Give the host events that a program waits for, rising. */
+/** Return the host events that a program waits for, rising. */
 export function eventsOf(document: ProgramDocument): readonly number[] {
-  const told = document.states.flatMap((state) =>
-    transitionsOf(state).flatMap((way) => [way.when, ...(way.only_if ? [way.only_if] : [])]),
+  const conditions = document.states.flatMap((state) =>
+    transitionsOf(state).flatMap((transition) => [
+      transition.when,
+      ...(transition.only_if ? [transition.only_if] : []),
+    ]),
   );
-  const numbers = told.filter((held) => kindOf(held).kind === "host_event").map((held) => valueOf(held) ?? 0);
+  const numbers = conditions
+    .filter((condition) => kindOf(condition).kind === "host_event")
+    .map((held) => conditionValue(held) ?? 0);
   return [...new Set(numbers)].sort((a, b) => a - b);
 }

@@ -15,19 +15,39 @@ export function studyList(host: HTMLElement): void {
   refresh();
   host.append(
     h("h1", { class: "visually-hidden" }, "Studies"),
-    h("div", { class: "sts-start" }, newStudy(), h("section", { class: "panel", "aria-label": "Studies" }, h("h2", {}, "Studies"), () => listed(rows()))),
+    h(
+      "div",
+      { class: "sts-start" },
+      newStudy(),
+      h("section", { class: "panel", "aria-label": "Studies" }, h("h2", {}, "Studies"), () => listed(rows())),
+    ),
   );
 }
 
 function listed(rows: readonly StudiesRow[] | null): HTMLElement {
   if (!rows) return h("p", { class: "muted" }, "…");
-  if (!rows.length) return empty("No studies yet", "Begin with one that is nearly yours: every field of it can be changed until it is frozen.");
+  if (!rows.length)
+    return empty(
+      "No studies yet",
+      "Start from the closest template: you can change every field until you freeze it.",
+    );
   return h("ul", { class: "sts-list" }, rows.map(item));
 }
 
 function item(row: StudiesRow): HTMLElement {
-  const said = row.problem ? h("span", { class: "wrong" }, row.problem) : h("span", { class: "muted" }, `${row.kind}, ${row.people} of ${row.planned} people`);
-  return h("li", {}, h("a", { class: "sts-item", href: address("studies", row.name) }, h("span", { class: "row spread" }, h("strong", {}, row.title || row.name), stateTag(row.state)), said));
+  const said = row.problem
+    ? h("span", { class: "wrong" }, row.problem)
+    : h("span", { class: "muted" }, `${row.kind}, ${row.people} of ${row.planned} people`);
+  return h(
+    "li",
+    {},
+    h(
+      "a",
+      { class: "sts-item", href: address("studies", row.name) },
+      h("span", { class: "row spread" }, h("strong", {}, row.title || row.name), stateTag(row.state)),
+      said,
+    ),
+  );
 }
 
 export function stateTag(state: StudiesRow["state"]): HTMLElement {
@@ -45,7 +65,14 @@ function newStudy(): HTMLElement {
     offers.set(found);
   };
   call("studies.offers", {}).then((found) => !gone && offered(found.templates), tell);
-  const name = h("input", { id: "sts-name", type: "text", maxlength: 40, autocomplete: "off", spellcheck: "false", placeholder: "my-study" });
+  const name = h("input", {
+    id: "sts-name",
+    type: "text",
+    maxlength: 40,
+    autocomplete: "off",
+    spellcheck: "false",
+    placeholder: "my-study",
+  });
   const declare = async () => {
     busy.set(true);
     try {
@@ -65,9 +92,29 @@ function newStudy(): HTMLElement {
     "form",
     { class: "panel sts-new", "aria-label": "New study", on: { submit } },
     h("h2", {}, "New study"),
-    h("p", { class: "muted" }, "Two hidden renderings, a button to compare them with, and people who do not know which is which. Nor do you, until the study is unsealed."),
+    h(
+      "p",
+      { class: "muted" },
+      "Two blinded renderings, a reference button, and participants who do not know which is which. Nor do you, until you unseal the study.",
+    ),
     h("span", { class: "field" }, h("label", { for: "sts-name" }, "Name"), name),
-    () => (offers().length ? choice({ label: "Kind", options: offers().map((one) => [one.name, `${one.name}: ${one.told}`] as const), value: template, set: template.set }) : null),
-    h("div", { class: "row" }, h("button", { type: "submit", class: "button main", disabled: () => busy() || !offers().length }, "Declare")),
+    () =>
+      offers().length
+        ? choice({
+            label: "Kind",
+            options: offers().map((offer) => [offer.name, `${offer.name}: ${offer.told}`] as const),
+            value: template,
+            set: template.set,
+          })
+        : null,
+    h(
+      "div",
+      { class: "row" },
+      h(
+        "button",
+        { type: "submit", class: "button main", disabled: () => busy() || !offers().length },
+        "Create",
+      ),
+    ),
   );
 }

@@ -30,20 +30,35 @@ export function studyPage(host: HTMLElement, study: string): void {
   });
   const there = computed(() => standing() !== "");
   const which = (): Tab => (standing().split(" ")[1] ?? "plan") as Tab;
-  const body = (which: Tab) => (which === "plan" ? planView(store, () => set("people")) : which === "people" ? peopleView(store, () => set("plan")) : sealView(store));
+  const body = (which: Tab) =>
+    which === "plan"
+      ? planView(store, () => set("people"))
+      : which === "people"
+        ? peopleView(store, () => set("plan"))
+        : sealView(store);
   // a view stands as long as its tab and the study's state do: what is typed in it outlives the news
   const view = () => {
     const tab = which();
     return untracked(() => body(tab));
   };
   host.append(
-    h("div", { class: "sts-page" }, () => (there() ? [heading(store), tabs({ label: "Study", tabs: TABS, value: which, set }), h("div", { class: "sts-page", role: "tabpanel", "aria-label": "Study" }, view)] : waiting(store))),
+    h("div", { class: "sts-page" }, () =>
+      there()
+        ? [
+            heading(store),
+            tabs({ label: "Study", tabs: TABS, value: which, set }),
+            h("div", { class: "sts-page", role: "tabpanel", "aria-label": "Study" }, view),
+          ]
+        : waiting(store),
+    ),
   );
 }
 
 function waiting(store: StudyStore): HTMLElement {
   const wrong = store.wrong();
-  return wrong ? empty("This study cannot be shown", wrong, h("a", { href: address("studies") }, "All studies")) : h("p", { class: "muted" }, "…");
+  return wrong
+    ? empty("This study cannot be shown", wrong, h("a", { href: address("studies") }, "All studies"))
+    : h("p", { class: "muted" }, "…");
 }
 
 function heading(store: StudyStore): HTMLElement {
@@ -51,7 +66,17 @@ function heading(store: StudyStore): HTMLElement {
   return h(
     "div",
     { class: "row spread" },
-    h("div", { class: "row" }, h("h1", {}, () => row()?.title || store.study), () => stateTag(row()?.state ?? "draft"), h("span", { class: "muted" }, () => `${row()?.kind ?? ""}, ${row()?.people ?? 0} of ${row()?.planned ?? 0} people`)),
+    h(
+      "div",
+      { class: "row" },
+      h("h1", {}, () => row()?.title || store.study),
+      () => stateTag(row()?.state ?? "draft"),
+      h(
+        "span",
+        { class: "muted" },
+        () => `${row()?.kind ?? ""}, ${row()?.people ?? 0} of ${row()?.planned ?? 0} people`,
+      ),
+    ),
     h("a", { href: address("studies") }, "All studies"),
   );
 }

@@ -1,43 +1,63 @@
 /** Fingerprint, checks, and the act that tells what the labels hid; then the report. */
 
-import { call } from "../../net";
 import { download } from "../../draw";
-import { button, empty, h, signal, tell, type Child } from "../../ui";
+import { call } from "../../net";
+import { button, type Child, empty, h, signal, tell } from "../../ui";
 import { secret } from "./plan";
 import type { StudyStore } from "./store";
 
 export function sealView(store: StudyStore): HTMLElement {
   const state = store.detail.peek()?.row.state ?? "draft";
-  if (state === "draft") return empty("Not frozen yet", "There is nothing to check or to open before a study is frozen.");
-  return h("div", { class: "sts-two" }, h("div", { class: "sts-page" }, fingerprint(store), history(store)), h("div", { class: "sts-page" }, state === "unsealed" ? results(store) : null, unsealing(store)));
+  if (state === "draft") return empty("Not frozen yet", "Freeze the study first.");
+  return h(
+    "div",
+    { class: "sts-two" },
+    h("div", { class: "sts-page" }, fingerprint(store), history(store)),
+    h("div", { class: "sts-page" }, state === "unsealed" ? results(store) : null, unsealing(store)),
+  );
 }
 
 function fingerprint(store: StudyStore): HTMLElement {
   const found = signal<readonly string[] | null>(null);
-  const verify = () => void call("studies.verify", { study: store.study }).then((told) => found.set(told.problems), tell);
+  const verify = () =>
+    void call("studies.verify", { study: store.study }).then((answer) => found.set(answer.problems), tell);
   return h(
     "section",
     { class: "panel", "aria-label": "Fingerprint" },
     h("h2", {}, "Fingerprint"),
     h("p", { class: "sts-print", "data-fingerprint": "" }, () => store.detail()?.fingerprint ?? ""),
-    h("p", { class: "muted" }, () => `Frozen ${store.detail()?.frozen ?? ""}. Write it into the preregistration: another plan has another one.`),
-    h("div", { class: "row" }, button({ label: "Verify", act: verify, hint: "Look for anything that was changed since" })),
+    h(
+      "p",
+      { class: "muted" },
+      () => `Frozen ${store.detail()?.frozen ?? ""}. Put it in the preregistration: it identifies this plan.`,
+    ),
+    h("div", { class: "row" }, button({ label: "Verify", act: verify, hint: "Check for changes since" })),
     h("div", { role: "status" }, () => verified(found())),
   );
 }
 
 function verified(problems: readonly string[] | null): Child {
   if (!problems) return null;
-  if (!problems.length) return h("p", { class: "sts-good" }, "Everything is as it was written.");
-  return h("ul", { class: "sts-problems" }, problems.map((line) => h("li", {}, line)));
+  if (!problems.length) return h("p", { class: "sts-good" }, "Nothing has changed.");
+  return h(
+    "ul",
+    { class: "sts-problems" },
+    problems.map((line) => h("li", {}, line)),
+  );
 }
 
 function history(store: StudyStore): HTMLElement {
-  return h("section", { class: "panel", "aria-label": "Record" }, h("h2", {}, "Record"), () => h("ol", { class: "sts-history" }, (store.detail()?.history ?? []).map((line) => h("li", {}, line))));
+  return h("section", { class: "panel", "aria-label": "Record" }, h("h2", {}, "Record"), () =>
+    h(
+      "ol",
+      { class: "sts-history" },
+      (store.detail()?.history ?? []).map((line) => h("li", {}, line)),
+    ),
+  );
 }
 
 function unsealing(store: StudyStore): HTMLElement {
-  const pass = secret("sts-open", "Passphrase of the keeper");
+  const pass = secret("sts-open", "Passphrase of the key holder");
   const who = textField("sts-who", "Who unseals");
   const why = textField("sts-why", "Why now");
   const [busy, said] = [signal(false), signal("")];
@@ -46,8 +66,13 @@ function unsealing(store: StudyStore): HTMLElement {
     event.preventDefault();
     busy.set(true);
     try {
-      const found = await call("studies.unseal", { study: store.study, passphrase: pass.input.value, who: who.input.value.trim(), why: why.input.value.trim() });
-      said.set(`${found.rows} trials, ${found.excluded} of them excluded by rule, lie in ${found.folder}.`);
+      const found = await call("studies.unseal", {
+        study: store.study,
+        passphrase: pass.input.value,
+        who: who.input.value.trim(),
+        why: why.input.value.trim(),
+      });
+      said.set(`${found.rows} trials, ${found.excluded} of them excluded by rule, are in ${found.folder}.`);
       await store.refresh();
     } catch (error) {
       tell(error);
@@ -59,9 +84,21 @@ function unsealing(store: StudyStore): HTMLElement {
     "form",
     { class: "panel", "aria-label": "Unseal", on: { submit: (event) => void submit(event) } },
     h("h2", {}, again ? "Unseal again" : "Unseal"),
-    h("p", { class: "muted" }, again ? "What people answered since is opened too; this is recorded as well." : "Only when the last person is done: nobody can take part afterwards. Who did it, and why, is recorded for good."),
+    h(
+      "p",
+      { class: "muted" },
+      again
+        ? "Answers given since are opened too; this is recorded as well."
+        : "Only after the last participant: nobody can take part afterwards. Who unsealed it, and why, is recorded permanently.",
+    ),
     h("div", { class: "sts-fields" }, who.element, why.element, pass.element),
-    h("div", { class: "row" }, h("button", { type: "submit", class: "button", disabled: busy }, () => (busy() ? "Opening …" : "Unseal for good"))),
+    h(
+      "div",
+      { class: "row" },
+      h("button", { type: "submit", class: "button", disabled: busy }, () =>
+        busy() ? "Opening …" : "Unseal permanently",
+      ),
+    ),
     h("p", { role: "status" }, said),
   );
 }
@@ -79,10 +116,28 @@ function results(store: StudyStore): HTMLElement {
       busy.set(false);
     }
   };
-  return h("section", { class: "panel", "aria-label": "Results" }, h("h2", {}, "Results"), h("p", { class: "muted" }, "The study is open. Answers and code book lie in its folder as CSV and JSON, for R, JASP or pandas."), h("div", { class: "row" }, button({ label: "Save the report", kind: "main", act: () => void report(), disabled: busy }), h("span", { class: "muted" }, () => (busy() ? "The report is being written …" : ""))));
+  return h(
+    "section",
+    { class: "panel", "aria-label": "Results" },
+    h("h2", {}, "Results"),
+    h(
+      "p",
+      { class: "muted" },
+      "The study is open. Its folder holds the answers and the code book as CSV and JSON, for R, JASP or pandas.",
+    ),
+    h(
+      "div",
+      { class: "row" },
+      button({ label: "Save the report", kind: "main", act: () => void report(), disabled: busy }),
+      h("span", { class: "muted" }, () => (busy() ? "Writing the report …" : "")),
+    ),
+  );
 }
 
-function textField(id: string, label: string): { readonly element: HTMLElement; readonly input: HTMLInputElement } {
+function textField(
+  id: string,
+  label: string,
+): { readonly element: HTMLElement; readonly input: HTMLInputElement } {
   const input = h("input", { id, type: "text", autocomplete: "off", maxlength: 300 });
   return { element: h("span", { class: "field" }, h("label", { for: id }, label), input), input };
 }

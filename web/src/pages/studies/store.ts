@@ -1,7 +1,7 @@
 /** One study as the operator may know it, followed while the page is open. */
 
 import { Followed } from "../../app/followed";
-import { call, live, type LiveChannel } from "../../net";
+import { call, type LiveChannel, live } from "../../net";
 import type { StudiesDetail } from "../../net/messages";
 import { onCleanup, tell } from "../../ui";
 
@@ -28,7 +28,10 @@ export class StudyStore extends Followed<StudiesDetail> {
 export function watchStudies(changed: (study: string | null) => void): void {
   let channel: LiveChannel<"studies"> | null = null;
   const watch = () => void channel?.send({ type: "watch" });
-  channel = live().channel("studies", { opened: watch, told: (news) => changed(news.type === "changed" ? news.study : null) });
+  channel = live().channel("studies", {
+    opened: watch,
+    onMessage: (news) => changed(news.type === "changed" ? news.study : null),
+  });
   watch();
   onCleanup(() => channel.close());
 }

@@ -1,7 +1,7 @@
 /** What is being answered in one trial: free to change until it is sent. */
 
 import type { StudyTask } from "../../net/messages";
-import { signal, type Signal } from "../../ui";
+import { type Signal, signal } from "../../ui";
 
 export const EQUAL = "equal";
 /** A scale of more points is a slider. */
@@ -23,8 +23,9 @@ export class Draft {
   /** Rate what is under the finger on the first scale that lacks it, else on the last. False if it is not rated so. */
   rateFelt(label: string, points: number): boolean {
     if (!this.task.rated.includes(label)) return false;
-    const scales = this.task.scales.filter((one) => one.points <= MOST_BUTTONS);
-    const scale = scales.find((one) => this.ratings.peek()[one.name]?.[label] === undefined) ?? scales.at(-1);
+    const scales = this.task.scales.filter((scale) => scale.points <= MOST_BUTTONS);
+    const scale =
+      scales.find((scale) => this.ratings.peek()[scale.name]?.[label] === undefined) ?? scales.at(-1);
     if (!scale || points < 1 || points > scale.points) return false;
     this.rate(scale.name, label, points);
     return true;
@@ -50,7 +51,9 @@ export class Draft {
   complete(): boolean {
     const { task } = this;
     const chosen = !task.choices.length || this.choice() !== "";
-    const rated = task.scales.every((scale) => task.rated.every((label) => this.ratings()[scale.name]?.[label] !== undefined));
+    const rated = task.scales.every((scale) =>
+      task.rated.every((label) => this.ratings()[scale.name]?.[label] !== undefined),
+    );
     return chosen && rated && !this.unfelt().length;
   }
 }

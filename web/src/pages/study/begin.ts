@@ -13,16 +13,48 @@ export function beginScreen(session: StudySession): HTMLElement {
     "section",
     { class: "study-sheet", "aria-labelledby": "study-title" },
     h("h1", { id: "study-title" }, about?.titles[language] ?? ""),
-    about && about.languages.length > 1 ? choice({ label: say("language"), options: about.languages.map((one) => [one, languageName(one)] as const), value: session.language, set: session.language.set }) : null,
+    about && about.languages.length > 1
+      ? choice({
+          label: say("language"),
+          options: about.languages.map((language) => [language, languageName(language)] as const),
+          value: session.language,
+          set: session.language.set,
+        })
+      : null,
     about?.seat ? null : h("p", { class: "muted" }, say("noSeat")),
-    () => (carded() ? cardForm(session) : h("div", { class: "row" }, button({ label: say("begin"), kind: "main", act: () => session.sit(), disabled: session.waiting }), button({ label: say("haveCard"), kind: "quiet", act: () => carded.set(true) }))),
+    () =>
+      carded()
+        ? cardForm(session)
+        : h(
+            "div",
+            { class: "row" },
+            button({
+              label: say("begin"),
+              kind: "main",
+              act: () => session.sit(),
+              disabled: session.waiting,
+            }),
+            button({ label: say("haveCard"), kind: "quiet", act: () => carded.set(true) }),
+          ),
   );
 }
 
 function cardForm(session: StudySession): HTMLElement {
   const say = (key: Parameters<typeof word>[1]) => word(session.language.peek(), key);
-  const person = h("input", { id: "study-person", type: "text", maxlength: 20, autocomplete: "off", spellcheck: "false" });
-  const code = h("input", { id: "study-code", type: "text", maxlength: 40, autocomplete: "off", spellcheck: "false" });
+  const person = h("input", {
+    id: "study-person",
+    type: "text",
+    maxlength: 20,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
+  const code = h("input", {
+    id: "study-code",
+    type: "text",
+    maxlength: 40,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
   const submit = (event: Event) => {
     event.preventDefault();
     session.resume(person.value.trim(), code.value.trim());

@@ -10,12 +10,14 @@ export interface Card {
 
 const holderKey = (study: string, seat: string) => `fdvv-holder:${study}:${seat}`;
 
-/** The word by which this tab alone holds a seat: who else sees the link cannot sit down on it. */
+/** The secret by which only this tab uses an invitation: others who see the link cannot use it. */
 export function holder(study: string, seat: string): string {
   const known = sessionStorage.getItem(holderKey(study, seat));
   if (known) return known;
   // randomUUID is only there where a page came encrypted or from this machine
-  const drawn = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  const drawn = [...crypto.getRandomValues(new Uint8Array(16))]
+    .map((byte) => byte.toString(16).padStart(2, "0"))
+    .join("");
   sessionStorage.setItem(holderKey(study, seat), drawn);
   return drawn;
 }

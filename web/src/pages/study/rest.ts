@@ -24,11 +24,27 @@ export function breakScreen(session: StudySession): HTMLElement {
     { class: "study-sheet study-break", "aria-labelledby": "study-title" },
     h("h1", { id: "study-title" }, word(language, "breakTitle")),
     h("p", {}, word(language, "breakText")),
-    h("p", { class: "study-clock", role: "timer" }, () => (left_s() > 0 ? word(language, "breakLeft", { time: clock(left_s()) }) : word(language, "breakOver"))),
-    h("div", { class: "row" }, button({ label: word(language, "goOn"), kind: "main", act: () => session.rested(), disabled: () => left_s() > 0 || session.waiting() })),
+    h("p", { class: "study-clock", role: "timer" }, () =>
+      left_s() > 0 ? word(language, "breakLeft", { time: clock(left_s()) }) : word(language, "breakOver"),
+    ),
+    h(
+      "div",
+      { class: "row" },
+      button({
+        label: word(language, "goOn"),
+        kind: "main",
+        act: () => session.rested(),
+        disabled: () => left_s() > 0 || session.waiting(),
+      }),
+    ),
   );
 }
 
 export function endScreen(title: string, text: string): HTMLElement {
-  return h("section", { class: "study-sheet", "aria-labelledby": "study-title" }, h("h1", { id: "study-title" }, title), h("p", {}, text));
+  return h(
+    "section",
+    { class: "study-sheet", "aria-labelledby": "study-title" },
+    h("h1", { id: "study-title" }, title),
+    h("p", {}, text),
+  );
 }

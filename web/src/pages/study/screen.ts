@@ -1,26 +1,40 @@
 /** Which screen is shown, and what lies over it while nothing can be answered. */
 
-import { button, computed, h, signal, type Child } from "../../ui";
+import { button, type Child, computed, h, signal } from "../../ui";
 import { beginScreen } from "./begin";
 import { formScreen } from "./form";
 import { breakScreen, endScreen } from "./rest";
 import type { StudySession } from "./session";
 import { trialScreen } from "./trial";
-import { word, type Word } from "./words";
+import { type Word, word } from "./words";
 
 export function studyScreen(session: StudySession): Child {
   const say = (key: Word) => () => word(session.language(), key);
   return [
     h("div", { class: "study-top" }, () => top(session)),
     h("div", { class: "study-main" }, shownScreen(session)),
-    h("p", { class: "study-reason wrong", role: "alert" }, () => (session.standing() === "stopped" ? "" : session.reason())),
-    h("div", { class: "study-veil", role: "alert", hidden: () => !session.lost() && !session.paused() }, h("p", {}, () => (session.lost() ? say("lost")() : say("paused")()))),
+    h("p", { class: "study-reason wrong", role: "alert" }, () =>
+      session.standing() === "stopped" ? "" : session.reason(),
+    ),
+    h(
+      "div",
+      { class: "study-veil", role: "alert", hidden: () => !session.lost() && !session.paused() },
+      h("p", {}, () => (session.lost() ? say("lost")() : say("paused")())),
+    ),
   ];
 }
 
 /** Anew for every step, not for every word in it. */
 function shownScreen(session: StudySession): Child {
-  const key = computed(() => [session.standing(), session.language(), session.draft()?.task.number, session.step()?.kind, session.step()?.form?.name].join("|"));
+  const key = computed(() =>
+    [
+      session.standing(),
+      session.language(),
+      session.draft()?.task.number,
+      session.step()?.kind,
+      session.step()?.form?.name,
+    ].join("|"),
+  );
   return () => {
     key();
     return screenOf(session);
@@ -39,7 +53,9 @@ function screenOf(session: StudySession): Child {
   const draft = session.draft.peek();
   if (draft) return trialScreen(session, draft);
   if (step.kind === "break") return breakScreen(session);
-  return step.kind === "done" ? endScreen(word(language, "doneTitle"), word(language, "doneText")) : endScreen(word(language, "goneTitle"), word(language, "goneText"));
+  return step.kind === "done"
+    ? endScreen(word(language, "doneTitle"), word(language, "doneText"))
+    : endScreen(word(language, "goneTitle"), word(language, "goneText"));
 }
 
 function cardScreen(session: StudySession): HTMLElement {
@@ -53,10 +69,19 @@ function cardScreen(session: StudySession): HTMLElement {
     h(
       "dl",
       { class: "study-card" },
-      h("div", {}, h("dt", {}, word(language, "person")), h("dd", { "data-card": "person" }, card?.person ?? "")),
+      h(
+        "div",
+        {},
+        h("dt", {}, word(language, "person")),
+        h("dd", { "data-card": "person" }, card?.person ?? ""),
+      ),
       h("div", {}, h("dt", {}, word(language, "code")), h("dd", { "data-card": "code" }, card?.code ?? "")),
     ),
-    h("div", { class: "row" }, button({ label: word(language, "cardNoted"), kind: "main", act: () => session.noted() })),
+    h(
+      "div",
+      { class: "row" },
+      button({ label: word(language, "cardNoted"), kind: "main", act: () => session.noted() }),
+    ),
   );
 }
 
@@ -67,8 +92,18 @@ function top(session: StudySession): Child {
   const language = session.language();
   const over = step.kind === "done" || step.kind === "declined" || step.kind === "withdrawn";
   return [
-    h("progress", { class: "study-progress", max: 1, value: step.progress_ratio, "aria-label": progressText(session) }),
-    h("div", { class: "row spread" }, h("strong", { class: "study-at", "aria-live": "polite" }, progressText(session)), h("span", { class: "row" }, fullScreen(language), over ? null : leaving(session))),
+    h("progress", {
+      class: "study-progress",
+      max: 1,
+      value: step.progress_ratio,
+      "aria-label": progressText(session),
+    }),
+    h(
+      "div",
+      { class: "row spread" },
+      h("strong", { class: "study-at", "aria-live": "polite" }, progressText(session)),
+      h("span", { class: "row" }, fullScreen(language), over ? null : leaving(session)),
+    ),
   ];
 }
 
@@ -82,7 +117,11 @@ function progressText(session: StudySession): string {
 
 function fullScreen(language: string): HTMLElement | null {
   if (!document.fullscreenEnabled || document.fullscreenElement) return null;
-  return button({ label: word(language, "fullScreen"), kind: "quiet", act: () => void document.documentElement.requestFullscreen() });
+  return button({
+    label: word(language, "fullScreen"),
+    kind: "quiet",
+    act: () => void document.documentElement.requestFullscreen(),
+  });
 }
 
 function leaving(session: StudySession): HTMLElement {
@@ -101,8 +140,19 @@ function leaving(session: StudySession): HTMLElement {
     h(
       "div",
       { class: "study-veil ask", role: "alertdialog", "aria-label": say("leave") },
-      h("div", { class: "study-sheet" }, h("p", {}, say("leaveSure")), h("div", { class: "row" }, button({ label: say("leaveNo"), kind: "main", act: () => sure.set(false) }), button({ label: say("leaveYes"), kind: "danger", act: yes }))),
+      h(
+        "div",
+        { class: "study-sheet" },
+        h("p", {}, say("leaveSure")),
+        h(
+          "div",
+          { class: "row" },
+          button({ label: say("leaveNo"), kind: "main", act: () => sure.set(false) }),
+          button({ label: say("leaveYes"), kind: "danger", act: yes }),
+        ),
+      ),
     );
-  return h("span", {}, button({ label: say("leave"), kind: "quiet", act: open }), () => (sure() ? ask() : null));
+  return h("span", {}, button({ label: say("leave"), kind: "quiet", act: open }), () =>
+    sure() ? ask() : null,
+  );
 }
-

@@ -1,26 +1,26 @@
 /** One participant's screen: the channel to the study, and all that the page knows of it, as signals. */
 
-import { live, type LiveChannel } from "../../net";
+import { type LiveChannel, live } from "../../net";
 import type { Channels, StudyAbout, StudyFrame, StudyReady, StudyStep } from "../../net/messages";
-import { batch, onCleanup, signal, type Signal } from "../../ui";
-import type { Led } from "../press/stage";
+import { batch, onCleanup, type Signal, signal } from "../../ui";
+import type { FingerTarget } from "../press/stage";
 import { Draft } from "./answer";
-import { forget, holder, keepCard, keptCard, type Card } from "./keep";
+import { type Card, forget, holder, keepCard, keptCard } from "./keep";
 
 type Tell = Channels["study"]["tells"];
 type Ask = Channels["study"]["asks"];
 /** look: nobody sits here. card: it is to be written down. step: as the step says. stopped: see reason. */
-export type Standing = "opening" | "look" | "card" | "step" | "stopped";
+export type SessionStatus = "opening" | "look" | "card" | "step" | "stopped";
 
 const HERE_ms = 1000;
 
-export class StudySession implements Led {
-  readonly standing: Signal<Standing> = signal<Standing>("opening");
+export class StudySession implements FingerTarget {
+  readonly standing: Signal<SessionStatus> = signal<SessionStatus>("opening");
   readonly about: Signal<StudyAbout | null> = signal<StudyAbout | null>(null);
   readonly card: Signal<Card | null> = signal<Card | null>(null);
   readonly language: Signal<string> = signal("en");
   readonly step: Signal<StudyStep | null> = signal<StudyStep | null>(null);
-  /** When the step was told, on the page's clock. */
+  /** When the step arrived, on the page's clock. */
   toldAt_ms = 0;
   readonly draft: Signal<Draft | null> = signal<Draft | null>(null);
   /** What the trial's labels have in common, once they can be felt. */
@@ -46,13 +46,16 @@ export class StudySession implements Led {
     this.card.set(keptCard(study, seat));
     this.language.set(this.card.peek()?.language ?? "en");
     this.channel = live().channel("study", {
-      told: (message) => this.take(message),
+      onMessage: (message) => this.take(message),
       wrong: (line) => this.refused(line),
       opened: () => this.channel && this.opened(),
       lost: () => this.lost.set(true),
     });
     if (live().state.peek() === "open") this.opened();
-    const timer = setInterval(() => !document.hidden && this.standing.peek() === "step" && this.send({ type: "here" }), HERE_ms);
+    const timer = setInterval(
+      () => !document.hidden && this.standing.peek() === "step" && this.send({ type: "here" }),
+      HERE_ms,
+    );
     onCleanup(() => {
       clearInterval(timer);
       this.channel?.close();
@@ -60,7 +63,13 @@ export class StudySession implements Led {
   }
 
   sit(): void {
-    this.ask({ type: "sit", study: this.study, seat: this.seat, holder: holder(this.study, this.seat), language: this.language.peek() });
+    this.ask({
+      type: "sit",
+      study: this.study,
+      seat: this.seat,
+      holder: holder(this.study, this.seat),
+      language: this.language.peek(),
+    });
   }
 
   /** Go on with what stands on a card. */
@@ -87,7 +96,12 @@ export class StudySession implements Led {
   answer(): void {
     const draft = this.draft.peek();
     if (!draft?.complete() || this.waiting.peek()) return;
-    this.ask({ type: "answer", number: draft.task.number, choice: draft.choice.peek(), ratings: draft.ratings.peek() });
+    this.ask({
+      type: "answer",
+      number: draft.task.number,
+      choice: draft.choice.peek(),
+      ratings: draft.ratings.peek(),
+    });
   }
 
   fill(values: Readonly<Record<string, string | number>>, agreed: boolean): void {
@@ -148,7 +162,8 @@ export class StudySession implements Led {
       this.away();
     });
     if (card) this.send({ type: "resume", study: this.study, person: card.person, code: card.code });
-    else this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
+    else
+      this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
   }
 
   private take(message: Tell): void {
@@ -162,7 +177,7 @@ export class StudySession implements Led {
     if (message.type === "frame") this.takeFrame(message);
     else if (message.type === "felt") {
       this.felt.set(message.label);
-      // what is pressed on the table is told by the device, to nobody here
+      // what is pressed on the table is reported by the device, not here
       if (this.onTable()) this.draft.peek()?.pressed(message.label);
       this.frame.set(null);
       this.going.set("");
@@ -179,15 +194,26 @@ export class StudySession implements Led {
 
   private takeAbout(about: StudyAbout): void {
     this.about.set(about);
-    const own = navigator.languages.map((one) => one.split("-")[0] ?? one).find((one) => about.languages.includes(one));
+    const own = navigator.languages
+      .map((language) => language.split("-")[0] ?? language)
+      .find((one) => about.languages.includes(one));
     this.language.set(own ?? about.languages[0] ?? "en");
     this.standing.set("look");
   }
 
-  private takeCard(told: { readonly person: string; readonly language: string; readonly code: string }): void {
+  private takeCard(message: {
+    readonly person: string;
+    readonly language: string;
+    readonly code: string;
+  }): void {
     const known = this.card.peek();
-    this.language.set(told.language);
-    this.keep({ person: told.person, code: told.code || (known?.code ?? ""), language: told.language, noted: !told.code && (known?.noted ?? true) });
+    this.language.set(message.language);
+    this.keep({
+      person: message.person,
+      code: message.code || (known?.code ?? ""),
+      language: message.language,
+      noted: !message.code && (known?.noted ?? true),
+    });
   }
 
   private takeStep(step: StudyStep): void {
@@ -202,7 +228,8 @@ export class StudySession implements Led {
     this.step.set(step);
     this.standing.set(this.card.peek()?.noted === false ? "card" : "step");
     if (task) this.send({ type: "shown", number: task.number });
-    if (step.kind === "withdrawn" || step.kind === "declined" || step.kind === "done") forget(this.study, this.seat);
+    if (step.kind === "withdrawn" || step.kind === "declined" || step.kind === "done")
+      forget(this.study, this.seat);
   }
 
   private takeReady(ready: StudyReady): void {
@@ -239,7 +266,8 @@ export class StudySession implements Led {
     if (this.standing.peek() === "step") return;
     this.card.set(null);
     keepCard(this.study, this.seat, null);
-    if (!this.about.peek()) this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
+    if (!this.about.peek())
+      this.send({ type: "look", study: this.study, seat: this.seat, holder: holder(this.study, this.seat) });
   }
 
   private stop(reason: string): void {

@@ -2,14 +2,15 @@
 
 const EN = {
   begin: "Begin",
-  goOn: "Go on",
+  goOn: "Continue",
   language: "Language",
   haveCard: "I have a card already",
-  noSeat: "Please wait until you are told to begin.",
+  noSeat: "Please wait for your invitation to begin.",
   person: "Number on the card",
   code: "Code on the card",
   cardTitle: "Your card",
-  cardText: "Please write these down on your card. Should this screen ever go dark, they lead you back to where you were. Nobody else knows the code.",
+  cardText:
+    "Please write these down on your card. If this screen fails, they let you resume. Nobody else knows the code.",
   cardNoted: "I have written it down",
   trial: "Trial {at} of {of}",
   trialOpen: "Trial {at}",
@@ -18,7 +19,7 @@ const EN = {
   tableHint: "Choose {places}, then press the button on the table.",
   pressHint: "Choose {places}, then press: hold it here, or hold the space bar.",
   pressing: "{label} is under your finger",
-  switching: "{label} is being put under your finger …",
+  switching: "{label} is loading …",
   feltHint: "Press {places} at least once.",
   choose: "Your answer",
   next: "Next",
@@ -27,14 +28,14 @@ const EN = {
   keysDigits: "numbers rate it, ",
   keysChoices: "Shift and a letter choose, ",
   keysEqual: "Shift and a letter choose, E is the middle answer, ",
-  lost: "The connection is lost. What you answered is safe, and this screen goes on by itself.",
+  lost: "The connection is lost. Your answers are safe, and this screen resumes by itself.",
   paused: "The study pauses. Please wait a moment.",
   breakTitle: "Time for a break",
   breakText: "Please rest your hand and look around.",
   breakLeft: "{time} left",
-  breakOver: "Go on whenever you like.",
+  breakOver: "Continue whenever you like.",
   leave: "Leave the study",
-  leaveSure: "Do you want to leave the study for good? You need not say why. Your answers are deleted.",
+  leaveSure: "Do you want to withdraw from the study? You need not say why. Your answers will be deleted.",
   leaveYes: "Leave",
   leaveNo: "Stay",
   agree: "I agree and take part",
@@ -46,7 +47,7 @@ const EN = {
   stopped: "This screen is no longer in use",
   fullScreen: "Full screen",
   optional: "optional",
-  answerAll: "Please answer all that is asked.",
+  answerAll: "Please answer all questions.",
   number: "a number from {low} to {high}",
   sound: "Sound",
 } as const;
@@ -63,7 +64,8 @@ const DE: Words = {
   person: "Nummer auf der Karte",
   code: "Code auf der Karte",
   cardTitle: "Ihre Karte",
-  cardText: "Bitte schreiben Sie dies auf Ihre Karte. Sollte dieser Bildschirm einmal ausfallen, kommen Sie damit zurück. Niemand sonst kennt den Code.",
+  cardText:
+    "Bitte schreiben Sie dies auf Ihre Karte. Sollte dieser Bildschirm einmal ausfallen, kommen Sie damit zurück. Niemand sonst kennt den Code.",
   cardNoted: "Ich habe es aufgeschrieben",
   trial: "Durchgang {at} von {of}",
   trialOpen: "Durchgang {at}",
@@ -88,7 +90,8 @@ const DE: Words = {
   breakLeft: "noch {time}",
   breakOver: "Weiter geht es, wann Sie möchten.",
   leave: "Studie verlassen",
-  leaveSure: "Möchten Sie die Studie endgültig verlassen? Sie müssen keinen Grund nennen. Ihre Antworten werden gelöscht.",
+  leaveSure:
+    "Möchten Sie die Studie endgültig verlassen? Sie müssen keinen Grund nennen. Ihre Antworten werden gelöscht.",
   leaveYes: "Verlassen",
   leaveNo: "Bleiben",
   agree: "Ich stimme zu und nehme teil",
@@ -114,7 +117,8 @@ const FI: Words = {
   person: "Kortin numero",
   code: "Kortin koodi",
   cardTitle: "Korttisi",
-  cardText: "Kirjoita nämä kortillesi. Jos tämä näyttö sammuu, pääset niillä takaisin samaan kohtaan. Kukaan muu ei tiedä koodia.",
+  cardText:
+    "Kirjoita nämä kortillesi. Jos tämä näyttö sammuu, pääset niillä takaisin samaan kohtaan. Kukaan muu ei tiedä koodia.",
   cardNoted: "Olen kirjoittanut sen ylös",
   trial: "Tehtävä {at}/{of}",
   trialOpen: "Tehtävä {at}",
@@ -165,7 +169,8 @@ const FR: Words = {
   person: "Numéro de la carte",
   code: "Code de la carte",
   cardTitle: "Votre carte",
-  cardText: "Notez ceci sur votre carte. Si cet écran s’éteint, vous reviendrez ainsi où vous étiez. Personne d’autre ne connaît le code.",
+  cardText:
+    "Notez ceci sur votre carte. Si cet écran s’éteint, vous reviendrez ainsi où vous étiez. Personne d’autre ne connaît le code.",
   cardNoted: "Je l’ai noté",
   trial: "Essai {at} sur {of}",
   trialOpen: "Essai {at}",
@@ -190,7 +195,8 @@ const FR: Words = {
   breakLeft: "encore {time}",
   breakOver: "Continuez quand vous voulez.",
   leave: "Quitter l’étude",
-  leaveSure: "Voulez-vous quitter l’étude pour de bon ? Vous n’avez pas à dire pourquoi. Vos réponses seront effacées.",
+  leaveSure:
+    "Voulez-vous quitter l’étude pour de bon ? Vous n’avez pas à dire pourquoi. Vos réponses seront effacées.",
   leaveYes: "Quitter",
   leaveNo: "Rester",
   agree: "J’accepte et je participe",
@@ -259,15 +265,25 @@ const ZH: Words = {
 };
 
 const ALL: Readonly<Record<string, Words>> = { en: EN, de: DE, fi: FI, fr: FR, zh: ZH };
-const NAMES: Readonly<Record<string, string>> = { en: "English", de: "Deutsch", fi: "suomi", fr: "français", zh: "中文" };
+const NAMES: Readonly<Record<string, string>> = {
+  en: "English",
+  de: "Deutsch",
+  fi: "suomi",
+  fr: "français",
+  zh: "中文",
+};
 
-/** Give a text in a language, English where it is not known, with its places filled in. */
-export function word(language: string, key: Word, places: Readonly<Record<string, string | number>> = {}): string {
+/** Return a text in a language, English where it is not known, with its places filled in. */
+export function word(
+  language: string,
+  key: Word,
+  places: Readonly<Record<string, string | number>> = {},
+): string {
   const words = ALL[language] ?? ALL[language.split("-")[0] ?? ""] ?? EN;
   return words[key].replace(/\{(\w+)\}/g, (_, name: string) => String(places[name] ?? ""));
 }
 
-/** Give what a language is called by those who speak it. */
+/** Return what a language is called by those who speak it. */
 export function languageName(language: string): string {
   return NAMES[language] ?? language;
 }

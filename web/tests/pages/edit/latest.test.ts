@@ -16,40 +16,44 @@ function server() {
         },
       });
     });
-  const told: number[] = [];
+  const onAnswer: number[] = [];
   const wrong: string[] = [];
-  const latest = new Latest(work, (answer: number) => told.push(answer), (e) => wrong.push((e as Error).message));
-  return { asked, told, wrong, latest };
+  const latest = new Latest(
+    work,
+    (answer: number) => onAnswer.push(answer),
+    (e) => wrong.push((e as Error).message),
+  );
+  return { asked, onAnswer, wrong, latest };
 }
 
 describe("asking while a hand moves", () => {
   it("asks at once, then only the newest question that waits", async () => {
-    const { asked, told, latest } = server();
+    const { asked, onAnswer, latest } = server();
     for (const ask of [1, 2, 3, 4]) latest.ask(ask);
     expect(asked.map((a) => a.ask)).toEqual([1]);
     await asked[0]?.answer();
     expect(asked.map((a) => a.ask)).toEqual([1, 4]);
     await asked[1]?.answer();
-    expect(told).toEqual([10, 40]);
+    expect(onAnswer).toEqual([10, 40]);
     latest.ask(5);
     expect(asked.map((a) => a.ask)).toEqual([1, 4, 5]);
   });
 
   it("goes on after a question that failed", async () => {
-    const { asked, told, wrong, latest } = server();
+    const { asked, onAnswer, wrong, latest } = server();
     latest.ask(1);
     latest.ask(2);
     await asked[0]?.answer(true);
     await asked[1]?.answer();
-    expect([wrong, told]).toEqual([["no 1"], [20]]);
+    expect([wrong, onAnswer]).toEqual([["no 1"], [20]]);
   });
 
   it("tells nothing once it is closed", async () => {
-    const { asked, told, latest } = server();
+    const { asked, onAnswer, latest } = server();
     latest.ask(1);
     latest.ask(2);
     latest.close();
     await asked[0]?.answer();
-    expect([told, asked.length]).toEqual([[], 1]);
+    expect([onAnswer, asked.length]).toEqual([[], 1]);
   });
 });

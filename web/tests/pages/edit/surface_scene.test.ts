@@ -1,5 +1,12 @@
 import { describe, expect, it } from "vitest";
-import { type Corner, facesFromBehind, FIRST_TURN, frontEdges, seen, turned } from "../../../src/pages/edit/surface_scene";
+import {
+  type Corner,
+  FIRST_TURN,
+  facesFromBehind,
+  frontEdges,
+  seen,
+  turned,
+} from "../../../src/pages/edit/surface_scene";
 
 const flat = { around_rad: 0, tilt_rad: 0 };
 const above = { around_rad: 0, tilt_rad: Math.PI / 2 };
@@ -12,7 +19,10 @@ describe("the box of the surface", () => {
   });
 
   it("is turned without being bent: lengths stay", () => {
-    const [a, b]: [Corner, Corner] = [[-1, 0.2, 0.5], [0.3, -0.7, 1]];
+    const [a, b]: [Corner, Corner] = [
+      [-1, 0.2, 0.5],
+      [0.3, -0.7, 1],
+    ];
     const length = Math.hypot(...a.map((v, i) => v - b[i]!));
     for (const turn of [FIRST_TURN, turned(FIRST_TURN, 2.1, 0.3), above]) {
       const [p, q] = [seen(a, turn), seen(b, turn)];
@@ -37,8 +47,8 @@ describe("the box of the surface", () => {
 
 describe("painting", () => {
   it("begins with the farthest face and leaves none out", () => {
-    const places = [-1, 0, 1];
-    const corners = places.map((back) => places.map((right) => seen([right, back, 0], FIRST_TURN)));
+    const positions = [-1, 0, 1];
+    const corners = positions.map((back) => positions.map((right) => seen([right, back, 0], FIRST_TURN)));
     const faces = facesFromBehind(corners);
     expect(faces).toHaveLength(4);
     expect(faces.every((face, i) => i === 0 || face.behind <= faces[i - 1]!.behind)).toBe(true);

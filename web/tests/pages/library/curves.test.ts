@@ -1,10 +1,22 @@
 import { describe, expect, it } from "vitest";
 import type { LibraryButton, LibraryStroke } from "../../../src/net/messages";
-import { lineOf, seen, slope_cN_mm, speeds, strokeAt, valueAt, work_mJ } from "../../../src/pages/library/curves";
+import {
+  lineOf,
+  seen,
+  slope_cN_mm,
+  speeds,
+  strokeAt,
+  valueAt,
+  work_mJ,
+} from "../../../src/pages/library/curves";
 import { columns } from "../../../src/pages/library/export";
 
 const STEP_mm = 0.01;
-const sampled = (force: (x_mm: number) => number, stroke = "press", velocity_mm_s: number | null = null): LibraryStroke => ({
+const sampled = (
+  force: (x_mm: number) => number,
+  stroke = "press",
+  velocity_mm_s: number | null = null,
+): LibraryStroke => ({
   stroke,
   velocity_mm_s,
   start_mm: 0,
@@ -45,7 +57,10 @@ describe("curves", () => {
   });
 
   it("values lie on the line between samples, and nowhere beyond its ends", () => {
-    const line = lineOf(sampled((x) => x * x), "force");
+    const line = lineOf(
+      sampled((x) => x * x),
+      "force",
+    );
     expect(valueAt(line, 1.005)).toBeCloseTo((1 + 1.01 ** 2) / 2, 9);
     expect(valueAt(line, 4)).toBeCloseTo(16, 9);
     expect(valueAt(line, -0.01)).toBeNaN();
@@ -53,7 +68,10 @@ describe("curves", () => {
   });
 
   it("the stroke nearest to a speed is taken, the slowest by default", () => {
-    const made = button(...[50, 100, 200].map((v) => sampled(() => v, "press", v)), sampled(() => 1, "release", 100));
+    const made = button(
+      ...[50, 100, 200].map((v) => sampled(() => v, "press", v)),
+      sampled(() => 1, "release", 100),
+    );
     expect(strokeAt(made, "press", null)?.velocity_mm_s).toBe(50);
     expect(strokeAt(made, "press", 160)?.velocity_mm_s).toBe(200);
     expect(strokeAt(made, "release", 500)?.velocity_mm_s).toBe(100);
@@ -62,16 +80,37 @@ describe("curves", () => {
   });
 
   it("a contact step does not hide the slopes that matter", () => {
-    const line = lineOf(sampled((x) => 35 * Math.min(1, x / 0.02) + 5 * x), "slope");
+    const line = lineOf(
+      sampled((x) => 35 * Math.min(1, x / 0.02) + 5 * x),
+      "slope",
+    );
     expect(Math.max(...line.y)).toBeGreaterThan(500);
     expect(seen([line], "slope").high).toBeLessThan(500);
-    expect(seen([lineOf(sampled((x) => 35 + 5 * x), "force")], "force")).toEqual({ low: 0, high: expect.closeTo(58.3, 1) });
+    expect(
+      seen(
+        [
+          lineOf(
+            sampled((x) => 35 + 5 * x),
+            "force",
+          ),
+        ],
+        "force",
+      ),
+    ).toEqual({ low: 0, high: expect.closeTo(58.3, 1) });
     expect(seen([], "force")).toEqual({ low: 0, high: 100 });
   });
 
   it("columns of a file say button, stroke, speed, unit, and that a figure is simulated", () => {
     const made = button(sampled((x) => x, "press", 50));
-    const drawn = [{ n: 0, button: made, stroke: "press" as const, velocity_mm_s: 50, line: lineOf(made.strokes[0] as LibraryStroke, "force") }];
+    const drawn = [
+      {
+        n: 0,
+        button: made,
+        stroke: "press" as const,
+        velocity_mm_s: 50,
+        line: lineOf(made.strokes[0] as LibraryStroke, "force"),
+      },
+    ];
     const [x, y] = columns(drawn, "force");
     expect(x?.[0]).toBe("a, simulated, press, 50 mm/s: displacement, mm");
     expect(y?.[0]).toBe("a, simulated, press, 50 mm/s: force, cN");

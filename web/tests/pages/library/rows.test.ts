@@ -3,10 +3,22 @@ import type { LibraryIndex } from "../../../src/net/messages";
 import { Rows } from "../../../src/pages/library/rows";
 
 function index(epoch: number, first: number, names: readonly string[]): LibraryIndex {
-  const tenths = Int16Array.from({ length: 128 * names.length }, (_, i) => (i % 128 < 64 ? 10 * (i % 64) : -32768));
+  const tenths = Int16Array.from({ length: 128 * names.length }, (_, i) =>
+    i % 128 < 64 ? 10 * (i % 64) : -32768,
+  );
   const binary = String.fromCharCode(...new Uint8Array(tenths.buffer));
   return {
-    standing: { type: "standing", epoch, rows: 0, refused: 0, done: 0, total: 0, ended: true, sources: 0, trouble: "" },
+    standing: {
+      type: "standing",
+      epoch,
+      rows: 0,
+      refused: 0,
+      done: 0,
+      total: 0,
+      ended: true,
+      sources: 0,
+      trouble: "",
+    },
     first,
     ids: names.map((name) => `own:${name}`),
     names,

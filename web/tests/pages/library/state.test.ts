@@ -1,5 +1,13 @@
 import { describe, expect, it } from "vitest";
-import { AT_FIRST, EVERYTHING, MOST, readState, writeState, type Query, type Shown } from "../../../src/pages/library/state";
+import {
+  AT_FIRST,
+  EVERYTHING,
+  MOST,
+  type Query,
+  readState,
+  type Shown,
+  writeState,
+} from "../../../src/pages/library/state";
 
 const read = (text: string) => readState(new URLSearchParams(text));
 
@@ -14,7 +22,11 @@ describe("the address of a view", () => {
       text: "cherry & co = 5%",
       kinds: ["tactile", "clicky?"],
       origins: ["measured"],
-      ranges: { peak_cN: { low: 40, high: 60.5 }, snap_ratio: { low: null, high: 0.3 }, pre_slope_cN_mm: { low: -1, high: null } },
+      ranges: {
+        peak_cN: { low: 40, high: 60.5 },
+        snap_ratio: { low: null, high: 0.3 },
+        pre_slope_cN_mm: { low: -1, high: null },
+      },
       like: "measured:0123456789abcdef",
       sort: "drop_cN",
       descending: true,
@@ -34,7 +46,9 @@ describe("the address of a view", () => {
   });
 
   it("takes what is wrong in it as if it were not there", () => {
-    const { query, shown } = read("kind=round,linear&from=moon&peak_cN=a..b&__proto__=1..2&view=sound&tab=x&speed=-3&ref=own:none&over=own:a&press=2");
+    const { query, shown } = read(
+      "kind=round,linear&from=moon&peak_cN=a..b&__proto__=1..2&view=sound&tab=x&speed=-3&ref=own:none&over=own:a&press=2",
+    );
     expect(query).toEqual({ ...EVERYTHING, kinds: ["linear"] });
     expect(shown).toEqual({ ...AT_FIRST, overlay: ["own:a"], reference: "own:a", press: false });
   });

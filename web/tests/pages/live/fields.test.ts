@@ -4,7 +4,8 @@ import { speedsOf } from "../../../src/pages/live/fields";
 
 describe("speeds in one field", () => {
   it("are read with commas, spaces or both", () => {
-    for (const text of ["50,100", " 50  100 ", "50, 100,", "50;100"]) expect(speedsOf(text, 5)).toEqual([50, 100]);
+    for (const text of ["50,100", " 50  100 ", "50, 100,", "50;100"])
+      expect(speedsOf(text, 5)).toEqual([50, 100]);
   });
 
   it("are refused in words a person understands", () => {

@@ -11,7 +11,15 @@ describe("the cue", () => {
   });
 
   it("counts three, two, one until contact", () => {
-    expect([0, 0.49, 0.51, 0.99, 1.01, 1.49, 1.5].map((t_s) => countIn(t_s, 1.5))).toEqual(["3", "3", "2", "2", "1", "1", ""]);
+    expect([0, 0.49, 0.51, 0.99, 1.01, 1.49, 1.5].map((t_s) => countIn(t_s, 1.5))).toEqual([
+      "3",
+      "3",
+      "2",
+      "2",
+      "1",
+      "1",
+      "",
+    ]);
   });
 
   it("says times as people do", () => {

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
-import type { ScopeTold } from "../../../src/net";
+import type { ScopeFrame } from "../../../src/net";
 import { addBins, emptyBins, zigzag } from "../../../src/pages/live/scope";
 
-const told = (bin: number[], bin_s = 0.01): ScopeTold => ({
+const frame = (bin: number[], bin_s = 0.01): ScopeFrame => ({
   type: "scope",
   bin_s,
   bin,
@@ -20,8 +20,8 @@ const told = (bin: number[], bin_s = 0.01): ScopeTold => ({
 describe("the scope", () => {
   it("forgets what is out of sight, in every column alike", () => {
     const bins = emptyBins(0.01);
-    addBins(bins, told([1, 2, 3]), 3);
-    addBins(bins, told([4, 5]), 3);
+    addBins(bins, frame([1, 2, 3]), 3);
+    addBins(bins, frame([4, 5]), 3);
     expect(bins.bin).toEqual([3, 4, 5]);
     expect(bins.displacement_mm.low).toEqual([3, 4, 5]);
     expect([bins.force_cN.high.length, bins.state.length, bins.cut.length]).toEqual([3, 3, 3]);
@@ -29,13 +29,13 @@ describe("the scope", () => {
 
   it("takes no bins of another width", () => {
     const bins = emptyBins(0.01);
-    addBins(bins, told([1], 0.02), 10);
+    addBins(bins, frame([1], 0.02), 10);
     expect(bins.bin).toEqual([]);
   });
 
   it("draws the least and the most of every bin, and breaks where ticks are missing", () => {
     const bins = emptyBins(0.5);
-    addBins(bins, told([1, 2, 5], 0.5), 10);
+    addBins(bins, frame([1, 2, 5], 0.5), 10);
     expect(zigzag(bins, bins.displacement_mm)).toEqual({
       t_s: [-2, -2, -1.5, -1.5, 0, 0, 0],
       value: [1, 1.5, 2, 2.5, NaN, 5, 5.5],

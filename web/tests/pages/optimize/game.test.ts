@@ -1,14 +1,31 @@
 /** The rounds of temporal pointing, frame by frame. */
 
 import { describe, expect, it } from "vitest";
-import { begun, drawn, flight_ms, type Game, kept, lit_px, listens, paused, pressed, resumed, round } from "../../../src/pages/optimize/game";
+import {
+  drawn,
+  flight_ms,
+  type Game,
+  kept,
+  listens,
+  lit_px,
+  newGame,
+  paused,
+  pressed,
+  resumed,
+  round,
+} from "../../../src/pages/optimize/game";
 
 const EASY = { pixels: 144, zone_px: 120, zone_half_px: 3, speed_px_s: 100 };
 const HARD = { ...EASY, speed_px_s: 150 };
 const FRAME_ms = 1000 / 60;
 
 /** Draw pictures until something is so; gives the game and the time of the last picture. */
-function until(game: Game, now_ms: number, found: (game: Game) => boolean, luck = 0): { game: Game; now_ms: number } {
+function until(
+  game: Game,
+  now_ms: number,
+  found: (game: Game) => boolean,
+  luck = 0,
+): { game: Game; now_ms: number } {
   for (let at = now_ms; at < now_ms + 10_000; at += FRAME_ms) {
     game = drawn(game, at, luck);
     if (found(game)) return { game, now_ms: at };
@@ -17,7 +34,7 @@ function until(game: Game, now_ms: number, found: (game: Game) => boolean, luck 
 }
 
 function flying(strip = EASY): { game: Game; now_ms: number } {
-  return until(begun(strip, 2), 1000, (game) => game.phase === "fly");
+  return until(newGame(strip, 2), 1000, (game) => game.phase === "fly");
 }
 
 describe("a round", () => {
@@ -35,13 +52,13 @@ describe("a round", () => {
 
   it("waits a time that is drawn by lot, within its bounds", () => {
     for (const luck of [0, 0.5, 0.999]) {
-      const { now_ms } = until(begun(EASY, 1), 1000, (game) => game.phase === "fly", luck);
+      const { now_ms } = until(newGame(EASY, 1), 1000, (game) => game.phase === "fly", luck);
       expect(now_ms - 1000).toBeGreaterThanOrEqual(500 + 700 * luck);
       expect(now_ms - 1000).toBeLessThan(500 + 700 * luck + FRAME_ms + 0.01);
     }
   });
 
-  it("is told with the time at which its first picture was drawn", () => {
+  it("is reported with the time at which its first picture was drawn", () => {
     const start = flying();
     let game = pressed(start.game, { at_ms: start.now_ms + 1190, hand: "mouse" });
     ({ game } = until(game, start.now_ms, (one) => one.phase === "keep"));
@@ -55,7 +72,7 @@ describe("a round", () => {
   });
 
   it("hears the hand only while the bullet flies and shortly after", () => {
-    const waiting = begun(EASY, 1);
+    const waiting = newGame(EASY, 1);
     expect(listens(waiting)).toBe(false);
     expect(pressed(waiting, { at_ms: 5, hand: "key" })).toBe(waiting);
     const { game, now_ms } = flying();

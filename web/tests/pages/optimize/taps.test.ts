@@ -2,7 +2,7 @@
 
 // @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import { displayDelay, FramePace, readDelays } from "../../../src/pages/optimize/delays";
+import { displayDelay, FrameClock, readDelays } from "../../../src/pages/optimize/delays";
 import { AHEAD, tapped } from "../../../src/pages/optimize/taps";
 
 describe("taps along with a flash", () => {
@@ -30,9 +30,15 @@ describe("delays", () => {
     expect(displayDelay({ ...stated, display: { ms: 80, error_ms: 3 } }, 7)).toEqual({ ms: 80, error_ms: 3 });
   });
 
-  it.each(["", "{", "3", "{}", '{"display":{"ms":-1,"error_ms":0}}', '{"display":null,"input":{"key":{"ms":1e9,"error_ms":0}}}'])(
-    "that a browser keeps wrongly (%s) are those that are stated",
-    (text) => expect(readDelays(text)).toEqual(readDelays(null)),
+  it.each([
+    "",
+    "{",
+    "3",
+    "{}",
+    '{"display":{"ms":-1,"error_ms":0}}',
+    '{"display":null,"input":{"key":{"ms":1e9,"error_ms":0}}}',
+  ])("that a browser keeps wrongly (%s) are those that are stated", (text) =>
+    expect(readDelays(text)).toEqual(readDelays(null)),
   );
 
   it("are read as they were kept", () => {
@@ -41,7 +47,7 @@ describe("delays", () => {
   });
 
   it("take the pace of a screen from its middle gap, so that one late picture changes nothing", () => {
-    const pace = new FramePace();
+    const pace = new FrameClock();
     expect(pace.frame_ms()).toBeCloseTo(16.67, 2);
     for (let i = 0; i < 30; i++) pace.take(i * 8 + (i > 20 ? 100 : 0));
     expect(pace.frame_ms()).toBe(8);

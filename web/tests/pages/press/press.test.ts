@@ -9,7 +9,11 @@ describe("the rows of a live press", () => {
   it("are given from a time on, oldest first, the last one always", () => {
     const rows = new Rolling();
     const t = Array.from({ length: 100 }, (_, i) => i / 1000);
-    rows.add(t, t.map((x) => 2 * x), t.map((x) => 3 * x));
+    rows.add(
+      t,
+      t.map((x) => 2 * x),
+      t.map((x) => 3 * x),
+    );
     expect(rows.now_s()).toBeCloseTo(0.099);
     const some = rows.since(0.09, 4);
     expect(some.t_s).toEqual([0.092, 0.096, 0.099]);
@@ -46,11 +50,11 @@ describe("the delay from hand to screen", () => {
     expect(latency.drawn(2, 146)).toBeNull();
     latency.sent(3, 150);
     expect(latency.drawn(3, 160)).toBe(10);
-    expect(latency.told()).toEqual({ count: 2, median_ms: 30, p99_ms: 30 });
+    expect(latency.summary()).toEqual({ count: 2, median_ms: 30, p99_ms: 30 });
   });
 
   it("says nothing before there was a move", () => {
-    expect(new Latency().told()).toBeNull();
+    expect(new Latency().summary()).toBeNull();
   });
 });
 

@@ -1,14 +1,22 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { NUDGE_s, StepLine } from "../../../src/model/steps";
+import type { ProgramCheck } from "../../../src/net/messages";
 import { CHECK_AFTER_ms, ProgramBook, SAVE_AFTER_ms } from "../../../src/pages/programs/book";
 import { readDocument, writeDocument } from "../../../src/programs/document";
 import { addState, changeProgram, removeState, renameState } from "../../../src/programs/edits";
-import { NUDGE_s, StepLine } from "../../../src/model/steps";
 import { whole } from "../../../src/programs/history";
-import type { ProgramCheck } from "../../../src/net/messages";
 import { SHIPPED } from "../../programs/shipped";
 
 const BUTTON = SHIPPED[0]!;
-const FINE: ProgramCheck = { accepted: true, findings: [], sizes: [], surfaces: [], return_s: 0.5, stiffness_cN_mm: 1, rise_K: 1 };
+const FINE: ProgramCheck = {
+  accepted: true,
+  findings: [],
+  sizes: [],
+  surfaces: [],
+  return_s: 0.5,
+  stiffness_cN_mm: 1,
+  rise_K: 1,
+};
 
 /** A server that keeps one file, as the real one does: by its revision. */
 class Shelf {

@@ -1,15 +1,15 @@
 // @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import type { ProgramFinding } from "../../../src/net/messages";
 import { linear } from "../../../src/draw/scale";
+import type { ProgramFinding } from "../../../src/net/messages";
 import { handlesOf, nearestHandle } from "../../../src/pages/programs/forces_points";
 import { drawnGraph } from "../../../src/pages/programs/graph_parts";
-import { readPlaces } from "../../../src/pages/programs/places";
+import { readPositions } from "../../../src/pages/programs/positions";
 import { stepOf, wordsOf } from "../../../src/pages/programs/recipe";
 import { eventsOf } from "../../../src/pages/programs/try";
 import { condition } from "../../../src/programs/condition";
 import { addTransition } from "../../../src/programs/edits";
-import { graphOf } from "../../../src/programs/layout/layout";
+import { graphOf } from "../../../src/programs/graph_layout";
 import type { Choice } from "../../../src/programs/path";
 import { lineSurface } from "../../../src/programs/surface";
 import { scope, signal } from "../../../src/ui";
@@ -21,13 +21,15 @@ describe("a drawn graph", () => {
   const choice = signal<Choice>({ kind: "state", state: "up" });
   const findings = signal<readonly ProgramFinding[]>([]);
   const live = signal<string | null>(null);
-  const drawn = (): readonly SVGElement[] => drawnGraph({ graph: graphOf(BUTTON), document: BUTTON, choice, findings, live });
-  const found = (elements: readonly SVGElement[], key: string): SVGElement => elements.find((held) => held.dataset["key"] === key)!;
+  const drawn = (): readonly SVGElement[] =>
+    drawnGraph({ graph: graphOf(BUTTON), document: BUTTON, choice, findings, live });
+  const found = (elements: readonly SVGElement[], key: string): SVGElement =>
+    elements.find((element) => element.dataset.key === key)!;
 
   it("tells every state and every way in words that begin with what is seen", () => {
     let elements: readonly SVGElement[] = [];
     const end = scope(() => (elements = drawn()));
-    const buttons = elements.filter((held) => held.getAttribute("role") === "button");
+    const buttons = elements.filter((element) => element.getAttribute("role") === "button");
     expect(buttons).toHaveLength(4);
     for (const held of buttons) {
       const seen = held.textContent!.replace(/\s+/g, " ").trim();
@@ -44,7 +46,15 @@ describe("a drawn graph", () => {
     expect([up, down].map((held) => held.getAttribute("aria-pressed"))).toEqual(["true", "false"]);
     choice.set({ kind: "state", state: "down" });
     live.set("down");
-    const finding = { severity: "refused", path: "states[1]", state: "down", place: "", reason: "", remedy: "", at_mm: null } as const;
+    const finding = {
+      severity: "refused",
+      path: "states[1]",
+      state: "down",
+      place: "",
+      reason: "",
+      remedy: "",
+      at_mm: null,
+    } as const;
     findings.set([finding]);
     expect([up, down].map((held) => held.getAttribute("aria-pressed"))).toEqual(["false", "true"]);
     expect(down.getAttribute("class")).toMatch(/live refused/);
@@ -70,11 +80,24 @@ describe("the numbers of a recipe", () => {
 });
 
 describe("points to pull", () => {
-  const many = lineSurface("many", Array.from({ length: 200 }, (_, i) => [i / 50, i] as const));
-  const view = { x: linear({ low: 0, high: 4 }, 0, 400), y: linear({ low: 0, high: 200 }, 200, 0), box: { left: 0, top: 0, width: 400, height: 200 }, width_px: 400, height_px: 200 };
+  const many = lineSurface(
+    "many",
+    Array.from({ length: 200 }, (_, i) => [i / 50, i] as const),
+  );
+  const view = {
+    x: linear({ low: 0, high: 4 }, 0, 400),
+    y: linear({ low: 0, high: 200 }, 200, 0),
+    box: { left: 0, top: 0, width: 400, height: 200 },
+    width_px: 400,
+    height_px: 200,
+  };
 
   it("are all of a few, and some of many with both ends", () => {
-    const few = lineSurface("few", [[0, 1], [1, 2], [2, 3]]);
+    const few = lineSurface("few", [
+      [0, 1],
+      [1, 2],
+      [2, 3],
+    ]);
     expect(handlesOf(few)).toEqual([0, 1, 2]);
     const handles = handlesOf(many);
     expect([handles[0], handles.at(-1)]).toEqual([0, 199]);
@@ -84,7 +107,10 @@ describe("points to pull", () => {
 
   it("are found near a hand and not far from it", () => {
     const column = handlesOf(many)[5]!;
-    const at = { x_px: view.x.px(many.displacement_mm[column]!) + 3, y_px: view.y.px(many.force_cN[0]![column]!) - 4 };
+    const at = {
+      x_px: view.x.px(many.displacement_mm[column]!) + 3,
+      y_px: view.y.px(many.force_cN[0]![column]!) - 4,
+    };
     expect(nearestHandle(many, 0, view, at, 22)).toBe(column);
     expect(nearestHandle(many, 0, view, { x_px: 0, y_px: 0 }, 22)).toBeNull();
   });
@@ -92,14 +118,19 @@ describe("points to pull", () => {
 
 describe("places that a browser remembers", () => {
   it("are read, and whatever is none is left out", () => {
-    expect([...readPlaces('[["up",{"x":1,"y":2}],["down",{"x":null,"y":2}],[3,{"x":1,"y":2}],7,["lost"]]')]).toEqual([["up", { x: 1, y: 2 }]]);
-    for (const text of [null, "", "{", "{}", "null", "3"]) expect(readPlaces(text).size).toBe(0);
+    expect([
+      ...readPositions('[["up",{"x":1,"y":2}],["down",{"x":null,"y":2}],[3,{"x":1,"y":2}],7,["lost"]]'),
+    ]).toEqual([["up", { x: 1, y: 2 }]]);
+    for (const text of [null, "", "{", "{}", "null", "3"]) expect(readPositions(text).size).toBe(0);
   });
 });
 
 describe("host events that a program waits for", () => {
-  it("are told once each, rising", () => {
-    const waits = [7, 3, 7].reduce((held, n) => addTransition(held, "up", "down", condition("host_event", n)), BUTTON);
+  it("are listed once each, rising", () => {
+    const waits = [7, 3, 7].reduce(
+      (held, n) => addTransition(held, "up", "down", condition("host_event", n)),
+      BUTTON,
+    );
     expect(eventsOf(waits)).toEqual([3, 7]);
     expect(eventsOf(BUTTON)).toEqual([]);
   });

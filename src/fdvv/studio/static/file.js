@@ -1,3 +1,0 @@
-import{S as e}from"./palette.js";function t(t,n,r=`text/plain`){let i=typeof n==`string`?new Blob([n],{type:r}):n,a=URL.createObjectURL(i);e(`a`,{href:a,download:t}).click(),setTimeout(()=>URL.revokeObjectURL(a),1e4)}function n(e){let t=Math.max(0,...e.map(([,e])=>e.length)),n=[e.map(([e])=>r(e)).join(`,`)];for(let i=0;i<t;i++)n.push(e.map(([,e])=>r(e[i]??``)).join(`,`));return n.join(`
-`)+`
-`}function r(e){if(typeof e==`number`)return Number.isFinite(e)?String(e):``;let t=/^[=+\-@\t\r]/.test(e)?`'${e}`:e;return/[",\n\r]/.test(t)?`"${t.replaceAll(`"`,`""`)}"`:t}export{t as n,n as t};

@@ -1,0 +1,39 @@
+/** What a plot shows, and what its layers draw with. */
+
+import type { Box, Brush } from "./brush";
+import type { Range, Scale } from "./scale";
+
+export interface Axis {
+  readonly label: string;
+  readonly unit: string;
+}
+
+/** What a layer needs to know to draw. */
+export interface View {
+  readonly x: Scale;
+  readonly y: Scale;
+  /** The inside of the axes, px. */
+  readonly box: Box;
+  readonly width_px: number;
+  readonly height_px: number;
+}
+
+export type Layer = (brush: Brush, view: View) => void;
+
+export interface PlotOptions {
+  /** Says what the plot shows to those who do not see it. */
+  readonly label: string;
+  readonly x: Axis;
+  readonly y: Axis;
+  /** Everything there is to see; what Fit goes back to. */
+  readonly whole: () => { readonly x: Range; readonly y: Range };
+  /** Drawn when what it reads changes, or the view does. */
+  readonly still?: Layer;
+  /** Drawn above it, on its own: what follows the hand. */
+  readonly moving?: Layer;
+  /** The wheel and two fingers on a touchpad zoom, + - and 0 too; a drag with the middle button pans. */
+  readonly zoom?: boolean;
+  readonly height_px?: number;
+  /** Leave the axes' labels out, for small plots whose neighbours carry them. */
+  readonly small?: boolean;
+}
