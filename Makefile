@@ -12,18 +12,19 @@ LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools newcomer clean
+.PHONY: help demo quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 setup: $(VENV)/.ready src/fdvv/_native/$(LIBRARY) ## Make the virtual environment and build the C kernels
 
-$(VENV)/.ready: pyproject.toml constraints.txt hatch_build.py tools/setup.sh
+$(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) constraints.txt hatch_build.py tools/setup.sh
 	bash tools/setup.sh "$(PYTHON)" "$(VENV)"
 	@touch $@
 
-src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) hatch_build.py
+# the library, and the Python tables of the protocol
+src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) $(wildcard protocol/*.toml) tools/make_protocol.py hatch_build.py
 	$(BIN)/python hatch_build.py
 
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
@@ -33,6 +34,16 @@ check: setup ## Format, lint and type checks
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/python -m tools.check_words
+	$(BIN)/lint-imports --no-logo || { echo 'An import points up. Move the shared record down, or pass in a callable: see ARCHITECTURE.md.' >&2; exit 1; }
+
+# the packages with changes that are not committed, else model; make quick PKG="rendering live" picks others
+PKG ?= $(or $(shell git diff --name-only HEAD -- src | sed -n 's#^src/fdvv/\([a-z]*\)/.*#\1#p' | sort -u),model)
+
+quick: setup ## Lint, and test one package, in 20 seconds: make quick PKG=rendering
+	$(BIN)/ruff check --quiet .
+	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware" \
+	  tests/test_public_face.py tests/safety/test_zero_force.py $(wildcard $(PKG:%=tests/%))
 
 test: check ## Every check and every test of the default run
 	$(BIN)/pytest -n 2 -m "not slow and not browser"
@@ -62,8 +73,8 @@ firmware: firmware-tools ## Build the boards' programs into build/firmware
 web-tools: ## Install the browser and the tools that build and test the studio's page
 	bash tools/web_tools.sh
 
-web: web-tools ## Check, test and build the studio's page into src/fdvv/studio/static
-	cd web && npm run --silent check && npm test --silent && npm run --silent build
+web: setup web-tools ## Check, test and build the studio's page into src/fdvv/studio/static
+	cd web && PYTHON=$(BIN)/python npm run --silent check && npm test --silent && npm run --silent build
 
 web-check: web ## The same, and the committed page must be that of the sources
 	git diff --exit-code --stat -- src/fdvv/studio/static
@@ -75,8 +86,9 @@ sdist wheel: export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/
 sdist: build/tools/.ready ## Build the sdist into dist/
 	build/tools/bin/python -m build --sdist --outdir dist .
 
-wheel: build/tools/.ready ## Build the sdist, and from it the wheel of this machine, into dist/
+wheel: build/tools/.ready ## Build the sdist, and from it the wheel of this machine, and those of the extras, into dist/
 	build/tools/bin/python -m build --outdir dist .
+	for extra in extras/*/; do build/tools/bin/python -m build --outdir dist "$$extra"; done
 
 build/tools/.ready:
 	$(PYTHON) -m venv build/tools
@@ -91,4 +103,4 @@ newcomer: ## Type what the README says, in an empty folder and a clean environme
 	PYTHON="$(PYTHON)" bash tools/newcomer.sh
 
 clean: ## Remove what was built
-	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY)
+	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY) src/fdvv/protocol/{,strip_}tables.py

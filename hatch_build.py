@@ -1,7 +1,7 @@
-"""Compile the C kernels and the firmware's portable core into one shared library.
+"""Compile the C kernels and the portable core into one shared library; write the tables of the protocol.
 
-Run as a script to rebuild it in place. CC names another compiler, with its options; where a machine has none,
-the one that pip installs (ziglang) serves. docs/how-to/release.md tells what a wheel is built with.
+Run as a script to rebuild both in place. CC names another compiler, with its options; a machine without one
+uses ziglang, which pip installs. docs/how-to/release.md says what a wheel is built with.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ ROOT = Path(__file__).parent
 NATIVE = ROOT / "src" / "fdvv" / "_native"
 CORE = ROOT / "firmware" / "core"
 HOST = ROOT / "firmware" / "boards" / "host"
+PROTOCOL = ROOT / "tools" / "make_protocol.py"
 # -ffp-contract=off and no -march=native: the same bits on every x86-64 machine.
 FLAGS = [
     "-std=c99",
@@ -34,7 +35,7 @@ FLAGS = [
     "-Wextra",
     f"-I{CORE}",
 ]
-# whoever changes the C hears of every doubt; a compiler we never met must not break an installation by one
+# warnings are errors in a checkout; an unknown compiler must not break an installation by a warning
 STRICT = ["-Werror"] if (ROOT / ".git").exists() else []
 MACOS = "11.0"
 NO_COMPILER = (
@@ -44,7 +45,7 @@ NO_COMPILER = (
 
 
 class System(NamedTuple):
-    """What a system calls the library, and what its compilers want.
+    """Names and compiler flags of one operating system.
 
     library : its name. shared : flags of a library. maths : where the C library keeps them apart. program :
     the firmware as a program, which needs POSIX. compilers : looked for in this order. remedy : how to get
@@ -78,24 +79,24 @@ SYSTEMS = {
 
 
 def system_of(name: str = sys.platform) -> System:
-    """Give what is known of a system; others are taken for a Linux."""
+    """Return the entry of a system; an unknown one is treated as Linux."""
     return SYSTEMS.get(name, SYSTEMS["linux"])
 
 
 def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path]:
-    """Build the library of all kernels and, where there is POSIX, the firmware as a program; give paths."""
+    """Build the library of all kernels and, on POSIX, the firmware as a program; return their paths."""
     system, core = system_of(name), sorted(CORE.glob("*.c"))
     kernels = [*sorted(NATIVE.glob("*.c")), *core, HOST / "board.c"]
     flags = [*FLAGS, *STRICT, *_architectures(name)]
-    made = [_compile(folder / system.library, kernels, [*flags, *system.shared], system)]
+    built = [_compile(folder / system.library, kernels, [*flags, *system.shared], system)]
     if system.program:
         sources = [HOST / "main.c", HOST / "board.c", *core]
-        made.append(_compile(folder / system.program, sources, flags, system))
-    return made
+        built.append(_compile(folder / system.program, sources, flags, system))
+    return built
 
 
 def compiler(system: System) -> list[str] | None:
-    """Give CC, else the system's own compiler, else the one that pip installs, as a command; None without."""
+    """Return the command of CC, else of the system's compiler, else of ziglang; None without any."""
     if named := os.environ.get("CC"):
         return shlex.split(named, posix=os.name != "nt")
     if found := next(filter(None, map(shutil.which, system.compilers)), None):
@@ -124,29 +125,41 @@ def _compile(target: Path, sources: list[Path], flags: list[str], system: System
 
 
 def _architectures(name: str) -> list[str]:
-    """Give what macOS is asked for: ARCHFLAGS may name two processors."""
+    """Return macOS's flags; ARCHFLAGS may name two processors."""
     if name != "darwin":
         return []
     version = os.environ.get("MACOSX_DEPLOYMENT_TARGET", MACOS)
     return [*shlex.split(os.environ.get("ARCHFLAGS", "")), f"-mmacosx-version-min={version}"]
 
 
-def platform_tag(made: list[Path], name: str = sys.platform) -> str:
-    """Tell where a wheel with these files runs, in the words of PEP 425 and PEP 600."""
+def platform_tag(built: list[Path], name: str = sys.platform) -> str:
+    """Return the platform tag (PEP 425, PEP 600) of a wheel with these files."""
     if name == "darwin":
         version = os.environ.get("MACOSX_DEPLOYMENT_TARGET", MACOS).replace(".", "_")
-        asked = re.findall(r"-arch (\S+)", os.environ.get("ARCHFLAGS", ""))
-        processor = "universal2" if len(asked) > 1 else (asked or [platform.machine()])[0]
+        architectures = re.findall(r"-arch (\S+)", os.environ.get("ARCHFLAGS", ""))
+        processor = "universal2" if len(architectures) > 1 else (architectures or [platform.machine()])[0]
         return f"macosx_{version}_{processor}"
     plain = re.sub(r"[-.]", "_", sysconfig.get_platform())
-    if needed := [version for path in made for version in glibc_needs(path)]:
+    if needed := [version for path in built for version in glibc_needs(path)]:
         return plain.replace("linux", "manylinux_{}_{}".format(*max(needed)), 1)
     return plain
 
 
 def glibc_needs(path: Path) -> set[tuple[int, int]]:
-    """Give the versions of glibc whose symbols a file asks for; the text of them stands in its tables."""
+    """Return the glibc versions of the symbols that a file imports, read from its string tables."""
     return {(int(a), int(b)) for a, b in re.findall(rb"\0GLIBC_(\d+)\.(\d+)", path.read_bytes())}
+
+
+def write_protocol_tables() -> list[Path]:
+    """Write fdvv.protocol.tables and fdvv.protocol.strip_tables from protocol/*.toml; return their paths."""
+    spec = importlib.util.spec_from_file_location("make_protocol", PROTOCOL)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    paths: list[Path] = module.write_tables()
+    return paths
 
 
 try:
@@ -156,21 +169,21 @@ except ImportError:  # run as a script, where hatchling need not be installed
 else:
 
     class NativeBuildHook(BuildHookInterface):  # type: ignore[misc]
-        """Hatchling's door to compile_native."""
+        """Build what a wheel or an editable installation needs and git does not hold."""
 
         PLUGIN_NAME = "custom"
 
         def dependencies(self) -> list[str]:
-            """Ask for a compiler where the machine has none."""
             return [] if compiler(system_of()) else ["ziglang"]
 
         def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-            made = compile_native()
-            build_data["artifacts"] += [path.relative_to(ROOT).as_posix() for path in made]
+            built = compile_native()
+            files = [*built, *write_protocol_tables()]
+            build_data["artifacts"] += [path.relative_to(ROOT).as_posix() for path in files]
             build_data["pure_python"] = False
-            build_data["tag"] = f"py3-none-{platform_tag(made)}"
+            build_data["tag"] = f"py3-none-{platform_tag(built)}"
 
 
 if __name__ == "__main__":
-    for path in compile_native():
+    for path in (*write_protocol_tables(), *compile_native()):
         sys.stdout.write(f"{path}\n")

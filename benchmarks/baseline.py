@@ -12,12 +12,17 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.compensate import HOLDS_cN, PaperLaw, tuned_paper_law
-from fdvv.device import TwinDevice
+from fdvv.compensation.paper import HOLDS_cN, PaperLaw, tuned_paper_law
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import FdvvError
-from fdvv.model import FDVVModel, ForceSurface, builtin_names, load_builtin
-from fdvv.twin import Finger, Rig, draw_finger, draw_rig
-from fdvv.workflow import compensate, probe
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import probe
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS, PRESSES, JUDGE = range(120, 132), 5, 5000
@@ -36,21 +41,21 @@ def drawn(seed: int, tick_s: float) -> tuple[Rig, Finger]:
 
 
 def laws(presses: Literal[20, 240], tick_s: float, additions: bool) -> list[PaperLaw]:
-    """Give the laws that are all run; only the presses of the one that is kept count."""
+    """Return the laws that are all run; only the presses of the one that is kept count."""
     holds = HOLDS_cN if additions else HOLDS_cN[:1]
     return [tuned_paper_law(presses, tick_s, additions, hold) for hold in holds]
 
 
 def error_cN(tried: list[PaperLaw], seed: int, tick_s: float) -> tuple[float, float]:
-    """Give mean and largest error over strokes and speeds; infinite where no law can finish."""
+    """Return mean and largest error over strokes and speeds; infinite where no law can finish."""
     (rig, finger), names = drawn(seed, tick_s), builtin_names()
     model = load_builtin(names[seed % len(names)])
     try:
         surface = best(tried, model, rig, finger, seed)
-        told = probe(TwinDevice(rig, finger, seed + JUDGE), model, surface, SPEEDS_mm_s, PRESSES).curves
+        curves = probe(TwinDevice(rig, finger, seed + JUDGE), model, surface, SPEEDS_mm_s, PRESSES).curves
     except FdvvError:
         return float("inf"), float("inf")
-    means, most = zip(*((c.mean_errors_cN, c.max_errors_cN) for c in told), strict=True)
+    means, most = zip(*((c.mean_errors_cN, c.max_errors_cN) for c in curves), strict=True)
     return float(np.median(means, axis=1).mean()), float(np.median(most, axis=1).mean())
 
 

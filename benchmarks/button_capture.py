@@ -9,9 +9,14 @@ from typing import Any
 import numpy as np
 
 from benchmarks.button_lines import Line, rms
-from fdvv.recording import Quantity, Stage
-from fdvv.testing import PERFECT_RIG, PERFECT_SENSOR
-from fdvv.twin import PARTICIPANTS, CaptureBench, CaptureRig, Finger, ForceSensor, SimulatedTake, load_button
+from fdvv.recording.types import Quantity, Stage
+from fdvv.testing.captured import PERFECT_RIG, PERFECT_SENSOR
+from fdvv.twin.capture.bench import CaptureBench, SimulatedTake
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import ForceSensor
 
 
 def curve_error_cN(made: SimulatedTake, synced: bool) -> float:

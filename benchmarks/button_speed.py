@@ -10,23 +10,20 @@ import time
 from itertools import cycle, islice
 
 import numpy as np
+from tests.support.reference.button import reference_button
 
-from fdvv.twin import (
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.files import button_names, load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan, vary
+from fdvv.twin.pace import solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import (
     ButtonNoise,
-    ButtonPhysics,
-    Finger,
-    ForceSensor,
-    Gesture,
     PressPlan,
-    button_names,
     draw_button_noise,
-    load_button,
-    plan,
-    reference_button,
     simulate_batch,
     simulate_button,
-    solve_button_pace,
-    vary,
 )
 from fdvv.units import m_from_mm
 

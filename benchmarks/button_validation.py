@@ -14,30 +14,26 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from tests.support.reference.button import reference_button
 
 from benchmarks.button_capture import budget
 from benchmarks.button_lines import Line, rms
+from fdvv.button.fit import fit_file
 from fdvv.errors import FdvvError
-from fdvv.twin import (
-    ButtonPhysics,
+from fdvv.twin.button import ButtonPhysics, button_of_model
+from fdvv.twin.cam import identify
+from fdvv.twin.files import button_names, load_button
+from fdvv.twin.finger import Finger, FingerPad
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import (
     ButtonTrace,
-    Finger,
-    ForceSensor,
-    Gesture,
-    Pulp,
-    button_names,
-    button_of_model,
     draw_button_noise,
-    identify,
-    load_button,
     no_button_noise,
-    plan,
     probe_button,
-    reference_button,
     simulate_button,
 )
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
-from fdvv.workflow import fit_file
 
 # units that no shipped button is made from; where the file does not tell where the circuit closes, assumed
 HELD_OUT = {
@@ -55,7 +51,7 @@ SEATED_mm = 0.1
 
 
 def slow_errors_cN(button: ButtonPhysics) -> tuple[float, float, float, float]:
-    """Give rms errors of press and release from 0, and from 0.1 mm, where the cap has left its seat."""
+    """Return rms errors of press and release from 0, and from 0.1 mm, where the cap has left its seat."""
     probed = probe_button(button, mm_from_m(button.curve.speed_m_s))
     at_mm = mm_from_m(button.curve.step_m) * np.arange(button.press_N.size)
     found = []
@@ -113,7 +109,7 @@ def identified() -> Iterator[Line]:
 
 
 def dome_gain(button: ButtonPhysics, fast_mm_s: float) -> float:
-    """Give how much the peak grows from 0.5 mm/s to a faster probe."""
+    """Return how much the peak grows from 0.5 mm/s to a faster probe."""
     peaks = []
     for speed_mm_s in (0.5, fast_mm_s):
         probed = probe_button(button, speed_mm_s)
@@ -135,8 +131,8 @@ def domes() -> Iterator[Line]:
 # -- V3: a tap on a rigid wall, by the pulp alone --
 
 
-def tap(pulp: Pulp, mass_kg: float, speed_m_s: float) -> tuple[float, float]:
-    """Give the part of the energy that the pulp dissipates and the time to its peak force (ms)."""
+def tap(pulp: FingerPad, mass_kg: float, speed_m_s: float) -> tuple[float, float]:
+    """Return the part of the energy that the pulp dissipates and the time to its peak force (ms)."""
     from scipy.integrate import solve_ivp
 
     a, beta, still = pulp.scale_N, pulp.exponent_1_m, pulp.relaxed_ratio
@@ -159,11 +155,11 @@ def tap(pulp: Pulp, mass_kg: float, speed_m_s: float) -> tuple[float, float]:
 
 
 def taps() -> Iterator[Line]:
-    lost, rise_ms = tap(Pulp(), Finger().impedance.mass_kg, 0.25)
+    lost, rise_ms = tap(FingerPad(), Finger().impedance.mass_kg, 0.25)
     yield Line(
         "V3 pulp tap at 0.25 m/s: energy dissipated", f"{lost:.0%}", "81 +- 3 %", abs(lost - 0.81) <= 0.03
     )
-    softest = Pulp(relaxed_ratio=0.2, fast_share=0.7, fast_s=0.003)
+    softest = FingerPad(relaxed_ratio=0.2, fast_share=0.7, fast_s=0.003)
     most = tap(softest, Finger().impedance.mass_kg, 0.25)[0]
     yield Line(
         "V3 with relaxed 0.2, fast share 0.7 in 3 ms", f"{most:.0%}", "81 +- 3 %", abs(most - 0.81) <= 0.03
@@ -246,7 +242,7 @@ def steps() -> Iterator[Line]:
 
 
 def unaccounted(trace: ButtonTrace) -> float:
-    """Give the largest energy unaccounted for over the work that the finger does on the cap."""
+    """Return the largest energy unaccounted for over the work that the finger does on the cap."""
     assert trace.energy_J is not None
     down = np.maximum(np.diff(trace.displacement_mm), 0.0)
     work_J = 1e-5 * float(np.sum(trace.force_cN[1:] * down))

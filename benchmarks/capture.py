@@ -16,20 +16,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.model import Stroke, find_bump
-from fdvv.preprocess import (
-    AS_PRINTED,
-    AveragedCurve,
-    PaperRecipe,
-    Processed,
-    Reason,
-    paper_average,
-    process,
-)
-from fdvv.testing import PERFECT_RIG, PERFECT_SENSOR, CapturedSession, captured_session, top_mm
-from fdvv.twin import PARTICIPANTS, CaptureRig, Finger, ForceSensor, Habit, button_names
+from fdvv.bench.model import model_of_recording
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.average import AveragedCurve
+from fdvv.preprocess.paper import AS_PRINTED, PaperRecipe, paper_average
+from fdvv.preprocess.process import Processed, process
+from fdvv.preprocess.reject import Reason
+from fdvv.testing.captured import PERFECT_RIG, PERFECT_SENSOR, CapturedSession, captured_session, top_mm
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import button_names
+from fdvv.twin.finger import Finger, PressVariability
+from fdvv.twin.rig import ForceSensor
 from fdvv.units import FloatArray
-from fdvv.workflow import model_of_recording
 
 FIRST_SEED, SEEDS = 700, 6
 FROM_mm = 0.15
@@ -42,23 +42,23 @@ BUDGET_SEEDS = range(900, 903)
 def truth_and_found(
     session: CapturedSession, curve: AveragedCurve
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Give displacement, true and found force where both are known."""
+    """Return displacement, true and found force where both are known."""
     true_cN = session.true_cN(curve)
     inside = (curve.displacement_mm > FROM_mm) & np.isfinite(true_cN)
     return curve.displacement_mm[inside], true_cN[inside], curve.force_cN[inside]
 
 
 def errors(session: CapturedSession, curve: AveragedCurve) -> dict[str, float]:
-    """Tell the errors of one curve; those of the bump only where there is one."""
+    """Return the errors of one curve; those of the bump only where there is one."""
     x, true_cN, found_cN = truth_and_found(session, curve)
-    told = {"rms_cN": float(np.sqrt(np.mean((found_cN - true_cN) ** 2)))}
+    result = {"rms_cN": float(np.sqrt(np.mean((found_cN - true_cN) ** 2)))}
     wanted, found = find_bump(x, true_cN), find_bump(x, found_cN)
     if wanted and found:
-        told["peak_cN"] = found.peak_cN - wanted.peak_cN
-        told["top_mm"] = top_mm(x, found_cN) - top_mm(x, true_cN)
+        result["peak_cN"] = found.peak_cN - wanted.peak_cN
+        result["top_mm"] = top_mm(x, found_cN) - top_mm(x, true_cN)
     elif wanted:
-        told["lost"] = 1.0
-    return told
+        result["lost"] = 1.0
+    return result
 
 
 def spread(values: Iterable[float]) -> str:
@@ -84,7 +84,7 @@ METHODS: dict[str, Callable[[Processed, AveragedCurve], AveragedCurve]] = {
 
 
 def accuracy() -> None:
-    """Tell errors of curves and points, ours beside the paper's recipe on the same presses and clocks."""
+    """Return errors of curves and points, ours beside the paper's recipe on the same presses and clocks."""
     print(
         f"accuracy: six buttons, seeds {FIRST_SEED} to {FIRST_SEED + SEEDS - 1}, 15 presses a pace, simulated"
     )
@@ -97,9 +97,9 @@ def accuracy() -> None:
             _points(session, done, points)
             for curve in done.curves:
                 for method, average in METHODS.items():
-                    told = errors(session, average(done, curve))
+                    row = errors(session, average(done, curve))
                     where = f"{curve.stroke} {curve.velocity_mm_s:g} mm/s"
-                    for what, value in told.items():
+                    for what, value in row.items():
                         found[method, where][what].append(value)
                         found[method, f"{where} {name}"][what].append(value)
     for what, values in points.items():
@@ -131,8 +131,8 @@ def presses() -> None:
                 verdicts[one.press.take].append(one.reason)
             for outcome in ("good", "incomplete", "wild"):
                 for take in session.of(outcome):
-                    told = verdicts[take.take.number]
-                    reason = "used" if None in told else str(told[0]) if told else "not seen"
+                    verdict = verdicts[take.take.number]
+                    reason = "used" if None in verdict else str(verdict[0]) if verdict else "not seen"
                     counts[take.truth.intent.kind or outcome, reason] += 1
     print(f"presses: six buttons, seeds {seeds.start} to {seeds.stop - 1}, simulated")
     for (kind, reason), count in sorted(counts.items()):
@@ -160,7 +160,7 @@ SENSOR_ERRORS = {
 
 
 def budget() -> None:
-    """Tell what each error does alone, then all: MX Clear, a steady participant, three sessions each."""
+    """Report what each error does alone, then all: MX Clear, a steady participant, three sessions each."""
     sensor, rig, finger = ForceSensor(), CaptureRig(), Finger()
     paces = ", ".join(f"{pace:g}" for pace in BUDGET_PACES_mm_s)
     print(f"budget: mx-clear, cN rms from 0.15 mm, press / release at {paces} mm/s, medians, simulated")
@@ -179,7 +179,7 @@ def budget() -> None:
     _tell("gain 3 % off, which nothing corrects", PERFECT_RIG, off, finger)
     _tell("all of them but gain", rig, sensor, finger)
     _tell("all of them, no slow probe", rig, sensor, finger, probe=False)
-    _tell("all of them, finger from 2 mm above", rig, sensor, Finger(habit=Habit(lift_m=0.002)))
+    _tell("all of them, finger from 2 mm above", rig, sensor, Finger(habit=PressVariability(lift_m=0.002)))
 
 
 def _tell(what: str, rig: CaptureRig, sensor: ForceSensor, finger: Finger, probe: bool = True) -> None:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.recording import Stage
-from fdvv.twin import (
-    WILD,
-    CaptureBench,
-    CaptureRig,
-    Finger,
-    ForceSensor,
-    Participant,
-    load_button,
-)
+from fdvv.bench.plan import CapturePlan
+from fdvv.bench.take_check import quick_look
+from fdvv.recording.types import Stage
+from fdvv.twin.capture.bench import CaptureBench
+from fdvv.twin.capture.participant import WILD, Participant
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import ForceSensor
 from fdvv.units import mm_from_m
-from fdvv.workflow import CapturePlan, quick_look
 
 BUTTONS = ("mx-clear", "mx-red", "macbook-pro-2011")
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -41,8 +39,8 @@ def main() -> None:
     print(f"presses asked for again, of {PRESSES} at each of 50, 100, 150, 200 mm/s (simulated)")
     for kind, person in PEOPLE.items():
         rows = {name: [asked_again(name, person, v) for v in PACES_mm_s] for name in BUTTONS}
-        told = "  ".join(f"{name} {row}" for name, row in rows.items())
-        print(f"{kind:15s} {sum(map(sum, rows.values())):4d} of {whole}:  {told}")
+        summary = "  ".join(f"{name} {row}" for name, row in rows.items())
+        print(f"{kind:15s} {sum(map(sum, rows.values())):4d} of {whole}:  {summary}")
 
 
 if __name__ == "__main__":

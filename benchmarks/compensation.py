@@ -11,10 +11,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.compensate import GainSchedule, PaperLaw, PerCurve
-from fdvv.device import TwinDevice
-from fdvv.model import FDVVModel, ForceSurface, load_builtin
-from fdvv.workflow import compensate, fd_only, probe, uncompensated
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.tables import GainSchedule
+from fdvv.device.twin import TwinDevice
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.probe import fd_only, probe
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS = ((11, 2001), (12, 2002), (13, 2003))
@@ -58,8 +63,8 @@ def main() -> None:
         found = []
         for seed, judge in SEEDS:
             surface = learn(button, seed)
-            told = probe(TwinDevice(seed=judge), button, surface, SPEEDS_mm_s, PRESSES).curves
-            found.append([(c.to_dict()["mean_error_cN"], c.to_dict()["max_error_cN"]) for c in told])
+            probed = probe(TwinDevice(seed=judge), button, surface, SPEEDS_mm_s, PRESSES).curves
+            found.append([(c.to_dict()["mean_error_cN"], c.to_dict()["max_error_cN"]) for c in probed])
         table = np.mean(found, axis=0)
         cells = [f"{mean:.1f} / {most:.0f}" for mean, most in (*table, table.mean(axis=0))]
         print(f"| {name} | {' | '.join(cells)} |", flush=True)

@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from tests.core._programs import REST, armed, event, image
+from tests.support.core.programs import REST, armed, event, image
 
-from fdvv.core import inputs_at
-from fdvv.protocol import NONE, Settings
+from fdvv.firmware.core import inputs_at
+from fdvv.protocol.tables import NONE, Settings
 
 SETTINGS = replace(Settings(), velocity_scale_q12=4096, slew_cN64_tick=32000, stuck_ticks=65535)
 SPEEDS_MM_S = (0.5, 2.0, 10.0, 50.0, 100.0, 150.0, 200.0, 300.0, 450.0, 600.0)
@@ -33,7 +33,7 @@ def ticks_s(first_s: float, last_s: float, phase: float) -> npt.NDArray[np.float
 
 
 def velocity_errors(speed_mm_s: float) -> tuple[float, float]:
-    """Give the worst errors (%) of the decided and of the settled continuous velocity."""
+    """Return the worst errors (%) of the decided and of the settled continuous velocity."""
     decided, continuous = [], []
     for phase in PHASES if speed_mm_s > 5 else PHASES[::12]:
         path_mm = speed_mm_s * ticks_s(-0.3 / speed_mm_s, 1.3 / speed_mm_s, float(phase))
@@ -45,7 +45,7 @@ def velocity_errors(speed_mm_s: float) -> tuple[float, float]:
 
 
 def onset_errors_ms(speed_mm_s: float, acceleration_mm_s2: float, latency_us: int) -> tuple[float, float]:
-    """Give the earliest and latest onset (ms) after the cap crossed the point at that speed."""
+    """Return the earliest and latest onset (ms) after the cap crossed the point at that speed."""
     settings, v, a = replace(SETTINGS, vibration_latency_us=latency_us), speed_mm_s, acceleration_mm_s2
     errors = []
     for phase in PHASES:

@@ -1,7 +1,7 @@
 """What does a tick of the core cost a Cortex-M0+? Emulated, in cycles of its instruction table.
 
 ``python -m benchmarks.core_cost`` needs arm-none-eabi-gcc and unicorn. Loads and stores cost 2 cycles; each
-figure is told without wait states and with those of the board's flash behind its cache. Half of the random
+figure is given without wait states and with those of the board's flash behind its cache. Half of the random
 rigs are the dearest that the settings allow. The whole board is the business of ``python -m benchmarks.m0``.
 """
 
@@ -16,13 +16,19 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from tests.support.random_presses import random_inputs, random_settings
+from tests.support.random_programs import (
+    assemble,
+    random_image,
+    random_state,
+    random_vibration,
+    random_waveform,
+)
 
-from fdvv.core import Core, RecordArray
-from fdvv.device._m0._bus import Bus
-from fdvv.device._m0._processor import Processor
-from fdvv.protocol import NONE, Condition, Settings, Slot, State, Transition, Vibration
-from fdvv.testing import random_image, random_inputs, random_settings
-from fdvv.testing._random_programs import assemble, random_state, random_vibration, random_waveform
+from fdvv.firmware.core import Core, RecordArray
+from fdvv.protocol.tables import NONE, Condition, Settings, Slot, State, Transition, Vibration
+from fdvv_m0.bus import Bus
+from fdvv_m0.processor import Processor
 
 FIRMWARE = Path(__file__).resolve().parents[1] / "firmware"
 CORE = FIRMWARE / "core"
@@ -47,7 +53,7 @@ OUTPUTS_AT, SETTINGS_AT = RAM + 0x4100, RAM + 0x4200
 
 
 def board_flags() -> str:
-    """Give what the board's Makefile compiles the tick with."""
+    """Return what the board's Makefile compiles the tick with."""
     text = (FIRMWARE / "boards" / "itsybitsy_m0" / "Makefile").read_text()
     found = re.search(r"^TICK_FLAGS := (.+)$", text, re.MULTILINE)
     assert found is not None
@@ -109,7 +115,7 @@ class Machine(Processor):
 
 
 def measure(machine: Machine, core: Core, inputs: RecordArray) -> list[int]:
-    """Give the cycles of every tick; the outputs must be those of this machine's own core."""
+    """Return the cycles of every tick; the outputs must be those of this machine's own core."""
     core.arm()
     cycles = []
     for given, wanted in zip(inputs, core.run(inputs), strict=True):
@@ -132,7 +138,7 @@ def looking_ahead(settings: Settings, ahead: bool) -> Settings:
 
 
 def full_image(transitions: int, vibrations: int, settings: Settings) -> bytes:
-    """Give a program of one state with so many transitions that never hold, and vibrations."""
+    """Return a program of one state with so many transitions that never hold, and vibrations."""
     rng, most_cN64 = np.random.default_rng(0), settings.force_limit_cN64 // 2
     state: State = replace(random_state(rng, 1, 1, most_cN64, 0, transitions), fade_ms=2000, bias_ms=60000)
     never = Transition(
@@ -149,7 +155,7 @@ def full_image(transitions: int, vibrations: int, settings: Settings) -> bytes:
 def random_cycles(
     built: tuple[bytes, dict[str, int]], cases: int, ticks: int, waits: int = NO_WAIT, ahead: bool = True
 ) -> list[int]:
-    """Give the cycles of ticks of random rigs and programs, every other rig the dearest of its kind.
+    """Return the cycles of ticks of random rigs and programs, every other rig the dearest of its kind.
 
     ahead : the controller looks ahead.
     """
@@ -164,7 +170,7 @@ def random_cycles(
 
 
 def full_cycles(built: tuple[bytes, dict[str, int]], transitions: int, vibrations: int) -> list[int]:
-    """Give the cycles of ticks of a program with so many transitions and vibrations."""
+    """Return the cycles of ticks of a program with so many transitions and vibrations."""
     rng = np.random.default_rng(1)
     settings = looking_ahead(dearest(random_settings(rng)), True)
     image, inputs = full_image(transitions, vibrations, settings), random_inputs(rng, 1000, settings)
@@ -177,9 +183,9 @@ def tell(optimise: str, cases: int, ticks: int) -> None:
         built = build(Path(folder), optimise)
     print(f"core, emulated, {optimise}: {len(built[0])} bytes, {cases * ticks} random ticks")
     for waits, name in ((NO_WAIT, "no wait states"), (CACHED, "flash waits")):
-        for ahead, told in ((False, ""), (True, ", looking ahead")):
+        for ahead, suffix in ((False, ""), (True, ", looking ahead")):
             found = random_cycles(built, cases, ticks, waits, ahead)
-            print(f"  {name}{told}: median {np.median(found):.0f}, worst {max(found)} cycles")
+            print(f"  {name}{suffix}: median {np.median(found):.0f}, worst {max(found)} cycles")
     few, many, full = (full_cycles(built, *counts) for counts in ((0, 0), (48, 0), (48, 32)))
     print(f"  a transition that does not hold: {(np.median(many) - np.median(few)) / 48:.0f} cycles")
     print(f"  a state with 48 of them, 32 vibrations: worst {max(full)} cycles")

@@ -10,8 +10,12 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fdvv.errors import FdvvError
-from fdvv.model import FDVVModel, Stroke, load_builtin
-from fdvv.twin import Finger, Rig, draw_finger, draw_rig
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
 
 FIRST_SEED = 500
 """Below it seeds were used to tune."""

@@ -11,12 +11,17 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 
-from fdvv.compensate import KnownRig, drifted, identification_surface, identify
-from fdvv.device import TwinDevice
+from tests.support.rig_truth import draw_fast_rig, rig_truth
+
+from fdvv.compensation.identification.drift import detect_drift
+from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import FitError, ModelError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.testing import draw_fast_rig, rig_truth
-from fdvv.twin import Rig
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.rig import Rig
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS = range(300, 320)
@@ -59,7 +64,7 @@ CHANGES: dict[str, tuple[Callable[[Rig], Rig], str, tuple[float, ...]]] = {
 
 
 def said(seed: int, drive: str) -> dict[str, list[str]]:
-    """Give what is said of one rig, by the change; nothing of one that cannot be pressed."""
+    """Return what is said of one rig, by the change; nothing of one that cannot be pressed."""
     rig, finger = draw_fast_rig(seed, drive)
     button = load_builtin("mx-clear")
     target = ForceSurface.of_model(button, SPEEDS_mm_s, 0.05)
@@ -71,16 +76,16 @@ def said(seed: int, drive: str) -> dict[str, list[str]]:
         for name, (change, _, speeds) in CHANGES.items():
             device = TwinDevice(change(rig), finger, seed + 7000)
             device.upload(identification_surface(target, ripple_cN=0.0), button.travel_mm)
-            found[name] = [told_by(known, device.press(v), button.travel_mm) for v in speeds]
+            found[name] = [verdict_by(known, device.press(v), button.travel_mm) for v in speeds]
     except ModelError:
         pass
     return found
 
 
-def told_by(known: KnownRig, press: Press, travel_mm: float) -> str:
-    """Give what is said of one press; also why nothing can be."""
+def verdict_by(known: RigModel, press: Press, travel_mm: float) -> str:
+    """Return what is said of one press; also why nothing can be."""
     try:
-        return drifted(known, press, travel_mm)
+        return detect_drift(known, press, travel_mm)
     except FitError as error:
         return str(error)
 
@@ -89,9 +94,9 @@ def main() -> None:
     first, last = (int(a) for a in sys.argv[1:3]) if len(sys.argv) > 2 else (SEEDS[0], SEEDS[-1])
     print("| changed, simulated | presses | said nothing | named first | named otherwise |")
     print("|---|---|---|---|---|")
-    told = [said(seed, drive) for seed in range(first, last + 1) for drive in ("voltage", "current")]
+    results = [said(seed, drive) for seed in range(first, last + 1) for drive in ("voltage", "current")]
     for name, (_, wanted, _) in CHANGES.items():
-        texts = [text for one in told for text in one[name]]
+        texts = [text for one in results for text in one[name]]
         silent = sum(not text for text in texts)
         named = sum(bool(wanted) and text.startswith(wanted) for text in texts)
         print(f"| {name} | {len(texts)} | {silent} | {named} | {len(texts) - silent - named} |")

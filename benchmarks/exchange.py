@@ -14,10 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.exchange import mjcf, mujoco_button, smartknob
-from fdvv.model import FDVVModel, Mode, Stroke, Vibration, builtin_names, load_builtin
-from fdvv.vibration import LISTEN_Hz, correlation, spectral_similarity, spqi, st_sim, vibration_samples
-from fdvv.workflow import ImportSettings, export_vibration, import_file
+from fdvv.button.export_file import export_vibration
+from fdvv.button.import_file import ImportSettings, import_file
+from fdvv.formats.exchange.mjcf import mjcf
+from fdvv.formats.exchange.mujoco import mujoco_button
+from fdvv.formats.exchange.smartknob import smartknob
+from fdvv.model.curve import Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.vibration.inverse import correlation, spectral_similarity, spqi, st_sim
+from fdvv.vibration.wave import LISTEN_Hz, vibration_samples
 
 DRAWS, SEED = 200, 1
 MEASURES = ("correlation", "spectral_similarity", "st_sim", "spqi")
@@ -53,7 +60,7 @@ def compared(vibration: Vibration, form: str, folder: Path) -> dict[str, float]:
 
 
 def likeness(form: str, count: int) -> list[tuple[float, float]]:
-    """Give the median and the tenth percentile of each measure over the draws."""
+    """Return the median and the tenth percentile of each measure over the draws."""
     random = np.random.default_rng(SEED)
     with TemporaryDirectory() as folder:
         figures = [compared(drawn(random, count), form, Path(folder)) for _ in range(DRAWS)]
@@ -118,7 +125,7 @@ def pushed() -> None:
 
 
 def led(mujoco: Any, button: FDVVModel, xml: str, v_mm_s: float, way: int, made: Any) -> float:
-    """Give the largest error of the force, the cap's inertia taken off."""
+    """Return the largest error of the force, the cap's inertia taken off."""
     servo = '<position name="finger" joint="button" kp="60000" kv="60"/></actuator>'
     model = mujoco.MjModel.from_xml_string(xml.replace("</actuator>", servo))
     data = mujoco.MjData(model)

@@ -1,10 +1,10 @@
-"""Does what is told of a rig before upload agree with what it then does? Simulated; two minutes.
+"""Does what is predicted of a rig before upload agree with what it then does? Simulated; two minutes.
 
 Run as ``python -m benchmarks.feasibility``, or with the first and the last seed. Rigs and fingers drawn at
 random over their plausible ranges, loop of 4 kHz, voltage and current drive in turn. The known rig is made
 from the truth, so that only the verdict is judged, not the identification; the stability bounds assume the
 nominal finger, the simulation has the drawn one. Rigs are left out whose coil is weaker than the firmware can
-be told.
+be predicted.
 """
 
 from __future__ import annotations
@@ -14,27 +14,38 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from tests.support.held import swings_held
+from tests.support.rig_truth import draw_fast_rig, rig_truth
 
-from fdvv.compensate import (
-    KnownRig,
+from fdvv.compensation.feasibility.limits import RigLimits, minimum_jerk, needed_cN
+from fdvv.compensation.feasibility.stability import (
     NominalFinger,
-    PaperLaw,
-    RigLimits,
     SampledLoop,
-    grid_mm,
-    minimum_jerk,
-    needed_cN,
     stability,
     step_limit_cN,
     stiffness_limit_N_m,
 )
-from fdvv.device import TwinDevice
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.tables import grid_mm
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, ModelError
-from fdvv.model import FDVVModel, ForceSurface, Stroke, load_builtin
-from fdvv.testing import draw_fast_rig, rig_truth, swings_held
-from fdvv.twin import Finger, Rig, draw_noise, image_of, settings_of, simulate, solve_program_pace, vary
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.feasibility import feasibility
+from fdvv.rendering.probe import probe
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import draw_noise
+from fdvv.twin.pace import solve_program_pace
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
-from fdvv.workflow import compensate, feasibility, probe
 
 SEEDS = range(400, 420)
 BUTTONS = ("mx-clear", "mx-brown", "mx-blue", "mx-red", "mx-black", "rubber-dome")
@@ -55,7 +66,7 @@ class Drawn:
     seed: int
     rig: Rig
     finger: Finger
-    known: KnownRig
+    known: RigModel
     limits: RigLimits
 
 
@@ -71,7 +82,7 @@ def draw(seeds: range) -> Iterator[Drawn]:
 
 
 def table(drawn: Drawn, x: FloatArray, press_cN: FloatArray, release_cN: FloatArray) -> ForceSurface:
-    """Give the command that puts these forces under a finger that rests."""
+    """Return the command that puts these forces under a finger that rests."""
     most, gain = drawn.limits.force_limit_cN, drawn.known.gain_at(x)
     rows = [
         np.clip((f + drawn.known.weight_cN) / gain, -most, most)[np.newaxis] for f in (press_cN, release_cN)
@@ -80,14 +91,14 @@ def table(drawn: Drawn, x: FloatArray, press_cN: FloatArray, release_cN: FloatAr
 
 
 def straight(drawn: Drawn, stiffness_N_m: float, step_cN: float) -> ForceSurface:
-    """Give a table that rises evenly through 60 cN at 2 mm, release below press by a step."""
+    """Return a table that rises evenly through 60 cN at 2 mm, release below press by a step."""
     x = 0.05 * np.arange(81.0)
     middle = HELD_cN + 0.1 * stiffness_N_m * (x - MIDDLE_mm)
     return table(drawn, x, middle + 0.5 * step_cN, middle - 0.5 * step_cN)
 
 
 def onset_ratio(drawn: Drawn, surface: Callable[[float], ForceSurface], still_mm: float) -> float:
-    """Give the least of RATIOS whose table swings; infinite if none does."""
+    """Return the least of RATIOS whose table swings; infinite if none does."""
     for ratio in RATIOS:
         made = surface(float(ratio))
         if swings_held(drawn.rig, drawn.finger, made, TRAVEL_mm, MIDDLE_mm, HELD_cN, still_mm):
@@ -96,9 +107,9 @@ def onset_ratio(drawn: Drawn, surface: Callable[[float], ForceSurface], still_mm
 
 
 def onsets(drawn: Drawn) -> tuple[float, float]:
-    """Give where a rise and where a step between strokes begin to swing, over what was told."""
+    """Return where a rise and where a step between strokes begin to swing, over the prediction."""
     finger, known = NominalFinger(), drawn.known
-    loop = SampledLoop.of_known(known, drawn.limits.tick_s, MIDDLE_mm, finger, HELD_cN)
+    loop = SampledLoop.of_rig(known, drawn.limits.tick_s, MIDDLE_mm, finger, HELD_cN)
     rise = stiffness_limit_N_m(loop)
     step = step_limit_cN(finger, HELD_cN, GENTLE_N_m, drawn.limits.reversal_mm, known.friction_cN)
     return (
@@ -108,7 +119,7 @@ def onsets(drawn: Drawn) -> tuple[float, float]:
 
 
 def held_button(drawn: Drawn, model: FDVVModel) -> tuple[bool, bool]:
-    """Tell (a button is said to be quiet, it is) at its steepest rises and its largest step, at 50 mm/s."""
+    """Return (a button is said to be quiet, it is) at its steepest rises and its largest step, at 50 mm/s."""
     x = grid_mm(model.travel_mm, 0.01)
     press, release = (model.force_cN(x, 50.0, stroke) for stroke in Stroke)
     judged = [
@@ -125,7 +136,7 @@ def held_button(drawn: Drawn, model: FDVVModel) -> tuple[bool, bool]:
 
 
 def saturates(drawn: Drawn, model: FDVVModel, cut: float) -> tuple[bool, bool]:
-    """Tell (a limit is said to cut a press, one does) for the table that is told, under a force limit."""
+    """Return (a limit is said to cut a press, one does) for the predicted table, under a force limit."""
     x = grid_mm(model.travel_mm, 0.05)
     tables = []
     for stroke in Stroke:
@@ -140,13 +151,13 @@ def saturates(drawn: Drawn, model: FDVVModel, cut: float) -> tuple[bool, bool]:
     gesture = vary(drawn.finger, 1e-3 * model.travel_mm, pace_s, 1e-3 * SPEED_mm_s, random)
     noise = draw_noise(rig, drawn.finger, gesture, random)
     trace = simulate(rig, drawn.finger, gesture, surface, model.travel_mm, noise, SPEED_mm_s)
-    told = feasibility(model, drawn.known, settings_of(rig), [SPEED_mm_s])
-    said = any(curve.reached.saturated.any() for curve in told.curves)
+    predicted = feasibility(model, drawn.known, settings_of(rig), [SPEED_mm_s])
+    said = any(curve.reached.saturated.any() for curve in predicted.curves)
     return said, bool(trace.saturated[trace.displacement_mm > 0.05].any())
 
 
 def learned_button(drawn: Drawn, model: FDVVModel) -> list[tuple[float, ...]]:
-    """Learn a button with the paper's law; per curve: speed, error told and found, command told and learned.
+    """Learn a button with the paper's law; per curve: speed, error and command, predicted and found.
 
     Errors are those of fresh presses; commands the largest of either sign, where a probe judges.
     """
@@ -154,9 +165,9 @@ def learned_button(drawn: Drawn, model: FDVVModel) -> list[tuple[float, ...]]:
     learned = compensate(TwinDevice(drawn.rig, drawn.finger, drawn.seed), model, speeds, PaperLaw(rounds=2))
     fresh = TwinDevice(drawn.rig, drawn.finger, drawn.seed + 5000)
     found = probe(fresh, model, learned.surface, speeds, 8)
-    told = feasibility(model, drawn.known, settings_of(drawn.rig), speeds, found)
+    predicted = feasibility(model, drawn.known, settings_of(drawn.rig), speeds, found)
     rows: list[tuple[float, ...]] = []
-    for curve in told.curves:
+    for curve in predicted.curves:
         assert curve.measured
         reached, error_cN = curve.reached, float(np.median(curve.measured.mean_errors_cN))
         place_mm = reached.displacement_mm[reached.judged]
@@ -168,18 +179,20 @@ def learned_button(drawn: Drawn, model: FDVVModel) -> list[tuple[float, ...]]:
 
 
 def agreement(title: str, pairs: list[tuple[bool, bool]], good: str, bad: str) -> str:
-    """Count what was told against what happened."""
+    """Count predictions against what happened."""
     parts = []
     for said, word, other in ((True, good, bad), (False, bad, good)):
-        happened = [was for told, was in pairs if told is said]
-        parts.append(f"told {word} {len(happened)}, of them {sum(w is not said for w in happened)} {other}")
+        happened = [was for predicted, was in pairs if predicted is said]
+        parts.append(
+            f"predicted {word} {len(happened)}, of them {sum(w is not said for w in happened)} {other}"
+        )
     return f"{title}: {'; '.join(parts)}"
 
 
 def spread(title: str, ratios: list[float]) -> str:
-    """Give median, range and how many lie below 1."""
+    """Return median, range and how many lie below 1."""
     return (
-        f"{title}: begins at {np.median(ratios):.2f} times what is told (median; {min(ratios):.2f} to "
+        f"{title}: begins at {np.median(ratios):.2f} times the prediction (median; {min(ratios):.2f} to "
         f"{max(ratios):.2f}), below it on {sum(r < 0.99 for r in ratios)} of {len(ratios)} rigs"
     )
 
@@ -209,12 +222,12 @@ def main(seeds: range = SEEDS) -> None:
 
 
 def against(speed_mm_s: float, rows: FloatArray) -> str:
-    """Hold what was told of error and command at one speed, (n, 4), against what was found."""
+    """Compare the predicted error and command at one speed, (n, 4), with what was found."""
     parts = [f"{speed_mm_s:g} mm/s, {len(rows)} curves"]
-    for name, told, found in (("error", *rows.T[:2]), ("largest command", *rows.T[2:])):
-        low, middle, high = np.percentile(found / told, [5, 50, 95])
+    for name, predicted, found in (("error", *rows.T[:2]), ("largest command", *rows.T[2:])):
+        low, middle, high = np.percentile(found / predicted, [5, 50, 95])
         parts.append(
-            f"{name} told {np.median(told):.1f} cN, learned {np.median(found):.1f} cN, "
+            f"{name} predicted {np.median(predicted):.1f} cN, learned {np.median(found):.1f} cN, "
             f"ratio {middle:.2f} (5 to 95 %: {low:.2f} to {high:.2f})"
         )
     return "; ".join(parts)

@@ -14,7 +14,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.interpolate import BSpline, make_lsq_spline
 
-from fdvv.model import FitMethod, MeasuredCurve, Stroke, bic_star, fit_curve, scan_sizes
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import FitMethod, bic_star, fit_curve, scan_sizes
 from fdvv.units import FloatArray
 
 SEEDS = range(5)

@@ -15,11 +15,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.device import LibraryBoard, LinkedDevice
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
 from fdvv.errors import ModelError
-from fdvv.hardware import Diagnosis, diagnose
-from fdvv.twin import Rig, draw_rig, settings_of
-from fdvv.workflow import RIG_FAULTS, SOUND, SimulatedHands, measure_rig
+from fdvv.twin.draw import draw_rig
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv_rig.selftest.diagnosis import Diagnosis, diagnose
+from fdvv_rig.selftest.faults import RIG_FAULTS
+from fdvv_rig.selftest.measure import measure_rig
+from fdvv_rig.selftest.operator import SOUND, SimulatedOperator
 
 FIRST_SEED = 2000
 RIGS = 4
@@ -44,7 +49,7 @@ def parts(seed: int) -> tuple[Rig, Rig]:
 
 
 def as_built(rig: Rig, random: np.random.Generator) -> Rig:
-    """Give the rig with what remains off: coil, supply, stop and force sensor, within what hands leave."""
+    """Return the rig with what remains off: coil, supply, stop and force sensor, within what hands leave."""
     coil, servo, cap = rig.coil, rig.servo, rig.keycap_sensor
 
     def off(ratio: float) -> float:
@@ -71,7 +76,7 @@ def tested(case: tuple[int, str]) -> tuple[str, str, str, str]:
     seed, name = case
     rig, built = parts(seed)
     fault = RIG_FAULTS.get(name, SOUND)
-    hands = SimulatedHands(rig, seed, fault, built)
+    hands = SimulatedOperator(rig, seed, fault, built)
     device = LinkedDevice(LibraryBoard(), hands)
     try:
         found: Diagnosis = diagnose(measure_rig(device, hands))
@@ -86,13 +91,13 @@ def main(rigs: int = RIGS, first: int = FIRST_SEED, sound: int = SOUND_RIGS, wor
     cases = [(first + i, NONE) for i in range(sound)]
     cases += [(first + i, name) for i in range(rigs) for name in RIG_FAULTS]
     table: Counter[tuple[str, str]] = Counter()
-    told: list[str] = []
+    mistakes: list[str] = []
     with ProcessPoolExecutor(workers) as pool:
         for done, (name, part, named, seen) in enumerate(pool.map(tested, cases), start=1):
             table[name, named] += 1
-            print(f"{done} of {len(cases)}, {len(told)} wrong", file=sys.stderr, end="\r")
+            print(f"{done} of {len(cases)}, {len(mistakes)} wrong", file=sys.stderr, end="\r")
             if named != part:
-                told.append(f"  {name}: named {named}; {seen}")
+                mistakes.append(f"  {name}: named {named}; {seen}")
     print("simulated; fault: part named (times)")
     for name in [NONE, *RIG_FAULTS]:
         row = {named: n for (fault, named), n in sorted(table.items()) if fault == name}
@@ -102,7 +107,7 @@ def main(rigs: int = RIGS, first: int = FIRST_SEED, sound: int = SOUND_RIGS, wor
     alarms = sound - table[NONE, NONE]
     print(f"right part named: {right} of {tried} ({100 * right / tried:.1f} %)")
     print(f"false alarms: {alarms} of {sound} sound rigs ({100 * alarms / sound:.1f} %)")
-    print("\n".join(told))
+    print("\n".join(mistakes))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ of the ripples in cN. Rigs and fingers drawn at random over their plausible rang
 each at 50, 100, 150 and 200 mm/s on the identification surface, judged on four fresh presses of the plain
 model, lifted. MX Clear and MX Red in turn.
 Forces and their numbers are in the units of the finger's sensor, so its error of calibration is not counted.
-Rigs are left out whose coil is weaker than the firmware can be told, or too stiff for the twin's steps.
+Rigs are left out whose coil is weaker than the firmware accepts, or too stiff for the twin's steps.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
-from fdvv.compensate import KnownRig, Prior, identification_surface, identify
-from fdvv.device import TwinDevice
+from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.rig_model import Prior, RigModel
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.testing import draw_fast_rig, missed_cN, rig_truth
-from fdvv.twin import Finger, Rig
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -47,10 +50,10 @@ ERRORS = (
 )
 
 
-def believed() -> KnownRig:
-    """Give what is believed of any rig before it is pressed."""
+def prior_model() -> RigModel:
+    """Return the model assumed for any rig before it is pressed."""
     m = dict(zip(("c0", "c1", "c2", "b", "emf", "f", "w", "m", "p", "x", "d", "e"), _means(), strict=True))
-    return KnownRig(
+    return RigModel(
         gain=(m["c0"], m["c1"], m["c2"]),
         delay_s=m["d"] + m["e"],
         electric_lag_s=m["e"],
@@ -68,8 +71,8 @@ def _means() -> list[float]:
     return [float(mean) for mean in Prior().vectors(2.5e-4)[0]]
 
 
-def numbers(known: KnownRig) -> FloatArray:
-    """Give the numbers of the table."""
+def numbers(known: RigModel) -> FloatArray:
+    """Return the numbers of the table."""
     at = np.array(MIDDLE_mm)
     shown = (known.gain_at(at), known.delay_s, known.electric_lag_s, known.position_lag_s, known.drag_at(at))
     return np.array(
@@ -110,13 +113,13 @@ def held_against_truth(seed: int, rig: Rig, finger: Finger, ripple_cN: float) ->
     fresh = TwinDevice(rig, finger, seed + 5000)
     fresh.upload(identification_surface(target, ripple_cN=0.0), button.travel_mm)
     traces = [fresh.press_trace(v) for v in SPEEDS_mm_s]
-    rms = [missed_cN(k, rig, traces, button.travel_mm) for k in (believed(), known, true)]
+    rms = [missed_cN(k, rig, traces, button.travel_mm) for k in (prior_model(), known, true)]
     error = np.array([known.error[name] for name in ERRORS])
     return Judged(missed, missed / error, (rms[0], rms[1], rms[2]), spent_s)
 
 
 def table(judged: list[Judged], drive: str) -> Iterator[str]:
-    """Give the lines of one drive."""
+    """Return the lines of one drive."""
     missed, z = np.array([j.missed for j in judged]), np.array([j.in_errors for j in judged])
     title = f"{drive} drive, {len(judged)} rigs, simulated"
     yield f"| {title} | median | 5 % | 95 % | median of size | in standard errors, rms |"

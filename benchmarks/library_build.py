@@ -28,7 +28,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.repeated_curves import readable, repeat_noise, shipped, write_many
-from fdvv.workflow import Library, library_query
+from fdvv.library.library import Library, library_query
 
 EVERY_s = 0.1
 WORDS = (
@@ -52,7 +52,7 @@ class Used:
 
 
 def tree(root: int) -> Iterator[int]:
-    """Give a process and all that it started."""
+    """Return a process and all that it started."""
     yield root
     for task in Path(f"/proc/{root}/task").glob("*/children"):
         for child in task.read_text().split():
@@ -60,7 +60,7 @@ def tree(root: int) -> Iterator[int]:
 
 
 def share_MB(pid: int) -> float:
-    """Give a process's proportional share of memory."""
+    """Return a process's proportional share of memory."""
     try:
         for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
             if line.startswith("Pss:"):
@@ -94,7 +94,7 @@ def watched(root: int, used: Used) -> Iterator[None]:
 
 
 def children_s() -> float:
-    """Give the processor time of all children that have ended."""
+    """Return the processor time of all children that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -123,7 +123,7 @@ def built(source: Path, library: Path, processes: int, what: str) -> None:
     )
 
 
-def told(what: str, times_ms: list[float]) -> str:
+def summary(what: str, times_ms: list[float]) -> str:
     """Write median and the largest."""
     return f"{what}: median {np.median(times_ms):.1f} ms, largest {max(times_ms):.1f} ms of {len(times_ms)}"
 
@@ -138,14 +138,14 @@ def searched(library: Path) -> None:
         begun = time.perf_counter()
         opened.find(library_query(words))
         times.append(1e3 * (time.perf_counter() - begun))
-    print(told("search in memory", times))
+    print(summary("search in memory", times))
     opened.like("mx-clear")
     times = []
     for row in opened.rows[:: max(1, len(opened.rows) // 20)]:
         begun = time.perf_counter()
         opened.like(row.id)
         times.append(1e3 * (time.perf_counter() - begun))
-    print(told("nearest ten in memory", times))
+    print(summary("nearest ten in memory", times))
     for command in (("search", "cherry peak_cN>=50"), ("like", "mx-clear")):
         used, _ = ran("library", command[0], str(library), command[1])
         print(f"fdvv library {command[0]}: wall {used.wall_s:.2f} s, memory {used.memory_MB:.0f} MB")
@@ -166,9 +166,9 @@ def main(folder: str = "", files: str = "12000", processes: str = "2") -> None:
     with tempfile.TemporaryDirectory() as place:
         source, library = Path(place) / "curves", Path(place) / "library"
         noise, size = write_many(real, source, int(files))
-        told = "of real repeats" if noise.from_repeats else "within a curve: no file holds repeats"
+        summary = "of real repeats" if noise.from_repeats else "within a curve: no file holds repeats"
         spread = np.sqrt(np.mean(repeat_noise(real).force_cN ** 2, axis=(1, 2)))
-        print(f"{files} files, {size / 1e6:.0f} MB, of {len(real)} real ones; noise {told}: "
+        print(f"{files} files, {size / 1e6:.0f} MB, of {len(real)} real ones; noise {summary}: "
               f"{len(spread)} differences, root mean square {np.median(spread):.2f} cN in the median, "
               f"{spread.min():.2f} to {spread.max():.2f}")  # fmt: skip
         print(f"load of the machine before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")

@@ -2,7 +2,7 @@
 
     python -m benchmarks.library_likeness SHARED_DATA
 
-SHARED_DATA holds a folder for every bench. A make is told by the file's name. By chance: as if the
+SHARED_DATA holds a folder for every bench. A make is identified by the file's name. By chance: as if the
 others stood in any order.
 """
 
@@ -17,11 +17,11 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.errors import FdvvError
+from fdvv.library.catalog import source_files
+from fdvv.library.figures import row_of_file
+from fdvv.library.like import LikeTable, distances
+from fdvv.library.row import ButtonRow
 from fdvv.units import FloatArray
-from fdvv.workflow import ShelfRow
-from fdvv.workflow._shelf_files import source_files
-from fdvv.workflow._shelf_like import LikeTable, distances
-from fdvv.workflow._shelf_read import row_of_file
 
 BENCHES = ("tg-tidy", "bluepylons", "haata", "buddyog-topre", "geekboards", "joaoachando")
 MAKES = (
@@ -39,7 +39,7 @@ MAKES = (
 PARTS = {"force": [0], "shape": [1], "landmarks": [2], "all three": [0, 1, 2]}
 
 
-def rows_of(shared: Path) -> list[ShelfRow]:
+def rows_of(shared: Path) -> list[ButtonRow]:
     """Read what can be read."""
     found = []
     for file in source_files([shared / bench for bench in BENCHES]):
@@ -50,7 +50,7 @@ def rows_of(shared: Path) -> list[ShelfRow]:
     return found
 
 
-def rate(rows: Sequence[ShelfRow], gaps: FloatArray, others: bool, among: int) -> str:
+def rate(rows: Sequence[ButtonRow], gaps: FloatArray, others: bool, among: int) -> str:
     """Count how often one of a make is among the nearest; others: of other benches only."""
     make = [next((m for m in MAKES if re.search(m, row.name)), None) for row in rows]
     bench = [row.collection.split("/")[0] for row in rows]

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.device import TwinDevice
-from fdvv.model import load_builtin
-from fdvv.twin import Controller, Rig
-from fdvv.workflow import compensate, probe
+from fdvv.device.twin import TwinDevice
+from fdvv.model.file import load_builtin
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import probe
+from fdvv.twin.rig import Controller, Rig
 
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS, PRESSES = range(1, 7), 30

@@ -1,6 +1,6 @@
 """The whole ItsyBitsy M0, emulated, cycles counted: ``python -m benchmarks.m0``.
 
-How fast the emulator is, and whether a tick is late while programs are uploaded and pressed, each tick told.
+How fast the emulator is, and whether a tick is late during upload and presses, with every tick reported.
 """
 
 from __future__ import annotations
@@ -12,9 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.device import EmulatedBoard, LinkedDevice, ScriptedPerson, surface_image
-from fdvv.model import ForceSurface
-from fdvv.protocol import Settings
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import ScriptedPerson
+from fdvv.device.remote import surface_image
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
+from fdvv_m0.board import EmulatedBoard
 
 ELF = Path(__file__).resolve().parents[1] / "build" / "firmware" / "itsybitsy_m0.elf"
 TICKS = 8000
@@ -26,7 +29,7 @@ RATES = ((250, 25), (200, 16), (166, 13), (125, 13))
 
 @dataclass(frozen=True)
 class Load:
-    """What the board's own counters and the emulator tell of a run."""
+    """What the board's counters and the emulator report of a run."""
 
     ticks: int
     late: int
@@ -51,13 +54,15 @@ def run_load(
         latencies_us += [cost.latency_us for cost in costs if cost.latency_us is not None]
         costs.clear()
         turn += 1
-    told = device.client.counters()
+    counters = device.client.counters()
     median_us = float(np.median(latencies_us))
-    return Load(board.emulator.tick - start, told.late, told.lost_records, told.worst_tick_us, median_us)
+    return Load(
+        board.emulator.tick - start, counters.late, counters.lost_records, counters.worst_tick_us, median_us
+    )
 
 
 def rate_settings(tick_us: int, reads: int) -> Settings:
-    """Give settings that look ahead at another tick, the gain made up for another number of readings."""
+    """Return settings that look ahead at another tick, the gain made up for another number of readings."""
     usual = Settings()
     gain_q14 = round(usual.position_gain_q14 * usual.reads / reads)
     plain = Settings(tick_us=tick_us, reads=reads, position_gain_q14=gain_q14)
@@ -82,7 +87,7 @@ def main() -> None:
     tell_speed()
     for tick_us, reads in RATES:
         load = run_load(ELF, TICKS, rate_settings(tick_us, reads))
-        print(f"emulated, {tick_us} us, {reads} readings, every tick told: {load}")
+        print(f"emulated, {tick_us} us, {reads} readings, every tick reported: {load}")
 
 
 if __name__ == "__main__":

@@ -15,10 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
+from fdvv.button.open import button_files, open_button
 from fdvv.errors import FdvvError
-from fdvv.mechanism import WANTED_cN
-from fdvv.model import FDVVModel, builtin_names, load_builtin
-from fdvv.workflow import MechanismResult, button_files, design_mechanism, open_model
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv_switch.design_button import MechanismResult, design_mechanism
+from fdvv_switch.residual import WANTED_cN
 
 FOLDERS = ("bluepylons", "buddyog-topre", "haata")
 NAME, REASON = 34, 90
@@ -42,18 +44,18 @@ class Line:
 
 
 def shipped() -> Iterator[tuple[str, FDVVModel]]:
-    """Give the shipped buttons."""
+    """Return the shipped buttons."""
     for name in builtin_names():
         yield name, load_builtin(name)
 
 
 def measured(folder: Path) -> Iterator[tuple[str, FDVVModel | str]]:
-    """Give every button measured in a folder, or the reason why it cannot be read."""
+    """Return every button measured in a folder, or the reason why it cannot be read."""
     for part in FOLDERS:
         for file in button_files(folder / part):
             name = f"{part[:5]} {file.parent.name[:10] if file.parent.name != part else ''} {file.stem}"
             try:
-                yield name, open_model(str(file))
+                yield name, open_button(str(file))
             except FdvvError as error:
                 yield name, str(error).partition(": ")[2]
 
@@ -68,7 +70,7 @@ def judged(name: str, model: FDVVModel | str) -> Line:
         return Line(name, None, str(error))
 
 
-def told(line: Line) -> str:
+def describe(line: Line) -> str:
     """Write one line of the table."""
     name = line.name[:NAME].ljust(NAME)
     if line.result is None:
@@ -112,7 +114,7 @@ def _printed(
 ) -> Iterator[Line]:
     for name, model in models:
         line = judged(name, model)
-        print(told(line), flush=True)
+        print(describe(line), flush=True)
         yield line
 
 

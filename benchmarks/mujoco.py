@@ -11,15 +11,18 @@ no such favour: finger, pulp, sensor and plate are stepped along, and once more 
 
 from __future__ import annotations
 
+import ctypes
 import time
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from fdvv.twin import Finger, ForceSensor, load_button, plan
-from fdvv.twin._flatten_button import button_plant, prepare
-from fdvv.twin._kernel_button import CELL, ButtonGrid, ButtonPlant, run_button
+from fdvv.twin.button_kernel import CELL_COLUMNS, ButtonGrid, button_plant, prepare, run_button
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.rig import ForceSensor
 from fdvv.units import FloatArray
 
 MASS_kg, WALL_N_m, WAY_m, PUSH_N = 0.003, 2e4, 0.001, 0.3
@@ -40,23 +43,28 @@ SCENE = """
 """
 
 
-def flight() -> tuple[ButtonPlant, FloatArray, FloatArray]:
-    """Give a slider pushed over the first half of its way and free over the second: plant, table, effort."""
+def flight() -> tuple[ctypes.Structure, FloatArray, FloatArray]:
+    """Return a slider pushed over the first half and free over the second: plant, table, effort."""
     finger = Finger()
     gesture = replace(plan(finger, WAY_m, 0.1), start_m=-0.05, end_m=-0.05)
     ticks = round(STEPS * STEP_s / 1e-3)
-    plant = button_plant(load_button("hp-pr1101u"), finger, gesture, ForceSensor(), held=True)
-    plant = replace(
-        plant, slider_mass_kg=MASS_kg, bottom_stiffness_N_m=WALL_N_m, bottom_loss_s_m=0.0, travel_m=WAY_m,
-        viscous_N_s_m=0.0, law_ratio=0.0, law_s_m=0.0, table_start_m=-1e-4, table_step_m=1e-5, step_s=STEP_s,
-    )  # fmt: skip
-    table = np.zeros((130, CELL))
+    plant = button_plant(
+        load_button("hp-pr1101u"), finger, gesture, ForceSensor(), clamped=True, step_s=STEP_s
+    )
+    scene = {
+        "slider_mass_kg": MASS_kg, "bottom_stiffness_N_m": WALL_N_m, "bottom_loss_s_m": 0.0,
+        "travel_m": WAY_m, "viscous_N_s_m": 0.0, "law_ratio": 0.0, "law_s_m": 0.0, "table_start_m": -1e-4,
+        "table_step_m": 1e-5,
+    }  # fmt: skip
+    for name, value in scene.items():
+        setattr(plant, name, value)
+    table = np.zeros((130, CELL_COLUMNS))
     table[:60, 0] = -PUSH_N
     return plant, table, np.zeros(ticks + 1)
 
 
 def kernel_error() -> tuple[float, float]:
-    """Give the relative errors of the kernel's depth and of its speed back."""
+    """Return the relative errors of the kernel's depth and of its speed back."""
     plant, table, effort = flight()
     grid = ButtonGrid(0, 40, 200, 1, len(table))
     rows, _ = run_button(plant, grid, table, effort[:41])
@@ -85,7 +93,7 @@ def mujoco_scene() -> tuple[Any, Any, Any]:
 
 
 def mujoco_error() -> tuple[float, float]:
-    """Give the relative errors of MuJoCo's depth and of its speed back."""
+    """Return the relative errors of MuJoCo's depth and of its speed back."""
     mujoco, model, data = mujoco_scene()
     depth, speed = [], []
     for _ in range(2000):
@@ -116,7 +124,7 @@ def kernel_rates() -> dict[str, float]:
     return {"this scene": rate(scene), "press of mx-clear": rate((*whole, effort))}
 
 
-def rate(call: tuple[ButtonPlant, ButtonGrid, FloatArray, FloatArray]) -> float:
+def rate(call: tuple[ctypes.Structure, ButtonGrid, FloatArray, FloatArray]) -> float:
     begun = time.perf_counter()
     run_button(*call)
     return STEPS / (time.perf_counter() - begun)

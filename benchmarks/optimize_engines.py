@@ -39,22 +39,21 @@ from benchmarks.optimize_tables import (
     table,
 )
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.optimize import Design, Problem, Score, Trial, engine_of, paper_space
-from fdvv.workflow import (
-    PopulationPlan,
-    open_executor,
-    optimise,
-    read_population,
-    run_population,
-)
+from fdvv.eventlog import Journal, JournalKind, read_records
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.population.plan import PopulationPlan, optimise
+from fdvv.optimize.population.population import read_population, run_population
+from fdvv.optimize.problem import Problem, Score, Trial
+from fdvv.optimize.space import Design
+from fdvv.parallel.open import open_executor
 
 OTHERS: Mapping[str, tuple[int, Mapping[str, float]]] = {"usual": (24, {}), "shifted": (8, SHIFTED)}
 """Whose scores a warm start begins from: how many people, and how they differ from the judged ones."""
 PRIOR_SEED = 11
 """Of the people whose scores others begin from; below FIRST_SEED, so none of them is judged."""
 RUNS_FILE = "runs.jsonl"
-KIND = JournalKind(frozenset({"run"}), "begin anew in another folder")
+KIND = JournalKind({"run": Any}, "begin anew in another folder")
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ class Runner:
     variants: Mapping[str, Variant] = field(default_factory=lambda: dict(VARIANTS))
 
     def __call__(self, run: Run) -> dict[str, list[float]]:
-        """Give the true values (ms) after LOOKS evaluations, by variant: the baseline answers in two ways."""
+        """Return true values (ms) after LOOKS evaluations, by variant: the baseline answers in two ways."""
         variant = self.variants[run.variant]
         person, seed = Person(self.first_seed, run.person, run.level), self.first_seed + run.seed
         prior = prior_of(self.folder, variant.prior, run.level) if variant.prior else ()
@@ -127,7 +126,7 @@ class Runner:
 
 @cache
 def prior_of(folder: Path, who: str, level: str) -> tuple[Trial, ...]:
-    """Give the trials of others, from their finished grid."""
+    """Return the trials of others, from their finished grid."""
     return read_population(folder / f"{who}-{level}").prior()
 
 

@@ -1,7 +1,7 @@
 """Do the options of the engine gp help: what a change costs, and a person who learns? Simulated.
 
 Scores come from smooth functions over the paper's eight parameters (a bowl in four of them, with waves), read
-with noise of 7.5 ms and standard errors of 20 presses; no simulated person is in it. Told is the true value
+with noise of 7.5 ms and standard errors of 20 presses; no simulated person is in it. Shown is the true value
 of the recommended design above the best of 4000 random ones: median and 5-95 % over seeds.
 
 cost: a new force takes 180 s to compensate, a trial 60 s; both ways have the same 45 minutes.
@@ -20,16 +20,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.optimize import (
-    ChangeCost,
-    Objective,
-    Problem,
-    Score,
-    Trial,
-    TrialState,
-    engine_of,
-    paper_space,
-)
+from fdvv.optimize.engines.gp import ChangeCost
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
 from fdvv.units import FloatArray
 
 SPACE = paper_space()
@@ -59,7 +53,7 @@ def function(seed: int) -> Truth:
 def run(
     options: dict[str, Any], seed: int, drift: Drift, prior: tuple[Trial, ...] = (), trials: int = TRIALS
 ) -> float:
-    """Give how far the recommended design is above the best of many, ms."""
+    """Return how far the recommended design is above the best of many, ms."""
     truth, engine = function(seed), engine_of("gp", options)
     least = float(truth(np.random.default_rng(8002).random((4000, DIMENSIONS))).min())
     problem, found = Problem(SPACE, (Objective("asynchrony_ms"),), seed, prior), list[Trial]()
@@ -83,7 +77,7 @@ def scored(number: int, design: dict[str, float], truth: Truth, seed: int, more_
 
 
 def others(seed: int, share: float) -> tuple[Trial, ...]:
-    """Give trials of somebody whose function is another one by a share."""
+    """Return trials of somebody whose function is another one by a share."""
     own, alien = function(seed), function(seed + 500)
 
     def theirs(places: FloatArray) -> FloatArray:
@@ -101,7 +95,7 @@ def learns(number: int) -> float:
     return 25.0 * float(np.exp(-number / 8.0))
 
 
-def told(name: str, values: list[float]) -> None:
+def report(name: str, values: list[float]) -> None:
     low, middle, high = np.percentile(values, [5, 50, 95])
     print(
         f"{name:42s} median {middle:5.1f} ms, 5-95 % {low:5.1f} to {high:5.1f}, mean {np.mean(values):5.1f}",
@@ -118,15 +112,15 @@ def main() -> None:
     print(f"simulated: {options.seeds} functions, above the best of 4000 random designs")
     if "cost" in cases:
         for name, given in (("cost unknown", {}), ("cost known", {"build_s": BUILD_s})):
-            told(f"{name}, 45 minutes", [run(given, s, still, trials=99) for s in seeds])
+            report(f"{name}, 45 minutes", [run(given, s, still, trials=99) for s in seeds])
     ways: dict[str, dict[str, Any]] = {"plain": {}, "trend": {"trend": True}, "forget 15": {"forget": 15.0}}
     for case, drift in (("learn", learns), ("still", still)):
         for name, given in ways.items() if case in cases else ():
-            told(f"{case}: {name}", [run(given, s, drift) for s in seeds])
+            report(f"{case}: {name}", [run(given, s, drift) for s in seeds])
     for share in (0.0, 0.3, 1.0) if "others" in cases else ():
-        told(f"others differ by {share:.0%}", [run({}, s, still, others(s, share), 13) for s in seeds])
+        report(f"others differ by {share:.0%}", [run({}, s, still, others(s, share), 13) for s in seeds])
     if "others" in cases:
-        told("nobody else, 13 trials", [run({}, s, still, trials=13) for s in seeds])
+        report("nobody else, 13 trials", [run({}, s, still, trials=13) for s in seeds])
 
 
 if __name__ == "__main__":

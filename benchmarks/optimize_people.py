@@ -12,20 +12,14 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import ndtri
 
-from fdvv.model import FDVVModel
-from fdvv.optimize import (
-    Design,
-    LOST_ms,
-    Score,
-    SimulatedUser,
-    TemporalPointing,
-    UserSettings,
-    draw_user,
-    paper_model,
-    timing_spread_s,
-)
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.paper_space import paper_model
+from fdvv.optimize.people.simulate import score_design, simulate_task
+from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, timing_spread_s
+from fdvv.optimize.problem import Score
+from fdvv.optimize.space import Design
+from fdvv.optimize.tasks import LOST_ms, TemporalPointing
 from fdvv.units import FloatArray
-from fdvv.workflow import play, score_design
 
 FIRST_SEED = 2000
 """Below it seeds were used to tune, or were looked at while an engine was changed."""
@@ -65,7 +59,7 @@ class Person:
         return score_design(self.task, paper_model(design), self.user, seed)
 
     def expected_ms(self, design: Design) -> float:
-        """Give the expected score; presses are the same for every design."""
+        """Return the expected score; presses are the same for every design."""
         return expected_ms(self.task, paper_model(design), self.user)
 
 
@@ -75,7 +69,7 @@ def _user(seed: int, number: int, settings: UserSettings | None) -> SimulatedUse
 
 
 def shifted() -> UserSettings:
-    """Give a population that is wrong on purpose."""
+    """Return a population that is wrong on purpose."""
     middle = SimulatedUser()
     return UserSettings(replace(middle, **{n: getattr(middle, n) * r for n, r in SHIFTED.items()}))
 
@@ -83,7 +77,7 @@ def shifted() -> UserSettings:
 def expected_ms(
     task: TemporalPointing, model: FDVVModel, user: SimulatedUser, sessions: int = SESSIONS
 ) -> float:
-    """Give what a score is on average: over sessions on the twin, in closed form over the timing's scatter.
+    """Return what a score is on average: over sessions on the twin, in closed form over the timing's scatter.
 
     A movement's scatter only shifts a press in time, and so does what a person makes up for, a sum of what
     was felt before. Sessions are played without any scatter and it is added as its distribution.
@@ -93,7 +87,7 @@ def expected_ms(
     counted = []
     for session in range(sessions):
         for press, sd_ms in zip(
-            play(exact, model, still, TRUE_SEED + session), _sd_ms(task, user), strict=True
+            simulate_task(exact, model, still, TRUE_SEED + session), _sd_ms(task, user), strict=True
         ):
             assert press.target_s is not None
             late = 1e3 * (press.activations_s[0] - press.target_s) if press.activations_s else np.inf
@@ -103,7 +97,7 @@ def expected_ms(
 
 
 def _sd_ms(task: TemporalPointing, user: SimulatedUser) -> list[float]:
-    """Give the scatter of each press of a session: its own, and that of what earlier ones made up for."""
+    """Return the scatter of each press of a session: its own, and that of what earlier ones made up for."""
     own = (1e3 * timing_spread_s(user, task.cue_s, task.period_s)) ** 2 + user.motor_ms**2
     found, made_up = [], 0.0
     for _ in range(task.rounds):
@@ -116,5 +110,5 @@ def _sd_ms(task: TemporalPointing, user: SimulatedUser) -> list[float]:
 
 def _counted(task: TemporalPointing, late_ms: FloatArray) -> float:
     frame_ms = 1e3 * task.frame_s
-    told = np.where(np.isfinite(late_ms), frame_ms * np.round(late_ms / frame_ms), np.inf)
-    return float(np.mean(np.where(np.abs(told) < LOST_ms, np.abs(told), LOST_ms)))
+    shown_ms = np.where(np.isfinite(late_ms), frame_ms * np.round(late_ms / frame_ms), np.inf)
+    return float(np.mean(np.where(np.abs(shown_ms) < LOST_ms, np.abs(shown_ms), LOST_ms)))

@@ -14,13 +14,15 @@ import tempfile
 import time
 from pathlib import Path
 
-from fdvv.workflow import PopulationPlan, open_executor, run_population
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import run_population
+from fdvv.parallel.open import open_executor
 
 PEOPLE = 20
 
 
 def used_s() -> float:
-    """Give the processor time of this process and of all its children that have ended."""
+    """Return the processor time of this process and of all its children that have ended."""
     both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(one.ru_utime + one.ru_stime for one in both)
 

@@ -36,7 +36,7 @@ class Run:
 
     @property
     def person(self) -> int:
-        """Get the person; over 60 runs seeds and people meet in pairs that do not come again within 600."""
+        """Get the person; over 60 runs seeds and people form pairs that do not come again within 600."""
         return (self.number + self.number // 60) % PEOPLE
 
 
@@ -57,12 +57,12 @@ def curves(found: Mapping[Run, Sequence[float]], variant: str, level: str) -> Fl
 
 
 def reached_after(found: Mapping[Run, Sequence[float]], variant: str, level: str, count: int) -> FloatArray:
-    """Give what a variant reached after so many evaluations, (runs,)."""
+    """Return what a variant reached after so many evaluations, (runs,)."""
     return curves(found, variant, level)[:, LOOKS.index(count)]
 
 
 def needed(reached: FloatArray, final: float) -> int | None:
-    """Give after how many evaluations the median is at least as good as a final one, and stays so."""
+    """Return after how many evaluations the median is at least as good as a final one, and stays so."""
     good = np.median(reached, axis=0) <= final
     stays = np.logical_and.accumulate(good[::-1])[::-1]
     return LOOKS[int(np.argmax(stays))] if stays.any() else None
@@ -83,22 +83,22 @@ def table(found: Mapping[Run, Sequence[float]]) -> str:
             whole = reached.shape[1] == len(LOOKS)
             last = _spread(reached[:, -1]) if whole else "-"
             after = needed(reached, final)
-            told = f"after {after}" if after else f"not within {BUDGET if whole else half}"
+            summary = f"after {after}" if after else f"not within {BUDGET if whole else half}"
             reach = f"{len(reached)} | {_spread(reached_after(found, name, level, half))} | {last}"
-            lines.append(f"| {name} | {level} | {reach} | {told} |")
+            lines.append(f"| {name} | {level} | {reach} | {summary} |")
     return "\n".join(lines)
 
 
 def paired(found: Mapping[Run, Sequence[float]], variant: str, level: str) -> str:
-    """Tell on how many pairs of runs a variant is at least as good after half the evaluations."""
+    """Return on how many pairs of runs a variant is at least as good after half the evaluations."""
     gains = [
         found[Run(BASELINE, run.number, level)][-1] - values[LOOKS.index(BUDGET // 2)]
         for run, values in found.items()
         if (run.variant, run.level) == (variant, level)
     ]
     share = 100 * np.mean(np.array(gains) >= 0)
-    told = f"better or equal on {share:.0f} % of {len(gains)}; gain {_spread(np.array(gains))} ms"
-    return f"{variant}, {level}: {told}"
+    summary = f"better or equal on {share:.0f} % of {len(gains)}; gain {_spread(np.array(gains))} ms"
+    return f"{variant}, {level}: {summary}"
 
 
 def _spread(values: FloatArray) -> str:

@@ -41,9 +41,9 @@ def main(arguments: Sequence[str]) -> None:
         for name in dict.fromkeys(run.variant for run in found):
             gains = [found[Run(BASELINE, i, level)][-1] - found[Run(name, i, level)][-1] for i in numbers]
             reached = curves(found, name, level)[:, [LOOKS.index(15), -1]]
-            told = (f"{np.median(one):.1f}, {np.mean(one):.1f}" for one in reached.T)
+            columns = (f"{np.median(one):.1f}, {np.mean(one):.1f}" for one in reached.T)
             error = np.std(gains, ddof=1) / np.sqrt(len(gains))
-            print(f"| {name} | {level} | {' | '.join(told)} | {np.mean(gains):.1f} ± {error:.1f} |")
+            print(f"| {name} | {level} | {' | '.join(columns)} | {np.mean(gains):.1f} ± {error:.1f} |")
 
 
 if __name__ == "__main__":

@@ -14,13 +14,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.compensate import GainSchedule, PaperLaw
-from fdvv.device import TwinDevice
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.tables import GainSchedule
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import FdvvError
-from fdvv.model import FDVVModel, ForceSurface, load_builtin
-from fdvv.twin import Finger, Rig, draw_finger, draw_rig, load_finger, load_rig, stage_finger
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import fd_only, probe
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.files import load_finger, load_rig
+from fdvv.twin.finger import Finger, stage_finger
+from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
-from fdvv.workflow import compensate, fd_only, probe
 
 RIG, FINGER = load_rig("paper"), load_finger("paper")
 LAW = PaperLaw.literal(gain=GainSchedule.constant(0.25), rounds=1, presses_per_round=15, start="target")
@@ -42,14 +49,14 @@ class Case:
     law: PaperLaw = LAW
 
     def errors_cN(self, seed: int) -> FloatArray:
-        """Give error_k of the press stroke, per press, as the rig measured it; FdvvError if it cannot."""
+        """Return error_k of the press stroke, per press, as the rig measured it; FdvvError if it cannot."""
         device = TwinDevice(self.rig, self.finger, seed)
         learned = compensate(device, load_builtin(self.button), [self.velocity_mm_s], self.law)
         return np.array(learned.outcome.curves[0].error_cN)
 
 
 def reproduces(errors_cN: FloatArray) -> bool:
-    """Tell whether a run is like the paper's example."""
+    """Return whether a run is like the paper's example."""
     begins = abs(errors_cN[0] - BEGINS_cN) <= WITHIN_cN
     return bool(begins and errors_cN[:PRESSES].min() <= ENDS_cN)
 
@@ -91,8 +98,8 @@ def true_error() -> None:
         found = []
         for seed in SEEDS[:8]:
             learned = compensate(TwinDevice(RIG, FINGER, seed), model, [speed], law)
-            told = probe(TwinDevice(RIG, FINGER, seed + 1000), model, learned.surface, [speed], 20).curves
-            found.append([(c.to_dict()["mean_error_cN"], c.to_dict()["max_error_cN"]) for c in told])
+            probed = probe(TwinDevice(RIG, FINGER, seed + 1000), model, learned.surface, [speed], 20).curves
+            found.append([(c.to_dict()["mean_error_cN"], c.to_dict()["max_error_cN"]) for c in probed])
         cells = [f"{mean:.1f} / {most:.0f}" for mean, most in np.median(found, axis=0)]
         print(f"| {speed:g} mm/s | {' | '.join(cells)} |", flush=True)
 
@@ -118,8 +125,8 @@ def static() -> None:
         for seed in SEEDS[:2]
     ]
     show("the slow curve learned by the stage, against it", slow, stage)
-    told = [intended(surface, seed) for surface, (_, seed) in zip(at_pace, people, strict=True)]
-    print(row("learned at 50 mm/s, against its own command, linearly calibrated", np.concatenate(told)))
+    commands = [intended(surface, seed) for surface, (_, seed) in zip(at_pace, people, strict=True)]
+    print(row("learned at 50 mm/s, against its own command, linearly calibrated", np.concatenate(commands)))
 
 
 def learn_slow(seed: int, velocity_mm_s: float) -> ForceSurface:
@@ -142,10 +149,10 @@ def row(name: str, off_cN: FloatArray) -> str:
 
 
 def intended(surface: ForceSurface, seed: int) -> FloatArray:
-    """Give |felt - commanded| on the stage after one linear calibration of command to force, (n,)."""
+    """Return |felt - commanded| on the stage after one linear calibration of command to force, (n,)."""
     plain = ForceSurface.of_model(fd_only(load_builtin("mx-clear")), [SLOWEST_mm_s], 0.05)
-    (told, felt), (command, force) = (steady(s, seed) for s in (plain, surface))
-    return np.asarray(np.abs(force - np.polyval(np.polyfit(told, felt, 1), command)))
+    (sent, felt), (command, force) = (steady(s, seed) for s in (plain, surface))
+    return np.asarray(np.abs(force - np.polyval(np.polyfit(sent, felt, 1), command)))
 
 
 def steady(surface: ForceSurface, seed: int) -> tuple[FloatArray, FloatArray]:
@@ -160,7 +167,7 @@ def steady(surface: ForceSurface, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def random_cases() -> Iterator[tuple[tuple[str, str, float], list[Case]]]:
-    """Give every button, drive and speed with its random rigs and fingers, 1 kHz."""
+    """Return every button, drive and speed with its random rigs and fingers, 1 kHz."""
     for button in ("mx-clear", "mx-brown", "mx-red"):
         for drive in ("voltage", "current"):
             for speed in SPEEDS_mm_s:
@@ -186,7 +193,7 @@ def share() -> None:
 
 
 def like(case: Case, seed: int, law: PaperLaw) -> bool:
-    """Tell whether a random rig reproduces the example; one that cannot learn does not."""
+    """Return whether a random rig reproduces the example; one that cannot learn does not."""
     try:
         return reproduces(replace(case, law=replace(law, presses_per_round=PRESSES)).errors_cN(seed))
     except FdvvError:

@@ -17,7 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.optimize import Answer, Comparison, Objective, PairEngine, Problem, pair_engine_of, paper_space
+from fdvv.optimize.engines.registry import pair_engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Answer, Comparison, Objective, PairEngine, Problem
 from fdvv.units import FloatArray
 
 SPACE = paper_space()
@@ -58,7 +60,7 @@ class Champion:
 
 
 def rank(engine: PairEngine, seed: int, kind: str, count: int) -> float:
-    """Give the part of all designs that a person likes better than the one recommended."""
+    """Return the part of all designs that a person likes better than the one recommended."""
     utility, rng = person(seed, kind), np.random.default_rng([seed, 7003])
     everywhere = utility(np.random.default_rng(7004).random((4000, DIMENSIONS)))
     problem, comparisons = Problem(SPACE, (Objective("liking"),), seed), list[Comparison]()

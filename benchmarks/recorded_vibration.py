@@ -1,4 +1,6 @@
-"""How well, and how fast, are vibrations told from whole capture sessions? Simulated; a minute for ten seeds.
+"""How well, and how fast, are vibrations estimated from whole capture sessions?
+
+Simulated; a minute for ten seeds.
 
 Run as ``python -m benchmarks.recorded_vibration``, or with the first seed and how many. A session is the
 paper's: 15 presses at each of 50, 100, 150 and 200 mm/s, on the bench with a 10 kHz accelerometer on the
@@ -15,18 +17,19 @@ from collections import defaultdict
 
 import numpy as np
 
-from fdvv.model import Stroke, Vibration
-from fdvv.preprocess import process
-from fdvv.testing import CapturedSession, captured_session
-from fdvv.twin import button_names
+from fdvv.bench.vibration import RecordedVibrations, recorded_vibrations
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Vibration
+from fdvv.preprocess.process import process
+from fdvv.testing.captured import CapturedSession, captured_session
+from fdvv.twin.files import button_names
 from fdvv.units import FloatArray
-from fdvv.workflow import RecordedVibrations, recorded_vibrations
 
 FIRST_SEED, SEEDS = 300, 10
 
 
 def true_onset_mm(session: CapturedSession, velocity_mm_s: float) -> float:
-    """Give the median over good presses of where the leaf struck the contact."""
+    """Return the median over good presses of where the leaf struck the contact."""
     traces = [take.truth.trace for take in session.of("good", velocity_mm_s)]
     return float(
         np.median(
@@ -39,13 +42,15 @@ def true_onset_mm(session: CapturedSession, velocity_mm_s: float) -> float:
     )
 
 
-def errors(session: CapturedSession, told: RecordedVibrations, vibration: Vibration) -> tuple[float, ...]:
-    """Give the errors of onset (ms), frequency (%) and duration (%)."""
+def errors(
+    session: CapturedSession, estimated: RecordedVibrations, vibration: Vibration
+) -> tuple[float, ...]:
+    """Return the errors of onset (ms), frequency (%) and duration (%)."""
     assert vibration.velocity_mm_s is not None
     housing, velocity = session.button.housing, vibration.velocity_mm_s
     f = housing.first_Hz * math.sqrt(1 - housing.first_damping_ratio**2)
     lasts_s = math.log(10) / (2 * math.pi * housing.first_Hz * housing.first_damping_ratio)
-    heard = next(h for h in told.heard if (h.stroke, h.velocity_mm_s) == (vibration.stroke, velocity))
+    heard = next(h for h in estimated.strokes if (h.stroke, h.velocity_mm_s) == (vibration.stroke, velocity))
     speed = heard.report()["snap_velocity_mm_s"]
     return (
         1e3 * (vibration.onset_mm - true_onset_mm(session, velocity)) / speed,
@@ -63,12 +68,12 @@ def main(first_seed: int = FIRST_SEED, seeds: int = SEEDS) -> None:
             session = captured_session(name, seed)
             processed = process(session.recording)
             start = time.process_time()
-            told = recorded_vibrations(session.recording, processed)
+            estimated = recorded_vibrations(session.recording, processed)
             spent.append(time.process_time() - start)
-            exponents += [s.scaling.exponent for s in told.scalings if s.stroke is Stroke.PRESS]
-            for vibration in told.vibrations:
+            exponents += [s.scaling.exponent for s in estimated.scalings if s.stroke is Stroke.PRESS]
+            for vibration in estimated.vibrations:
                 if vibration.stroke is Stroke.PRESS and vibration.velocity_mm_s is not None:
-                    rows[name, vibration.velocity_mm_s].append(errors(session, told, vibration))
+                    rows[name, vibration.velocity_mm_s].append(errors(session, estimated, vibration))
                 releases += vibration.stroke is Stroke.RELEASE
         law = (
             f"{np.median(exponents):.2f} ({min(exponents):.2f} to {max(exponents):.2f})" if exponents else "–"
@@ -84,7 +89,7 @@ def main(first_seed: int = FIRST_SEED, seeds: int = SEEDS) -> None:
 
 
 def line(found: FloatArray) -> str:
-    """Tell errors over seeds, and how many meet 1 ms, 5 % and 10 %."""
+    """Summarize errors over seeds, and how many are within 1 ms, 5 % and 10 %."""
     parts = []
     for column, (what, unit, bound) in zip(
         found.T, (("onset", "ms", 1), ("frequency", "%", 5), ("duration", "%", 10)), strict=True

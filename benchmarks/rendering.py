@@ -28,10 +28,12 @@ from benchmarks.drawn_rigs import (
     run_all,
     spread,
 )
-from fdvv.compensate import RigAware, tuned_paper_law
-from fdvv.device import TwinDevice
+from fdvv.compensation.paper import tuned_paper_law
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.twin import TwinDevice
+from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.probe import probe
 from fdvv.units import FloatArray
-from fdvv.workflow import compensate, probe, uncompensated
 
 RIGS = 50
 PAPER: tuple[Options, ...] = (LOOP_4_kHz,)
@@ -40,21 +42,21 @@ BEST_SPEEDS_mm_s = (50.0, 100.0, 200.0, 300.0)
 
 
 def _judged(case: Case, method: str, speeds: tuple[float, ...]) -> tuple[FloatArray, int]:
-    """Give mean, largest and mean at the achieved speed, (strokes and speeds, 3), and presses used."""
+    """Return mean, largest and mean at the achieved speed, (strokes and speeds, 3), and presses used."""
     (rig, finger), model = case.parts(), case.model
     device, fresh = TwinDevice(rig, finger, case.seed), TwinDevice(rig, finger, case.seed + JUDGE)
     if method == "none":
-        told = probe(fresh, model, uncompensated(device, model, speeds), speeds, 4)
+        probed = probe(fresh, model, uncompensated(device, model, speeds), speeds, 4)
         presses = 0
     else:
         law = (
             RigAware() if method == "rig-aware" else tuned_paper_law(20, rig.controller.tick_s, hold_cN=80.0)
         )
         learned = compensate(device, model, speeds, law)
-        told = probe(fresh, model, learned.surface, speeds, 4, tuning=learned.outcome.tuning)
+        probed = probe(fresh, model, learned.surface, speeds, 4, tuning=learned.outcome.tuning)
         presses = learned.outcome.presses
     rows = [(c["mean_error_cN"], c["max_error_cN"], c["mean_error_at_achieved_speed_cN"])
-            for c in (curve.to_dict() for curve in told.curves)]  # fmt: skip
+            for c in (curve.to_dict() for curve in probed.curves)]  # fmt: skip
     return np.array(rows), presses
 
 

@@ -15,10 +15,13 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from benchmarks.drawn_rigs import CURRENT, FIRST_SEED, JUDGE, Case, LIGHT_12_g, LOOP_4_kHz, SPEEDS_mm_s
-from fdvv.compensate import RigAware
-from fdvv.device import Device, TwinDevice
-from fdvv.twin import finger_to_toml, rig_to_toml
-from fdvv.workflow import CompensationResult, compensate, open_device, probe
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import Device
+from fdvv.device.twin import TwinDevice
+from fdvv.rendering.compensate import CompensationResult, compensate
+from fdvv.rendering.probe import probe
+from fdvv.rendering.tuning import open_device
+from fdvv.twin.files import finger_to_toml, rig_to_toml
 
 OPTIONS = (LOOP_4_kHz, CURRENT, LIGHT_12_g, {"keycap_sensor": {"kind": "force"}})
 RIGS, PRESSES, JUDGED_mm_s = 3, 12, (50.0, 200.0)
@@ -33,13 +36,15 @@ def opened(name: str, case: Case, folder: Path) -> Device:
 
 
 def errors_cN(name: str, case: Case, learned: CompensationResult) -> list[float]:
-    """Give the mean error of every stroke and speed."""
+    """Return the mean error of every stroke and speed."""
     with TemporaryDirectory() as folder:
         device = opened(name, case, Path(folder))
-        told = probe(device, case.model, learned.surface, JUDGED_mm_s, PRESSES, tuning=learned.outcome.tuning)
+        probed = probe(
+            device, case.model, learned.surface, JUDGED_mm_s, PRESSES, tuning=learned.outcome.tuning
+        )
         if hasattr(device, "close"):
             device.close()
-    return [float(np.median(curve.mean_errors_cN)) for curve in told.curves]
+    return [float(np.median(curve.mean_errors_cN)) for curve in probed.curves]
 
 
 def main() -> None:

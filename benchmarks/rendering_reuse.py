@@ -25,12 +25,14 @@ from benchmarks.drawn_rigs import (
     run_all,
     spread,
 )
-from fdvv.compensate import RigAware
-from fdvv.device import TwinDevice
-from fdvv.model import FDVVModel
-from fdvv.twin import Finger, Rig, stage_finger
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.twin import TwinDevice
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.compensate import CompensationResult, compensate
+from fdvv.rendering.probe import fd_only, probe
+from fdvv.twin.finger import Finger, stage_finger
+from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
-from fdvv.workflow import CompensationResult, compensate, fd_only, probe
 
 RIGS = 20
 PARTS: dict[str, tuple[Options, ...]] = {
@@ -56,10 +58,10 @@ def judged(
     rig: Rig, finger: Finger, seed: int, model: FDVVModel, learned: CompensationResult,
     speeds: tuple[float, ...] = SPEEDS_mm_s, presses: int = 4,
 ) -> FloatArray:  # fmt: skip
-    """Give the mean errors of fresh presses, (strokes and speeds,)."""
+    """Return the mean errors of fresh presses, (strokes and speeds,)."""
     device = TwinDevice(rig, finger, seed + JUDGE)
-    told = probe(device, model, learned.surface, speeds, presses, tuning=learned.outcome.tuning)
-    return np.array([np.median(curve.mean_errors_cN) for curve in told.curves])
+    probed = probe(device, model, learned.surface, speeds, presses, tuning=learned.outcome.tuning)
+    return np.array([np.median(curve.mean_errors_cN) for curve in probed.curves])
 
 
 @dataclass(frozen=True)
@@ -69,10 +71,10 @@ class Edited:
     def __call__(self, case: Case) -> FloatArray:
         (rig, finger), model = case.parts(), case.model
         learned = learn(case, model)
-        assert learned.memory is not None
+        assert learned.learned_rig is not None
         rows = [judged(rig, finger, case.seed, model, learned)]
         for other in (stiffer(model), replace(case, button="mx-brown").model):
-            law = RigAware(rounds=0, memory=learned.memory)
+            law = RigAware(rounds=0, learned_rig=learned.learned_rig)
             at_once = compensate(TwinDevice(rig, finger, case.seed), other, SPEEDS_mm_s, law)
             rows.append(judged(rig, finger, case.seed, other, at_once))
         return np.array([row.mean() for row in rows])
@@ -84,7 +86,7 @@ class Static:
 
     def __call__(self, case: Case) -> FloatArray:
         (rig, finger), model = case.parts(), case.model
-        law = RigAware(rounds=0, memory=learn(case, model).memory)
+        law = RigAware(rounds=0, learned_rig=learn(case, model).learned_rig)
         slow = compensate(TwinDevice(rig, finger, case.seed), model, (STATIC_mm_s,), law)
         return judged(rig, stage_finger(), case.seed, model, slow, (STATIC_mm_s,), 1)
 

@@ -18,19 +18,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.capture import Cycle, ForceFile, average_by_velocity, read_force_file
+from fdvv.button.fit import measured_files
 from fdvv.errors import FdvvError
-from fdvv.model import (
-    MeasuredCurve,
-    Stroke,
-    active_part,
-    builtin_names,
-    find_contact_mm,
-    load_builtin,
-    running_mean,
-)
+from fdvv.formats.force.average import average_by_velocity
+from fdvv.formats.force.read import read_force_file
+from fdvv.formats.force.types import Cycle, ForceFile
+from fdvv.model.bump import find_contact_mm, running_mean
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.fit import active_part
 from fdvv.units import FloatArray
-from fdvv.workflow import measured_files
 
 GF_cN = 0.980665
 POINTS = 401
@@ -66,7 +63,7 @@ def readable(folder: Path) -> list[ForceFile]:
 
 
 def shipped() -> list[ForceFile]:
-    """Give the built-in buttons as files, sampled every 5 um, for where there are no measurements."""
+    """Return the built-in buttons as files, sampled every 5 um, for where there are no measurements."""
     found = []
     for name in builtin_names():
         model = load_builtin(name)
@@ -102,7 +99,7 @@ def repeat_noise(files: Sequence[ForceFile]) -> RepeatNoise:
 
 
 def _aligned(cycle: Cycle) -> tuple[FloatArray, float] | None:
-    """Give force of press and release over parts of the active travel, (2, 401), and where contact lies."""
+    """Return force of press and release over parts of the active travel, (2, 401), and where contact lies."""
     if cycle.press is None or cycle.release is None:
         return None
     try:
@@ -153,7 +150,7 @@ def write(file: ForceFile, stem: Path) -> int:
 
 
 def _run(cycle: Cycle) -> list[tuple[float, float]]:
-    """Give displacement in mm and force in gf along press and release."""
+    """Return displacement in mm and force in gf along press and release."""
     rows: list[tuple[float, float]] = []
     for stroke, step in ((cycle.press, 1), (cycle.release, -1)):
         if stroke is not None:

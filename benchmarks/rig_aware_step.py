@@ -11,12 +11,15 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from tests.support.rig_truth import draw_fast_rig
 
-from fdvv.compensate import Job, RigAware, RigState
-from fdvv.device import Device, TwinDevice
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.testing import draw_fast_rig
-from fdvv.workflow import settings_with
+from fdvv.compensation.method import CompensationJob
+from fdvv.compensation.rig_aware import RigAware, RigState
+from fdvv.device.contract import Device
+from fdvv.device.twin import TwinDevice
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.tuning import settings_with
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 BUTTON, OTHER = load_builtin("mx-clear"), load_builtin("mx-red")
@@ -30,7 +33,7 @@ DEVICES: dict[str, Callable[[], Device]] = {
 def learned(device: Device) -> tuple[list[float], RigState]:
     """Press and learn to the end; give the time of each step in ms, and the last state."""
     target = ForceSurface.of_model(BUTTON, SPEEDS_mm_s, METHOD.bin_mm)
-    state, times_ms = METHOD.init(Job(target, BUTTON.travel_mm, device.info().force_limit_cN)), []
+    state, times_ms = METHOD.init(CompensationJob(target, BUTTON.travel_mm, device.info().force_limit_cN)), []
     while (trial := METHOD.trial(state)) is not None:
         device.configure(settings_with(device.settings(), trial.tuning))
         device.upload(trial.surface, BUTTON.travel_mm, trial.tuning.paced)
@@ -42,9 +45,9 @@ def learned(device: Device) -> tuple[list[float], RigState]:
 
 
 def tables_ms(state: RigState) -> float:
-    """Give the time that tables of another button take, from what the rig has taught."""
+    """Return the time that tables of another button take, from what the rig has taught."""
     target = ForceSurface.of_model(OTHER, SPEEDS_mm_s, METHOD.bin_mm)
-    job, method = Job(target, OTHER.travel_mm, 440.0), RigAware(0, METHOD.remembered(state))
+    job, method = CompensationJob(target, OTHER.travel_mm, 440.0), RigAware(0, METHOD.learned(state))
     begun = time.perf_counter()
     method.done(method.init(job))
     return 1000 * (time.perf_counter() - begun)
@@ -54,10 +57,10 @@ def main() -> None:
     print("time of a step of the rig-aware method, ms (the presses are simulated)")
     for name, make in DEVICES.items():
         times_ms, state = learned(make())
-        steps = np.array(times_ms[METHOD.meet :])
-        told = f"median {np.median(steps):.1f}, largest {steps.max():.1f}"
-        met = f"identifying the rig {times_ms[METHOD.meet - 1]:.0f}"
-        print(f"  {name}: {told}; {met}; tables of another button {tables_ms(state):.1f}")
+        steps = np.array(times_ms[METHOD.identification_presses :])
+        summary = f"median {np.median(steps):.1f}, largest {steps.max():.1f}"
+        met = f"identifying the rig {times_ms[METHOD.identification_presses - 1]:.0f}"
+        print(f"  {name}: {summary}; {met}; tables of another button {tables_ms(state):.1f}")
 
 
 if __name__ == "__main__":

@@ -9,32 +9,21 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
+from tests.support.felt import felt, ways
+from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
+from tests.support.reference.reference import reference_simulate
 
 from benchmarks.rig_vibration import VELOCITIES_mm_s
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.testing import (
-    LinearLoop,
-    bare_loop,
-    coil_error_ratio,
-    cycles,
-    felt,
-    grainy_loop,
-    mean_response,
-    onset_N_m,
-    quantisation_limit_N_m,
-    ripple_N,
-    ways,
-)
-from fdvv.twin import (
-    Coil,
-    Finger,
-    Rig,
-    draw_noise,
-    reference_simulate,
-    simulate,
-    solve_pace,
-    vary,
-)
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.noise import draw_noise
+from fdvv.twin.pace import solve_pace
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Coil
+from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)

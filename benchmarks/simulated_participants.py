@@ -17,19 +17,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.model import FDVVModel, builtin_names, load_builtin
-from fdvv.study import (
-    ItemEffect,
-    PowerDesign,
-    ProxySettings,
-    Senses,
-    claim_holds,
-    felt_difference,
-    felt_features,
-    simulate_scores,
-    write_template,
-)
-from fdvv.workflow import fd_only, open_plan, stimulus_model, study_power
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.probe import fd_only
+from fdvv.study.plan.claim import claim_holds
+from fdvv.study.plan.plan_file import write_template
+from fdvv.study.simulation.people import ProxySettings
+from fdvv.study.simulation.perception import Senses, haptic_features, perceived_difference
+from fdvv.study.simulation.power import ItemEffect, PowerDesign, simulate_scores
+from fdvv.study.simulation.study_power import open_plan, study_power
+from fdvv.study.stimulus.renderer import stimulus_model
 
 PAPER_percent = 77.31
 PEOPLE = 12
@@ -62,19 +59,19 @@ def study_models() -> dict[str, FDVVModel]:
 
 
 def design(models: dict[str, FDVVModel], senses: Senses) -> PowerDesign:
-    """Give the paper's study of buttons whose reference is the whole model itself."""
+    """Return the paper's study of buttons whose reference is the whole model itself."""
 
     def effect(name: str, model: FDVVModel) -> ItemEffect:
-        whole, fd = felt_features(model, senses), felt_features(fd_only(model), senses)
-        apart = felt_difference(whole, fd, senses)
-        return ItemEffect(name, apart, felt_difference(whole, whole, senses), apart)
+        whole, fd = haptic_features(model, senses), haptic_features(fd_only(model), senses)
+        apart = perceived_difference(whole, fd, senses)
+        return ItemEffect(name, apart, perceived_difference(whole, whole, senses), apart)
 
     effects = tuple(effect(name, model) for name, model in models.items())
     return PowerDesign("realism", effects, rounds=6, ties=True, alpha=0.05)
 
 
 def shares_of(of: PowerDesign, studies: int, settings: ProxySettings) -> tuple[np.ndarray, float]:
-    """Give shares per item for, equal and against, and the power of twelve people."""
+    """Return shares per item for, equal and against, and the power of twelve people."""
     found = simulate_scores(of, PEOPLE, studies, settings=settings)
     upheld = claim_holds(found.scores, of.alpha) & (found.scores.sum(axis=1) > 0)
     return found.shares, float(upheld.mean())
@@ -86,8 +83,8 @@ def buttons(studies: int) -> None:
         shares, power = shares_of(of, studies, ProxySettings())
         print(f"{title}, simulated           JND   % FDVV  % equal  % FD   % FDVV of not equal")
         for effect, row in zip(of.effects, shares, strict=True):
-            print(f"  {effect.item:28s} {effect.between.total_JND:7.2f} {told(row)}")
-        print(f"  {'all':28s} {'':7s} {told(shares.mean(axis=0))}   power of {PEOPLE} people {power:.2f}")
+            print(f"  {effect.item:28s} {effect.between.total_JND:7.2f} {as_text(row)}")
+        print(f"  {'all':28s} {'':7s} {as_text(shares.mean(axis=0))}   power of {PEOPLE} people {power:.2f}")
         print(f"  {'the paper, measured':28s} {'':7s} {PAPER_percent:8.2f}        -      -\n")
 
 
@@ -125,7 +122,7 @@ def speed(_studies: int) -> None:
         print(f"{time.process_time() - cpu:.1f} s of one core")
 
 
-def told(row: Sequence[float] | np.ndarray) -> str:
+def as_text(row: Sequence[float] | np.ndarray) -> str:
     chosen, equal, other = row
     part = 100 * chosen / (chosen + other)
     return f"{100 * chosen:8.1f} {100 * equal:8.1f} {100 * other:6.1f} {part:10.1f}"

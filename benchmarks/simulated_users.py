@@ -15,34 +15,33 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.model import FDVVModel, load_builtin
-from fdvv.optimize import (
+from benchmarks.paper_means import (
     PAPER_BUTTONS,
     PAPER_MEANS_ms,
     PAPER_SPREADS_ms,
-    SimulatedUser,
-    TemporalPointing,
-    draw_users,
-    fit_timing,
-    paper_model,
-    paper_space,
-    pooled_log_likelihood,
-    read_taps,
-    spread_error_ratio,
-    timing_log_likelihood,
-)
-from fdvv.units import FloatArray
-from fdvv.workflow import (
     PaperFit,
     PaperModel,
     PaperPresses,
     PaperStudy,
     adapted_ms,
     fit_paper,
-    force_spread_ratio,
     press_table,
-    score_design,
 )
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.people.calibration import (
+    fit_timing,
+    force_spread_ratio,
+    pooled_log_likelihood,
+    read_taps,
+    spread_error_ratio,
+    timing_log_likelihood,
+)
+from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.user import SimulatedUser, draw_users
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.units import FloatArray
 
 GAINS = (0.0, 0.05, 0.1, 0.3)
 BLOCKS = 20
@@ -57,8 +56,8 @@ def speed() -> None:
     places = np.random.default_rng(0).random((20, len(space.names)))
     designs = [paper_model(design) for design in space.of_unit(places)]
     new = [_score_ms(task, model, user, 0) for model in designs]
-    told = f"{np.median(same):.1f} ms of processor, of a new random design {np.median(new):.1f}"
-    print(f"a score of 20 presses: {told}")
+    reported = f"{np.median(same):.1f} ms of processor, of a new random design {np.median(new):.1f}"
+    print(f"a score of 20 presses: {reported}")
 
 
 def _score_ms(task: TemporalPointing, model: FDVVModel, user: SimulatedUser, seed: int) -> float:
@@ -90,8 +89,8 @@ def _print_fit(label: str, fit: PaperFit) -> None:
     numbers = f"bias {fit.bias_ms:.0f} ms, pace {fit.pace_mm_s:.0f} mm/s, zone {fit.zone_px:.1f} px"
     print(f"\n{label}: {numbers}")
     for level in fit.means_ms:
-        told = "fitted" if level in fit.levels else "PREDICTED"
-        print(_row(f"  {level}, {told}", fit.means_ms[level]))
+        reported = "fitted" if level in fit.levels else "PREDICTED"
+        print(_row(f"  {level}, {reported}", fit.means_ms[level]))
         print(_row(f"  off (rms {fit.error_ms(level):.1f})", fit.residuals_ms(level)))
 
 
@@ -132,7 +131,7 @@ def _outcome(middle: SimulatedUser) -> tuple[float, float, float]:
 
 
 def designs() -> None:
-    """Tell which parameters of the paper's space go with the middle person's asynchrony."""
+    """Report which parameters of the paper's space go with the middle person's asynchrony."""
     from scipy.stats import spearmanr
 
     user, task, space = SimulatedUser(), TemporalPointing("easy"), paper_space()
@@ -149,7 +148,7 @@ def designs() -> None:
 
 
 def noise() -> None:
-    """Tell the noise of a 20-press score, and how people differ."""
+    """Report the noise of a 20-press score, and how people differ."""
     for level in PAPER_MEANS_ms:
         for gain in (0.0, SimulatedUser().adaptation_ratio):
             _print_noise(TemporalPointing(level), gain)
@@ -160,11 +159,11 @@ def _print_noise(task: TemporalPointing, gain: float) -> None:
     users = [replace(user, adaptation_ratio=gain) for user in draw_users(20)]
     scores = [[score_design(task, model, u, seed)["asynchrony_ms"] for seed in range(4)] for u in users]
     table = np.array([[score.value for score in row] for row in scores])
-    told = np.mean([score.error or 0.0 for row in scores for score in row])
+    reported = np.mean([score.error or 0.0 for row in scores for score in row])
     within = np.sqrt(np.mean(np.var(table, axis=1, ddof=1)))
     between = np.std(table.mean(axis=1), ddof=1)
     print(f"{task.level}, gain {gain:g}, mx-brown: mean {table.mean():.1f} ms; a score scatters by", end=" ")
-    print(f"{within:.1f} (told {told:.1f}), people by {between:.1f}")
+    print(f"{within:.1f} (reported {reported:.1f}), people by {between:.1f}")
 
 
 def people() -> None:

@@ -1,7 +1,7 @@
 """Are the standard errors of landmarks those by which whole recordings differ? Simulated; half a minute.
 
 Run as ``python -m benchmarks.spread``, or with the number of recordings. The same simulated button is
-recorded anew, 15 presses at each pace, with another session's errors and another finger's luck. Told are the
+recorded anew, 15 presses at each pace, with another session's errors and another finger's luck. Shown are the
 standard deviation of each landmark between recordings, and the median of the errors that the models tell.
 With twelve recordings the first is known to a fifth; what a session gets wrong as a whole is in it, and in no
 model's error.
@@ -15,11 +15,12 @@ from collections import defaultdict
 
 import numpy as np
 
-from fdvv.model import landmark_errors, landmarks
-from fdvv.preprocess import Processed
-from fdvv.recording import Recording
-from fdvv.testing import captured_session
-from fdvv.workflow import RecordedVibrations, model_of_recording
+from fdvv.bench.model import model_of_recording
+from fdvv.bench.vibration import RecordedVibrations
+from fdvv.model.landmarks import landmark_errors, landmarks
+from fdvv.preprocess.process import Processed
+from fdvv.recording.types import Recording
+from fdvv.testing.captured import captured_session
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
 NAMES = (
@@ -56,10 +57,12 @@ def main() -> None:
                 if value is not None and name in errors:
                     found[name, pace].append((value, errors[name].error))
     print(f"simulated, {count} recordings of 60 presses; {np.median(spent_s):.2f} s of processor time each")
-    print("landmark           mm/s     mean  between recordings  told")
+    print("landmark           mm/s     mean  between recordings  reported")
     for (name, pace), pairs in sorted(found.items()):
-        values, told = np.array(pairs).T
-        print(f"{name:17} {pace:5g} {values.mean():8.3f} {values.std(ddof=1):12.3f} {np.median(told):13.3f}")
+        values, reported = np.array(pairs).T
+        print(
+            f"{name:17} {pace:5g} {values.mean():8.3f} {values.std(ddof=1):12.3f} {np.median(reported):13.3f}"
+        )
 
 
 if __name__ == "__main__":

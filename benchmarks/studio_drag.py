@@ -32,7 +32,7 @@ OBSERVE = """() => {
 
 @contextmanager
 def studio() -> Iterator[str]:
-    """Give the address of a studio of its own."""
+    """Return the address of a studio of its own."""
     with tempfile.TemporaryDirectory() as project:
         command = ["-m", "fdvv", "studio", "--project", project, "--port", "0", "--no-browser"]
         process = subprocess.Popen([sys.executable, *command], stdout=subprocess.PIPE, text=True)
@@ -81,7 +81,7 @@ def dragged(page: Page, moves: int) -> list[tuple[str, float, float]]:
     return [(str(n), float(s), float(d)) for n, s, d in page.evaluate("window.measured")]
 
 
-def told(what: str, times_ms: list[float]) -> str:
+def summary(what: str, times_ms: list[float]) -> str:
     median, most = np.percentile(times_ms, [50, 99])
     return f"  {what}: median {median:.1f} ms, 99th percentile {most:.1f} ms, of {len(times_ms)}"
 
@@ -104,10 +104,10 @@ def main() -> None:
             redraws.append(since)
             since = 0.0
     print("dragging a control point of MX Clear, 10 curves, in Chromium")
-    print(told("work of a move (edit, panels)", hand))
-    print(told("work of a picture", draw))
-    print(told("redraw: picture and the moves it shows", redraws))
-    print(told("the rig's answer, simulated rig, from question to answer", rig))
+    print(summary("work of a move (edit, panels)", hand))
+    print(summary("work of a picture", draw))
+    print(summary("redraw: picture and the moves it shows", redraws))
+    print(summary("the rig's answer, simulated rig, from question to answer", rig))
 
 
 if __name__ == "__main__":

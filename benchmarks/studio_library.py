@@ -21,9 +21,12 @@ import numpy as np
 from playwright.sync_api import Page, expect, sync_playwright
 from tests.studio.running import RunningStudio
 
+from fdvv.button.fit import measured_files
 from fdvv.errors import FdvvError
-from fdvv.workflow import Shelf, ShelfIndex, ShelfQuery, ShelfSearch, measured_files
-from fdvv.workflow._shelf_read import measured_button
+from fdvv.library.catalog import Catalog
+from fdvv.library.figures import polylines_of_file
+from fdvv.library.index import CatalogIndex
+from fdvv.library.search import CatalogSearch, SearchQuery
 
 WORDS = ("cherry mx", "gateron yel", "box navy", "gatreon", "silent red", "x", "topre 45")
 PAINTED = """
@@ -69,10 +72,10 @@ SCROLL = """
 
 
 def usable(folder: Path) -> Iterator[Path]:
-    """Give the files of a folder that can be read."""
+    """Return the files of a folder that can be read."""
     for path in measured_files(folder):
         try:
-            measured_button(path)
+            polylines_of_file(path)
         except FdvvError:
             continue
         yield path
@@ -87,35 +90,35 @@ def replicate(files: list[Path], into: Path, count: int) -> None:
         shutil.copyfile(path, target)
 
 
-def scan_s(source: Path, project: Path) -> tuple[float, ShelfIndex]:
+def scan_s(source: Path, project: Path) -> tuple[float, CatalogIndex]:
     """Index once; give the seconds."""
-    index = ShelfIndex(Shelf(project, [source]), project / "cache" / "shelf.jsonl")
+    index = CatalogIndex(Catalog(project, [source]), project / "cache" / "shelf.jsonl")
     begun = time.perf_counter()
     index.scan()
     return time.perf_counter() - begun, index
 
 
-def told(name: str, times_ms: list[float]) -> str:
+def summary(name: str, times_ms: list[float]) -> str:
     """Write median, 99th percentile and the largest."""
     p50, p99, most = np.percentile(times_ms, (50, 99, 100))
     return f"{name}: median {p50:.1f} ms, 99 % {p99:.1f} ms, largest {most:.1f} ms of {len(times_ms)}"
 
 
-def server(index: ShelfIndex) -> None:
+def server(index: CatalogIndex) -> None:
     """Time what the server does for one letter."""
-    search = ShelfSearch()
+    search = CatalogSearch()
     begun = time.perf_counter()
-    search.extend(index.stand.rows)
+    search.extend(index.status.rows)
     print(f"made ready to search: {1e3 * (time.perf_counter() - begun):.0f} ms")
     times = []
     for word in WORDS:
         for n in range(1, len(word) + 1):
             begun = time.perf_counter()
-            search.find(ShelfQuery(word[:n]))
+            search.find(SearchQuery(word[:n]))
             times.append(1e3 * (time.perf_counter() - begun))
-    print(told("search in the server", times))
+    print(summary("search in the server", times))
     begun = time.perf_counter()
-    search.find(ShelfQuery(like=index.stand.rows[0].id))
+    search.find(SearchQuery(like=index.status.rows[0].id))
     print(f"nearest to one button: {1e3 * (time.perf_counter() - begun):.0f} ms")
 
 
@@ -124,10 +127,10 @@ def browsed(page: Page) -> None:
     times: list[float] = []
     for word in WORDS:
         times += page.evaluate(PAINTED, word)
-    print(told("key press to painted rows", times))
+    print(summary("key press to painted rows", times))
     page.locator(".lib-search").fill("")
-    print(told("frames at rest", page.evaluate(SCROLL, [200, 0])))
-    print(told("frames while scrolling 180 px a frame", page.evaluate(SCROLL, [600, 180])))
+    print(summary("frames at rest", page.evaluate(SCROLL, [200, 0])))
+    print(summary("frames while scrolling 180 px a frame", page.evaluate(SCROLL, [600, 180])))
 
 
 def main() -> None:
@@ -151,7 +154,7 @@ def main() -> None:
             page = browser.new_page(viewport={"width": 1280, "height": 720})
             begun = time.perf_counter()
             page.goto(studio.address)
-            everything = f"{len(warm[0][1].stand.rows)} buttons"
+            everything = f"{len(warm[0][1].status.rows)} buttons"
             expect(page.locator(".lib-status")).to_contain_text(everything, timeout=60_000)
             print(f"page opened to all rows listed: {time.perf_counter() - begun:.2f} s")
             browsed(page)

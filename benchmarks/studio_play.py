@@ -2,7 +2,7 @@
 
 Run as ``python -m benchmarks.studio_play [presses]`` (40 by default). A script in the page presses as soon as
 the picture's own pixels show the bullet at the middle of the zone or beyond; what a press takes the simulated
-button is known from a simulation of its own. Told: the bound of the two clocks' offset, the way from hand to
+button is known from a simulation of its own. Shown: the bound of the two clocks' offset, the way from hand to
 simulation, which is taken out, and how far the asynchrony that is kept is from what the times say.
 """
 
@@ -19,7 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.workflow import KeyHand, LiveEventKind, LivePress, OptimizeSession, model_subject
+from fdvv.live.binary_finger import BinaryFinger
+from fdvv.live.press import LiveEventKind, LivePress
+from fdvv.live.press_subject import model_subject
+from fdvv.optimize.run.session import Optimization
 
 ZONE_ratio = 100 / 144
 WATCH = """(x_ratio) => {
@@ -94,10 +97,10 @@ def played(chromium: str, project: Path, presses: int) -> tuple[dict[str, list[d
 
 
 def button_ms(folder: Path) -> float:
-    """Give how long a press takes the first design of a run, simulated here and now."""
-    with OptimizeSession.open(folder) as session:
+    """Return how long a press takes the first design of a run, simulated here and now."""
+    with Optimization.open(folder) as session:
         press = LivePress(model_subject(session.model(session.trials[0].design)), session.setup.seed)
-    hand, found = KeyHand.of(press.subject), []
+    hand, found = BinaryFinger.of(press.subject), []
     for _ in range(9):
         start_s = press.time_s
         hand.down(press)
@@ -108,7 +111,7 @@ def button_ms(folder: Path) -> float:
     return 1e3 * float(np.median(found))
 
 
-def told(what: str, values_ms: list[float]) -> None:
+def report(what: str, values_ms: list[float]) -> None:
     """Print middle and ends."""
     low, middle, high = np.percentile(values_ms, [1, 50, 99])
     print(f"{what}: median {middle:.2f} ms, 1 to 99 % {low:.2f} to {high:.2f} ms ({len(values_ms)} presses)")
@@ -125,13 +128,13 @@ def main(presses: int = 40) -> None:
     rounds, kept, downs = said["round"], said["kept"], said["down"]
     delays_ms = [one["input"]["ms"] + one["display"]["ms"] for one in rounds]
     print(f"a press takes the button {took_ms:.1f} ms; pictures every {rounds[-1]['frame_ms']:.2f} ms")
-    told("bound of the clocks' offset", [one["clock_error_ms"] for one in rounds])
-    told("from hand to simulation, taken out", [one["transport_ms"] for one in kept])
+    report("bound of the clocks' offset", [one["clock_error_ms"] for one in rounds])
+    report("from hand to simulation, taken out", [one["transport_ms"] for one in kept])
     late = [one["at_ms"] + took_ms - r["target_ms"] for one, r in zip(downs, rounds, strict=True)]
     error = [k["late_ms"] - x + d for k, x, d in zip(kept, late, delays_ms, strict=True)]
-    told("asynchrony kept, less what its times say", error)
+    report("asynchrony kept, less what its times say", error)
     after = [at_ms - r["target_ms"] for at_ms, r in zip(seen, rounds, strict=True)]
-    told("picture that shows the bullet in the zone, less the time when it is there", after)
+    report("picture that shows the bullet in the zone, less the time when it is there", after)
 
 
 if __name__ == "__main__":

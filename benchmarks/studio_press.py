@@ -19,8 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.model import load_builtin
-from fdvv.workflow import LiveFrame, LivePress, LiveRun, PressMode, drawn_trace, model_subject
+from fdvv.live.press import LivePress
+from fdvv.live.press_subject import PressMode, drawn_trace, model_subject
+from fdvv.live.run import LiveFrame, LiveRun
+from fdvv.model.file import load_builtin
 
 STEP_s, SIMULATED_s = 0.004, 10.0
 RIGS = (
@@ -34,7 +36,7 @@ MOVED_mm = 0.05
 
 
 def real_time_factor(mode: PressMode, rig: str) -> float:
-    """Give simulated time over computing time."""
+    """Return simulated time over computing time."""
     press = LivePress(model_subject(load_builtin("mx-clear"), mode, rig))
     began = time.process_time()
     for step in range(round(SIMULATED_s / STEP_s)):
@@ -45,7 +47,7 @@ def real_time_factor(mode: PressMode, rig: str) -> float:
 
 
 def dropped(seconds: float) -> tuple[float, float, float]:
-    """Give seconds that passed, seconds that were dropped, and part of real time that computing took."""
+    """Return seconds that passed, seconds that were dropped, and part of real time that computing took."""
     frames: list[LiveFrame] = []
     press = LivePress(model_subject(load_builtin("mx-clear")))
     began = time.monotonic()
@@ -122,7 +124,7 @@ def drum(page: Any) -> dict[str, list[float]]:
     return found
 
 
-def told(delays_ms: list[float]) -> str:
+def summary(delays_ms: list[float]) -> str:
     """Write median and 99th percentile."""
     return f"median {np.median(delays_ms):.0f} ms, 99 % within {np.percentile(delays_ms, 99):.0f} ms"
 
@@ -138,8 +140,8 @@ def main(seconds: float = 60.0) -> None:
         print("hand to screen: Chromium is not installed")
         return
     found = hand_to_screen(chromium)
-    print(f"key to a drawn frame that knows of it, {len(found['drawn'])} presses: {told(found['drawn'])}")
-    print(f"key to the drawn cap having moved {MOVED_mm:g} mm: {told(found['moved'])}")
+    print(f"key to a drawn frame that knows of it, {len(found['drawn'])} presses: {summary(found['drawn'])}")
+    print(f"key to the drawn cap having moved {MOVED_mm:g} mm: {summary(found['moved'])}")
 
 
 if __name__ == "__main__":

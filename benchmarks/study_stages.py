@@ -4,7 +4,7 @@ Run as ``python -m benchmarks.study_stages [changes]`` (60 by default). Felt: rm
 force over both strokes, median of 8 presses of a simulated finger at each pace, on the rig of perfect parts.
 Changes: from asked to done, on the clock of the machine, of a person's stage, to FD and to FDVV in turn, and
 of making a trial ready with FD behind A or behind B; how often one took longer than the other (0.5: nothing
-is told by it).
+is discriminated by it).
 """
 
 from __future__ import annotations
@@ -15,23 +15,28 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.study import Stimulus
-from fdvv.workflow import KeyHand, LivePress, PersonStage, StageEvidence, model_subject, stimulus_model
+from fdvv.live.binary_finger import BinaryFinger
+from fdvv.live.press import LivePress
+from fdvv.live.press_subject import model_subject
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.stimulus.evidence import RenderingEvidence
+from fdvv.study.stimulus.renderer import stimulus_model
+from fdvv.study.stimulus.twin import TwinRenderer
 
 BUTTONS, PACES_mm_s, PRESSES = ("mx-clear", "rubber-dome"), (15, 40, 120, 300, 450, 600), 8
 SWITCH_s = 0.1
 
 
 def stimuli(button: str) -> tuple[Stimulus, Stimulus]:
-    """Give both renderings of a button."""
+    """Return both renderings of a button."""
     return Stimulus(name="FD", button=button, rendered="FD"), Stimulus(name="FDVV", button=button)
 
 
 def felt(stimulus: Stimulus, pace_mm_s: float) -> tuple[float, float]:
-    """Give the median error (cN) and speed (mm/s) of presses at a pace."""
+    """Return the median error (cN) and speed (mm/s) of presses at a pace."""
     model = stimulus_model(stimulus, Path())
-    evidence, press = StageEvidence("A", stimulus.name, model), LivePress(model_subject(model), 1)
-    hand = KeyHand(KeyHand.of(press.subject).bottom_mm, pace_mm_s)
+    evidence, press = RenderingEvidence("A", stimulus.name, model), LivePress(model_subject(model), 1)
+    hand = BinaryFinger(BinaryFinger.of(press.subject).bottom_mm, pace_mm_s)
     for _ in range(PRESSES):
         for lead in (hand.down, hand.up):
             lead(press)
@@ -43,7 +48,7 @@ def felt(stimulus: Stimulus, pace_mm_s: float) -> tuple[float, float]:
 
 
 def longer(one_s: list[float], other_s: list[float]) -> float:
-    """Give how often a time of the one is above one of the other."""
+    """Return how often a time of the one is above one of the other."""
     a, b = np.array(one_s)[:, None], np.array(other_s)[None, :]
     return float(np.mean((a > b) + 0.5 * (a == b)))
 
@@ -51,7 +56,7 @@ def longer(one_s: list[float], other_s: list[float]) -> float:
 def changes(count: int) -> tuple[list[float], list[float], list[float], list[float]]:
     """Time changes to FD and to FDVV, and making ready with FD behind A and behind B."""
     fd, fdvv = stimuli("mx-clear")
-    stage = PersonStage(Path(), lambda _frame: None, switch_s=SWITCH_s)
+    stage = TwinRenderer(Path(), lambda _frame: None, switch_s=SWITCH_s)
     times: tuple[list[float], ...] = ([], [], [], [])
     to_fd, to_fdvv, ready_a, ready_b = times
     stage.prepare({"A": fd, "B": fdvv})
@@ -79,13 +84,13 @@ def main() -> None:
             ]
             print(f"{button} {stimulus.name}: {', '.join(cells)}")
     to_fd, to_fdvv, ready_a, ready_b = changes(count)
-    for told, one, other in (
+    for label, one, other in (
         ("change to FDVV, to FD", to_fdvv, to_fd),
         ("ready with FD behind B, behind A", ready_b, ready_a),
     ):
         middle = " and ".join(f"{1e3 * np.median(times):.2f} ms" for times in (one, other))
         print(
-            f"{told}: {middle}; the first is longer in {longer(one, other):.2f} of {len(one)} x {len(other)}"
+            f"{label}: {middle}; the first is longer in {longer(one, other):.2f} of {len(one)} x {len(other)}"
         )
 
 

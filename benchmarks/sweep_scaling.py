@@ -18,8 +18,9 @@ import time
 from pathlib import Path
 
 from benchmarks.library_build import Used, children_s, watched
-from fdvv.workflow import SweepPlan, open_executor, run_sweep
-from fdvv.workflow._sweep import RESULTS
+from fdvv.parallel.open import open_executor
+from fdvv.sweep.plan import SweepPlan
+from fdvv.sweep.sweep import RESULTS, run_sweep
 
 
 def plan(repeats: int) -> SweepPlan:
@@ -57,13 +58,13 @@ def main(repeats: int = 8) -> None:
     load = f"load of the machine before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
     print(f"{asked.count} cells (simulated); {load}")
     alone, first = timed(asked, 1, None)
-    print(told("1 process", alone, alone))
+    print(summary("1 process", alone, alone))
     for name, processes, workers in (("2 processes", 2, None), ("2 dask workers", None, 2)):
         used, digest = timed(asked, processes, workers)
-        print(f"{told(name, used, alone)}; rows {'the same' if digest == first else 'DIFFER'}")
+        print(f"{summary(name, used, alone)}; rows {'the same' if digest == first else 'DIFFER'}")
 
 
-def told(name: str, used: Used, alone: Used) -> str:
+def summary(name: str, used: Used, alone: Used) -> str:
     """Write what a run took beside that of one process."""
     return (
         f"{name}: wall {used.wall_s:.1f} s, {alone.wall_s / used.wall_s:.2f} times as fast; processor "

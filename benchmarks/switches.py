@@ -13,9 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.capture import average_cycles, find_force_files, read_force_file
 from fdvv.errors import InputError
-from fdvv.model import BUMP_KEPT_ratio, CurveFit, FitMethod, MeasuredCurve, Stroke, active_part, fit_curve
+from fdvv.formats.force.average import average_cycles
+from fdvv.formats.force.read import find_force_files, read_force_file
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
 
 WAYS: dict[str, Callable[[MeasuredCurve], CurveFit]] = {
     "free knots, degree 2 (default)": fit_curve,
@@ -30,7 +32,7 @@ WAYS: dict[str, Callable[[MeasuredCurve], CurveFit]] = {
 
 
 def strokes(folder: Path) -> list[MeasuredCurve]:
-    """Read every stroke of a folder; a refused file is told and left out."""
+    """Read every stroke of a folder; a refused file is reported and left out."""
     found = []
     for path in find_force_files(folder):
         try:

@@ -11,24 +11,18 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
+from tests.support.reference.reference import reference_simulate
 
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.twin import (
-    Controller,
-    Exciter,
-    Finger,
-    Rig,
-    RigPress,
-    draw_noise,
-    image_of,
-    plan,
-    reference_simulate,
-    silence,
-    simulate,
-    simulate_rig_batch,
-    solve_pace,
-    vary,
-)
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan, vary
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import draw_noise, silence
+from fdvv.twin.pace import solve_pace
+from fdvv.twin.rig import Controller, Rig
+from fdvv.twin.rig_moves import Exciter
+from fdvv.twin.simulate import RigPress, simulate, simulate_rig_batch
 from fdvv.units import m_from_mm
 
 PACES_mm_s = (50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0)
@@ -52,7 +46,7 @@ def press_of(rig: Rig, velocity_mm_s: float, seed: int) -> RigPress:
 
 
 def times_real_time(press: RigPress, rounds: int = 9) -> float:
-    """Give simulated over computing time, median of rounds."""
+    """Return simulated over computing time, median of rounds."""
     spent = []
     for _ in range(rounds):
         begun = time.thread_time()

@@ -1,4 +1,4 @@
-"""How well is the force at a speed told from the curves at other speeds?
+"""How well is the force at a speed predicted from the curves at other speeds?
 
 Leave one speed out, on the ten published curves: each is predicted from the four others of its stroke and
 compared from 0.25 mm to 4 mm. Run as ``python -m benchmarks.velocity_interpolation``. The speeds inside
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from benchmarks.velocity_rules import MODEL, RULES, Rule, X_mm
-from fdvv.model import Stroke
+from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
 
 Case = tuple[Stroke, int]
@@ -49,7 +49,7 @@ def nested_choice(case: Case, strokes: Sequence[Stroke]) -> str:
 
 
 def hindsight_cN(case: Case) -> tuple[float, float]:
-    """Give the least RMSE that any mix of the two neighbours, and of all four curves, could have had."""
+    """Return the least RMSE that any mix of the two neighbours, and of all four curves, could have had."""
     stroke, out = case
     F = FORCE_cN[stroke]
 
@@ -63,14 +63,14 @@ def hindsight_cN(case: Case) -> tuple[float, float]:
 
 
 def row(rule: Rule) -> tuple[float, ...]:
-    """Give RMSE inside for press, release, both; largest error inside; RMSE at 0.5, at 200 mm/s."""
+    """Return RMSE inside for press, release, both; largest error inside; RMSE at 0.5, at 200 mm/s."""
     press, release = ([error_cN(rule, c) for c in INSIDE if c[0] is s] for s in Stroke)
     ends = (rms([error_cN(rule, c) for c in ENDS if c[1] == i]) for i in (0, 4))
     return (rms(press), rms(release), rms(press + release), float(np.abs(press + release).max()), *ends)
 
 
 def nested_cN(per_stroke: bool) -> float:
-    """Give the RMSE inside when the rule itself is chosen anew for each curve that judges."""
+    """Return the RMSE inside when the rule itself is chosen anew for each curve that judges."""
     picks = {c: nested_choice(c, (c[0],) if per_stroke else tuple(Stroke)) for c in INSIDE}
     return rms([error_cN(RULES[name], c) for c, name in picks.items()])
 

@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator, CubicHermiteSpline, CubicSpline, PchipInterpolator
 
-from fdvv.model import Interpolation, load_builtin
+from fdvv.model.file import load_builtin
+from fdvv.model.velocity import Interpolation
 from fdvv.units import FloatArray
 
 Rule = Callable[[FloatArray, FloatArray, float], FloatArray]

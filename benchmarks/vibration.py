@@ -19,34 +19,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.model import Stroke
-from fdvv.twin import (
-    ButtonPhysics,
-    ButtonTrace,
-    CaptureRig,
-    Finger,
-    ForceSensor,
-    button_names,
-    draw_button_noise,
-    load_button,
-    simulate_button,
-    solve_button_pace,
-    vary,
-)
+from fdvv.model.curve import Stroke
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import button_names, load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.pace import solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace, draw_button_noise, simulate_button
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
-from fdvv.vibration import (
-    HeardPress,
-    MeasuredVibration,
-    NotFound,
-    PacePresses,
-    Snap,
-    SnapEnergy,
-    cramer_rao,
-    duration_s,
-    find_snap,
-    measure_paces,
-    snap_energy,
-)
+from fdvv.vibration.damped import cramer_rao, duration_s
+from fdvv.vibration.pool import MeasuredVibration, SnapEnergy, snap_energy
+from fdvv.vibration.shared import PacePresses, measure_paces
+from fdvv.vibration.snap import HeardPress, NotFound, Snap, find_snap
 
 SENSORS = ("mic_1k", "mic_10k", "plate")
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -84,7 +70,7 @@ def traces(name: str, velocity_mm_s: float, seeds: Sequence[int]) -> list[Button
 def heard(
     trace: ButtonTrace, sensor: str, random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Give times (the filter's delay taken off), signal and noise per sample."""
+    """Return times (the filter's delay taken off), signal and noise per sample."""
     rig = CaptureRig()
     if sensor == "mic_1k":
         lsb = rig.sound_range_V / 2**rig.sound_bits
@@ -102,7 +88,7 @@ def heard(
 
 
 def heard_V(trace: ButtonTrace, rig: CaptureRig) -> FloatArray:
-    """Give what the microphone makes of a press before noise and converter, on the trace's rows."""
+    """Return what the microphone makes of a press before noise and converter, on the trace's rows."""
     from scipy.signal import lfilter
 
     step = float(trace.t_s[1])
@@ -113,7 +99,7 @@ def heard_V(trace: ButtonTrace, rig: CaptureRig) -> FloatArray:
 
 
 def onset_s(trace: ButtonTrace, stroke: Stroke) -> float:
-    """Give the truth: the leaf strikes the contact, or the cam begins to take its load off it."""
+    """Return the truth: the leaf strikes the contact, or the cam begins to take its load off it."""
     assert trace.closing_s is not None
     assert trace.opening_s is not None
     if stroke is Stroke.PRESS:
@@ -148,7 +134,7 @@ def window_of(button: ButtonPhysics, energy: SnapEnergy | None) -> tuple[float, 
 
 
 def single(found: list[Case], window_mm: tuple[float, float]) -> str:
-    """Tell how many single presses show a turn, and how far from the truth."""
+    """Return how many single presses show a turn, and how far from the truth."""
     snaps = [find_snap(case.press, window_mm) for case in found]
     pairs = zip(found, snaps, strict=True)
     errors = np.array([1e3 * (s.onset_s - case.onset_s) for case, s in pairs if isinstance(s, Snap)])
@@ -163,7 +149,7 @@ def single(found: list[Case], window_mm: tuple[float, float]) -> str:
 
 
 def pooled(found: list[Case], measured: MeasuredVibration | NotFound, button: ButtonPhysics) -> str:
-    """Tell errors of the pooled vibration."""
+    """Return errors of the pooled vibration."""
     if isinstance(measured, NotFound):
         return f"pooled: not found ({measured.reason})"
     true_mm = np.median([np.interp(c.onset_s, c.trace.t_s, c.trace.displacement_mm) for c in found])
@@ -178,24 +164,24 @@ def pooled(found: list[Case], measured: MeasuredVibration | NotFound, button: Bu
     if isinstance(measured.ring, NotFound):
         return f"{text}; ring not found ({measured.ring.reason})"
     f, d = true_mode(button)
-    told, lasts = measured.ring.mode, measured.ring.duration_s
+    mode, lasts = measured.ring.mode, measured.ring.duration_s
     return (
-        f"{text}; {told.frequency_Hz:.0f} +- {told.frequency_sd_Hz:.1f} Hz "
-        f"({100 * (told.frequency_Hz / f - 1):+.1f} %), {1e3 * lasts:.1f} +- "
+        f"{text}; {mode.frequency_Hz:.0f} +- {mode.frequency_sd_Hz:.1f} Hz "
+        f"({100 * (mode.frequency_Hz / f - 1):+.1f} %), {1e3 * lasts:.1f} +- "
         f"{1e3 * measured.ring.duration_sd_s:.1f} ms ({100 * (lasts / duration_s(d) - 1):+.0f} %), "
         f"left over {measured.ring.noise_ratio:.1f} x noise"
     )
 
 
 def true_mode(button: ButtonPhysics) -> tuple[float, float]:
-    """Give frequency (Hz) and decay (1/s) at which the plate's first mode rings."""
+    """Return frequency (Hz) and decay (1/s) at which the plate's first mode rings."""
     h = button.housing
     full = 2 * math.pi * h.first_Hz
     return h.first_Hz * math.sqrt(1 - h.first_damping_ratio**2), full * h.first_damping_ratio
 
 
 def bound(found: list[Case], sensor: str, button: ButtonPhysics) -> str:
-    """Tell what noise alone leaves of frequency and duration, were the onset known: Cramer and Rao."""
+    """Return what noise alone leaves of frequency and duration, were the onset known: Cramer and Rao."""
     f, d = true_mode(button)
     # as much of the first mode as the true plate's motion holds after the onset, by least squares
     times, weights = [], []
@@ -220,7 +206,7 @@ def bound(found: list[Case], sensor: str, button: ButtonPhysics) -> str:
 
 
 def until(case: Case) -> float:
-    """Give when the stop is truly hit."""
+    """Return when the stop is truly hit."""
     x, t = case.trace.displacement_mm, case.trace.t_s
     hit = (t > case.onset_s) & ((x >= x.max() - 0.05) if case.press.stroke is Stroke.PRESS else (x <= 0.02))
     return float(t[hit][0]) if hit.any() else float(t[-1])
@@ -232,8 +218,8 @@ def main(sensors: Sequence[str] = SENSORS, first_seed: int = FIRST_SEED) -> None
     for name in button_names():
         made = {pace: traces(name, pace, seeds) for pace in PACES_mm_s}
         for sensor in sensors:
-            for told in lines(load_button(name), made, sensor):
-                print(f"{name} {told}", flush=True)
+            for line in lines(load_button(name), made, sensor):
+                print(f"{name} {line}", flush=True)
 
 
 def lines(button: ButtonPhysics, made: dict[float, list[ButtonTrace]], sensor: str) -> Iterator[str]:

@@ -12,28 +12,43 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
+from tests.support.loop import AWAY
 
-from fdvv.core import Core
-from fdvv.device import HostBoard, LinkedDevice, SimulatedPerson
+from fdvv.device.boards import HostBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import FdvvError, ModelError
-from fdvv.model import ForceSurface, Mode, Stroke, Vibration, load_builtin
-from fdvv.program import RATE_HZ, ConvertedVibration, Limits, Slot, Waveform, button_program, compile_program
-from fdvv.protocol import NONE, Settings
-from fdvv.testing import AWAY
-from fdvv.twin import Finger, Rig, RigPlant, Trace, draw_finger, draw_rig, plan, settings_of, solve_pace
+from fdvv.firmware.core import Core
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.program.render_vibration import render_vibration
+from fdvv.program.surface import Limits
+from fdvv.program.synth import RATE_HZ, ConvertedVibration, Slot, Waveform
+from fdvv.protocol.tables import NONE, Settings
+from fdvv.rendering.exciter import identify_exciter, tone_image
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.pace import solve_pace
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import Trace
 from fdvv.units import FloatArray, m_from_mm
-from fdvv.vibration import (
+from fdvv.vibration.exciter import KnownExciter, measure_tone
+from fdvv.vibration.inverse import (
     InverseSettings,
-    KnownExciter,
     acceleration_m_s2,
     correlation,
     drive_for,
-    measure_tone,
     spectral_similarity,
     spqi,
     st_sim,
 )
-from fdvv.workflow import identify_exciter, render_vibration, tone_image
 
 FIRST_SEED = 2000
 """Below it seeds were used to choose settings."""
@@ -60,12 +75,12 @@ def target(name: str) -> Vibration:
 
 
 def uno(rig: Rig) -> Rig:
-    """Give the rig a synthesiser without jitter instead of a card, so that two presses can be subtracted."""
+    """Return the rig with a synthesiser without jitter and no card, so that two presses can be subtracted."""
     return replace(rig, exciter=replace(rig.exciter, latency_s=UNO_s, jitter_s=0.0))
 
 
 def true_exciter(rig: Rig) -> KnownExciter:
-    """Give what the free cap and the magnet would do, from the rig's parameters: nobody can know it."""
+    """Return what the free cap and the magnet would do, from the rig's parameters: nobody can know it."""
     e, frame_kg = rig.exciter, rig.frame_kg
     reduced_kg = e.mass_kg * frame_kg / (e.mass_kg + frame_kg)
     held = 2 * np.pi * e.resonance_Hz
@@ -83,7 +98,7 @@ def true_exciter(rig: Rig) -> KnownExciter:
 class Bench:
     """A rig, a finger and a button, to press with and without a slot.
 
-    lead_s : what the firmware is told of latency beyond the board's own.
+    lead_s : the latency that the firmware is set to beyond the board's own.
     """
 
     rig: Rig
@@ -95,7 +110,7 @@ class Bench:
         return replace(settings_of(self.rig), vibration_latency_us=round(1e6 * (UNO_s + self.lead_s)))
 
     def press(self, slot: Slot, velocity_mm_s: float) -> Trace:
-        """Give a press without noise."""
+        """Return a press without noise."""
         silent = Vibration(Stroke.PRESS, None, AT_mm, 0.01, (Mode(100.0, 1.0, 0.0),))
         program = button_program(replace(BUTTON, vibrations=(silent,)), SURFACE)
         limits = replace(Limits(), weight_cN=0.0)
@@ -115,7 +130,7 @@ class Bench:
         return plant.record()
 
     def added(self, slot: Slot, velocity_mm_s: float, lasts_s: float) -> tuple[FloatArray, float]:
-        """Give the acceleration that a slot adds, from a tenth of its largest value on, and its rate."""
+        """Return the acceleration that a slot adds, from a tenth of its largest value on, and its rate."""
         with_it, without = self.press(slot, velocity_mm_s), silent_press(self, velocity_mm_s)
         found = with_it.cap_acceleration_m_s2 - without.cap_acceleration_m_s2
         begun = int(np.argmax(np.abs(found) > 0.1 * np.abs(found).max()))
@@ -123,7 +138,7 @@ class Bench:
         return found[begun : begun + round((lasts_s + WINDOW_s) * rate_Hz)], rate_Hz
 
     def late_ms(self, slot: Slot, wanted: Vibration, velocity_mm_s: float) -> float:
-        """Tell how much later than the cap's crossing the waveform lies that is most alike."""
+        """Return how much later than the cap's crossing the waveform lies that is most alike."""
         with_it, without = self.press(slot, velocity_mm_s), silent_press(self, velocity_mm_s)
         step_s = float(with_it.t_s[1] - with_it.t_s[0])
         # the twin's exciter is connected so that volts push the cap outward
@@ -156,7 +171,7 @@ def likenesses(bench: Bench, slot: Slot, wanted: Vibration, velocity_mm_s: float
 
 def plain_slot(wanted: Vibration) -> Slot:
     """Play the waveform as it is, as strong as its largest count allows."""
-    from fdvv.program import slot_of_vibration
+    from fdvv.program.synth import slot_of_vibration
 
     t_s = np.linspace(0, wanted.duration_s, 2001)
     strongest = max(float(np.abs(wanted.acceleration_m_s2(t_s)).max()), wanted.modes[0].amplitude_m_s2)
@@ -188,7 +203,7 @@ def known_by_tones(bench: Bench, seed: int) -> KnownExciter | None:
         device.close()
 
 
-def told(rows: list[list[float]]) -> str:
+def summary(rows: list[list[float]]) -> str:
     """Write medians with the 5th and 95th percentile."""
     low, middle, high = np.percentile(np.array(rows), [5, 50, 95], axis=0)
     return "  ".join(f"{m:.2f} ({a:.2f}–{b:.2f})" for a, m, b in zip(low, middle, high, strict=True))
@@ -218,7 +233,7 @@ def print_likeness(benches: list[Bench], known: list[KnownExciter | None]) -> No
                 slot = render_vibration(wanted, found).slot if found else plain_slot(wanted)
                 rows["inverse, identified"].append(likenesses(bench, slot, wanted, speed))
             for way, scores in rows.items():
-                print(f"  {speed:4g} mm/s {way:20} {told(scores)}")
+                print(f"  {speed:4g} mm/s {way:20} {summary(scores)}")
 
 
 def print_settings() -> None:
@@ -233,7 +248,7 @@ def print_settings() -> None:
                 slot = render_vibration(wanted, true_exciter(bench.rig), settings).slot
                 scores = likenesses(bench, slot, wanted, 50.0)
                 rows.append([scores[0], scores[-1]])
-            print(f"  lead {lead_ms:g} ms, gain {gain_dB:2g} dB: {told(rows)}")
+            print(f"  lead {lead_ms:g} ms, gain {gain_dB:2g} dB: {summary(rows)}")
 
 
 def print_fingers() -> None:
@@ -244,7 +259,7 @@ def print_fingers() -> None:
         likenesses(Bench(rig, draw_finger(np.random.default_rng(FIRST_SEED + i))), slot, wanted, 50.0)
         for i in range(20)
     ]
-    print(f"default rig, one drive, 20 drawn fingers, 50 mm/s: {told(rows)}")
+    print(f"default rig, one drive, 20 drawn fingers, 50 mm/s: {summary(rows)}")
 
 
 def print_tones() -> None:
@@ -259,18 +274,18 @@ def print_tones() -> None:
     sensor = rig.position_sensor
     print("default rig, tones of 3 s at rest: cap and sensor over the free cap's motion, error um")
     for slot in (None, *range(len(frequencies))):
-        told = []
+        positions_m = []
         for k in range(round((tone_s - 0.02) / rig.controller.tick_s)):
             out = core.tick(plant.inputs)
             plant.step(out["duty_q15"], out["enable"], out["stop_us"], NONE if slot is None or k else slot)
-            told.append(float(out["displacement_um16"]) / 16e6)
+            positions_m.append(float(out["displacement_um16"]) / 16e6)
         trace = plant.record()
         if slot is None:
             continue
         f = frequencies[slot]
         begun = round(0.1 / rig.controller.tick_s)
-        t_s: FloatArray = np.arange(len(told), dtype=np.float64) * rig.controller.tick_s
-        seen = measure_tone(t_s[begun:], np.array(told)[begun:], f)
+        t_s: FloatArray = np.arange(len(positions_m), dtype=np.float64) * rig.controller.tick_s
+        seen = measure_tone(t_s[begun:], np.array(positions_m)[begun:], f)
         late = trace.t_s > 0.1
         moved = measure_tone(trace.t_s[late], 1e-3 * trace.displacement_mm[late], f).amplitude
         alone = 2047 / 2048 * 2.5 * abs(complex(free.response(f))) / (2 * np.pi * f) ** 2
@@ -305,8 +320,8 @@ def print_onset() -> None:
     print("default rig, 0.2 ms synthesiser: the waveform after its displacement, ms, at mm/s")
     for name, slot, lead_s in (
         ("plain", plain_slot(wanted), 0.0),
-        ("inverse, lead not told", made.slot, 0.0),
-        ("inverse, lead told", made.slot, made.lead_s),
+        ("inverse, lead not positions_m", made.slot, 0.0),
+        ("inverse, lead positions_m", made.slot, made.lead_s),
     ):
         bench = Bench(rig, Finger(), lead_s)
         late = [bench.late_ms(slot, wanted, v) for v in (50.0, 100.0, 150.0, 200.0, 300.0)]

@@ -7,6 +7,11 @@ import signal
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("quick", max_examples=15)
+if os.environ.get("FDVV_QUICK"):
+    settings.load_profile("quick")
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -27,3 +32,9 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("the real measurements (../shared/data or FDVV_SHARED) are not on this machine")
     return folder
+
+
+@pytest.fixture
+def hasty_disk(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have nobody wait until something is on the disk: for small files that is most of the time."""
+    monkeypatch.setattr("os.fsync", lambda _file: None)

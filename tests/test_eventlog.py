@@ -7,15 +7,16 @@ import json
 import os
 import zlib
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, line_of, read_records
+from fdvv.eventlog import Journal, JournalKind, line_of, read_records
 
-KIND = JournalKind(frozenset({"a", "b"}), "make another")
+KIND = JournalKind({"a": Any, "b": Any}, "make another")
 BUSY = InputError("x", "journal", "another process is at work", "wait")
 
 

@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from fdvv.report.notebook import DRAWN_BY
+
 NOTEBOOKS = sorted((Path(__file__).resolve().parents[1] / "docs" / "examples").glob("*.ipynb"))
 
 
@@ -43,8 +45,8 @@ def test_a_notebook_runs_and_every_value_can_be_shown(
     for cell in cells(notebook):
         if cell["cell_type"] == "code":
             value = run_cell("".join(cell["source"]), names)
-            html = getattr(value, "_repr_html_", None)
-            shown.append(html() if html else repr(value))
+            html = DRAWN_BY.get(type(value), getattr(type(value), "_repr_html_", None))
+            shown.append(html(value) if html else repr(value))
     assert all(shown)
     assert sum("<svg" in one for one in shown) >= 2
 

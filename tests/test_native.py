@@ -18,11 +18,14 @@ import ctypes, sys
 import fdvv._native as native
 sanitised = ctypes.CDLL(sys.argv[1])
 native.library = lambda: sanitised
-import fdvv.model._fit as fit, fdvv.twin._kernel as kernel
+import fdvv.model.fit as fit, fdvv.twin.rig_kernel as kernel
 fit.library = kernel.library = native.library
 import numpy as np
-from fdvv.device import TwinDevice
-from fdvv.model import ForceSurface, MeasuredCurve, Stroke, fit_curve, load_builtin
+from fdvv.device.twin import TwinDevice
+from fdvv.model.surface import ForceSurface
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import fit_curve
+from fdvv import load_builtin
 rng = np.random.default_rng(1)
 for count in (4, 16, 17, 120, 800):
     x = np.cumsum(rng.uniform(1e-6, 0.02, count))

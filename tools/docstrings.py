@@ -1,4 +1,4 @@
-"""Docstrings in the way of this house: a sentence, paragraphs, and entries ``name : what it is``."""
+"""Read docstrings: a summary, paragraphs, and entries ``name : meaning``."""
 
 from __future__ import annotations
 
@@ -7,55 +7,61 @@ from dataclasses import dataclass
 
 ENTRY = re.compile(r"(?:^|(?<=; )|(?<=\. ))(\*{0,2}\w+(?:, \*{0,2}\w+)*) ?: ")
 HEADING = re.compile(r"(?m)^(Attributes|Parameters)\n-+\n")
+SECTION = re.compile(r"(?m)^(Returns|Yields|Raises|Warns|Notes|Examples?|References|See Also)\n-+\n")
 
 
 @dataclass(frozen=True)
-class Said:
-    """What a docstring says, apart from its entries: a sentence, and paragraphs; indented ones are code."""
+class Text:
+    """A docstring without its entries.
 
-    head: str
-    body: tuple[str, ...] = ()
+    Attributes
+    ----------
+    summary : the first sentence or paragraph.
+    paragraphs : the rest; an indented paragraph is code.
+    """
+
+    summary: str
+    paragraphs: tuple[str, ...] = ()
 
 
-def named(name: str, text: str) -> bool:
-    """Tell whether a text names something, as a word of its own."""
+def mentions(text: str, name: str) -> bool:
+    """Return whether a text contains a name as a whole word."""
     return re.search(rf"(?<![\w.]){re.escape(name)}(?!\w)", text) is not None
 
 
-def read(doc: str, names: tuple[str, ...]) -> tuple[Said | None, dict[str, str]]:
-    """Split a docstring into its text and what it says of each of the given names."""
+def read(doc: str, names: tuple[str, ...]) -> tuple[Text | None, dict[str, str]]:
+    """Split a docstring into its text and the meanings of the given names."""
     if not doc:
         return None, {}
     head, _, rest = doc.partition("\n\n")
-    first, entries = _split(head, names)
-    body = []
+    summary, entries = _split(head, names)
+    paragraphs = []
     for block in re.split(r"\n{2,}", HEADING.sub("", rest)):
         if all(line.startswith("    ") for line in block.splitlines()):
-            body.append(block)
+            paragraphs.append(block)
             continue
-        text, found = _block(block, names)
-        entries |= found
-        body.append(text)
-    return Said(first, tuple(text for text in body if text.strip())), entries
+        text, more = _read_block(block, names)
+        entries |= more
+        paragraphs.append(text)
+    return Text(summary, tuple(text for text in paragraphs if text.strip())), entries
 
 
-def _block(block: str, names: tuple[str, ...]) -> tuple[str, dict[str, str]]:
-    """Take the entries out of a paragraph: further lines of an entry are indented, or end with a sentence."""
+def _read_block(block: str, names: tuple[str, ...]) -> tuple[str, dict[str, str]]:
+    """Take the entries out of a paragraph; continuation lines are indented or end with a sentence."""
     texts: list[str] = []
     entries: dict[str, str] = {}
     hanging = re.search(r"\n {2,}\S", block) is not None
     for piece in re.split(r"\n(?=\S)", block) if hanging else [block]:
-        told, after = (piece, "") if hanging else _at_sentence(piece)
-        if not _split(told, names)[1]:
-            told, after = piece, ""
-        text, found = _split(told, names)
-        entries |= found
+        entry, after = (piece, "") if hanging else _cut_at_sentence(piece)
+        if not _split(entry, names)[1]:
+            entry, after = piece, ""
+        text, more = _split(entry, names)
+        entries |= more
         texts += [text, " ".join(after.split())]
     return " ".join(text for text in texts if text), entries
 
 
-def _at_sentence(text: str) -> tuple[str, str]:
-    """Cut behind the first line that ends a sentence."""
+def _cut_at_sentence(text: str) -> tuple[str, str]:
     cut = re.search(r"\.\n(?=[A-Z])", text)
     return (text[: cut.start() + 1], text[cut.end() :]) if cut else (text, "")
 

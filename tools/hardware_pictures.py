@@ -8,29 +8,14 @@ from pathlib import Path
 from PIL import Image, ImageDraw
 from tools.hardware_render import Camera, Colour, Thing, draw, font, save
 
-from fdvv.hardware import (
-    RIG,
-    Block,
-    Dimensions,
-    Envelope,
-    Mesh,
-    Moves,
-    Pose,
-    Rod,
-    State,
-    body_of,
-    body_of_bought,
-    bought_parts,
-    in_rig,
-    mesh_of,
-    moved,
-    on_jig,
-    part_named,
-    placed,
-    printed_parts,
-    read_manifest,
-    read_stl,
-)
+from fdvv_rig.bought import bought_parts
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.envelope import Block, Envelope, Rod
+from fdvv_rig.manifest import read_manifest
+from fdvv_rig.mesh import Mesh, read_stl
+from fdvv_rig.parts import part_named, printed_parts
+from fdvv_rig.placement import RIG, Moves, Pose, State, in_rig, moved, on_jig
+from fdvv_rig.solids import body_of, body_of_bought, mesh_of, placed
 
 PRINTED: Colour = (0.36, 0.62, 0.86)
 MOVING: Colour = (0.96, 0.64, 0.26)
@@ -101,11 +86,11 @@ class Rig:
         self.bought = {envelope.name: envelope for envelope in bought_parts(self.d)}
 
     def names(self) -> list[str]:
-        """Give the parts of the rig without its box."""
+        """Return the parts of the rig without its box."""
         return [*(name for name in RIG if name != "black-box"), *self.bought]
 
     def mesh(self, name: str, state: State, cut: bool = False) -> Mesh:
-        """Give a part where it stands, whole or what lies behind the plane y = 0."""
+        """Return a part where it stands, whole or what lies behind the plane y = 0."""
         if name in self.printed:
             body = placed(body_of(self.printed[name]), in_rig(name, state, self.d))
         else:
@@ -114,13 +99,13 @@ class Rig:
         return mesh_of(body.trim_by_plane((0, 1, 0), 0.0) if cut else body)
 
     def label(self, name: str) -> str:
-        """Give what a part is called."""
+        """Return what a part is called."""
         return part_named(name).title if name in self.printed else self.bought[name].title
 
     def things(
         self, names: Iterable[str], state: State, label: bool = True, cut: bool = False
     ) -> list[Thing]:
-        """Give parts to draw."""
+        """Return parts to draw."""
         return [
             Thing(self.mesh(name, state, cut), colour(name), self.label(name) if label else "")
             for name in names
@@ -128,7 +113,7 @@ class Rig:
 
 
 def colour(name: str) -> Colour:
-    """Give a part's colour: printed ones by what they do, bought ones by what they are."""
+    """Return a part's colour: printed ones by what they do, bought ones by what they are."""
     return COLOURS.get(name) or BOUGHT.get(name) or (PRINTED if name in RIG else METAL)
 
 
@@ -188,7 +173,7 @@ def _steps(rig: Rig) -> Image.Image:
 
 
 def _fresh(name: str) -> Colour:
-    """Give the colour of a part that a step adds: bought ones stand out from what is there already."""
+    """Return the colour of a part that a step adds: bought ones stand out from what is there already."""
     return colour(name) if name in COLOURS or name in RIG else ADDED
 
 
@@ -207,7 +192,7 @@ def _row(images: list[Image.Image]) -> Image.Image:
 
 
 def _jig(rig: Rig) -> list[Thing]:
-    """Give the jig with its posts and markers, a switch and its keycap."""
+    """Return the jig with its posts and markers, a switch and its keycap."""
     d = rig.d
     made = [Thing(rig.printed["capture-jig"].moved(on_jig("capture-jig", d)[0]), PRINTED, "Capture jig")]
     for i, pose in enumerate(on_jig("marker-post", d)):
@@ -247,6 +232,6 @@ def _ball(diameter_mm: float):  # type: ignore[no-untyped-def] # the library has
 
 
 def _boxed(rig: Rig) -> list[Thing]:
-    """Give the rig inside the black box, of which only the edges show."""
+    """Return the rig inside the black box, of which only the edges show."""
     made = rig.things(rig.names(), State(0.0), label=False)
     return [*made, Thing(rig.mesh("black-box", State(0.0)), (0.2, 0.2, 0.2), ghost=True)]

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
-from fdvv.files import write_atomic
-from fdvv.hardware import Mesh
+from fdvv.io.files import write_atomic
 from fdvv.units import FloatArray
+from fdvv_rig.mesh import Mesh
 
 Colour = tuple[float, float, float]
 INK: Colour = (0.08, 0.13, 0.24)
@@ -105,7 +105,7 @@ def _normals(mesh: Mesh) -> FloatArray:
 
 
 def _soft(mesh: Mesh, normals: FloatArray) -> FloatArray:
-    """Give a normal for every corner, (m, 3, 3): the mean of the faces there that are nearly level."""
+    """Return a normal for every corner, (m, 3, 3): the mean of the faces there that are nearly level."""
     around: dict[int, list[int]] = defaultdict(list)
     for i, triangle in enumerate(mesh.triangles):
         for point in triangle:
@@ -122,7 +122,7 @@ def _soft(mesh: Mesh, normals: FloatArray) -> FloatArray:
 
 
 def _edges(mesh: Mesh, normals: FloatArray, towards: FloatArray) -> list[tuple[int, int]]:
-    """Give the edges to draw: creases, and where a round face turns away from the eye."""
+    """Return the edges to draw: creases, and where a round face turns away from the eye."""
     faces: dict[tuple[int, int], list[int]] = defaultdict(list)
     for i, (a, b, c) in enumerate(mesh.triangles):
         for one, other in ((a, b), (b, c), (c, a)):
@@ -185,7 +185,7 @@ def _picture(canvas: Canvas, size: tuple[int, int]) -> Image.Image:
 
 
 def font(size: int) -> Any:
-    """Give the font of labels."""
+    """Return the font of labels."""
     import matplotlib
 
     return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf"), size)
@@ -216,7 +216,7 @@ def _labels(image: Image.Image, canvas: Canvas, things: list[Thing]) -> Image.Im
 
 
 def _seen_at(mask: npt.NDArray[np.bool_]) -> tuple[float, float] | None:
-    """Give the pixel of a thing that is nearest to the middle of what is seen of it."""
+    """Return the pixel of a thing that is nearest to the middle of what is seen of it."""
     y, x = np.nonzero(mask)
     if not x.size:
         return None

@@ -12,8 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.model import FDVVModel, ForceCurve, Interpolation, Mode, Provenance, Stroke, Vibration, save_model
-from fdvv.model import _bspline as bspline
+from fdvv.model import bspline
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import save_model
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.velocity import Interpolation
+from fdvv.model.vibration import Mode, Vibration
 
 OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "model" / "builtin" / "mx-clear.fdvv.json"
 

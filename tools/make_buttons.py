@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from fdvv.model import load_builtin
-from fdvv.twin import ButtonPhysics, Curve, button_of_model, button_to_toml
+from fdvv.model.file import load_builtin
+from fdvv.twin.button import ButtonPhysics, Curve, button_of_model
+from fdvv.twin.files import button_to_toml
 from fdvv.units import N_from_cN, m_from_mm
 
 OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "twin" / "buttons"

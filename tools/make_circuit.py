@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.files import write_atomic
-from fdvv.hardware import bill_page, circuit_files, load_bill, load_circuit, require_sound
+from fdvv.io.files import write_atomic
+from fdvv_rig.bill import bill_page, load_bill
+from fdvv_rig.circuit.circuit import load_circuit
+from fdvv_rig.circuit.circuit_report import circuit_files
+from fdvv_rig.circuit.rules import require_sound
 
 ROOT = Path(__file__).parents[1]
 CIRCUIT = ROOT / "hardware" / "circuit"
@@ -13,7 +16,7 @@ BILL = ROOT / "docs" / "reference" / "bill.md"
 
 
 def files() -> dict[Path, str]:
-    """Give every file with its text."""
+    """Return every file with its text."""
     circuit = load_circuit()
     require_sound(circuit, "circuit.toml")
     made = {CIRCUIT / name: text for name, text in circuit_files(circuit).items()}

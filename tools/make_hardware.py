@@ -10,12 +10,13 @@ import json
 import sys
 from pathlib import Path
 
-from fdvv.files import write_atomic
-from fdvv.hardware import Dimensions, Manifest, read_manifest
+from fdvv.io.files import write_atomic
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.manifest import Manifest, read_manifest
 
 ROOT = Path(__file__).parents[1]
 HARDWARE = ROOT / "hardware"
-PRINTED = ROOT / "src" / "fdvv" / "hardware" / "printed.json"
+PRINTED = ROOT / "extras" / "fdvv-rig" / "src" / "fdvv_rig" / "printed.json"
 
 
 def printed(manifest: Manifest) -> str:
@@ -30,7 +31,7 @@ def printed(manifest: Manifest) -> str:
 def main() -> None:
     """Export the parts of the default dimensions, then draw them."""
     if "--pictures" not in sys.argv[1:]:
-        from fdvv.hardware.cad import export_parts
+        from fdvv_rig.cad.export import export_parts
 
         export_parts(HARDWARE, Dimensions(), lambda name, done, total: print(f"{done + 1}/{total} {name}"))
         write_atomic(PRINTED, printed(read_manifest(HARDWARE)))

@@ -12,7 +12,9 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
-from fdvv.model import landmarks, load_builtin
+from fdvv.model.file import load_builtin
+from fdvv.model.landmarks import landmarks
+from fdvv.report.notebook import to_html
 
 TARGET = Path(__file__).resolve().parents[1] / "docs" / "images" / "notebook.png"
 SCALE = 1.5
@@ -23,7 +25,7 @@ STYLE = "margin:0;padding:14px;font:14px sans-serif"
 def main() -> None:
     """Draw both pages under each other and write the picture."""
     model = load_builtin("mx-blue")
-    shown = model._repr_html_() + '<div style="height:10px"></div>' + landmarks(model)._repr_html_()
+    shown = to_html(model) + '<div style="height:10px"></div>' + to_html(landmarks(model))
     strips = []
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"))

@@ -16,28 +16,22 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-from fdvv.files import write_atomic
-from fdvv.mechanism import WANTED_cN
-from fdvv.model import FitMethod, MeasuredCurve, Stroke, active_part, fit_curve, load_builtin, scan_sizes
-from fdvv.plot import (
-    figure_of,
-    figure_png,
-    figure_svg,
-    house_style,
-    plot_averages,
-    plot_fit,
-    plot_mechanism,
-    plot_model,
-    plot_parts,
-    plot_registration,
-    plot_scan,
-    plot_surface,
-    plot_vibration,
-)
-from fdvv.preprocess import process
-from fdvv.testing import captured_session
+from fdvv.bench.figures import plot_averages, plot_registration
+from fdvv.button.figures import plot_fit
+from fdvv.io.files import write_atomic
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.fit import active_part, fit_curve
+from fdvv.preprocess.process import process
+from fdvv.report.model_figures import plot_model, plot_vibration
+from fdvv.report.style import house_style
+from fdvv.report.svg import figure_png, figure_svg
+from fdvv.testing.captured import captured_session
 from fdvv.units import cN_from_gf
-from fdvv.workflow import design_mechanism, designed_strokes, drawn_parts
+from fdvv_switch.design_button import design_mechanism
+from fdvv_switch.figures import plot_mechanism, plot_parts
+from fdvv_switch.report import designed_strokes, drawn_parts
+from fdvv_switch.residual import WANTED_cN
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "docs" / "images"
@@ -93,12 +87,7 @@ def save_svg(name: str, drawn: Any, description: str) -> None:
 
 def draw_model_pictures() -> None:
     """Draw what the shipped model looks like."""
-    model = load_builtin("mx-clear")
-    what = "of the shipped MX Clear model"
-    save_svg("model", plot_model(model), f"Press and release curves {what}")
-    surface = plot_surface(model, Stroke.PRESS)
-    save_svg("surface", surface, f"Press force over displacement and velocity {what}")
-    save_svg("vibration", plot_vibration(model), f"Vibration {what}")
+    save_svg("vibration", plot_vibration(load_builtin("mx-clear")), "Vibration of the shipped MX Clear model")
 
 
 def draw_capture_pictures() -> None:
@@ -107,35 +96,26 @@ def draw_capture_pictures() -> None:
     registered = plot_registration(processed, Stroke.PRESS, 200.0, simulated=True)
     save_svg("registration", registered, "Samples of presses at 200 mm/s, their mean and spread; simulated")
     averages = plot_averages(processed, simulated=True)
-    save_svg("averages", averages, "Averaged curves of four paces with their spread; simulated")
+    save_svg("averages", averages, "Averaged curves of four velocities with their spread; simulated")
 
 
 def draw_mechanism_pictures() -> None:
-    """Draw a leaf switch and a dome that were designed for two shipped models."""
-    for name, kind in (("mx-clear", "leaf"), ("rubber-dome", "dome")):
-        result = design_mechanism(load_builtin(name), kind, speeds_mm_s=())
-        what = f"of a {kind} designed for the shipped model {name}; simulated"
-        grid = plot_mechanism(designed_strokes(result), WANTED_cN, f"a {kind} for {name}")
-        save_svg(f"mechanism-{kind}", grid, f"Target, design, tolerance band and residual {what}")
-        save_svg(f"mechanism-{kind}-parts", plot_parts(drawn_parts(result)), f"Parts {what}")
+    """Draw a leaf switch that was designed for a shipped model."""
+    result = design_mechanism(load_builtin("mx-clear"), "leaf", speeds_mm_s=())
+    what = "of a leaf designed for the shipped model mx-clear; simulated"
+    grid = plot_mechanism(designed_strokes(result), WANTED_cN, "a leaf for mx-clear")
+    save_svg("mechanism-leaf", grid, f"Target, design, tolerance band and residual {what}")
+    save_svg("mechanism-leaf-parts", plot_parts(drawn_parts(result)), f"Parts {what}")
 
 
-def draw_fit_pictures(raw: Path) -> None:
-    """Draw the overview and what the fit does to a raw switch."""
+def draw_overview_picture(raw: Path) -> None:
+    """Draw the overview of a raw switch and its fits."""
     measured, name = read_press(raw), raw.stem.replace("-", " ")
     content = few_colours(figure_png(draw_overview(measured, f"{name}, press"), dpi=120.0))
     if len(content) > LARGEST_PNG:
         raise SystemExit(f"overview.png has {len(content)} bytes, more than {LARGEST_PNG}")
     write_atomic(OUTPUT / "overview.png", content)
     print(OUTPUT / "overview.png")
-    fits = [fit_curve(measured, method) for method in (FitMethod.UNIFORM, FitMethod.ADAPTIVE)]
-    fig = figure_of(plot_fit(measured, fits, title=f"{name}, press"))
-    credit(fig)
-    save_svg("fit", fig, f"Uniform and adaptive fits of {name} with 15 control points")
-    scores = {str(method): scan_sizes(measured, method) for method in FitMethod}
-    fig = figure_of(plot_scan(scores, title=f"{name}, press"))
-    credit(fig)
-    save_svg("scan", fig, f"BIC* of {name} for 5 to 40 control points")
 
 
 if __name__ == "__main__":
@@ -144,5 +124,5 @@ if __name__ == "__main__":
     draw_capture_pictures()
     draw_mechanism_pictures()
     if not raw_file.exists():
-        raise SystemExit(f"{raw_file} is not there: pass a bench file to draw overview, fit and scan")
-    draw_fit_pictures(raw_file)
+        raise SystemExit(f"{raw_file} is not there: pass a bench file to draw the overview")
+    draw_overview_picture(raw_file)

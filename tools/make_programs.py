@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.files import write_atomic
-from fdvv.program import SUFFIX, make, program_to_json, programs
+from fdvv.io.files import write_atomic
+from fdvv.program.file import PROGRAM_SUFFIX, program_to_json
+from fdvv.program.library import make, programs
 
 FOLDER = Path(__file__).parents[1] / "src" / "fdvv" / "program" / "library"
 
 
 def files() -> dict[Path, str]:
-    """Give every file with its text: each program on its default base with its default parameters."""
-    return {FOLDER / f"{p.name}{SUFFIX}": program_to_json(make(p.name)) for p in programs()}
+    """Return every file with its text: each program on its default base with its default parameters."""
+    return {FOLDER / f"{p.name}{PROGRAM_SUFFIX}": program_to_json(make(p.name)) for p in programs()}
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""Turn protocol/*.toml into C headers of firmware/core and tables of src/fdvv/protocol.
+"""Turn protocol/*.toml into the C headers of firmware/core and the Python tables of src/fdvv/protocol.
 
-fdvv.toml becomes protocol.h and _tables.py; strip.toml, whose `stem` is part of every name made from it,
-strip_protocol.h and _strip_tables.py.
+fdvv.toml becomes protocol.h and tables.py; strip.toml, whose `stem` is part of every name made from it,
+strip_protocol.h and strip_tables.py. The headers are committed. hatch_build.py writes the tables; it loads
+this file by its path, so only the standard library is imported.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
 HEADER = ROOT / "firmware" / "core" / "protocol.h"
-TABLES = ROOT / "src" / "fdvv" / "protocol" / "_tables.py"
+TABLES = ROOT / "src" / "fdvv" / "protocol" / "tables.py"
 STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
 STRIP_HEADER = ROOT / "firmware" / "core" / "strip_protocol.h"
-STRIP_TABLES = ROOT / "src" / "fdvv" / "protocol" / "_strip_tables.py"
+STRIP_TABLES = ROOT / "src" / "fdvv" / "protocol" / "strip_tables.py"
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
 C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES}
+NOTES = ("about", "class")
+"""Keys of a definition that carry no meaning for the other side."""
 FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
@@ -60,38 +63,36 @@ class Field:
 def fields_of(name: str, rows: list[list[Any]]) -> list[Field]:
     """Read a structure; fail where a field does not lie at a multiple of its size."""
     fields = [Field.of(row) for row in rows]
-    place = 0
+    offset = 0
     for field in fields:
-        if place % SIZES[field.kind]:
-            raise SystemExit(f"{name}.{field.name} lies at {place}, no multiple of its size")
-        place += field.size
-    if fields and place % max(SIZES[f.kind] for f in fields):
-        raise SystemExit(f"{name} has {place} bytes, no multiple of its widest field")
+        if offset % SIZES[field.kind]:
+            raise SystemExit(f"{name}.{field.name} lies at {offset}, no multiple of its size")
+        offset += field.size
+    if fields and offset % max(SIZES[f.kind] for f in fields):
+        raise SystemExit(f"{name} has {offset} bytes, no multiple of its widest field")
     return fields
 
 
 def structures(source: dict[str, Any]) -> dict[str, list[Field]]:
-    """Give every structure by name: the named ones, and NAME_request and NAME_reply of the messages."""
-    found = {name: fields_of(name, body["fields"]) for name, body in source["structs"].items()}
+    """Return every structure by name: the named ones, and NAME_request and NAME_reply of the messages."""
+    by_name = {name: fields_of(name, body["fields"]) for name, body in source["structs"].items()}
     for name, body in source["messages"].items():
         for part, key in (("request", "fields"), ("reply", "reply")):
             if isinstance(body.get(key), list) and body[key]:
-                found[f"{name}_{part}"] = fields_of(name, body[key])
-    return found
+                by_name[f"{name}_{part}"] = fields_of(name, body[key])
+    return by_name
 
 
 def stem_of(source: dict[str, Any]) -> str:
-    """Give what the names of a definition begin with: "" or such as "strip_"."""
+    """Return the prefix of every name of a definition: "" or "strip_"."""
     return f"{source['stem']}_" if "stem" in source else ""
 
 
 def file_of(source: dict[str, Any]) -> str:
-    """Name the definition's file."""
     return f"protocol/{source.get('stem', 'fdvv')}.toml"
 
 
 def about(source: dict[str, Any], name: str) -> str:
-    """Give the sentence about a structure."""
     if name in source["structs"]:
         return str(source["structs"][name]["about"])
     base, _, part = name.rpartition("_")
@@ -99,12 +100,12 @@ def about(source: dict[str, Any], name: str) -> str:
 
 
 def meaning_hash(source: dict[str, Any]) -> int:
-    """Hash all that both sides must agree on: names, types, order, ranges, numbers; not the prose."""
+    """Return 32 bits of the SHA-256 of names, types, order, ranges and numbers; prose does not count."""
     plain = {key: value for key, value in source.items() if key not in ("version", "defaults")}
 
     def strip(node: Any) -> Any:
         if isinstance(node, dict):
-            return {key: strip(value) for key, value in node.items() if key != "about"}
+            return {key: strip(value) for key, value in node.items() if key not in NOTES}
         if isinstance(node, list) and len(node) == 6 and isinstance(node[0], str):
             return node[:5]
         return [strip(item) for item in node] if isinstance(node, list) else node
@@ -114,7 +115,7 @@ def meaning_hash(source: dict[str, Any]) -> int:
 
 
 def sizes(source: dict[str, Any], structs: dict[str, list[Field]], name: str, key: str) -> int:
-    """Count the bytes of a message's request or reply."""
+    """Return the bytes of a message's request or reply."""
     body = source["messages"][name].get(key, [])
     fields = structs[body] if isinstance(body, str) else structs.get(f"{name}_{_part(key)}", [])
     return sum(field.size for field in fields)
@@ -158,7 +159,7 @@ def _c_stem(source: dict[str, Any]) -> str:
 
 
 def _c_members(source: dict[str, Any], kind: str, name: str) -> list[str]:
-    values = {k: v for k, v in source[kind][name].items() if k != "about"}
+    values = {k: v for k, v in source[kind][name].items() if k not in NOTES}
     stem = f"{_c_stem(source)}{name.upper()}"
     if kind == "flags":
         return [f"    {stem}_FLAG_{k.upper()} = 1 << {v}," for k, v in values.items()]
@@ -171,10 +172,10 @@ def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[st
         array = f"[{field.count}]" if field.count else ""
         lines.append(f"    {C_TYPES[field.kind]} {field.name}{array}; /* {field.text} */")
     total = sum(field.size for field in fields)
-    known, macro = f"fdvv_{stem_of(source)}{name}", f"{_c_stem(source)}{name.upper()}"
+    c_name, macro = f"fdvv_{stem_of(source)}{name}", f"{_c_stem(source)}{name.upper()}"
     lines += [
-        f"}} {known};",
-        f"typedef char {known}_has_{total}_bytes[sizeof({known}) == {total} ? 1 : -1];",
+        f"}} {c_name};",
+        f"typedef char {c_name}_has_{total}_bytes[sizeof({c_name}) == {total} ? 1 : -1];",
     ]
     ranged = [f for f in fields if not f.count and not _full(f)]
     lines.append(f"#define {macro}_RANGES(X) \\")
@@ -224,15 +225,13 @@ def tables(source: dict[str, Any]) -> str:
     lines = [
         f'"""Made by tools/make_protocol.py from {file_of(source)}; do not edit."""',
         "",
-        "# ruff: noqa: E501",
-        "# fmt: off",
         "from __future__ import annotations",
         "",
         "from dataclasses import dataclass",
         "from enum import IntEnum, IntFlag",
         "from typing import ClassVar",
         "",
-        "from fdvv.protocol._record import Limits, Record",
+        "from fdvv.protocol.record import Limits, Record",
         "",
         f"{stem}VERSION = {source['version']}",
         '"""Of the definition."""',
@@ -261,8 +260,8 @@ def _sentence(text: str) -> str:
 
 
 def _py_enum(kind: str, name: str, body: dict[str, Any]) -> list[str]:
-    values = {k: v for k, v in body.items() if k != "about"}
-    title = camel(name) + ("Flag" if kind == "flags" else "")
+    values = {k: v for k, v in body.items() if k not in NOTES}
+    title = body.get("class", camel(name) + ("Flag" if kind == "flags" else ""))
     lines = [
         "",
         "",
@@ -274,14 +273,14 @@ def _py_enum(kind: str, name: str, body: dict[str, Any]) -> list[str]:
 
 
 def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
-    named = camel(f"{stem_of(source)}message")
-    lines = ["", "", f"class {named}(IntEnum):", '    """Numbers of the messages."""', ""]
+    enum = camel(f"{stem_of(source)}message")
+    lines = ["", "", f"class {enum}(IntEnum):", '    """Numbers of the messages."""', ""]
     for name, body in source["messages"].items():
         lines += [f"    {name.upper()} = 0x{body['id']:02X}", f'    """{_sentence(body["about"])}"""']
     for key in ("fields", "reply"):
         title = stem_of(source).upper() + ("REQUEST_BYTES" if key == "fields" else "REPLY_BYTES")
         lines += ["", f"{title} = {{"]
-        lines += [f"    {named}.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
+        lines += [f"    {enum}.{n.upper()}: {sizes(source, structs, n, key)}," for n in source["messages"]]
         lines += ["}", f'"""Bytes of every {"request" if key == "fields" else "reply"}."""']
     return lines
 
@@ -310,14 +309,30 @@ def _py_field(field: Field, defaults: dict[str, int]) -> str:
     return f"    {field.name}: {kind}" + (" = 0" if field.name.startswith("spare") else "")
 
 
-def main() -> None:
-    """Write the files of both definitions."""
-    for place, made, told in ((SOURCE, HEADER, TABLES), (STRIP_SOURCE, STRIP_HEADER, STRIP_TABLES)):
-        source = tomllib.loads(place.read_text())
-        made.write_text(header(source))
-        told.write_text(tables(source))
-        sys.stdout.write(f"{file_of(source)} {meaning_hash(source):08x}\n")
+def write_tables() -> list[Path]:
+    """Write the Python tables of both definitions; return their paths."""
+    for definition, path in ((SOURCE, TABLES), (STRIP_SOURCE, STRIP_TABLES)):
+        _write(path, tables(_load(definition)))
+    return [TABLES, STRIP_TABLES]
+
+
+def write_headers() -> list[Path]:
+    """Write the C headers of both definitions; return their paths."""
+    for definition, path in ((SOURCE, HEADER), (STRIP_SOURCE, STRIP_HEADER)):
+        _write(path, header(_load(definition)))
+    return [HEADER, STRIP_HEADER]
+
+
+def _load(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def _write(path: Path, text: str) -> None:
+    """Leave an equal file untouched, so that make rebuilds nothing."""
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
-    main()
+    for written in (*write_headers(), *write_tables()):
+        sys.stdout.write(f"{written.relative_to(ROOT)}\n")

@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from fdvv.files import write_atomic
-from fdvv.model import schema
-from fdvv.program import schema as program_schema
-from fdvv.recording import schema as recording_schema
+from fdvv.io.files import write_atomic
+from fdvv.model.file import schema
+from fdvv.program.file import schema as program_schema
+from fdvv.recording.records import schema as recording_schema
 
 REFERENCE = Path(__file__).parents[1] / "docs" / "reference"
 OUTPUT = REFERENCE / "fdvv.schema.json"
@@ -18,7 +18,7 @@ RECORDING_OUTPUT = REFERENCE / "fdvv-recording.schema.json"
 
 
 def text(found: dict[str, Any] | None = None) -> str:
-    """Give a schema as it is published; by default that of the model file."""
+    """Return a schema as it is published; by default that of the model file."""
     return json.dumps(schema() if found is None else found, indent=2, ensure_ascii=False) + "\n"
 
 

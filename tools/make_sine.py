@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.program import SINE_Q12
+from fdvv.program.synth import SINE_Q12
 
 HEADER = Path(__file__).parents[1] / "firmware" / "core" / "synth_sine.h"
 COLUMNS = 16
@@ -16,7 +16,7 @@ def _rows() -> str:
 
 
 def reference() -> str:
-    """Give the header's text."""
+    """Return the header's text."""
     return f"""/* Made by tools/make_sine.py; do not edit. One turn of a sine in 256 steps, times 4096. */
 #ifndef FDVV_SYNTH_SINE_H
 #define FDVV_SYNTH_SINE_H

@@ -1,31 +1,31 @@
-"""Build the site from the documents, without network: ``python -m tools.make_site [FOLDER]``."""
+"""Build the site from the documents and the code, without network: ``python -m tools.make_site [FOLDER]``."""
 
 from __future__ import annotations
 
 import posixpath
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
 from tools.markdown import LINK, links
 
 REPOSITORY = Path(__file__).parents[1]
+SOURCE = REPOSITORY / "build" / "docs"
+"""The pages as Sphinx reads them: those of the repository, and those made from the code."""
 OUTPUT = REPOSITORY / "build" / "site"
 DOCS = REPOSITORY / "docs"
 CONTENTS = DOCS / "README.md"
 """The page whose sections order the site."""
 FRONT = "README.md"
-API = "docs/reference/api/README.md"
-"""Leads to the pages of the rooms."""
 TOP = (FRONT, "ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md")
+PLACEHOLDER = re.compile(r"<!-- from the code: ([\w-]+) -->\n.*?<!-- end -->\n", flags=re.DOTALL)
+"""What stands for a part that is made from the code; the text inside is for readers of the repository."""
 
 
 def sections() -> list[tuple[str, list[str]]]:
-    """Give every section of the contents with the pages it leads to, relative to the repository."""
+    """Return every section of the contents with the pages it links to, relative to the repository."""
     found: list[tuple[str, list[str]]] = []
     for part in re.split(r"(?m)^## ", CONTENTS.read_text(encoding="utf-8"))[1:]:
         title, _, text = part.partition("\n")
@@ -35,43 +35,82 @@ def sections() -> list[tuple[str, list[str]]]:
 
 
 def stage(folder: Path) -> None:
-    """Copy all pages, and whatever they lead to, where Sphinx finds them."""
+    """Write all pages, and the files that they link to, where Sphinx finds them."""
+    kept = set()
+    for name, content in {**_pages(), **_made_from_code()}.items():
+        target = folder / name
+        kept.add(target)
+        if not target.is_file() or target.read_bytes() != content:  # Sphinx reads only what changed
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
+    for old in {path for path in folder.rglob("*") if path.is_file()} - kept:
+        old.unlink()
+
+
+def _pages() -> dict[str, bytes]:
+    """Return every page and linked file of the repository by its name on the site."""
     waiting = [*TOP, *(str(page.relative_to(REPOSITORY)) for page in sorted(DOCS.rglob("*.md")))]
-    done: set[str] = set()
+    staged: dict[str, bytes] = {}
     while waiting:
         page = waiting.pop()
-        if page in done or not (REPOSITORY / page).is_file():
+        if _staged(page) in staged or not (REPOSITORY / page).is_file():
             continue
-        done.add(page)
-        target = folder / _staged(page)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if not page.endswith(".md"):
-            shutil.copyfile(REPOSITORY / page, target)
-            continue
-        text = (REPOSITORY / page).read_text(encoding="utf-8")
-        target.write_text(_page(page, text), encoding="utf-8")
-        waiting += [_resolved(page, link) for link in links(text) if not _is_outside(link)]
+        content = (REPOSITORY / page).read_bytes()
+        if page.endswith(".md"):
+            text = content.decode()
+            content = _page(page, text).encode()
+            waiting += [_resolved(page, link) for link in links(text) if not _is_outside(link)]
+        staged[_staged(page)] = content
+    return staged
+
+
+def _made_from_code() -> dict[str, bytes]:
+    """Return the pages of packages and commands by their name on the site."""
+    from tools.site_api import api_pages, command_pages
+
+    found = {f"docs/reference/api/{name}.rst": text for name, text in api_pages().items()}
+    found |= {f"docs/reference/cli/{name}.rst": text for name, text in command_pages().items()}
+    return {name: text.encode() for name, text in found.items()}
+
+
+def from_code(name: str) -> str:
+    """Return the part of a page that is made from the code."""
+    from tools import make_protocol_reference, make_record_reference, make_rig_reference, site_api
+
+    if name == "api":
+        return _toctree("", [f"{page}.md" for page in site_api.api_pages()], "api/", hidden=False)
+    if name == "cli":
+        return _toctree("", [f"{page}.md" for page in site_api.command_pages()], "cli/", hidden=False)
+    makers = {
+        "files": make_record_reference.files_tables,
+        "studio-messages": make_record_reference.message_tables,
+        "protocol": make_protocol_reference.rig_tables,
+        "strip-protocol": make_protocol_reference.strip_tables,
+        "rig": make_rig_reference.rig_parameters,
+        "button": make_rig_reference.button_parameters,
+    }
+    return makers[name]()
 
 
 def _page(page: str, text: str) -> str:
-    """Give a page as the site has it: folders and the front page under their names there, and contents."""
-    moved = LINK.sub(lambda link: f"]({_moved(page, link[1])})", text)
+    """Return a page as the site has it: links to folders and to the front page changed, contents added."""
+    filled = PLACEHOLDER.sub(lambda mark: from_code(mark[1]), text)
+    moved = LINK.sub(lambda link: f"]({_moved(page, link[1])})", filled)
     if page == FRONT:
         groups = "\n".join(_toctree(title, pages) for title, pages in sections())
-        house = _toctree("House", ["docs/README.md", *TOP[1:]])
-        return f"{moved}\n{groups}\n{house}"
-    if page == API:
-        return f"{moved}\n{_toctree('', sorted(target for target in links(text) if '/' not in target), '')}"
+        project = _toctree("Project", ["docs/README.md", *TOP[1:]])
+        return f"{moved}\n{groups}\n{project}"
     if page not in TOP and (not page.startswith("docs/") or page.endswith("NOTICE.md")):
-        return f"---\norphan: true\n---\n\n{moved}"  # found by its links alone
+        return f"---\norphan: true\n---\n\n{moved}"  # reached by links only
     return moved
 
 
-def _toctree(caption: str, pages: list[str], base: str = "/") -> str:
-    named = f":caption: {caption}\n" if caption else ""
+def _toctree(caption: str, pages: list[str], base: str = "/", hidden: bool = True) -> str:
+    options = [":hidden:"] if hidden else [":maxdepth: 1"]
+    options += [f":caption: {caption}"] if caption else []
     own = (page.partition("#")[0].removesuffix(".md") for page in pages if ".md" in page)
-    lines = "\n".join(f"{base}{page}" for page in dict.fromkeys(own) if page)
-    return f"```{{toctree}}\n:hidden:\n{named}\n{lines}\n```\n"
+    lines = [f"{base}{page}" for page in dict.fromkeys(own) if page]
+    return "\n".join(["```{toctree}", *options, "", *lines, "```", ""])
 
 
 def _is_outside(link: str) -> bool:
@@ -98,23 +137,17 @@ def _moved(page: str, link: str) -> str:
     return posixpath.relpath(_staged(target), posixpath.dirname(page) or ".") + mark
 
 
-def build(output: Path) -> None:
-    """Build the site, whole or not at all; whatever Sphinx warns of ends it (CalledProcessError)."""
-    with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder) / "source"
-        stage(source)
-        shutil.copytree(DOCS / "_static", source / "_static")
-        made = Path(folder) / "site"
-        command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-j", "2", "-b", "html"]
-        where = ["-c", str(DOCS), "-d", str(Path(folder) / "trees"), str(source), str(made)]
-        subprocess.run([*command, *where], check=True)
-        shutil.rmtree(output, ignore_errors=True)
-        shutil.copytree(made, output)
+def build(output: Path, source: Path = SOURCE) -> None:
+    """Build the site; any warning of Sphinx ends it (CalledProcessError)."""
+    stage(source)
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-j", "auto", "-b", "html"]
+    folders = ["-c", str(DOCS), "-d", str(source.with_name(f"{source.name}-trees")), str(source), str(output)]
+    subprocess.run([*command, *folders], check=True, cwd=REPOSITORY)
 
 
 def missing() -> list[str]:
-    """Give what the site needs and is not installed."""
-    return [name for name in ("sphinx", "myst_parser", "furo") if find_spec(name) is None]
+    """Return the packages that the site needs and that are not installed."""
+    return [name for name in ("sphinx", "myst_parser", "furo", "sphinx_click") if find_spec(name) is None]
 
 
 if __name__ == "__main__":

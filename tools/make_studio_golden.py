@@ -15,26 +15,18 @@ import msgspec
 import numpy as np
 from scipy.interpolate import BSpline
 
+from fdvv.button.compare import compare
 from fdvv.errors import ModelError
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    Interpolation,
-    Mode,
-    PointSpread,
-    Stroke,
-    Vibration,
-    assign,
-    builtin_names,
-    copy_curve,
-    landmarks,
-    load_builtin,
-    merge,
-    remove_curve,
-)
-from fdvv.vibration import vibration_samples
-from fdvv.workflow import apply_patch, compare, inverse_patch, patch_between, record_of
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.edit import assign, copy_curve, merge, remove_curve
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpread, PointSpread
+from fdvv.model.velocity import Interpolation
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.project.patch import apply_patch, inverse_patch, patch_between, record_of
+from fdvv.vibration.wave import vibration_samples
 
 TARGET = Path(__file__).resolve().parents[1] / "web" / "tests" / "golden"
 SEED = 20201
@@ -92,7 +84,7 @@ def example_models() -> dict[str, FDVVModel]:
 
 
 def splines() -> list[dict[str, Any]]:
-    """Give splines of every degree, their values and slopes, and one with a knot more."""
+    """Return splines of every degree, their values and slopes, and one with a knot more."""
     rng = np.random.default_rng(SEED + 1)
     cases = []
     for degree in (1, 2, 3, 4, 5) * 3:
@@ -118,7 +110,7 @@ def splines() -> list[dict[str, Any]]:
 
 
 def buttons() -> list[dict[str, Any]]:
-    """Give force between velocities, landmarks and vibrations of models."""
+    """Return force between velocities, landmarks and vibrations of models."""
     models = {**{name: load_builtin(name) for name in builtin_names()}, **example_models()}
     return [_button(model, name in builtin_names()) for name, model in models.items()]
 
@@ -174,7 +166,7 @@ def edited_models() -> dict[str, FDVVModel]:
 
 
 def edits() -> list[dict[str, Any]]:
-    """Give what the edits of fdvv.model make of models; null where they refuse."""
+    """Return what the edits of fdvv.model make of models; null where they refuse."""
     models = edited_models()
     base, fast = models["base"], models["mixed"].of("press")[3]
     slow = models["mixed"].of("press")[0]
@@ -228,13 +220,13 @@ def _try(work: Any, *args: Any, **kwargs: Any) -> Any:
 
 
 def patches() -> list[dict[str, Any]]:
-    """Give differences between models, and models that they do not fit."""
+    """Return differences between models, and models that they do not fit."""
     models = example_models()
     two, mixed, spreads, unknown = (models[n] for n in ("two", "mixed", "spreads", "unknown"))
     points = two.curves[0].control_points_cN.copy()
     points[[0, -1]] += (1.5, -0.25)
     nudged = replace(two, curves=(replace(two.curves[0], control_points_cN=points), two.curves[1]))
-    told = replace(mixed.provenance, source="x", assumptions=("a", "b"), simulated=True)
+    provenance = replace(mixed.provenance, source="x", assumptions=("a", "b"), simulated=True)
     pairs = [
         (two, two),
         (two, nudged),
@@ -243,7 +235,7 @@ def patches() -> list[dict[str, Any]]:
         (two, replace(two, travel_mm=3.5, reset_mm=1.0, interpolation=Interpolation.LINEAR)),
         (
             mixed,
-            replace(mixed, vibrations=mixed.vibrations[:1], provenance=told),
+            replace(mixed, vibrations=mixed.vibrations[:1], provenance=provenance),
         ),
         (mixed, remove_curve(mixed, "release", 40.0)),
         (unknown, mixed),
@@ -263,12 +255,12 @@ def _patched(a: dict[str, Any], b: dict[str, Any], other: dict[str, Any]) -> dic
 
 
 def models() -> list[dict[str, Any]]:
-    """Give the models that the other files name."""
+    """Return the models that the other files name."""
     return [record_of(model) for model in edited_models().values()]
 
 
 def reference() -> Iterator[tuple[str, str]]:
-    """Give every file: its name and its text."""
+    """Return every file: its name and its text."""
     made = {
         "models": models(),
         "splines": splines(),

@@ -12,8 +12,9 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from fdvv.model import FDVVModel, load_model, save_model
-from fdvv.twin import load_button
+from fdvv.model.file import load_model, save_model
+from fdvv.model.model import FDVVModel
+from fdvv.twin.files import load_button
 
 FOLDER = Path(__file__).parents[1] / "src" / "fdvv" / "study" / "templates" / "buttons"
 BUTTONS = ("mx-brown", "mx-black", "mx-red", "hp-pr1101u", "macbook-pro-2011")

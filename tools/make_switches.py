@@ -14,8 +14,11 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from fdvv.model import FDVVModel, MeasuredCurve, Provenance, Stroke, fit_curve, save_model
-from fdvv.workflow import fit_file
+from fdvv.button.fit import fit_file
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.file import save_model
+from fdvv.model.fit import fit_curve
+from fdvv.model.model import FDVVModel, Provenance
 
 OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "model" / "builtin"
 

@@ -30,7 +30,7 @@ class Block:
 
 
 def blocks(text: str) -> list[Block]:
-    """Give the fenced blocks of a page, in their order."""
+    """Return the fenced blocks of a page, in their order."""
     return [_block(text, mark) for mark in FENCE.finditer(text)]
 
 
@@ -41,18 +41,18 @@ def _block(text: str, mark: re.Match[str]) -> Block:
 
 
 def prose(text: str) -> str:
-    """Give a page without its blocks and spans of code."""
+    """Return a page without its blocks and spans of code."""
     return SPAN.sub("", FENCE.sub("", text))
 
 
 def slug(heading: str) -> str:
-    """Give the anchor of a heading as GitHub and MyST make it."""
+    """Return the anchor of a heading as GitHub and MyST make it."""
     shown = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)
     return re.sub(r"[^\w\- ]", "", shown.strip().lower()).replace(" ", "-")
 
 
 def slugs(headings: Iterable[str]) -> list[str]:
-    """Give the anchors of all headings of a page; one that comes again gets a number."""
+    """Return the anchors of all headings of a page; one that comes again gets a number."""
     seen: dict[str, int] = {}
     found = []
     for heading in headings:
@@ -63,12 +63,12 @@ def slugs(headings: Iterable[str]) -> list[str]:
 
 
 def anchors(text: str) -> set[str]:
-    """Give every anchor of a page."""
+    """Return every anchor of a page."""
     return set(slugs([m[1] for m in HEADING.finditer(FENCE.sub("", text))]))
 
 
 def links(text: str) -> list[str]:
-    """Give the targets of all links and pictures of a page."""
+    """Return the targets of all links and pictures of a page."""
     return LINK.findall(prose(text))
 
 
@@ -86,11 +86,11 @@ def _plain(text: str) -> str:
 
 
 def cell(text: str) -> str:
-    """Give text as it may stand in a cell of a table."""
+    """Return text as it may stand in a cell of a table."""
     return " ".join(text.split()).replace("|", "\\|")
 
 
 def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    """Give a table; cells are Markdown already."""
+    """Return a table; cells are Markdown already."""
     lines = [head, ("---",) * len(head), *rows]
     return "\n".join(f"| {' | '.join(cell(text) for text in row)} |" for row in lines) + "\n"

@@ -16,20 +16,20 @@ from pathlib import Path
 
 from tools.try_wheel import fetched
 
-SWITCH = "src/fdvv/workflow/examples/cherry-mx-hyperglide-brown.csv"
+SWITCH = "src/fdvv/button/examples/cherry-mx-hyperglide-brown.csv"
 ACTIVATE = ". .venv/bin/activate"
 STUDIO = "fdvv studio"
 LONGEST_s = 900
 
 
 def blocks(readme: str) -> list[tuple[str, list[str]]]:
-    """Give language and lines of every fenced block."""
+    """Return language and lines of every fenced block."""
     found = re.findall(r"^```(\w*)\n(.*?)^```$", readme, flags=re.MULTILINE | re.DOTALL)
     return [(language, text.splitlines()) for language, text in found]
 
 
 def commands(readme: str) -> tuple[list[str], list[str], str]:
-    """Give what is typed to install, what is typed then, and the program in Python; all without remarks."""
+    """Return what is typed to install, what is typed then, and the program in Python; all without remarks."""
     plain = [
         [line.partition("#")[0].strip() for line in lines]
         for language, lines in blocks(readme)
@@ -82,7 +82,7 @@ def steps(folder: Path, phase: str) -> Iterator[tuple[str, str]]:
 
 
 def last(text: str) -> str:
-    """Give the last line of a text that has any."""
+    """Return the last line of a text that has any."""
     return (text.strip().splitlines() or [""])[-1].strip()
 
 
@@ -90,9 +90,9 @@ def main() -> None:
     """Walk, and tell the seconds of every step."""
     folder, phase = Path(sys.argv[1]), sys.argv[2]
     begun = before = time.monotonic()
-    for line, told in steps(folder, phase):
+    for line, result in steps(folder, phase):
         now = time.monotonic()
-        print(f"{now - before:7.1f} s  {line:.60s}  {told:.60s}", flush=True)
+        print(f"{now - before:7.1f} s  {line:.60s}  {result:.60s}", flush=True)
         before = now
     print(f"{before - begun:7.1f} s  {phase}, in all", flush=True)
 

@@ -23,7 +23,7 @@ LISTS = (inspect.ListType, inspect.VarTupleType, inspect.SetType)
 
 
 def in_words(kind: inspect.Type) -> str:
-    """Give a type in words; a record of the package is its name, as code."""
+    """Return a type in words; a record of the package is its name, as code."""
     if isinstance(kind, inspect.Metadata):
         return in_words(kind.type)
     if isinstance(kind, RECORDS):
@@ -49,8 +49,8 @@ def _literal(value: object) -> str:
 
 def _bounds(kind: inspect.Type) -> str:
     marks = (("ge", "≥"), ("gt", ">"), ("le", "≤"), ("lt", "<"))
-    told = [f"{mark} {value:g}" for name, mark in marks if (value := getattr(kind, name, None)) is not None]
-    return (f" {', '.join(told)}" if told else "") + _length(kind)
+    limits = [f"{mark} {value:g}" for name, mark in marks if (value := getattr(kind, name, None)) is not None]
+    return (f" {', '.join(limits)}" if limits else "") + _length(kind)
 
 
 def _length(kind: inspect.Type) -> str:
@@ -63,7 +63,7 @@ def _length(kind: inspect.Type) -> str:
 
 
 def fields(record: type[Any]) -> tuple[inspect.Field, ...]:
-    """Give the fields of a record."""
+    """Return the fields of a record."""
     if record not in _FIELDS:
         info = inspect.type_info(record)
         assert isinstance(info, RECORDS), record
@@ -75,7 +75,7 @@ _FIELDS: dict[type[Any], tuple[inspect.Field, ...]] = {}
 
 
 def reached(records: tuple[type[Any], ...]) -> list[type[Any]]:
-    """Give records and all that they hold, each once, outer ones first."""
+    """Return records and all that they hold, each once, outer ones first."""
     found: dict[type[Any], None] = {}
 
     def follow(record: type[Any]) -> None:
@@ -91,7 +91,7 @@ def reached(records: tuple[type[Any], ...]) -> list[type[Any]]:
 
 
 def records_in(kind: inspect.Type) -> Iterator[type[Any]]:
-    """Give the records that a type names."""
+    """Return the records that a type names."""
     if isinstance(kind, RECORDS):
         yield kind.cls
     elif isinstance(kind, inspect.UnionType):

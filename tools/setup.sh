@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Make a virtual environment with fdvv (editable) and everything its demo and tests need.
+# Make a virtual environment with fdvv and its extras (editable) and everything that demo and tests need.
 # usage: setup.sh PYTHON VENV
 set -euo pipefail
 python=$1 venv=$2
@@ -18,9 +18,16 @@ fi
 
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
 pip=("$venv/bin/python" -m pip install --quiet --disable-pip-version-check)
+here=(-e '.[dev]')
+for extra in extras/*/; do
+  # torch is 1 GB: the engines that need it are tested where it is installed
+  [ "$extra" = extras/fdvv-botorch/ ] || here+=(-e "$extra")
+done
 # uv installs ten times faster; where it cannot be had, pip does the same work
 if "${pip[@]}" uv 2>/dev/null && "$venv/bin/uv" pip install --quiet --compile-bytecode --python "$venv/bin/python" \
-    -c constraints.txt -e '.[dev]'; then
+    -c constraints.txt "${here[@]}"; then
+  "$venv/bin/uv" pip install --quiet --no-deps --python "$venv/bin/python" -e extras/fdvv-botorch
   exit 0
 fi
-"${pip[@]}" -c constraints.txt -e '.[dev]'
+"${pip[@]}" -c constraints.txt "${here[@]}"
+"${pip[@]}" --no-deps -e extras/fdvv-botorch

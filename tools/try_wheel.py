@@ -27,6 +27,9 @@ EXTRAS = {
     "nacl": (["study", "freeze", "realism", "--passphrase-file", "word.txt"], "fdvv[study]"),
     "optuna": (["optimize", "run", "--folder", "run", "--trials", "1"], "fdvv[optimize]"),
     "serialx": (["device", "info", "--device", "serial:none"], "fdvv[serial]"),
+    "fdvv_rig": (["hardware", "parts"], "fdvv-rig"),
+    "fdvv_switch": (["mechanism", "mx-red"], "fdvv-switch"),
+    "fdvv_m0": (["device", "info", "--device", "emulated"], "fdvv-m0"),
 }
 """A command that needs what an extra brings, by a module of it."""
 
@@ -55,7 +58,7 @@ def every_room(folder: Path) -> str:
 
 
 def version(folder: Path) -> str:
-    """Tell the version, that of the installed distribution."""
+    """Return the version, that of the installed distribution."""
     said, known = fdvv(folder, "--version")[0].split()[-1], importlib.metadata.version("fdvv")
     if said != known:
         raise SystemExit(f"fdvv says {said}, what is installed is {known}")
@@ -139,8 +142,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for step in STEPS:
             begun = time.monotonic()
-            told = step(Path(folder))
-            print(f"{step.__name__:12s} {time.monotonic() - begun:6.1f} s  {told}", flush=True)
+            result = step(Path(folder))
+            print(f"{step.__name__:12s} {time.monotonic() - begun:6.1f} s  {result}", flush=True)
 
 
 if __name__ == "__main__":

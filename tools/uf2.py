@@ -12,7 +12,7 @@ PAYLOAD_BYTES = 256
 
 
 def uf2_blocks(program: bytes, family: int, start: int) -> bytes:
-    """Give the UF2 file of a program that lies at `start`: 512-byte blocks with 256 bytes each."""
+    """Return the UF2 file of a program that lies at `start`: 512-byte blocks with 256 bytes each."""
     pages = [program[at : at + PAYLOAD_BYTES] for at in range(0, len(program), PAYLOAD_BYTES)]
     return b"".join(
         struct.pack(

@@ -1,5 +1,5 @@
 """Run the command line as ``python -m fdvv``."""
 
-from fdvv.cli import main
+from fdvv.cli.main import main
 
 main()

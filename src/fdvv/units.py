@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
-"""Numbers of double precision; (n,) where no other shape is told."""
+"""Numbers of double precision; (n,) where no other shape is stated."""
 
 GRAM_FORCE_cN = 0.980665
 """One gram-force in centinewtons, exact by the definition of standard gravity (9.80665 m/s²)."""

@@ -11,21 +11,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.device import BenchInfo, CaptureDevice, Cue, open_bench
+from fdvv.bench.capture import CaptureGuide, TakeDone, TakeRequest, capture_session
+from fdvv.bench.plan import CapturePlan, Outcome, Step, settle
+from fdvv.bench.take_check import TakeCheck, quick_look
+from fdvv.device.bench import BenchInfo, CaptureDevice, Cue, open_bench
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.recording import Bench, Quantity, Recording, Stage, Stream, Take, load_recording
-from fdvv.twin import CaptureBench, CaptureRig, Finger, ForceSensor, Participant, load_button
-from fdvv.workflow import (
-    CaptureGuide,
-    CapturePlan,
-    Step,
-    TakeAsk,
-    TakeDone,
-    Verdict,
-    capture_session,
-    quick_look,
-)
-from fdvv.workflow._capture_plan import Outcome, settle
+from fdvv.recording.file import load_recording
+from fdvv.recording.types import Bench, Quantity, Recording, Stage, Stream, Take
+from fdvv.twin.capture.bench import CaptureBench
+from fdvv.twin.capture.participant import Participant
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import ForceSensor
 
 SMALL = CapturePlan(paces_mm_s=(50.0, 100.0), presses=3)
 
@@ -56,9 +54,9 @@ def test_the_procedure_is_rest_probe_and_fifteen_presses_at_each_of_four_paces()
 
 def test_shuffled_blocks_hold_each_pace_once_in_an_order_that_the_seed_repeats() -> None:
     plan = CapturePlan(shuffled=True, seed=4)
-    paces = [s.velocity_mm_s for s in plan.steps()[2:]]
-    assert all(sorted(paces[i : i + 4]) == [50, 100, 150, 200] for i in range(0, 60, 4))  # type: ignore[type-var]
-    assert paces != [s.velocity_mm_s for s in CapturePlan(shuffled=True, seed=5).steps()[2:]]
+    velocities = [s.velocity_mm_s for s in plan.steps()[2:]]
+    assert all(sorted(velocities[i : i + 4]) == [50, 100, 150, 200] for i in range(0, 60, 4))  # type: ignore[type-var]
+    assert velocities != [s.velocity_mm_s for s in CapturePlan(shuffled=True, seed=5).steps()[2:]]
     assert plan.steps() == CapturePlan(shuffled=True, seed=4).steps()
 
 
@@ -99,7 +97,7 @@ def test_a_take_counts_for_the_first_open_step_of_its_kind_and_enough_tries_sett
 # -- the quick look --
 
 
-def looked_at(kinds: tuple[str, ...], count: int = 20, velocity_mm_s: float = 100.0) -> list[Verdict]:
+def looked_at(kinds: tuple[str, ...], count: int = 20, velocity_mm_s: float = 100.0) -> list[TakeCheck]:
     """Give verdicts on presses that all go wrong in one of some kinds, or none."""
     person = Participant(0.0, 1.0, kinds) if kinds else Participant(0.0, 0.0)
     bench = CaptureBench(
@@ -111,8 +109,8 @@ def looked_at(kinds: tuple[str, ...], count: int = 20, velocity_mm_s: float = 10
 
 @pytest.mark.parametrize("velocity_mm_s", [50.0, 100.0, 150.0, 200.0])
 def test_a_good_press_is_found_good(velocity_mm_s: float) -> None:
-    verdicts = looked_at((), 30, velocity_mm_s)
-    good = [v for v in verdicts if v.ok]
+    checks = looked_at((), 30, velocity_mm_s)
+    good = [v for v in checks if v.ok]
     assert len(good) >= 28
     assert np.median([v.travel_mm for v in good]) == pytest.approx(4.03, abs=0.05)
 
@@ -136,7 +134,7 @@ def test_a_press_that_went_wrong_is_found_and_told_why(kind: str, words: str) ->
 
 
 def test_the_measured_pace_of_a_press_is_the_true_one() -> None:
-    from fdvv.twin import mean_speed_mm_s
+    from fdvv.twin.pace import mean_speed_mm_s
 
     bench = CaptureBench(load_button("mx-clear"), CaptureRig(), Finger(), ForceSensor(), Participant(0, 0),
                          np.random.default_rng(9))  # fmt: skip
@@ -178,25 +176,25 @@ NOTHING = Take(1, (stream("f", FORCE, np.zeros(50)),), (), Stage.PRESS, 50.0)
     ],
 )  # fmt: skip
 def test_a_take_that_shows_nothing_is_not_good(take: Take, words: str) -> None:
-    verdict = quick_look(take, CapturePlan())
-    assert not verdict.ok
-    assert words in verdict.reason
+    check = quick_look(take, CapturePlan())
+    assert not check.ok
+    assert words in check.reason
 
 
 def test_where_cameras_record_for_themselves_the_force_alone_tells_a_press() -> None:
     felt_cN = np.concatenate([np.full(20, 9.0), np.linspace(10, 150, 10), np.full(20, 9.0)])
-    verdict = quick_look(replace(NOTHING, streams=(stream("f", FORCE, felt_cN),)), CapturePlan())
-    assert verdict.ok
-    assert np.isnan(verdict.achieved_mm_s)
+    check = quick_look(replace(NOTHING, streams=(stream("f", FORCE, felt_cN),)), CapturePlan())
+    assert check.ok
+    assert np.isnan(check.achieved_mm_s)
 
 
 # -- the session --
 
 
 def test_a_session_on_the_twin_records_what_the_plan_asks(tmp_path: Path) -> None:
-    asked, done = list[TakeAsk](), list[TakeDone]()
+    asked, done = list[TakeRequest](), list[TakeDone]()
 
-    def cue(ask: TakeAsk) -> Callable[[float], None]:
+    def cue(ask: TakeRequest) -> Callable[[float], None]:
         asked.append(ask)
         return lambda _t_s: None
 
@@ -205,12 +203,14 @@ def test_a_session_on_the_twin_records_what_the_plan_asks(tmp_path: Path) -> Non
     result = capture_session(bench, path, "mx-clear", SMALL, CaptureGuide(cue, done.append))
     assert result.recording.simulated
     assert same(result.recording, load_recording(path))
-    assert [(p.velocity_mm_s, p.good + p.missed) for p in result.paces] == [(50.0, 3), (100.0, 3)]
-    assert len(asked) == len(done) == len(result.recording.takes) == sum(p.made for p in result.paces) + 2
-    bad = [d for d in done if not d.verdict.ok]
+    assert [(p.velocity_mm_s, p.good + p.missed) for p in result.velocities] == [(50.0, 3), (100.0, 3)]
+    assert (
+        len(asked) == len(done) == len(result.recording.takes) == sum(p.made for p in result.velocities) + 2
+    )
+    bad = [d for d in done if not d.check.ok]
     assert bad
     for event, ask in zip(done, asked[1:], strict=False):
-        assert ask.again == ("" if event.verdict.ok or event.missed else event.verdict.reason)
+        assert ask.again == ("" if event.check.ok or event.missed else event.check.reason)
     assert done[-1].done == done[-1].total == 8
     assert asked[2].travel_mm == pytest.approx(4.0, abs=0.05), "the probe has told it"
 
@@ -234,7 +234,7 @@ def test_a_press_that_stays_bad_is_asked_for_so_often_and_then_done_without(tmp_
     result = capture_session(Hopeless(), tmp_path / "a", "x", plan, CaptureGuide(done=done.append))
     assert len(result.recording.takes) == 1 + 2 * 3
     assert [d.missed for d in done] == [False, False, False, True, False, False, True]
-    assert (result.paces[0].good, result.paces[0].missed, result.paces[0].made) == (0, 2, 6)
+    assert (result.velocities[0].good, result.velocities[0].missed, result.velocities[0].made) == (0, 2, 6)
 
 
 class Fails:
@@ -270,7 +270,7 @@ def test_a_session_that_was_stopped_anywhere_goes_on_to_the_same_recording(
         fresh = open_bench("twin", "mx-clear", "clumsy", 7)
         again = capture_session(fresh, path, "mx-clear", SMALL, CaptureGuide(notice=told.append))
         assert same(again.recording, whole.recording)
-        assert (again.paces, len(told)) == (whole.paces, int(at > 1))
+        assert (again.velocities, len(told)) == (whole.velocities, int(at > 1))
         assert at == 1 or "goes on" in told[0]
 
 
@@ -282,7 +282,7 @@ def test_a_finished_session_asks_for_nothing_more(tmp_path: Path) -> None:
     never = Fails(bench, len(first.recording.takes) + 1, AssertionError())
     again = capture_session(never, path, "mx-clear", SMALL, CaptureGuide(notice=told.append))
     assert path.stat().st_size == size
-    assert again.paces == first.paces
+    assert again.velocities == first.velocities
     assert "is finished" in told[0]
 
 
@@ -291,7 +291,7 @@ def test_a_larger_plan_goes_on_with_what_is_missing(tmp_path: Path) -> None:
     capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", SMALL)
     more = replace(SMALL, paces_mm_s=(50.0, 100.0, 200.0), presses=4)
     found = capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", more)
-    assert [(p.good + p.missed, p.wanted) for p in found.paces] == [(4, 4)] * 3
+    assert [(p.good + p.missed, p.wanted) for p in found.velocities] == [(4, 4)] * 3
 
 
 def test_a_recording_of_something_else_is_refused(tmp_path: Path) -> None:

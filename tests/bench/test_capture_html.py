@@ -7,10 +7,11 @@ import re
 from dataclasses import replace
 
 import pytest
-from tests.captures import SHORT_STROKE, capture, recorded
 
-from fdvv.recording import Stage
-from fdvv.workflow import capture_html, model_of_recording
+from fdvv.bench.html import capture_html
+from fdvv.bench.model import model_of_recording
+from fdvv.recording.types import Stage
+from tests.support.captures import SHORT_STROKE, capture, recorded
 
 STEPS = [
     "Raw streams",

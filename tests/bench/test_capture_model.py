@@ -8,23 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.captures import SHORT_STROKE, capture, recorded
 
+from fdvv.bench.model import capture_report, model_of_recording, process_recording
+from fdvv.bench.vibration import RecordedVibrations
+from fdvv.button.fit import FitSettings
 from fdvv.errors import InputError, ModelError
-from fdvv.model import (
-    Mode,
-    Stroke,
-    Vibration,
-    landmark_errors,
-    load_model,
-    model_from_json,
-    model_to_json,
-    save_model,
-)
-from fdvv.preprocess import Processed
-from fdvv.recording import RECORDING_SUFFIX, Recording, Stage, save_recording
-from fdvv.workflow import FitSettings, capture_report, model_of_recording, process_recording
-from fdvv.workflow._capture_vibration import RecordedVibrations
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_model, model_from_json, model_to_json, save_model
+from fdvv.model.landmarks import landmark_errors
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.preprocess.process import Processed
+from fdvv.recording.file import RECORDING_SUFFIX, save_recording
+from fdvv.recording.types import Recording, Stage
+from tests.support.captures import SHORT_STROKE, capture, recorded
 
 
 def without(recording: Recording, *stages: Stage) -> Recording:
@@ -171,10 +167,10 @@ def test_vibrations_are_found_by_what_is_passed() -> None:
 
 def test_what_was_not_heard_is_told() -> None:
     found = recorded()
-    heard = {(one.stroke, one.velocity_mm_s) for one in found.heard.heard}
+    heard = {(one.stroke, one.velocity_mm_s) for one in found.vibration.strokes}
     assert heard == {(c.stroke, c.velocity_mm_s) for c in found.processed.curves}
-    assert set(found.heard.warnings) <= set(found.warnings)
-    assert len(found.heard.warnings) + len(found.model.vibrations) == len(heard)
+    assert set(found.vibration.warnings) <= set(found.warnings)
+    assert len(found.vibration.warnings) + len(found.model.vibrations) == len(heard)
 
 
 def test_the_fit_is_that_of_the_settings() -> None:

@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.model import Stroke, Vibration
-from fdvv.preprocess import Processed, process
-from fdvv.recording import Quantity, Recording
-from fdvv.testing import CapturedSession, captured_session
-from fdvv.vibration import NotFound
-from fdvv.workflow import HeardStroke, RecordedVibrations, model_of_recording, recorded_vibrations
-from fdvv.workflow._capture_heard import missing_words
+from fdvv.bench.model import model_of_recording
+from fdvv.bench.vibration import RecordedVibrations, StrokeVibration, missing_words, recorded_vibrations
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Vibration
+from fdvv.preprocess.process import Processed, process
+from fdvv.recording.types import Quantity, Recording
+from fdvv.testing.captured import CapturedSession, captured_session
+from fdvv.vibration.snap import NotFound
 
 FREQUENCY_Hz, LASTS_s = 237.8, math.log(10) / (2 * math.pi * 23.9)
 """Of the plate's first mode as it rings."""
@@ -38,36 +39,38 @@ def without(recording: Recording, quantity: Quantity) -> Recording:
     return replace(recording, takes=takes)
 
 
-def pressed(told: RecordedVibrations) -> list[Vibration]:
-    return [v for v in told.vibrations if v.stroke is Stroke.PRESS]
+def pressed(recorded: RecordedVibrations) -> list[Vibration]:
+    return [v for v in recorded.vibrations if v.stroke is Stroke.PRESS]
 
 
 def check_truth(
-    made: CapturedSession, told: RecordedVibrations, vibration: Vibration, lasts_rel: float = 0.10
+    made: CapturedSession, recorded: RecordedVibrations, vibration: Vibration, lasts_rel: float = 0.10
 ) -> None:
-    heard = next(
-        h for h in told.heard if h.stroke is vibration.stroke and h.velocity_mm_s == vibration.velocity_mm_s
+    strokes = next(
+        h
+        for h in recorded.strokes
+        if h.stroke is vibration.stroke and h.velocity_mm_s == vibration.velocity_mm_s
     )
     traces = [t.truth.trace for t in made.of("good", vibration.velocity_mm_s)]
     true_mm = np.median(
         [np.interp(t.closing_s, t.t_s, t.displacement_mm) for t in traces if t and t.closing_s is not None]
     )
-    late_s = (vibration.onset_mm - true_mm) / heard.report()["snap_velocity_mm_s"]
+    late_s = (vibration.onset_mm - true_mm) / strokes.report()["snap_velocity_mm_s"]
     assert late_s == pytest.approx(0.0, abs=1e-3)
     assert vibration.modes[0].frequency_Hz == pytest.approx(FREQUENCY_Hz, rel=0.05)
     assert vibration.duration_s == pytest.approx(LASTS_s, rel=lasts_rel)
 
 
 def test_onset_frequency_and_duration_are_true_at_every_pace_where_they_are_told() -> None:
-    made, _, told = session()
-    assert [v.velocity_mm_s for v in pressed(told)] == [50.0, 100.0, 200.0]
-    for vibration in pressed(told):
-        check_truth(made, told, vibration)
+    made, _, recorded = session()
+    assert [v.velocity_mm_s for v in pressed(recorded)] == [50.0, 100.0, 200.0]
+    for vibration in pressed(recorded):
+        check_truth(made, recorded, vibration)
 
 
 def test_every_figure_has_a_spread_over_presses_and_presses_are_counted() -> None:
-    _, _, told = session()
-    for vibration in pressed(told):
+    _, _, recorded = session()
+    for vibration in pressed(recorded):
         spread = vibration.spread
         assert spread is not None
         assert 3 <= spread.presses <= 5
@@ -84,8 +87,8 @@ def test_every_figure_has_a_spread_over_presses_and_presses_are_counted() -> Non
 
 
 def test_every_mode_lies_in_the_band_and_falls_within_a_snap() -> None:
-    _, _, told = session()
-    for vibration in told.vibrations:
+    _, _, recorded = session()
+    for vibration in recorded.vibrations:
         assert vibration.duration_s <= 0.025
         for mode in vibration.modes:
             assert 40 < mode.frequency_Hz < 4000
@@ -93,16 +96,16 @@ def test_every_mode_lies_in_the_band_and_falls_within_a_snap() -> None:
 
 
 def test_the_model_says_that_the_housing_was_heard_and_what_its_paces_share() -> None:
-    made, _, told = session()
+    made, _, recorded = session()
     model = model_of_recording(made.recording).model
-    assert model.vibrations == told.vibrations
+    assert model.vibrations == recorded.vibrations
     assert any("sat on the housing" in line for line in model.provenance.assumptions)
     assert any("rings alike at every pace" in line for line in model.provenance.assumptions)
 
 
 def test_a_law_over_speed_has_its_exponent_and_fills_a_missing_pace_only_if_asked() -> None:
-    made, processed, told = session()
-    (law,) = [s for s in told.scalings if s.stroke is Stroke.PRESS]
+    made, processed, recorded = session()
+    (law,) = [s for s in recorded.scalings if s.stroke is Stroke.PRESS]
     assert law.report()["exponent_error"] is not None
     assert law.scaling.exponent > 0
     # an accelerometer that heard nothing at one pace
@@ -127,39 +130,39 @@ def test_a_law_over_speed_has_its_exponent_and_fills_a_missing_pace_only_if_aske
 
 
 def test_a_linear_button_has_no_vibration_and_the_reason_is_said_once() -> None:
-    _, processed, told = session("mx-red", 4)
+    _, processed, recorded = session("mx-red", 4)
     paces = ", ".join(f"{c.velocity_mm_s:g}" for c in processed.curves if c.stroke is Stroke.PRESS)
-    assert told.vibrations == ()
-    (warning,) = told.warnings
+    assert recorded.vibrations == ()
+    (warning,) = recorded.warnings
     assert warning.startswith(f"no vibration on the press and release at {paces} mm/s: force does not fall")
 
 
 def test_the_microphone_alone_tells_none_and_why() -> None:
     made, processed, _ = session()
-    told = recorded_vibrations(without(made.recording, Quantity.ACCELERATION), processed)
-    assert told.vibrations == ()
-    assert {(h.stroke, h.velocity_mm_s) for h in told.heard} == {
+    recorded = recorded_vibrations(without(made.recording, Quantity.ACCELERATION), processed)
+    assert recorded.vibrations == ()
+    assert {(h.stroke, h.velocity_mm_s) for h in recorded.strokes} == {
         (c.stroke, c.velocity_mm_s) for c in processed.curves
     }
-    assert all(h.reason for h in told.heard)
-    assert 1 <= len(told.warnings) <= len(told.heard)
+    assert all(h.reason for h in recorded.strokes)
+    assert 1 <= len(recorded.warnings) <= len(recorded.strokes)
 
 
 def test_without_anything_that_listened_that_is_said_once() -> None:
     made, processed, _ = session()
     deaf = without(without(made.recording, Quantity.ACCELERATION), Quantity.SOUND)
-    told = recorded_vibrations(deaf, processed)
-    assert (told.vibrations, told.heard) == ((), ())
-    assert told.warnings == ("no vibration: nothing listened, neither microphone nor accelerometer",)
+    recorded = recorded_vibrations(deaf, processed)
+    assert (recorded.vibrations, recorded.strokes) == ((), ())
+    assert recorded.warnings == ("no vibration: nothing listened, neither microphone nor accelerometer",)
 
 
 def test_reasons_are_said_with_their_strokes_and_paces() -> None:
-    def heard(stroke: Stroke, pace_mm_s: float | None) -> HeardStroke:
-        return HeardStroke(stroke, pace_mm_s, 100.0, NotFound("of its own"))
+    def strokes(stroke: Stroke, pace_mm_s: float | None) -> StrokeVibration:
+        return StrokeVibration(stroke, pace_mm_s, 100.0, NotFound("of its own"))
 
     press, release = Stroke.PRESS, Stroke.RELEASE
-    pairs = [(heard(press, 50.0), "one"), (heard(release, 50.0), "one"), (heard(release, None), "one")]
-    assert missing_words([*pairs, (heard(press, 150.0), "two")]) == [
+    pairs = [(strokes(press, 50.0), "one"), (strokes(release, 50.0), "one"), (strokes(release, None), "one")]
+    assert missing_words([*pairs, (strokes(press, 150.0), "two")]) == [
         "no vibration on the press at 50 mm/s and release at 50, unknown mm/s: one",
         "no vibration on the press at 150 mm/s: two",
     ]
@@ -168,25 +171,25 @@ def test_reasons_are_said_with_their_strokes_and_paces() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["mx-brown", "mx-clear"])
 def test_a_whole_session_is_true_at_every_pace(name: str) -> None:
-    made, _, told = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
-    assert len(pressed(told)) >= 3
-    for vibration in pressed(told):
-        check_truth(made, told, vibration)
+    made, _, recorded = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
+    assert len(pressed(recorded)) >= 3
+    for vibration in pressed(recorded):
+        check_truth(made, recorded, vibration)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["mx-red", "mx-black"])
 def test_nothing_is_invented_on_linear_buttons(name: str) -> None:
-    _, _, told = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
-    assert told.vibrations == ()
-    assert len(told.warnings) == 1
+    _, _, recorded = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
+    assert recorded.vibrations == ()
+    assert len(recorded.warnings) == 1
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["hp-pr1101u", "macbook-pro-2011"])
 def test_what_a_dome_is_heard_with_is_known_and_in_the_band(name: str) -> None:
-    _, _, told = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
-    assert all(h.reason or h.report()["modes"] for h in told.heard)
-    for vibration in told.vibrations:
+    _, _, recorded = session(name, 15, (50.0, 100.0, 150.0, 200.0), 301)
+    assert all(h.reason or h.report()["modes"] for h in recorded.strokes)
+    for vibration in recorded.vibrations:
         assert vibration.duration_s <= 0.025
         assert all(40 < mode.frequency_Hz < 4000 for mode in vibration.modes)

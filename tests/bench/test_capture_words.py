@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tests.captures import capture, recorded
-
-from fdvv.preprocess import ClockFit, Reason, Settings
-from fdvv.recording import Bench, Source
-from fdvv.workflow._capture_words import assumptions_of, method_of, source_of, used_and_left_out
+from fdvv.bench.model import assumptions_of, method_of, source_of, used_and_left_out
+from fdvv.preprocess.clock import ClockFit
+from fdvv.preprocess.process import Settings
+from fdvv.preprocess.reject import Reason
+from fdvv.recording.types import Bench, Source
+from tests.support.captures import capture, recorded
 
 
 def test_takes_that_are_left_out_are_grouped_by_reason_and_many_are_counted() -> None:

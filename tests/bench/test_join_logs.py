@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fdvv.bench.join_logs import join_logs
 from fdvv.errors import InputError
-from fdvv.model import Stroke
-from fdvv.preprocess import Settings, process
-from fdvv.recording import Bench, Quantity, Recording, Stage
-from fdvv.testing import CapturedSession, PACES_mm_s, captured_session
-from fdvv.workflow import join_logs
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.process import Settings, process
+from fdvv.recording.types import Bench, Quantity, Recording, Stage
+from fdvv.testing.captured import CapturedSession, PACES_mm_s, captured_session
 
 FRAME_Hz = 256.0
 

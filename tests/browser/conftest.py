@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from fdvv.workflow import Study
-from fdvv.workflow._study_seal import Cost
+from fdvv.study.admin.study import Study
+from fdvv.study.files.seal import Cost
 
 if TYPE_CHECKING:
     from playwright.sync_api import CDPSession, Page
@@ -250,7 +250,7 @@ class Sitter:
 
 def kept(study: Study, person: str = "P01") -> list[dict[str, Any]]:
     """Give the answers that are on the disk, in order, as their records hold them."""
-    from fdvv.workflow import read_chained
+    from fdvv.study.files.chained_log import read_chained
 
     records = read_chained(study.person_folder(person) / "session.jsonl").records
     return [record["answered"]["answer"] for record in records if "answered" in record]

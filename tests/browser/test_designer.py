@@ -9,12 +9,12 @@ from urllib.parse import unquote
 
 import pytest
 from playwright.sync_api import expect
-from tests.browser.test_editor import FORCE, drag, number, scales
-from tests.browser.test_press import DOWN, UP, presses, ready
-from tests.studio.running import RunningStudio
-from tests.workflow.conftest import write_cycle
 
-from fdvv.model import load_model
+from fdvv.model.file import load_model
+from tests.browser.editing import FORCE, drag, number, scales
+from tests.browser.pressing import DOWN, UP, presses, ready
+from tests.studio.running import RunningStudio
+from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page

@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
-from tests.browser.test_accessibility import audit
 
-from fdvv.model import FDVVModel, ForceCurve, load_builtin, load_model
+from fdvv.model.curve import ForceCurve
+from fdvv.model.file import load_builtin, load_model
+from fdvv.model.model import FDVVModel
+from tests.browser.accessibility import audit
+from tests.browser.editing import FORCE, drag, number, scales
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
 
-FORCE = 2
 POINT = 5
 """The sixth control point of MX Clear's slowest press: 1.4 mm, 66.1146 cN."""
-
-
-def number(text: str) -> float:
-    return float(text.replace("−", "-"))
 
 
 def opened(page: Page, button: str) -> Page:
@@ -45,32 +42,6 @@ def cell(page: Page, row: int, column: int = FORCE) -> str:
 
 def force_cN(page: Page, row: int = POINT) -> float:
     return number(cell(page, row))
-
-
-def scales(page: Page) -> Callable[[float, float], tuple[float, float]]:
-    """Learn from the numbers under the pointer where a place of the axes lies on the screen."""
-    box = page.locator(".edit-plot").bounding_box()
-    assert box is not None
-    at = np.array([[box["x"] + p * box["width"], box["y"] + p * box["height"]] for p in (0.3, 0.7)])
-    read = []
-    for x, y in at:
-        page.mouse.move(x, y)
-        words = page.locator(".edit-pointer").inner_text().split()
-        read.append([number(words[0]), number(words[3])])
-
-    def to_screen(x_mm: float, y_cN: float) -> tuple[float, float]:
-        x, y = at[0] + (np.array([x_mm, y_cN]) - read[0]) * (at[1] - at[0]) / np.subtract(read[1], read[0])
-        return float(x), float(y)
-
-    return to_screen
-
-
-def drag(page: Page, start: tuple[float, float], by: tuple[float, float]) -> None:
-    page.mouse.move(*start)
-    page.mouse.down()
-    for part in (0.3, 0.7, 1.0):
-        page.mouse.move(start[0] + part * by[0], start[1] + part * by[1])
-    page.mouse.up()
 
 
 def saved(page: Page) -> None:
@@ -244,7 +215,7 @@ def test_a_conflict_of_two_tabs_is_put_to_the_person(editor: Page, context: Brow
     other.wait_for_selector(".edit-points")
     cut(other)
     nudge(other)
-    expect(other.locator(".edit-saved")).to_have_text("not saved yet, trying again")
+    expect(other.locator(".edit-saved")).to_have_text("not saved yet, retrying")
     mine = force_cN(other, 0)
     nudge(editor)
     nudge(editor)

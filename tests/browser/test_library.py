@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from playwright.sync_api import expect
-from tests.browser.test_accessibility import audit
-from tests.studio.running import RunningStudio
-from tests.workflow.conftest import write_cycle
 
-from fdvv.model import load_builtin
+from fdvv.model.file import load_builtin
+from tests.browser.accessibility import audit
+from tests.studio.running import RunningStudio
+from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
@@ -63,7 +63,7 @@ def test_a_switch_is_found_by_typing_also_with_a_typo(library: Page) -> None:
     library.keyboard.press("/")
     library.keyboard.type("gatreon")
     found(library, "Gateron Yellow")
-    expect(library.locator(".lib-status")).to_contain_text("read with a letter changed")
+    expect(library.locator(".lib-status")).to_contain_text("one letter changed")
     library.keyboard.press("Escape")
     expect(library.locator(".lib-status")).to_contain_text("9 buttons")
 
@@ -115,7 +115,7 @@ def test_a_link_shows_the_same_view(library: Page, context: BrowserContext) -> N
     table = library.locator(".lib-landmarks")
     expect(table.locator("thead th")).to_have_count(3)
     library.get_by_role("tab", name="Slope").click()
-    library.get_by_role("button", name="Take mx-red as the reference").click()
+    library.get_by_role("button", name="Use mx-red as the reference").click()
     library.get_by_label("Search buttons").fill("mx")
     expect(library.locator(".lib-status")).to_contain_text("5 of 9 buttons")
     texts = table.inner_text()
@@ -170,10 +170,10 @@ def test_the_pictures_are_files_that_say_what_they_show(library: Page) -> None:
 
 def test_what_feels_alike_is_a_click_away(library: Page) -> None:
     library.goto(f"{library.url.partition('#')[0]}#/library?q=gateron&tab=alike")
-    alike = library.get_by_role("region", name="Buttons that feel alike")
+    alike = library.get_by_role("region", name="Similar buttons")
     expect(alike.locator("tbody tr")).to_have_count(8)
     expect(alike.locator("tbody tr").first).to_contain_text("Silent Linear Red")
-    alike.get_by_role("button", name="Sort the whole list by likeness").click()
+    alike.get_by_role("button", name="Sort the list by similarity").click()
     expect(library.locator(".lib-status")).to_contain_text("nearest first to Gateron Yellow")
 
 
@@ -185,12 +185,12 @@ def test_refused_files_are_shown_with_their_reasons(library: Page) -> None:
 
 def test_files_that_come_and_go_are_followed_when_looked_for_again(library: Page, bench: Path) -> None:
     write_cycle(bench / "Newcomer.csv")
-    library.get_by_role("button", name="Look again").click()
+    library.get_by_role("button", name="Rescan").click()
     expect(library.locator(".lib-status")).to_contain_text("10 buttons", timeout=30_000)
     library.get_by_label("Search buttons").fill("newcomer")
     found(library, "Newcomer")
     (bench / "Newcomer.csv").unlink()
-    library.get_by_role("button", name="Look again").click()
+    library.get_by_role("button", name="Rescan").click()
     expect(library.locator(".lib-nothing")).to_be_visible()
 
 

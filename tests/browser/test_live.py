@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import expect
-from tests.browser.test_accessibility import audit
+
+from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def learn(page: Page, speeds: str, rounds: str, presses: str, judged: str = "0")
     page.get_by_label("Method").select_option("paper")
     set_field(page, "Rounds", rounds)
     set_field(page, "Presses per round", presses)
-    set_field(page, "Fresh presses to judge", judged)
+    set_field(page, "Held-out presses", judged)
     page.get_by_role("button", name="Start learning").click()
     page.wait_for_selector(".job-head")
 
@@ -55,18 +56,18 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     assert press[0] == "12"
     first_cN, last_cN = float(press[1]), float(press[2])
     assert last_cN < 0.5 * first_cN
-    page.get_by_role("tab", name="On fresh presses").click()
+    page.get_by_role("tab", name="Held-out presses").click()
     page.get_by_text("Figures").click()
     assert rows.nth(0).locator("td").nth(0).inner_text() == "2"
     kept = page.locator(".job-results").inner_text()
     assert re.search(r"table\s+mx-clear", kept)
-    assert re.search(r"measured on fresh presses\s+mx-clear", kept)
+    assert re.search(r"measured on held-out presses\s+mx-clear", kept)
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
     expect(table).to_have_count(14)
     assert audit(page) == []
-    page.get_by_role("button", name="New one").click()
-    page.get_by_label("or only judge, on fresh presses,").select_option("mx-clear")
-    page.get_by_role("button", name="Judge", exact=True).click()
+    page.get_by_role("button", name="New job").click()
+    page.get_by_label("or only evaluate, with the table").select_option("mx-clear")
+    page.get_by_role("button", name="Evaluate", exact=True).click()
     page.get_by_role("heading", name="Probe mx-clear on twin").wait_for()
     page.wait_for_selector(DONE, timeout=LONG_ms)
 
@@ -80,7 +81,7 @@ def test_a_page_that_is_reloaded_finds_its_job_stops_it_and_goes_on(page: Page) 
     page.wait_for_selector(".job-head .job-state.cancelled")
     assert "what was made is kept" in page.locator(".job-line").inner_text()
     assert page.locator(".job-sign").is_hidden()
-    page.get_by_role("button", name="Go on").click()
+    page.get_by_role("button", name="Resume").click()
     page.locator(".job-sign").wait_for()
     page.wait_for_selector(DONE, timeout=LONG_ms)
     assert "goes on" in page.locator(".job-notices").inner_text()
@@ -98,7 +99,7 @@ def test_a_job_is_found_from_every_page(page: Page) -> None:
 
 def test_vibrations_are_tuned_with_keys_alone(page: Page) -> None:
     opened(page, "tune")
-    set_field(page, "Questions at most", "3")
+    set_field(page, "Maximum questions", "3")
     page.get_by_role("button", name="Start tuning").press("Enter")
     for number, key in enumerate("120", start=1):
         page.get_by_role("heading", name=f"Question {number} of 3").wait_for()
@@ -119,7 +120,7 @@ def test_answers_are_blind_until_they_are_given(page: Page) -> None:
     assert "template" not in page.inner_text("main")
     page.keyboard.press("2")
     page.get_by_role("heading", name="Question 2").wait_for()
-    expect(page.locator("details summary", has_text="may lead your answers")).to_be_visible()
+    expect(page.locator("details summary", has_text="may bias your answers")).to_be_visible()
     assert "template" not in page.inner_text("main")
     page.get_by_role("button", name="Stop").click()
     page.wait_for_selector(".job-head .job-state.cancelled")
@@ -128,7 +129,7 @@ def test_answers_are_blind_until_they_are_given(page: Page) -> None:
 def test_a_capture_on_the_simulated_bench_becomes_a_button_of_ones_own(page: Page) -> None:
     opened(page, "capture")
     set_field(page, "Name of the button", "my clear")
-    set_field(page, "Paces", "100")
+    set_field(page, "Speeds", "100")
     set_field(page, "Presses", "3")
     page.get_by_role("button", name="Start the capture").click()
     page.wait_for_selector(DONE, timeout=LONG_ms)
@@ -142,13 +143,13 @@ def test_a_capture_on_the_simulated_bench_becomes_a_button_of_ones_own(page: Pag
 
 def test_the_pace_is_led_by_a_moving_cue(page: Page) -> None:
     opened(page, "capture")
-    set_field(page, "Paces", "100")
+    set_field(page, "Speeds", "100")
     set_field(page, "Presses", "1")
     page.get_by_label("A slow probe first").uncheck()
-    page.get_by_label("Show the cue in a person's time").check()
+    page.get_by_label("Show the cue in real time").check()
     page.get_by_role("button", name="Start the capture").click()
     page.get_by_text("Hands off").wait_for()
-    page.get_by_text("Press down to the stop and let go: 100 mm/s").wait_for()
+    page.get_by_text("Press down to the stop, then release: 100 mm/s").wait_for()
     for count in ("3", "2", "1"):
         page.locator(".cue-count", has_text=count).wait_for()
     page.get_by_role("button", name="Stop").click()
@@ -162,9 +163,9 @@ def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> N
     page.get_by_role("button", name="Upload").click()
     page.get_by_text("program: ").wait_for()
     page.get_by_role("button", name="Press once").click()
-    page.get_by_text("felt in true displacement, simulated").wait_for()
-    expect(page.get_by_role("img", name="Place of the cap over time")).to_be_visible()
-    page.get_by_text("Each column is the least and the most").wait_for()
+    page.get_by_text("rendered, in true displacement, simulated").wait_for()
+    expect(page.get_by_role("img", name="Displacement of the cap over time")).to_be_visible()
+    page.get_by_text("Each column spans the least and the greatest").wait_for()
     page.get_by_role("button", name="Arm").click()
     page.locator(".job-state.mode-armed").wait_for()
     page.keyboard.press("Escape")

@@ -11,18 +11,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from benchmarks.studio_play import button_ms
 from playwright.sync_api import expect
-from tests.browser.test_accessibility import audit
-from tests.studio.running import RunningStudio
-from tests.workflow.test_device_key import KeyedRig
-from tests.workflow.test_others import grid
 
-from fdvv.optimize import Answer, TrialState
-from fdvv.workflow import (
-    ClockSource,
-    OptimizeSession,
-    PlayedRound,
-    PlayedRounds,
-)
+from fdvv.optimize.problem import Answer, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.task_rounds import ClockSource, TaskRound, TaskRounds
+from tests.browser.accessibility import audit
+from tests.studio.running import RunningStudio
+from tests.support.grids import grid
+from tests.support.pressed_rig import KeyedRig
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
@@ -116,9 +112,9 @@ def wait_for_bullet(page: Page) -> None:
     )
 
 
-def kept_rounds(folder: Path) -> tuple[PlayedRound, ...]:
+def kept_rounds(folder: Path) -> tuple[TaskRound, ...]:
     """Read what is on the disk of a run that nobody plays."""
-    rounds = PlayedRounds(folder)
+    rounds = TaskRounds(folder)
     rounds.close()
     return rounds.all
 
@@ -213,7 +209,7 @@ def table(tmp_path: Path) -> Iterator[RunningStudio]:
     """A studio beside which a board stands, on a real terminal line, that somebody presses now and then."""
     rig = KeyedRig(presses=100)
     listed = ((f"serial:{rig.path}", "a board"),), ""
-    first = f"from fdvv.studio import _play_device\n_play_device.devices = lambda: {listed!r}"
+    first = f"from fdvv.studio import play_trials\nplay_trials.available_devices = lambda: {listed!r}"
     studio = RunningStudio(tmp_path / "project", first=first)
     rig.start()
     yield studio
@@ -228,21 +224,21 @@ def test_a_button_on_the_table_is_pressed_while_the_page_shows_the_bullet(
     page.goto(table.address)
     page.wait_for_selector("html[data-ready]")
     begin(page)
-    page.get_by_label("Pressed is").select_option(index=1)
+    page.get_by_label("Press on").select_option(index=1)
     page.get_by_role("button", name="Play trial 1").click()
     expect(page.get_by_text("Press the button on the table")).to_be_visible()
     wait_for_bullet(page)
     page.keyboard.press(" ", delay=80)  # what the hand does on the page is no press now
     page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony/", timeout=40_000)
     page.get_by_role("tab", name="Timing").click()
-    expect(page.get_by_text("told by the device's own clock")).to_be_visible()
+    expect(page.get_by_text("timed by the device's own clock")).to_be_visible()
     kept = kept_rounds(table.project / "optimize" / "1")
     assert len(kept) == ROUNDS
     assert {(one.timing.source, one.timing.hand) for one in kept} == {(ClockSource.KEY, "button")}
     assert any(one.activations_s for one in kept)
 
 
-def kept_rounds_of(page: Page, studio: RunningStudio) -> tuple[PlayedRound, ...]:
+def kept_rounds_of(page: Page, studio: RunningStudio) -> tuple[TaskRound, ...]:
     """Leave the run, so that its files are free, and read them."""
     page.get_by_role("link", name="All runs").click()
     page.wait_for_selector("a.opt-run")
@@ -278,7 +274,7 @@ def test_a_suggestion_is_changed_before_it_is_played_and_a_trial_abandoned(
     page.wait_for_selector("td:has-text('abandoned')")
     page.get_by_role("link", name="All runs").click()
     page.wait_for_selector("a.opt-run")
-    with OptimizeSession.open(studio.project / "optimize" / "1") as session:
+    with Optimization.open(studio.project / "optimize" / "1") as session:
         (trial,) = session.trials
     assert (trial.state, trial.design["actuation_mm"]) == (TrialState.ABANDONED, 1.25)
 
@@ -325,7 +321,7 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
     page.wait_for_selector(".opt-compared")
     page.get_by_role("link", name="All runs").click()
     page.wait_for_selector("a.opt-run")
-    with OptimizeSession.open(studio.project / "optimize" / "1") as session:
+    with Optimization.open(studio.project / "optimize" / "1") as session:
         assert [one.answer for one in session.comparisons] == [Answer.SECOND, Answer.EQUAL]
 
 

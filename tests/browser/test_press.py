@@ -10,15 +10,14 @@ import numpy as np
 import pytest
 from numpy.lib.stride_tricks import sliding_window_view
 
-from fdvv.model import load_builtin
-from fdvv.vibration import vibration_samples
+from fdvv.model.file import load_builtin
+from fdvv.vibration.wave import vibration_samples
+from tests.browser.pressing import DOWN, LAMP, UP, presses, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 HEAD_bytes, RATE_Hz = 44, 48_000
-LAMP = ".press-lamp"
-DOWN, UP = f"{LAMP}:not([data-key='0'])", f"{LAMP}[data-key='0']"
 
 
 class Wire:
@@ -48,19 +47,8 @@ def wire(page: Page) -> Wire:
     return heard
 
 
-def ready(page: Page) -> None:
-    """Wait until something is under the finger and was seen at rest."""
-    page.wait_for_selector(".press-told:has-text('simulated rig')")
-    page.wait_for_selector(UP)
-
-
 def value(page: Page, name: str) -> str:
     return page.inner_text(f"[data-value='{name}']")
-
-
-def presses(page: Page, count: int) -> None:
-    """Wait until so many presses are over."""
-    page.wait_for_selector(f"[data-value='presses'] >> text=/^{count}$/", state="attached")
 
 
 def place(page: Page, part: float) -> tuple[float, float]:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import expect
-from tests.browser.test_accessibility import audit
-from tests.studio.running import RunningStudio
 
-from fdvv.model import load_builtin
-from fdvv.program import load_program, load_shipped, of_model
+from fdvv.model.file import load_builtin
+from fdvv.program.file import load_program
+from fdvv.program.library import load_shipped
+from fdvv.program.surface import of_model
+from tests.browser.accessibility import audit
+from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
@@ -190,7 +192,7 @@ def test_a_program_is_pressed_as_it_is_edited_and_the_graph_tells_its_state(own:
 def test_the_forces_of_another_button_are_taken(own: Page, tmp_path: Path) -> None:
     own.locator("summary", has_text="take from a button").click()
     own.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
-    own.get_by_role("button", name="Make its own").click()
+    own.get_by_role("button", name="Make a copy").click()
     own.get_by_role("button", name="Take its forces").click()
     wanted = of_model(load_builtin("mx-clear"), "press")
     expect(own.locator(".point-values input").nth(1)).to_have_value(f"{wanted.force_cN[0][0]:g}")
@@ -213,7 +215,7 @@ def test_what_another_tab_saved_is_not_overwritten(own: Page, context: BrowserCo
         if page is own:
             edited(page)
     other.locator(".save-state.refused", has_text="changed elsewhere").wait_for()
-    other.get_by_role("button", name="Keep as another").click()
+    other.get_by_role("button", name="Save as").click()
     other.wait_for_url("**/own%3Amx-red%202*")
     saved(other)
     other.close()
@@ -223,7 +225,7 @@ def test_a_recipe_makes_a_program_at_once(gallery: Page, tmp_path: Path) -> None
     recipe = gallery.locator("article[aria-label='Recipe fast-tapping']")
     recipe.get_by_label("Pull").fill("44")
     recipe.get_by_label("Pull").press("Enter")
-    recipe.get_by_role("button", name="Make it").click()
+    recipe.get_by_role("button", name="Create").click()
     gallery.wait_for_selector(".verdict.accepted")
     kept = load_program(tmp_path / "project" / "programs" / "fast-tapping.fdvv-program.json")
     assert kept.surface("pull").force_cN[0][0] == -44

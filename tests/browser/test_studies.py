@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import expect
-from tests.browser.study_screens import NAME, PASSPHRASE, Sitter, frozen_study, plan_text, wait_for_part
-from tests.browser.test_accessibility import audit
-from tests.studio.running import RunningStudio
 
-from fdvv.workflow import Study
+from fdvv.study.admin.study import Study
+from tests.browser.accessibility import audit
+from tests.browser.study_screens import NAME, PASSPHRASE, Sitter, frozen_study, plan_text, wait_for_part
+from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
@@ -42,8 +42,8 @@ def test_a_study_is_declared_changed_checked_and_frozen(page: Page, studio: Runn
     to(page, "studies")
     page.wait_for_selector("form.sts-new select")
     page.fill("#sts-name", NAME)
-    page.get_by_role("button", name="Declare").click()
-    expect(page.locator(".sts-good")).to_have_text("Nothing is wrong with it.")
+    page.get_by_role("button", name="Create").click()
+    expect(page.locator(".sts-good")).to_have_text("No problems found.")
     expect(page.locator(".sts-preview")).to_contain_text("36 trials")
     text = page.locator(".sts-text")
     before = text.input_value()
@@ -58,10 +58,10 @@ def test_a_study_is_declared_changed_checked_and_frozen(page: Page, studio: Runn
     page.fill("#sts-pass", PASSPHRASE)
     page.fill("#sts-again", "something else")
     freeze.click()
-    page.wait_for_selector("text=the two differ")
+    page.wait_for_selector("text=the two do not match")
     page.fill("#sts-again", PASSPHRASE)
     freeze.click()
-    page.wait_for_selector("text=Nobody has sat down yet")
+    page.wait_for_selector("text=No participant has started yet")
     study = Study.open(studio.project / "studies" / NAME)
     assert study.plan.rounds == 2
     tab(page, "Seal and results")
@@ -73,7 +73,7 @@ def test_a_study_is_declared_changed_checked_and_frozen(page: Page, studio: Runn
 def test_people_are_seated_followed_paused_and_their_study_opened_and_reported(
     page: Page, study: Study, context: BrowserContext, tmp_path: Path
 ) -> None:
-    page.get_by_role("button", name="Prepare a seat").click()
+    page.get_by_role("button", name="Create an invitation").click()
     address = page.get_attribute("a[data-seat]", "href")
     assert address is not None
     sitter = Sitter(context.new_page())
@@ -85,23 +85,23 @@ def test_people_are_seated_followed_paused_and_their_study_opened_and_reported(
     row = page.locator("tr[data-person=P01]")
     expect(row).to_contain_text("1 of 2")
     expect(row).to_contain_text("at a screen")
-    page.get_by_label("Pause everybody").check()
+    page.get_by_label("Pause all").check()
     sitter.page.wait_for_selector("text=The study pauses")
-    page.get_by_label("Pause everybody").uncheck()
+    page.get_by_label("Pause all").uncheck()
     expect(sitter.page.locator(".study-veil").first).to_be_hidden()
     sitter.trial(2, 2)
     expect(row).to_contain_text("done")
     tab(page, "Seal and results")
     page.get_by_role("button", name="Verify").click()
-    page.wait_for_selector("text=Everything is as it was written")
+    page.wait_for_selector("text=Nothing has changed")
     page.fill("#sts-who", "the keeper")
     page.fill("#sts-why", "the last person is done")
     page.fill("#sts-open", "a guess")
-    page.get_by_role("button", name="Unseal for good").click()
+    page.get_by_role("button", name="Unseal permanently").click()
     page.wait_for_selector(".toast.wrong")
     assert not (study.folder / "unsealed").exists()
     page.fill("#sts-open", PASSPHRASE)
-    page.get_by_role("button", name="Unseal for good").click()
+    page.get_by_role("button", name="Unseal permanently").click()
     page.wait_for_selector("[aria-label=Results]")
     expect(page.locator(".sts-history")).to_contain_text("the last person is done")
     with page.expect_download() as saving:
@@ -120,7 +120,7 @@ def test_somebody_is_withdrawn_and_a_change_of_the_files_is_found(
     sitter.trial(1, 2)
     page.locator("tr[data-person=P01] >> text=Withdraw").click()
     assert audit(page) == []
-    page.get_by_role("button", name="Withdraw P01 for good").click()
+    page.get_by_role("button", name="Withdraw P01 permanently").click()
     expect(page.locator("tr[data-person=P01]")).to_contain_text("deleted")
     sitter.page.wait_for_selector("h1:has-text('The study is over for you')")
     log = study.folder / "study.jsonl"

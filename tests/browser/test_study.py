@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from playwright.sync_api import expect
+
+from fdvv.study.admin.study import Study
+from tests.browser.accessibility import audit
 from tests.browser.study_screens import (
     NAME,
     PASSPHRASE,
@@ -20,10 +23,7 @@ from tests.browser.study_screens import (
     plan_text,
     wait_for_part,
 )
-from tests.browser.test_accessibility import audit
 from tests.studio.running import RunningStudio
-
-from fdvv.workflow import Study
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -151,7 +151,7 @@ def test_a_session_is_done_by_keyboard_alone(study: Study, page: Page, context: 
     tab_to("#study-age")
     keys.type("17")
     keys.press("Enter")
-    expect(screen.locator("form [role=alert]")).to_have_text("Please answer all that is asked.")
+    expect(screen.locator("form [role=alert]")).to_have_text("Please answer all questions.")
     keys.press("Backspace")
     keys.type("8")
     tab_to("input[type=radio]")
@@ -218,7 +218,7 @@ def test_a_page_loaded_again_goes_on_and_so_does_a_card_on_another_screen(
     fresh.page.fill("#study-code", sitter.code)
     fresh.main()
     fresh.wait_for(2, 2)
-    sitter.page.wait_for_selector("text=goes on at another screen")
+    sitter.page.wait_for_selector("text=continues at another screen")
     fresh.trial(2, 2)
     fresh.page.wait_for_selector("h1:has-text('Thank you')")
     other.close()

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import Error
+
+from fdvv.study.admin.study import Study
 from tests.browser.study_screens import (
     NAME,
     PASSPHRASE,
@@ -23,8 +25,6 @@ from tests.browser.study_screens import (
     wait_for_part,
 )
 from tests.studio.running import RunningStudio
-
-from fdvv.workflow import Study
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -6,12 +6,15 @@ import json
 
 import numpy as np
 import pytest
-from tests.captures import recorded
-from tests.workflow.conftest import line_model
 
+from fdvv.button.compare import compare
 from fdvv.errors import ModelError
-from fdvv.model import SUFFIX, FDVVModel, Stroke, landmark_errors, landmarks, load_builtin
-from fdvv.workflow import compare
+from fdvv.model.curve import Stroke
+from fdvv.model.file import MODEL_SUFFIX, load_builtin
+from fdvv.model.landmarks import landmark_errors, landmarks
+from fdvv.model.model import FDVVModel
+from tests.support.buttons import line_model
+from tests.support.captures import recorded
 
 
 def test_a_button_does_not_differ_from_itself() -> None:
@@ -91,4 +94,4 @@ def test_the_report_is_plain_json_with_every_landmark() -> None:
     for entry, model in zip(report["buttons"], models, strict=True):
         assert entry == {"name": model.name, **landmarks(model).to_dict(), "landmark_errors": {}}
     assert {d["stroke"] for d in report["differences"]} == {"press", "release"}
-    assert SUFFIX not in report["reference"]
+    assert MODEL_SUFFIX not in report["reference"]

@@ -9,19 +9,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.errors import FdvvError, InputError
-from fdvv.model import FDVVModel, Mode, Provenance, Stroke, Vibration, load_builtin, save_model
-from fdvv.recording import Recording, Stream, Take, save_recording
-from fdvv.workflow import (
+from fdvv.button.export_file import (
     EXPORT_FORMATS,
     ExportSettings,
-    ImportSettings,
     export_button,
     export_format,
     export_vibration,
-    import_file,
     read_back,
 )
+from fdvv.button.import_file import ImportSettings, import_file
+from fdvv.errors import FdvvError, InputError
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin, save_model
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.recording.file import save_recording
+from fdvv.recording.types import Recording, Stream, Take
 
 TWO = Vibration(Stroke.PRESS, None, 1.0, 0.05, (Mode(180.0, 5.0, 60.0, 0.3), Mode(260.0, 3.0, 120.0, 1.0)))
 

@@ -7,7 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.conftest import (
+
+from fdvv.button.fit import FitSettings, fit_file
+from fdvv.errors import InputError
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin, model_from_json, model_to_json, save_model
+from fdvv.model.fit import FitMethod
+from tests.support.buttons import (
     CLOSES_mm,
     CONTACT_mm,
     OPENS_mm,
@@ -17,10 +23,6 @@ from tests.workflow.conftest import (
     write_columns,
     write_cycle,
 )
-
-from fdvv.errors import InputError
-from fdvv.model import FitMethod, Stroke, load_builtin, model_from_json, model_to_json, save_model
-from fdvv.workflow import FitSettings, fit_file
 
 STEP_mm = 0.005
 STOP_WINDOW_mm = 0.02

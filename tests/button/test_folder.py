@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.conftest import write_cycle
 
+from fdvv.button.fit import FitSettings, FolderFit, fit_file, fit_folder, measured_files, summarise
 from fdvv.errors import InputError
-from fdvv.model import SUFFIX, Stroke, load_builtin, save_model
-from fdvv.workflow import FitSettings, FolderFit, fit_file, fit_folder, measured_files, summarise
+from fdvv.model.curve import Stroke
+from fdvv.model.file import MODEL_SUFFIX, load_builtin, save_model
+from tests.support.buttons import write_cycle
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +21,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for i, name in enumerate(["d.csv", "a.csv", "deep/e.csv", "c.csv"]):
         write_cycle(below / name, added_cN=3 * i, seed=i)
     (below / "b.csv").write_text("text,of,no,kind\n1,2,3,4\n")
-    save_model(load_builtin("mx-red"), below / f"fitted{SUFFIX}")
+    save_model(load_builtin("mx-red"), below / f"fitted{MODEL_SUFFIX}")
     return below
 
 
@@ -86,7 +87,7 @@ def test_a_summary_of_refusals_only_has_no_figures(folder: Path) -> None:
 
 
 def test_a_folder_without_measurements_is_refused(tmp_path: Path) -> None:
-    save_model(load_builtin("mx-red"), tmp_path / f"fitted{SUFFIX}")
+    save_model(load_builtin("mx-red"), tmp_path / f"fitted{MODEL_SUFFIX}")
     with pytest.raises(InputError, match="of measurements in it"):
         list(fit_folder(tmp_path))
     with pytest.raises(InputError, match="no such folder"):

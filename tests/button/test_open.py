@@ -8,21 +8,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.workflow.conftest import line_model, write_cycle
 
-from fdvv.errors import InputError, ModelError
-from fdvv.model import SUFFIX, CurveSpread, FDVVModel, Stroke, load_builtin, save_model
-from fdvv.workflow import (
+from fdvv.button.fit import fit_file
+from fdvv.button.open import (
     button_files,
-    fit_file,
     merge_parts,
     one_curve,
-    open_device,
+    open_button,
     open_files,
-    open_model,
     open_models,
     open_part,
 )
+from fdvv.errors import InputError, ModelError
+from fdvv.model.curve import Stroke
+from fdvv.model.file import MODEL_SUFFIX, load_builtin, save_model
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpread
+from fdvv.rendering.tuning import open_device
+from tests.support.buttons import line_model, write_cycle
 
 
 @pytest.fixture
@@ -36,21 +39,21 @@ def saved(path: Path, model: FDVVModel) -> Path:
 
 
 def test_a_button_is_a_builtin_a_model_file_or_a_measurement(tmp_path: Path, measured: Path) -> None:
-    assert open_model("mx-red") == load_builtin("mx-red")
+    assert open_button("mx-red") == load_builtin("mx-red")
     model = line_model("line", 40)
-    assert open_model(str(saved(tmp_path / f"line{SUFFIX}", model))) == model
-    assert open_model(str(measured)) == fit_file(measured).model
+    assert open_button(str(saved(tmp_path / f"line{MODEL_SUFFIX}", model))) == model
+    assert open_button(str(measured)) == fit_file(measured).model
 
 
 def test_a_model_is_known_by_its_inside_where_its_name_does_not_say(tmp_path: Path) -> None:
     model = line_model("line", 40)
-    assert open_model(str(saved(tmp_path / "line.json", model))) == model
+    assert open_button(str(saved(tmp_path / "line.json", model))) == model
 
 
 @pytest.mark.parametrize("spec", ["", "mx-blu", "gone.csv", "."])
 def test_what_names_no_button_is_refused_with_those_there_are(spec: str) -> None:
     with pytest.raises(InputError, match="mx-black, mx-blue"):
-        open_model(spec)
+        open_button(spec)
 
 
 @pytest.mark.parametrize(
@@ -63,32 +66,32 @@ def test_what_names_no_button_is_refused_with_those_there_are(spec: str) -> None
 def test_numbers_beyond_any_button_are_refused_by_place(
     tmp_path: Path, number: str, wild: str, place: str
 ) -> None:
-    path = saved(tmp_path / f"wild{SUFFIX}", line_model("wild", 40.0, 0.0))
+    path = saved(tmp_path / f"wild{MODEL_SUFFIX}", line_model("wild", 40.0, 0.0))
     text = path.read_text()
     assert number in text
     path.write_text(text.replace(number, wild))
     with pytest.raises(InputError, match=place):
-        open_model(str(path))
+        open_button(str(path))
 
 
 def test_a_folder_stands_for_its_models_else_for_its_measurements(tmp_path: Path, measured: Path) -> None:
     assert [m.name for m in open_models([str(tmp_path), "mx-red"])] == ["switch", "mx-red"]
-    saved(tmp_path / f"b{SUFFIX}", line_model("b", 30))
-    saved(tmp_path / f"a{SUFFIX}", line_model("a", 30))
+    saved(tmp_path / f"b{MODEL_SUFFIX}", line_model("b", 30))
+    saved(tmp_path / f"a{MODEL_SUFFIX}", line_model("a", 30))
     assert [m.name for m in open_models([str(tmp_path)])] == ["a", "b"]
     assert measured.is_file()
 
 
 def test_a_folders_unusable_files_are_told_and_passed_over(tmp_path: Path) -> None:
-    saved(tmp_path / f"a{SUFFIX}", line_model("a", 30))
-    (tmp_path / f"b{SUFFIX}").write_text("{")
+    saved(tmp_path / f"a{MODEL_SUFFIX}", line_model("a", 30))
+    (tmp_path / f"b{MODEL_SUFFIX}").write_text("{")
     refused: list[str] = []
     assert [m.name for m in open_models([str(tmp_path)], refused)] == ["a"]
     assert len(refused) == 1
-    assert f"b{SUFFIX}" in refused[0]
+    assert f"b{MODEL_SUFFIX}" in refused[0]
     assert [(b.file.name, b.model is None, b.reason) for b in open_files(button_files(tmp_path))] == [
-        (f"a{SUFFIX}", False, ""),
-        (f"b{SUFFIX}", True, refused[0]),
+        (f"a{MODEL_SUFFIX}", False, ""),
+        (f"b{MODEL_SUFFIX}", True, refused[0]),
     ]
 
 
@@ -112,7 +115,7 @@ def test_a_part_declared_to_be_of_another_velocity_is_not_what_was_measured(
     spread = CurveSpread(np.array([0.0, 3.0]), np.array([1.0, 2.0]), 15)
     model = line_model("line", 40)
     press = replace(model.of("press")[0], velocity_mm_s=measured_mm_s, spread=spread)
-    path = saved(tmp_path / f"line{SUFFIX}", replace(model, curves=(press,)))
+    path = saved(tmp_path / f"line{MODEL_SUFFIX}", replace(model, curves=(press,)))
     assert one_curve(str(path)).spread == spread
     assert one_curve(f"{path}@50").spread == (spread if kept else None)
 
@@ -146,7 +149,7 @@ def test_one_velocity_cannot_serve_several_curves() -> None:
 
 def test_a_stroke_that_is_not_there_is_refused(tmp_path: Path) -> None:
     lone = replace(line_model("lone", 30), curves=line_model("lone", 30).of("press"))
-    spec = f"{saved(tmp_path / f'lone{SUFFIX}', lone)}:release"
+    spec = f"{saved(tmp_path / f'lone{MODEL_SUFFIX}', lone)}:release"
     with pytest.raises(InputError, match="no release curve"):
         open_part(spec)
 
@@ -205,7 +208,7 @@ def test_devices_are_opened_by_name() -> None:
 
 def test_opening_a_folder_tells_how_far_it_is(tmp_path: Path) -> None:
     for name in "ab":
-        saved(tmp_path / f"{name}{SUFFIX}", line_model(name, 30))
+        saved(tmp_path / f"{name}{MODEL_SUFFIX}", line_model(name, 30))
     told: list[tuple[int, int]] = []
     open_models(["mx-red", str(tmp_path)], None, lambda done, total: told.append((done, total)))
     assert told == [(1, 2), (2, 2)]

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.model import FitMethod, fit_curve
-from fdvv.workflow import FolderFit, fit_folder, summarise
+from fdvv.button.fit import FolderFit, fit_folder, summarise
+from fdvv.model.fit import FitMethod, fit_curve
 
 pytestmark = pytest.mark.shared
 

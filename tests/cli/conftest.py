@@ -12,8 +12,7 @@ import click
 import numpy as np
 import pytest
 
-from fdvv.cli import main
-from fdvv.cli._main import COMMANDS, cli
+from fdvv.cli.main import COMMANDS, cli, main
 from fdvv.units import FloatArray
 
 

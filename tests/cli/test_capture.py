@@ -19,18 +19,19 @@ import numpy as np
 import pytest
 from rich.console import Console
 from rich.live import Live
-from tests.device.benches import PressedBoard
 
-from fdvv.cli._beep import TONES_Hz, beeper, tone
-from fdvv.cli._capture_view import Beeps, CaptureLines, CaptureTable, asked, frame
-from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s
-from fdvv.device import SerialBench
+from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
+from fdvv.bench.plan import COUNT_IN_s, Step
+from fdvv.bench.plan import DWELL_s as TOLD_DWELL_s
+from fdvv.bench.take_check import TakeCheck
+from fdvv.cli.capture_view import Beeps, CaptureLines, CaptureTable, asked, frame
+from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, TONES_Hz, beeper, tone
+from fdvv.device.bench import SerialBench
 from fdvv.errors import InputError
-from fdvv.model import load_model
-from fdvv.recording import Recording, Stage, Take, load_recording
-from fdvv.workflow import PaceStanding, Step, TakeAsk, TakeDone, Verdict
-from fdvv.workflow._capture_cue import COUNT_IN_s
-from fdvv.workflow._capture_cue import DWELL_s as TOLD_DWELL_s
+from fdvv.model.file import load_model
+from fdvv.recording.file import load_recording
+from fdvv.recording.types import Recording, Stage, Take
+from tests.support.scripted_bench import PressedBoard
 
 from .conftest import Run
 
@@ -181,7 +182,7 @@ def test_on_a_terminal_rows_and_bad_presses_are_shown(tmp_path: Path) -> None:
 
 # -- the cue --
 
-ASK = TakeAsk(Step(Stage.PRESS, 50.0), 3, 62, 4.0)
+ASK = TakeRequest(Step(Stage.PRESS, 50.0), 3, 62, 4.0)
 
 
 def test_the_shown_cue_keeps_the_times_that_the_marks_tell() -> None:
@@ -191,7 +192,7 @@ def test_the_shown_cue_keeps_the_times_that_the_marks_tell() -> None:
     assert frame(ASK, 1.49).startswith("1  ·")
     assert "·" in frame(ASK, COUNT_IN_s + 0.05)
     assert "·" not in frame(ASK, COUNT_IN_s + 0.08 + DWELL_s / 2)
-    assert frame(TakeAsk(Step(Stage.REST), 1, 62, 4.0), 0.5) == "hands off"
+    assert frame(TakeRequest(Step(Stage.REST), 1, 62, 4.0), 0.5) == "hands off"
 
 
 def test_it_beeps_once_at_contact_and_once_at_the_bottom() -> None:
@@ -214,7 +215,7 @@ def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sigh
         for tick in range(500):
             show(0.004 * tick)
         take = Take(3, (), (), Stage.PRESS, 50.0)
-        bad, pace = Verdict(False, reason="too slow; press faster"), PaceStanding(50.0, 0, 15, 1, 0)
+        bad, pace = TakeCheck(False, reason="too slow; press faster"), VelocityProgress(50.0, 0, 15, 1, 0)
         view.done(TakeDone(take, bad, 2, 62, False, (pace,)))
         view.notice("x.recording.jsonl goes on")
     shown = screen.getvalue()
@@ -229,9 +230,9 @@ def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sigh
 
 def test_what_is_asked_says_pace_way_and_time() -> None:
     assert asked(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
-    again = TakeAsk(ASK.step, 3, 62, 4.0, "too slow")
+    again = TakeRequest(ASK.step, 3, 62, 4.0, "too slow")
     assert asked(again).startswith("3 of 62: press once more, 50 mm/s")
-    probe = TakeAsk(Step(Stage.PROBE, 0.5), 2, 62, 4.0)
+    probe = TakeRequest(Step(Stage.PROBE, 0.5), 2, 62, 4.0)
     assert asked(probe).endswith("0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly")
 
 
@@ -349,7 +350,7 @@ AT_BENCH = ("capture", FILE, "--device", "serial:/dev/bench", "--button", "door 
 
 
 def at(board: PressedBoard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fdvv.device.open_bench", lambda *_: SerialBench(board))
+    monkeypatch.setattr("fdvv.device.bench.open_bench", lambda *_: SerialBench(board))
 
 
 def test_a_person_at_a_bench_is_asked_and_told_and_asked_again(

@@ -6,10 +6,10 @@ from importlib import resources
 from pathlib import Path
 
 import pytest
+
+from fdvv.recording.log import RecordingLog
 from tests.cli.conftest import Run
 from tests.recording.takes import ABOUT, take
-
-from fdvv.recording import RecordingLog
 
 BUILTIN = Path(str(resources.files("fdvv.model") / "builtin" / "mx-blue.fdvv.json"))
 

@@ -10,21 +10,26 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.damage import DAMAGES, Damage
+
+from fdvv.cli.check_file import check_file
+from fdvv.compensation.identification.rig_file import save_rig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.device.recording import Recorder
+from fdvv.errors import InputError
+from fdvv.model.file import load_builtin, save_model
+from fdvv.program.compile import compile_program
+from fdvv.program.file import save_program
+from fdvv.program.library import load_shipped
+from fdvv.recording.log import RecordingLog
+from fdvv.rendering.actuation_file import save_actuation
+from fdvv.rendering.session import MANIFEST
+from fdvv.rendering.session_log import PRESSES
+from fdvv.testing.conformance import plain_surface
+from fdvv.testing.scripted import ScriptedDevice
 from tests.recording.files import motive
 from tests.recording.takes import ABOUT, take
-from tests.workflow.test_session import Hand, learn
-
-from fdvv.compensate import KnownRig, save_rig
-from fdvv.device import Recorder
-from fdvv.errors import InputError
-from fdvv.model import load_builtin, save_model
-from fdvv.program import compile_program, load_shipped, save_program
-from fdvv.recording import RecordingLog
-from fdvv.testing import ScriptedDevice, plain_surface
-from fdvv.workflow import check_file, save_actuation
-from fdvv.workflow._session_log import PRESSES
-from fdvv.workflow._session_manifest import MANIFEST
+from tests.support.damage import DAMAGES, Damage
+from tests.support.sessions import Hand, learn
 
 
 def model(folder: Path) -> Path:
@@ -43,7 +48,7 @@ def image(folder: Path) -> Path:
 
 
 def rig(folder: Path) -> Path:
-    save_rig(KnownRig(), folder / "a.rig.json")
+    save_rig(RigModel(), folder / "a.rig.json")
     return folder / "a.rig.json"
 
 

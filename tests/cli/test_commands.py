@@ -13,10 +13,10 @@ from pathlib import Path
 
 import click
 import pytest
-from tests.cli.conftest import Run, tactile_csv
 
-from fdvv.cli._main import COMMANDS, cli
-from fdvv.model import load_model
+from fdvv.cli.main import COMMANDS, cli
+from fdvv.model.file import load_model
+from tests.cli.conftest import Run, tactile_csv
 
 FDVV = (sys.executable, "-m", "fdvv")
 

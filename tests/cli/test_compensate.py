@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.compensate import RigAware, load_memory, load_rig, save_rig
-from fdvv.workflow import load_actuation
+from fdvv.compensation.identification.rig_file import load_learned_rig, load_rig, save_rig
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.rendering.actuation_file import load_actuation
 
 from .conftest import Run
 
@@ -20,14 +21,14 @@ AT_ONCE = ("compensate", "mx-red", *SHORT, "--rig-known", "bench.rig.json", "--r
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """Give the file of a rig that was met once."""
-    from fdvv.device import TwinDevice
-    from fdvv.model import load_builtin
-    from fdvv.workflow import compensate
+    from fdvv.device.twin import TwinDevice
+    from fdvv.model.file import load_builtin
+    from fdvv.rendering.compensate import compensate
 
     path = tmp_path_factory.mktemp("rig") / "bench.rig.json"
     learned = compensate(TwinDevice(seed=0), load_builtin("mx-clear"), [50.0, 100.0], RigAware(rounds=1))
-    assert learned.memory is not None
-    save_rig(learned.memory, path)
+    assert learned.learned_rig is not None
+    save_rig(learned.learned_rig, path)
     return path.read_bytes()
 
 
@@ -38,12 +39,12 @@ def test_a_rig_is_identified_learned_on_and_kept(fdvv: Run, tmp_path: Path, taug
     assert lines[0] == "mx-clear on twin (simulated), 6 presses"
     assert lines[1].startswith("method: rig-aware: a rig identified from 4 presses")
     assert lines[-2:] == ["written to clear.actuation.json", "written to bench.rig.json"]
-    assert "1 of 4 presses to know the rig by" in ran.err
+    assert "1 of 4 identification presses" in ran.err
     assert re.search(r"drag \d\.\d \+- \d\.\d N s/m", ran.err)
     assert (tmp_path / "bench.rig.json").read_bytes() == taught
-    memory = load_memory(tmp_path / "bench.rig.json")
-    assert memory.known == load_rig(tmp_path / "bench.rig.json")
-    assert memory.known.presses == 4
+    memory = load_learned_rig(tmp_path / "bench.rig.json")
+    assert memory.rig == load_rig(tmp_path / "bench.rig.json")
+    assert memory.rig.presses == 4
     assert (
         load_actuation(tmp_path / "clear.actuation.json").outcome.tuning.bandwidth_Hz
         == RigAware().bandwidth_Hz
@@ -63,7 +64,7 @@ def test_another_button_is_rendered_at_once_and_its_expected_errors_are_told(
     assert all(re.search(r"–\s+–\s+\d\.\d\d\s+–$", row) for row in rows)
     assert "nothing was pressed: the mean is what was left on the button that taught the rig" in lines
     expected = [c.mean_error_cN for c in load_actuation(tmp_path / "red.actuation.json").outcome.curves]
-    memory = load_memory(tmp_path / "bench.rig.json")
+    memory = load_learned_rig(tmp_path / "bench.rig.json")
     assert expected == memory.error_cN.ravel().tolist()
     document = fdvv(*AT_ONCE, "--json").json
     assert document["presses"] == document["receipt"]["used"] == 0
@@ -82,7 +83,7 @@ def test_a_known_rig_that_changed_is_told_also_beside_a_document(
     ran = fdvv(*AT_ONCE[:-1], "1", "--rig", "rig.toml", "--json")
     assert ran.status == 0
     assert ran.json["presses"] >= 2
-    assert ran.err.startswith("warning: the rig is not as it was known: ")
+    assert ran.err.startswith("warning: the rig has changed since its identification: ")
     assert ran.err.count("\n") == 1
     same = fdvv(*AT_ONCE[:-1], "1", "--seed", "8", "--json")
     assert (same.status, same.err) == (0, "")
@@ -92,7 +93,7 @@ def test_a_rig_can_be_met_without_learning_on_it(fdvv: Run, tmp_path: Path) -> N
     ran = fdvv("compensate", "mx-clear", *SHORT, "--rounds", "0", "--save-rig", "new.rig.json", "--json")
     assert ran.status == 0
     assert ran.json["presses"] == 4
-    assert load_memory(tmp_path / "new.rig.json").known.presses == 4
+    assert load_learned_rig(tmp_path / "new.rig.json").rig.presses == 4
 
 
 def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:

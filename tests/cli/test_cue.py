@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.cli._cue import BEATS, BEAT_s, DWELL_s, bar, depth_at, minimum_jerk, show_cue
+from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, bar, depth_at, minimum_jerk, show_cue
 
 
 class Clock:

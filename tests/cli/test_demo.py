@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import TwinDevice
+from fdvv.cli.demo_report import demo_report
+from fdvv.cli.demo_run import DemoResult, demo
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
-from fdvv.workflow import DemoResult, demo, demo_report
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,9 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+from fdvv.device.remote import surface_image
+from fdvv.testing.conformance import plain_surface
 from tests.cli.conftest import Ran
-
-from fdvv.device import surface_image
-from fdvv.testing import plain_surface
 
 Run = Callable[..., Ran]
 

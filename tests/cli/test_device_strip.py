@@ -6,9 +6,9 @@ import json
 from collections.abc import Callable
 
 import pytest
-from tests.cli.conftest import Ran
 
-from fdvv.device import LibraryStrip
+from fdvv.device.strip_library import LibraryStrip
+from tests.cli.conftest import Ran
 
 Run = Callable[..., Ran]
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.model import load_builtin, load_model
+from fdvv.model.file import load_builtin, load_model
 
 from .conftest import Run
 

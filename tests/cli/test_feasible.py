@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run
 
-from fdvv.compensate import save_rig
-from fdvv.testing import draw_fast_rig, rig_truth
-from fdvv.twin import finger_to_toml, rig_to_toml
+from fdvv.compensation.identification.rig_file import save_rig
+from fdvv.twin.files import finger_to_toml, rig_to_toml
+from tests.cli.conftest import Run
+from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 
 @pytest.fixture

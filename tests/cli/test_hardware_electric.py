@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
 from tests.cli.conftest import Ran
 
 Run = Callable[..., Ran]
@@ -39,7 +40,7 @@ def test_the_circuit_is_checked_and_told_with_units(fdvv: Run) -> None:
 
 
 def test_a_circuit_that_would_burn_a_pin_ends_with_status_1(fdvv: Run, tmp_path: Path) -> None:
-    source = Path(__file__).resolve().parents[2] / "src" / "fdvv" / "hardware" / "circuit.toml"
+    source = Path(__file__).resolve().parents[2] / "extras/fdvv-rig/src/fdvv_rig/circuit/circuit.toml"
     text = source.read_text().replace("V = 3.135, ohm = 1.0 }\npins.GND", "V = 4.75, ohm = 1.0 }\npins.GND")
     (tmp_path / "mine.toml").write_text(text)
     ran = fdvv("hardware", "circuit", "--file", "mine.toml")

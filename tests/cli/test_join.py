@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from tests.cli.conftest import Run
 
 BOARD = "# fdvv-capture 1\n# channel F force_cN scale=0.5 zero=10\nF 1000 10\nF 2000 30\nF 3000 50\n"

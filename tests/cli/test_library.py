@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from tests.cli.conftest import tactile_csv
 
-from fdvv.cli import cli
+from fdvv.cli.main import cli
 from fdvv.errors import InputError
+from tests.cli.conftest import tactile_csv
 
 
 def asked(*arguments: str) -> Result:

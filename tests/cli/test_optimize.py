@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.workflow.executors import Here
 
-from fdvv.workflow import PopulationPlan, run_population
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import run_population
+from tests.support.executors import Here
 
 from .conftest import Ran, Run
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from fdvv.cli import cli
+from fdvv.cli.main import cli
 
 
 def asked(*arguments: str) -> Result:

@@ -6,12 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.captures import SHORT_STROKE, capture, recorded
-from tests.cli.conftest import Ran, Run
 
-from fdvv.model import load_model
-from fdvv.recording import RECORDING_SUFFIX, Quantity, save_recording
-from fdvv.testing import captured_session
+from fdvv.model.file import load_model
+from fdvv.recording.file import RECORDING_SUFFIX, save_recording
+from fdvv.recording.types import Quantity
+from fdvv.testing.captured import captured_session
+from tests.cli.conftest import Ran, Run
+from tests.support.captures import SHORT_STROKE, capture, recorded
 
 
 def warned(ran: Ran) -> tuple[str, ...]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from fdvv.program import load_program, make, program_to_json, programs, save_program
-from fdvv.workflow import program_image
+from fdvv.program.file import load_program, program_to_json, save_program
+from fdvv.program.library import make, programs
+from fdvv.rendering.tuning import program_image
 
 from .conftest import Run
 

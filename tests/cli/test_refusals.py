@@ -7,9 +7,10 @@ from importlib import resources
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run, tactile_csv
 
-from fdvv.compensate import KnownRig, save_rig
+from fdvv.compensation.identification.rig_file import save_rig
+from fdvv.compensation.identification.rig_model import RigModel
+from tests.cli.conftest import Run, tactile_csv
 
 OUT = ("-o", "new.fdvv.json")
 MERGE, ASSIGN = ("--name", "x", *OUT), ("--stroke", "press", *OUT)
@@ -51,7 +52,7 @@ def bad(tmp_path: Path) -> Path:
         (tmp_path / f"{name}.fdvv.json").write_text(json.dumps({**record, **change}))
     (tmp_path / "cut.actuation.json").write_text('{"format": "fdvv-actuation", "version": 1, "meth')
     (tmp_path / "rig.toml").write_text("this is no toml\n")
-    save_rig(KnownRig(), tmp_path / "good.rig.json")
+    save_rig(RigModel(), tmp_path / "good.rig.json")
     return tmp_path
 
 
@@ -124,7 +125,7 @@ REFUSED = {
         ("compensate", "mx-blue", "--method", "paper", "--save-rig", "x.rig.json"), "--save-rig: option"),
     "a rig that has taught nothing": (
         ("compensate", "mx-blue", "--rig-known", "good.rig.json"), "good.rig.json: $.learned: holds"),
-    "a model as a rig": (("compensate", "mx-blue", "--rig-known", "good.fdvv.json"), "not a known rig"),
+    "a model as a rig": (("compensate", "mx-blue", "--rig-known", "good.fdvv.json"), "not an identified rig"),
     "a rig that is gone": (("compensate", "mx-blue", "--rig-known", "gone.rig.json"), "does not exist"),
     "a rig saved below a file": (
         ("compensate", "mx-blue", "--save-rig", "good.csv/x.rig.json"), "good.csv: output: is a file"),

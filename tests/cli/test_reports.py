@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.captures import recorded
-from tests.cli.conftest import Run, tactile_csv
 
-from fdvv.model import builtin_names, load_builtin, load_model, save_model
+from fdvv.model.file import builtin_names, load_builtin, load_model, save_model
+from tests.cli.conftest import Run, tactile_csv
+from tests.support.captures import recorded
 
 FIT_KEYS = {"rmse_cN", "max_cN", "control_points", "bump_kept_ratio", "time_s"}
 LANDMARK_KEYS = {"travel_mm", "actuation_mm", "peak_cN", "peak_mm", "valley_cN", "valley_mm", "snap_ratio"}

@@ -14,12 +14,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import LibraryBoard, LockstepPort, PressedDevice, ScriptedPlant
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LockstepPort
+from fdvv.device.plant import ScriptedPlant
+from fdvv.device.remote import PressedDevice
 from fdvv.errors import DeviceError
-from fdvv.model import Press
-from fdvv.protocol import Settings
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow._session_log import PRESSES, PressLog, read_log
+from fdvv.model.press import Press
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.session_log import PRESSES, PressLog, read_log
+from fdvv.testing.scripted import ScriptedDevice
 
 from .conftest import Run
 
@@ -90,7 +93,7 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: 
                 raise KeyboardInterrupt
             return super().press(velocity_mm_s)
 
-    monkeypatch.setattr("fdvv.workflow._session.open_device", lambda *_: Stopped())
+    monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Stopped())
     ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
     told = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
     assert (ran.status, ran.err, ran.out) == (130, told, "")
@@ -176,7 +179,7 @@ def test_the_folder_of_another_button_is_refused_in_one_line(fdvv: Run) -> None:
     assert other.status == 2
     assert other.err == (
         'fdvv: s: session: is another session: model.name is "mx-clear" there and "mx-red" now (and 1 more); '
-        "ask for the same, or name another folder\n"
+        "repeat its options, or name another folder\n"
     )
 
 
@@ -236,7 +239,7 @@ def test_a_board_without_a_force_sensor_is_not_learned_from(fdvv: Run) -> None:
 
 def test_a_tight_pace_is_told_with_what_to_do(fdvv: Run) -> None:
     ran = fdvv("compensate", "mx-clear", *SHORT, "--pace-tolerance", "0.05", "--session", "s")
-    assert re.search(r"not used, \d+ mm/s, asked for \d+: press (slower|faster)", ran.err)
+    assert re.search(r"not used, \d+ mm/s instead of \d+: press (slower|faster)", ran.err)
 
 
 def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Path) -> None:
@@ -285,7 +288,7 @@ def test_a_person_is_asked_and_answered_press_by_press_and_nothing_of_it_is_lost
         opened.append(pressed_again_and_again())
         return opened[-1]
 
-    monkeypatch.setattr("fdvv.workflow._session.open_device", open_device)
+    monkeypatch.setattr("fdvv.rendering.session.open_device", open_device)
     ask = ("compensate", "mx-clear", "--velocity", "100", "--rounds", "1", *SERIAL)
     ran = fdvv(*ask, "--presses", "3", "--json")
     assert ran.status == 0
@@ -299,7 +302,7 @@ def test_a_person_is_asked_and_answered_press_by_press_and_nothing_of_it_is_lost
     # another speed than the cap's is not used, ten times, and the session says how to go on
     slow = fdvv(*ask[:3], "40", *ask[4:], "--session", "slow")
     assert slow.status == 1
-    assert "asked for 40: press slower; 0 presses are kept in slow; run the same command again" in slow.err
+    assert "instead of 40: press slower; 0 presses are kept in slow; run the same command again" in slow.err
     # the device was let go each time
     with pytest.raises(DeviceError, match="the line is closed"):
         opened[-1].press(100.0)

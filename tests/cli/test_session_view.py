@@ -8,17 +8,17 @@ import pytest
 from rich.console import Console
 from rich.live import Live
 
-from fdvv.cli._session_view import LineView, TableView, told
-from fdvv.compensate import CurveOutcome
-from fdvv.model import Stroke
-from fdvv.workflow import Ask, PressDone, Standing
+from fdvv.cli.session import LineView, TableView, press_line
+from fdvv.compensation.method import CurveOutcome
+from fdvv.model.curve import Stroke
+from fdvv.rendering.session_run import PressDone, PressRequest, VelocityProgress
 
-ASK = Ask(100.0, 4.0, 3, 12)
+ASK = PressRequest(100.0, 4.0, 3, 12)
 CURVES = tuple(CurveOutcome(stroke, 100.0, (9.0, 5.25), 2.5, 7.75, "") for stroke in Stroke)
 
 
 def event(done: int = 3, skipped: str = "", stage: str = "compensate") -> PressDone:
-    rows = Standing(50.0, 0, 6), Standing(100.0, 3, None, CURVES)
+    rows = VelocityProgress(50.0, 0, 6), VelocityProgress(100.0, 3, None, CURVES)
     return PressDone(stage, 100.0, done, 12, None, skipped, 96.4, "moved it", lambda: rows)
 
 
@@ -38,8 +38,8 @@ def plain(stream: io.StringIO) -> str:
 
 
 def test_a_press_is_told_by_what_was_achieved_and_changed_or_why_it_was_not_used() -> None:
-    assert told(event()) == "3 of 12, 100 mm/s: achieved 96 mm/s; moved it"
-    assert told(event(2, "press slower")) == "2 of 12, 100 mm/s: not used, press slower"
+    assert press_line(event()) == "3 of 12, 100 mm/s: achieved 96 mm/s; moved it"
+    assert press_line(event(2, "press slower")) == "2 of 12, 100 mm/s: not used, press slower"
 
 
 def test_a_person_without_a_terminal_gets_a_line_before_and_after_each_press(

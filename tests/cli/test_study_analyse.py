@@ -8,11 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run
-from tests.study_answers import BUTTONS, paper_like, right_or_wrong
 
-from fdvv.study import write_template
-from fdvv.workflow import read_answers, write_answers
+from fdvv.study.analysis.code_book import write_answers
+from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.plan.plan_file import write_template
+from tests.cli.conftest import Run
+from tests.support.study_answers import BUTTONS, paper_like, right_or_wrong
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from fdvv.cli import cli
-from fdvv.cli._study_declare import KINDS
-from fdvv.study import template_names
+from fdvv.cli.main import cli
+from fdvv.cli.study.declare import KINDS
+from fdvv.study.plan.plan_file import template_names
 
 
 @pytest.fixture(autouse=True)

@@ -6,9 +6,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, answered, chosen, in_haste, plan_file
 
-from fdvv.workflow import Study
+from fdvv.study.admin.study import Study
+from tests.support.studies import CHEAP, PASSPHRASE, answered, chosen, in_haste, plan_file
 
 from .conftest import Run
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run
 
-from fdvv.study import write_template
+from fdvv.study.plan.plan_file import write_template
+from tests.cli.conftest import Run
 
 
 @pytest.fixture

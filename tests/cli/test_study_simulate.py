@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from tests.cli.conftest import Run
-from tests.workflow.study_people import frozen_study
+from tests.support.study_people import frozen_study
 
 
 @pytest.fixture

@@ -12,10 +12,11 @@ from typing import Any
 import click
 import pytest
 
-from fdvv.model import load_model
-from fdvv.testing import ScriptedDevice, plain_surface
-from fdvv.vibration import Preferred, Question
-from fdvv.workflow._answer_log import ANSWERS
+from fdvv.model.file import load_model
+from fdvv.rendering.session_log import ANSWERS
+from fdvv.testing.conformance import plain_surface
+from fdvv.testing.scripted import ScriptedDevice
+from fdvv.vibration.tune import Preferred, Question
 
 from .conftest import Run
 
@@ -40,8 +41,8 @@ def person(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         assert told in type.choices
         return told
 
-    monkeypatch.setattr("fdvv.workflow._session.open_device", lambda *_: Rig())
-    monkeypatch.setattr("fdvv.cli._tune_view.click.prompt", prompt)
+    monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Rig())
+    monkeypatch.setattr("fdvv.cli.tune.click.prompt", prompt)
     return answers
 
 
@@ -152,7 +153,7 @@ def test_what_cannot_be_done_is_told_in_one_line(fdvv: Run, arguments: tuple[str
 
 
 def test_an_answer_means_what_the_question_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    from fdvv.cli import _tune_view
+    from fdvv.cli import tune as _tune_view
 
     view = _tune_view.TuneView(True, True)
     pair, single = Question(0, (3, 1), 1, 9), Question(0, (3,), 1, 9)

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.model import load_builtin
-from fdvv.vibration import KnownExciter, load_exciter, read_wav, save_exciter
+from fdvv.model.file import load_builtin
+from fdvv.vibration.exciter import KnownExciter, load_exciter, save_exciter
+from fdvv.vibration.wave import read_wav
 
 from .conftest import Run
 

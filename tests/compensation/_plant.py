@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.compensate import KnownRig
-from fdvv.model import Press
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
 FINE = 10
@@ -79,9 +79,9 @@ class Plant:
         return coil, own + 1e-4 * self.mass_g * a
 
 
-def known_of(plant: Plant) -> KnownRig:
+def known_of(plant: Plant) -> RigModel:
     """Tell what identification would, had it no error."""
-    return KnownRig(
+    return RigModel(
         plant.gain,
         plant.command_delay_s + plant.electric_lag_s,
         plant.electric_lag_s,

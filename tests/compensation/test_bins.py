@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.compensate import bin_force, bump_kept_ratio, grid_mm, smooth
+from fdvv.compensation.tables import bin_force, bump_kept_ratio, grid_mm, smooth
 from fdvv.errors import ModelError
-from fdvv.model import Stroke, load_builtin
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
 from fdvv.units import FloatArray
 
 GRID = grid_mm(4.0, 0.05)
@@ -65,7 +66,7 @@ def test_no_sample_on_the_grid_gives_no_force() -> None:
 
 
 def test_columns_of_different_length_are_refused() -> None:
-    with pytest.raises(ModelError, match="pair up"):
+    with pytest.raises(ModelError, match="one shape"):
         bin_force(np.zeros(3), np.zeros(2), GRID)
 
 

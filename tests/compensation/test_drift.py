@@ -7,24 +7,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import KnownRig, drifted, identify
+from fdvv.compensation.identification.drift import detect_drift
+from fdvv.compensation.identification.identify import identify
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import FitError
-
-from ._plant import Plant, TRAVEL_mm
+from tests.compensation._plant import Plant, TRAVEL_mm
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 RIG = Plant(position_noise_mm=0.003, force_noise_cN=0.3, half_play_cN=0.5)
 
 
 @pytest.fixture(scope="module")
-def known() -> KnownRig:
+def known() -> RigModel:
     return identify([RIG.press(v, seed) for seed, v in enumerate(SPEEDS_mm_s)], TRAVEL_mm)
 
 
 @pytest.mark.parametrize("velocity_mm_s", SPEEDS_mm_s)
-def test_a_press_of_the_same_rig_says_nothing(known: KnownRig, velocity_mm_s: float) -> None:
+def test_a_press_of_the_same_rig_says_nothing(known: RigModel, velocity_mm_s: float) -> None:
     for seed in range(100, 103):
-        assert drifted(known, RIG.press(velocity_mm_s, seed), TRAVEL_mm) == ""
+        assert detect_drift(known, RIG.press(velocity_mm_s, seed), TRAVEL_mm) == ""
 
 
 WARM = tuple(0.9 * np.array(RIG.gain))
@@ -42,31 +43,31 @@ ALIKE = {"friction rose from 5.": "weight fell from 18."}
 
 @pytest.mark.parametrize("seed", range(50, 54))
 @pytest.mark.parametrize(("says", "worn"), WORN.items(), ids=WORN)
-def test_the_change_is_named_with_its_size(known: KnownRig, says: str, worn: Plant, seed: int) -> None:
-    told = drifted(known, worn.press(100.0, seed), TRAVEL_mm)
+def test_the_change_is_named_with_its_size(known: RigModel, says: str, worn: Plant, seed: int) -> None:
+    told = detect_drift(known, worn.press(100.0, seed), TRAVEL_mm)
     assert told.startswith((says, ALIKE.get(says, says)))
 
 
-def test_the_size_of_a_change_is_that_of_the_plant(known: KnownRig) -> None:
-    text = drifted(known, WORN["drag rose from 4."].press(100.0, 50), TRAVEL_mm)
+def test_the_size_of_a_change_is_that_of_the_plant(known: RigModel) -> None:
+    text = detect_drift(known, WORN["drag rose from 4."].press(100.0, 50), TRAVEL_mm)
     was, to = (float(word) for word in text.split() if word.replace(".", "").isdigit())
     assert to - was == pytest.approx(4.4, abs=0.4)
 
 
-def test_two_changes_are_both_named(known: KnownRig) -> None:
+def test_two_changes_are_both_named(known: RigModel) -> None:
     both = replace(RIG, viscous_N_s_m=RIG.viscous_N_s_m + 4.4, mass_g=RIG.mass_g + 15.0)
-    text = drifted(known, both.press(100.0, 50), TRAVEL_mm)
+    text = detect_drift(known, both.press(100.0, 50), TRAVEL_mm)
     assert "drag rose" in text
     assert "mass rose" in text
 
 
-def test_a_press_that_no_number_explains_is_strange(known: KnownRig) -> None:
+def test_a_press_that_no_number_explains_is_strange(known: RigModel) -> None:
     press = RIG.press(50.0, 50)
     assert press.sensed_cN is not None
     hum = 12.0 * np.sin(2 * np.pi * 21.0 * press.t_s)
-    assert "unexplained" in drifted(known, replace(press, sensed_cN=press.sensed_cN + hum), TRAVEL_mm)
+    assert "unexplained" in detect_drift(known, replace(press, sensed_cN=press.sensed_cN + hum), TRAVEL_mm)
 
 
-def test_a_press_without_a_rig_gives_one_line(known: KnownRig) -> None:
+def test_a_press_without_a_rig_gives_one_line(known: RigModel) -> None:
     with pytest.raises(FitError, match="the press holds no commanded force"):
-        drifted(known, replace(RIG.press(100.0), commanded_cN=None))
+        detect_drift(known, replace(RIG.press(100.0), commanded_cN=None))

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.compensate import GainSchedule, error_cN
+from fdvv.compensation.method import error_cN
+from fdvv.compensation.tables import GainSchedule
 from fdvv.errors import ModelError
 
 

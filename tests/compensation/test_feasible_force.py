@@ -8,25 +8,24 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from fdvv.compensate import (
-    KnownRig,
+from fdvv.compensation.feasibility.limits import (
     Motion,
     RigLimits,
-    acceleration_spread_m_s2,
-    expected_error,
+    achievable_stroke,
     minimum_jerk,
     needed_cN,
-    reach,
     rendered_cN,
 )
+from fdvv.compensation.feasibility.verdict import acceleration_spread_m_s2, expected_error
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.protocol import Settings
+from fdvv.model.curve import Stroke
+from fdvv.protocol.tables import Settings
 from fdvv.units import FloatArray
 
 TICK_s = 2.5e-4
-RIG = KnownRig((0.9, 0.05, -0.01), 9e-4, 4e-4, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
-IDEAL = KnownRig(mass_g=20.0)
+RIG = RigModel((0.9, 0.05, -0.01), 9e-4, 4e-4, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
+IDEAL = RigModel(mass_g=20.0)
 LIMITS = RigLimits.of_settings(replace(Settings(), tick_us=250))
 X_mm = np.linspace(0.0, 4.0, 401)
 
@@ -74,8 +73,8 @@ def test_the_command_that_a_force_needs_makes_the_rig_feel_that_force() -> None:
 
 def test_an_ideal_rig_reaches_what_is_intended_with_mass_and_weight_in_the_command() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 50.0, TICK_s)
-    heavy = KnownRig(weight_cN=20.0, mass_g=30.0)
-    found = reach(heavy, LIMITS, motion, X_mm, 40.0 + 5.0 * X_mm)
+    heavy = RigModel(weight_cN=20.0, mass_g=30.0)
+    found = achievable_stroke(heavy, LIMITS, motion, X_mm, 40.0 + 5.0 * X_mm)
     assert_allclose(found.achievable_cN, found.intended_cN, atol=0.1)
     a = motion.at_places(motion.acceleration_m_s2, X_mm)
     assert_allclose(found.command_cN, 60.0 + 5.0 * X_mm - 3.0 * a, atol=0.01)
@@ -86,21 +85,25 @@ def test_an_ideal_rig_reaches_what_is_intended_with_mass_and_weight_in_the_comma
 def test_without_lag_a_saturated_curve_is_the_intended_one_cut_at_the_limit() -> None:
     motion = minimum_jerk(Stroke.RELEASE, 4.0, 5.0, TICK_s)
     intended = 10.0 + 20.0 * X_mm
-    found = reach(KnownRig(mass_g=1e-3), replace(LIMITS, force_limit_cN=50.0), motion, X_mm, intended)
+    found = achievable_stroke(
+        RigModel(mass_g=1e-3), replace(LIMITS, force_limit_cN=50.0), motion, X_mm, intended
+    )
     assert_allclose(found.achievable_cN, np.minimum(intended, 50.0), atol=0.2)
     assert found.saturated.tolist() == (intended > 51.0).tolist()
 
 
 def test_a_cap_that_pulls_loses_the_finger() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 5.0, TICK_s)
-    found = reach(replace(IDEAL, weight_cN=100.0), replace(LIMITS, force_limit_cN=60.0), motion, X_mm, bump())
+    found = achievable_stroke(
+        replace(IDEAL, weight_cN=100.0), replace(LIMITS, force_limit_cN=60.0), motion, X_mm, bump()
+    )
     assert_allclose(found.achievable_cN, 0.0, atol=1e-9)
 
 
 def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
     motion, omega, lag_s = steady(100.0), 2 * np.pi * 250.0, 5e-4
     sine = np.sin(omega * motion.t_s)
-    felt = rendered_cN(KnownRig(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
+    felt = rendered_cN(RigModel(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
     middle = slice(200, -200)
     size = 0.5 * np.ptp(felt[middle])
     x = 0.5 * omega * TICK_s
@@ -110,14 +113,14 @@ def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
 def test_a_ramp_in_time_is_led_and_not_late() -> None:
     motion = steady(100.0)
     ramp = 20.0 + 1000.0 * motion.t_s
-    felt = rendered_cN(KnownRig(electric_lag_s=5e-4), motion, ramp, TICK_s)
+    felt = rendered_cN(RigModel(electric_lag_s=5e-4), motion, ramp, TICK_s)
     assert_allclose(felt[200:-200], ramp[200:-200], atol=0.02)
 
 
 def test_less_of_a_bump_is_left_the_faster_the_press() -> None:
     kept, strong = [], replace(LIMITS, force_limit_cN=1e4, slew_cN_tick=1e4)
     for speed in (20.0, 100.0, 200.0, 400.0):
-        found = reach(RIG, strong, minimum_jerk(Stroke.PRESS, 4.0, speed, TICK_s), X_mm, bump())
+        found = achievable_stroke(RIG, strong, minimum_jerk(Stroke.PRESS, 4.0, speed, TICK_s), X_mm, bump())
         assert found.kept_ratio is not None
         kept.append(found.kept_ratio)
     assert kept == sorted(kept, reverse=True)
@@ -126,7 +129,9 @@ def test_less_of_a_bump_is_left_the_faster_the_press() -> None:
 
 
 def test_a_curve_without_a_bump_keeps_none() -> None:
-    found = reach(RIG, LIMITS, minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s), X_mm, 40.0 + 5.0 * X_mm)
+    found = achievable_stroke(
+        RIG, LIMITS, minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s), X_mm, 40.0 + 5.0 * X_mm
+    )
     assert (found.drop_cN, found.kept_ratio) == (None, None)
 
 
@@ -134,7 +139,7 @@ def test_a_slew_limit_lets_a_force_rise_no_faster() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 200.0, TICK_s)
     step = np.where(X_mm < 2.0, 20.0, 120.0)
     slow = replace(LIMITS, slew_cN_tick=2.0)
-    found = reach(KnownRig(mass_g=1e-3), slow, motion, X_mm, step)
+    found = achievable_stroke(RigModel(mass_g=1e-3), slow, motion, X_mm, step)
     rise = np.diff(motion.at_places(motion.t_s, X_mm))
     steps = np.diff(found.achievable_cN)
     assert (steps <= 1.05 * 2.0 * rise / TICK_s + 0.01).all()
@@ -145,12 +150,12 @@ def test_a_slew_limit_lets_a_force_rise_no_faster() -> None:
 def test_a_gain_that_vanishes_is_refused() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s)
     with pytest.raises(ModelError, match="identify it again"):
-        needed_cN(KnownRig(gain=(1.0, -0.25, 0.0)), motion, np.zeros(motion.t_s.size))
+        needed_cN(RigModel(gain=(1.0, -0.25, 0.0)), motion, np.zeros(motion.t_s.size))
 
 
 def test_the_expected_error_of_a_rig_that_only_has_mass_is_its_spread() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 150.0, TICK_s)
-    found = expected_error(IDEAL, reach(IDEAL, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 150.0)
+    found = expected_error(IDEAL, achievable_stroke(IDEAL, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 150.0)
     assert found.inertia_cN == pytest.approx(0.1 * 20.0 * 3.0)
     assert found.mean_cN == pytest.approx(found.limits_cN + found.inertia_cN)
     assert (found.pace_cN, found.model_cN, found.play_cN) == (0.0, 0.0, 0.0)
@@ -160,7 +165,7 @@ def test_the_expected_error_of_a_rig_that_only_has_mass_is_its_spread() -> None:
 def test_parts_that_are_chance_add_as_squares() -> None:
     known = replace(IDEAL, drag_N_s_m=4.0, residual_cN=2.0, play_cN=3.0)
     motion = minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s)
-    found = expected_error(known, reach(known, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 100.0)
+    found = expected_error(known, achievable_stroke(known, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 100.0)
     chance = np.sqrt(found.inertia_cN**2 + found.pace_cN**2 + found.model_cN**2)
     assert found.mean_cN == pytest.approx(found.limits_cN + chance)
     mean_speed = np.abs(motion.at_places(motion.velocity_mm_s, X_mm)).mean()

@@ -7,28 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import (
-    Following,
-    FollowVerdict,
-    Reach,
-    RigLimits,
-    Slope,
-    Stability,
-    ThermalDose,
-    follow_verdict,
-)
-from fdvv.protocol import Settings
+from fdvv.compensation.feasibility.limits import AchievableStroke, RigLimits
+from fdvv.compensation.feasibility.stability import Slope, Stability
+from fdvv.compensation.feasibility.thermal import ThermalDose
+from fdvv.compensation.feasibility.verdict import Following, FollowVerdict, follow_verdict
+from fdvv.protocol.tables import Settings
 
 LIMITS = RigLimits.of_settings(Settings())
 X_mm = np.linspace(0.0, 4.0, 401)
 NONE = np.zeros(401, dtype=bool)
-REACHED = Reach(X_mm, 60 + 0 * X_mm, 60 + 0 * X_mm, 80 + 0 * X_mm, NONE, NONE, 0.2, None, None)
+REACHED = AchievableStroke(X_mm, 60 + 0 * X_mm, 60 + 0 * X_mm, 80 + 0 * X_mm, NONE, NONE, 0.2, None, None)
 STABLE = Stability(Slope(60.0, 1.8, 50.0, 30.0, 1.5, 55.0), 40.0, 500.0, 90.0, 300.0, 10.0, 1.7, 20.0)
 DOSE = ThermalDose(90.0, 0.13, 100.0, 30.0, 5.0, 3.0, None, None)
 
 
 def judged(
-    reached: Reach = REACHED,
+    reached: AchievableStroke = REACHED,
     stable: Stability = STABLE,
     dose: ThermalDose = DOSE,
     stop_mm: float | None = None,
@@ -36,7 +30,7 @@ def judged(
     return follow_verdict(reached, LIMITS, stable, dose, stop_mm)
 
 
-def cut(missing_cN: float) -> Reach:
+def cut(missing_cN: float) -> AchievableStroke:
     rows = ((X_mm > 1.0) & (X_mm < 1.5)) | (X_mm > 3.0)
     return replace(
         REACHED,
@@ -94,7 +88,7 @@ def test_a_rise_is_held_against_the_onset(onset: float, following: Following, to
 def test_a_step_between_strokes_is_a_reason_but_never_forbids() -> None:
     verdict = judged(stable=replace(STABLE, step_cN=90.0))
     assert verdict.following is Following.PARTLY
-    assert "release lies 90 cN below press at 1.70 mm, surely quiet up to 20" in verdict.reasons[0]
+    assert "release lies 90 cN below press at 1.70 mm, stable up to 20" in verdict.reasons[0]
 
 
 def test_warmth_is_told_in_presses_a_minute_and_seconds_held() -> None:
@@ -109,7 +103,7 @@ def test_a_travel_beyond_the_stop_cannot_be() -> None:
     assert judged(stop_mm=4.0).following is Following.FOLLOWS
     verdict = judged(stop_mm=3.5)
     assert verdict.following is Following.CANNOT
-    assert verdict.reasons == ("its travel is 4 mm, the stop sets 3.5 at most: shorten the button",)
+    assert verdict.reasons == ("its travel is 4 mm, the stop allows 3.5: shorten the button",)
 
 
 def test_the_gravest_reason_comes_first() -> None:

@@ -8,19 +8,19 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.compensate import KnownRig, Tuning
-from fdvv.compensate._feed_forward import (
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.method import Tuning
+from fdvv.compensation.rig_learning import (
     added_cN,
     command_cN,
     inertia_cN,
+    required_change,
     tuning_of,
     unrepeatable_cN,
-    wanted_cN,
 )
-from fdvv.compensate._felt import Pass
+from fdvv.compensation.stroke_samples import StrokeSample
 from fdvv.units import FloatArray
-
-from ._plant import Plant, TRAVEL_mm, known_of
+from tests.compensation._plant import Plant, TRAVEL_mm, known_of
 
 GRID_mm = np.linspace(0.0, 4.0, 401)
 TARGET_cN = 55.0 + 4.0 * GRID_mm + 12.0 * np.exp(-(((GRID_mm - 1.4) / 0.4) ** 2))
@@ -44,8 +44,10 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
     # what a press on any table would have told of the rig itself
     coil, own = plant.forces_cN(motion, np.full(t.size, 80.0))
     rows = rows_of(x, v, down)
-    stroke = Pass(x[rows], v[rows], a[rows] / 1000, (coil + own)[rows], own[rows], 1e-3, velocity_mm_s)
-    place, more = wanted_cN(known, tuning, stroke, UNCHANGED, (GRID_mm, TARGET_cN))
+    stroke = StrokeSample(
+        x[rows], v[rows], a[rows] / 1000, (coil + own)[rows], own[rows], 1e-3, velocity_mm_s
+    )
+    place, more = required_change(known, tuning, stroke, UNCHANGED, (GRID_mm, TARGET_cN))
     np.testing.assert_array_equal(place, x[rows])
     order = np.argsort(place)
     table = command_cN(known, GRID_mm, TARGET_cN) + np.interp(GRID_mm, place[order], more[order])
@@ -79,14 +81,14 @@ def test_what_is_left_goes_with_the_square_of_the_coils_lag(velocity_mm_s: float
 
 @pytest.mark.parametrize("velocity_mm_s", [50.0, -200.0])
 def test_without_lag_the_identity_is_exact_also_for_a_changed_motion(velocity_mm_s: float) -> None:
-    known = KnownRig((0.9, 0.05, -0.01), 3e-4, 0.0, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
+    known = RigModel((0.9, 0.05, -0.01), 3e-4, 0.0, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
     tuning = tuning_of(known, TRAVEL_mm, 100.0, FRICTION_mm_s)
     random = np.random.default_rng(3)
     x, v, a = np.linspace(0.5, 3.5, 40), np.full(40, velocity_mm_s), random.normal(0, 5, 40)
     own = known.opposing_cN(v, a, x) - 0.1 * known.back_emf_N_s_m * known.gain_at(x) ** 2 * v
     change = (0.05 * random.normal(size=40), 0.1 * random.normal(size=40), random.normal(size=40))
-    stroke = Pass(x, v, a, np.zeros(40), own, 1e-3, abs(velocity_mm_s))
-    place, more = wanted_cN(known, tuning, stroke, change, (GRID_mm, TARGET_cN))
+    stroke = StrokeSample(x, v, a, np.zeros(40), own, 1e-3, abs(velocity_mm_s))
+    place, more = required_change(known, tuning, stroke, change, (GRID_mm, TARGET_cN))
     felt_wanted = np.interp(place, GRID_mm, TARGET_cN)
     v2, a2 = v + change[1], a + change[2]
     command = command_cN(known, place, felt_wanted) + more - added_cN(tuning, v2)
@@ -116,7 +118,7 @@ def test_a_tuning_looks_ahead_by_all_that_is_late_and_pushes_at_the_gain_of_mid_
 
 
 def test_a_drag_or_friction_found_below_zero_is_not_pushed_against() -> None:
-    known = KnownRig(drag_N_s_m=-0.3, friction_cN=-1.0)
+    known = RigModel(drag_N_s_m=-0.3, friction_cN=-1.0)
     tuning = tuning_of(known, TRAVEL_mm, 100.0, FRICTION_mm_s)
     assert (tuning.drag_N_s_m, tuning.friction_cN) == (0.0, 0.0)
 
@@ -131,5 +133,5 @@ def test_faster_presses_differ_more_and_inertia_grows_with_the_square_of_speed()
     known = known_of(VOLTAGE)
     spread = [unrepeatable_cN(known, speed) for speed in (20.0, 50.0, 100.0, 200.0, 300.0)]
     assert spread == sorted(spread)
-    assert unrepeatable_cN(KnownRig(residual_cN=3.0), 100.0) == pytest.approx(np.hypot(3.0, 1.0))
+    assert unrepeatable_cN(RigModel(residual_cN=3.0), 100.0) == pytest.approx(np.hypot(3.0, 1.0))
     np.testing.assert_allclose(inertia_cN(known, np.array([50.0, 100.0, 200.0])), [1.75, 7.0, 28.0])

@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import Sensor
-from fdvv.compensate._felt import Pass, passes
+from fdvv.compensation.identification.balance import Sensor
+from fdvv.compensation.stroke_samples import StrokeSample, stroke_samples
 from fdvv.errors import FitError
-from fdvv.model import Press
+from fdvv.model.press import Press
 from fdvv.units import FloatArray
-
-from ._plant import FINE, Plant, TRAVEL_mm, known_of
+from tests.compensation._plant import FINE, Plant, TRAVEL_mm, known_of
 
 CLEAN = Plant()
 NOISY = Plant(position_noise_mm=0.003, force_noise_cN=0.3)
@@ -31,7 +30,7 @@ def made(plant: Plant, velocity_mm_s: float) -> tuple[Press, dict[str, FloatArra
     return plant.pressed(velocity_mm_s, motion, command), {n: c[::FINE] for n, c in truth.items()}
 
 
-def begins(one: Pass, x_mm: FloatArray) -> int:
+def begins(one: StrokeSample, x_mm: FloatArray) -> int:
     """Find the row of the record where a stroke begins, by its places."""
     count = one.displacement_mm.size
     off = [np.abs(x_mm[k : k + count] - one.displacement_mm).sum() for k in range(x_mm.size - count)]
@@ -53,7 +52,7 @@ its variance of 0.5 ms2 times the second derivative: 1.9 mm/s and 0.8 cN in a st
 @pytest.mark.parametrize(("plant", "noisy"), [(CLEAN, 0), (NOISY, 1)], ids=["clean", "noisy"])
 def test_motion_and_forces_are_found_again(plant: Plant, noisy: int, velocity_mm_s: float) -> None:
     press, truth = made(plant, velocity_mm_s)
-    for one in passes(press, TRAVEL_mm, known_of(plant), SENSOR):
+    for one in stroke_samples(press, TRAVEL_mm, known_of(plant), SENSOR):
         # where a stroke turns, friction does so at once and the window cannot
         inner = slice(20, one.felt_cN.size - 20)
         start = begins(one, truth["displacement_mm"])
@@ -64,7 +63,7 @@ def test_motion_and_forces_are_found_again(plant: Plant, noisy: int, velocity_mm
 
 def test_the_strokes_are_the_press_and_the_release_between_the_guards() -> None:
     press, truth = made(CLEAN, 100.0)
-    down, up = passes(press, TRAVEL_mm, known_of(CLEAN), SENSOR)
+    down, up = stroke_samples(press, TRAVEL_mm, known_of(CLEAN), SENSOR)
     assert begins(down, truth["displacement_mm"]) < begins(up, truth["displacement_mm"])
     for one, sign in ((down, 1.0), (up, -1.0)):
         assert 0.1 < one.displacement_mm.min() < 0.2
@@ -82,7 +81,7 @@ def test_half_of_the_play_is_taken_off_where_the_force_rises_or_falls() -> None:
     def off_cN(play_cN: float) -> float:
         known = replace(known_of(plant), play_cN=play_cN)
         found = []
-        for one in passes(press, TRAVEL_mm, known, SENSOR):
+        for one in stroke_samples(press, TRAVEL_mm, known, SENSOR):
             start = begins(one, truth["displacement_mm"])
             found.append(np.abs(one.felt_cN - truth["felt_cN"][start : start + one.felt_cN.size]))
         return float(np.mean(np.concatenate(found)))
@@ -95,4 +94,4 @@ def test_a_record_of_too_few_ticks_is_refused() -> None:
     names = ("t_s", "displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN")
     short = replace(press, **{name: getattr(press, name)[:30] for name in names})
     with pytest.raises(FitError, match="30 ticks"):
-        passes(short, TRAVEL_mm, known_of(CLEAN), SENSOR)
+        stroke_samples(short, TRAVEL_mm, known_of(CLEAN), SENSOR)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import grid_mm, identification_surface
+from fdvv.compensation.identification.identify import identification_surface
+from fdvv.compensation.tables import grid_mm
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, load_builtin
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
 
 TARGETS = {

@@ -7,21 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import (
-    KnownRig,
-    Plausible,
-    Prior,
-    Sensor,
-    explain,
-    identification_surface,
-    identify,
-)
-from fdvv.device import TwinDevice
+from fdvv.compensation.identification.balance import Sensor
+from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.rig_model import Plausible, Prior, RigModel
+from fdvv.compensation.rig_aware import explain_rig
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import FitError, ModelError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.testing import draw_fast_rig, missed_cN, rig_truth
-
-from ._plant import Plant, TRAVEL_mm, known_of
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from tests.compensation._plant import Plant, TRAVEL_mm, known_of
+from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 FREE = {
@@ -44,7 +40,7 @@ def presses_of(plant: Plant) -> list[Press]:
     return [plant.press(v, seed) for seed, v in enumerate(SPEEDS_mm_s)]
 
 
-def compare(known: KnownRig, plant: Plant) -> dict[str, float]:
+def compare(known: RigModel, plant: Plant) -> dict[str, float]:
     """Give what was missed, by name, with the gain at mid travel."""
     true, middle = known_of(plant), np.array(0.5 * TRAVEL_mm)
     names = [name for name in known.error if name != "gain"]
@@ -147,7 +143,7 @@ def broken() -> Press:
 @pytest.mark.parametrize(
     ("presses", "says"),
     [
-        ([], "from no presses"),
+        ([], "needs presses"),
         ([replace(NOISY.press(100.0), commanded_cN=None)], "press 1 holds no commanded force"),
         ([NOISY.press(100.0), without(NOISY.press(100.0), slice(30, None))], "press 2 has 30 ticks"),
         ([broken()], "press 1 holds numbers that are not finite"),
@@ -161,11 +157,11 @@ def test_presses_that_tell_nothing_give_one_line(presses: list[Press], says: str
 
 
 def test_a_prior_knows_its_names_and_spreads() -> None:
-    with pytest.raises(ModelError, match="no number of a rig is called weight; known are gain_0"):
+    with pytest.raises(ModelError, match="no rig parameter is called weight; choose from gain_0"):
         Prior(ranges={"weight": Plausible(1.0, 1.0)})
     with pytest.raises(ModelError, match="needs a spread"):
         Plausible(1.0, 0.0)
-    with pytest.raises(ModelError, match="0 to 1 tick"):
+    with pytest.raises(ModelError, match="compute_ratio"):
         Prior(compute_ratio=2.0)
 
 
@@ -180,7 +176,7 @@ def test_presses_of_the_twin_tell_its_force_within_a_few_centinewtons(drive: str
         fresh.upload(identification_surface(target, ripple_cN=0.0), button.travel_mm)
         known = identify([device.press(v) for v in SPEEDS_mm_s], button.travel_mm)
         traces = [fresh.press_trace(v) for v in SPEEDS_mm_s]
-        before = missed_cN(KnownRig(), rig, traces, button.travel_mm)
+        before = missed_cN(RigModel(), rig, traces, button.travel_mm)
         after = missed_cN(known, rig, traces, button.travel_mm)
         floor = missed_cN(rig_truth(rig), rig, traces, button.travel_mm)
         assert after < 0.15 * before
@@ -189,8 +185,8 @@ def test_presses_of_the_twin_tell_its_force_within_a_few_centinewtons(drive: str
 
 def test_what_was_found_is_told_with_its_errors_and_what_is_weak() -> None:
     known = identify([NOISY.press(100.0)], TRAVEL_mm)
-    text = explain(known)
+    text = explain_rig(known)
     assert f"mass {known.mass_g:.1f} +- {known.error['mass_g']:.1f} g" in text
     assert f"from 1 presses; {known.residual_cN:.1f} cN rms unexplained" in text
-    assert "weak: " in explain(replace(known, error={"mass_g": 0.6 * known.mass_g}))
-    assert "weak" not in explain(replace(known, error={"mass_g": 0.4 * known.mass_g}))
+    assert "weak: " in explain_rig(replace(known, error={"mass_g": 0.6 * known.mass_g}))
+    assert "weak" not in explain_rig(replace(known, error={"mass_g": 0.4 * known.mass_g}))

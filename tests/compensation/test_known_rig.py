@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import KnownRig
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
-RIG = KnownRig((0.9, 0.05, -0.01), 9e-4, 4e-4, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
+RIG = RigModel((0.9, 0.05, -0.01), 9e-4, 4e-4, 5e-4, 5.0, 4.5, 3.0, 15.0, 20.0)
 
 
 def even(count: int, step_s: float) -> FloatArray:
@@ -35,7 +35,7 @@ def test_opposing_is_what_is_felt_without_command_once_the_lag_has_passed() -> N
 
 
 def test_without_a_place_the_gain_counts_as_one() -> None:
-    unit = KnownRig(drag_N_s_m=5.0, back_emf_N_s_m=4.0, electric_lag_s=1e-3, mass_g=20.0)
+    unit = RigModel(drag_N_s_m=5.0, back_emf_N_s_m=4.0, electric_lag_s=1e-3, mass_g=20.0)
     v, a = np.array([100.0, -50.0]), np.array([3.0, 2.0])
     np.testing.assert_allclose(unit.opposing_cN(v, a), unit.opposing_cN(v, a, np.zeros(2)))
     np.testing.assert_allclose(unit.opposing_cN(v, a), 0.1 * 5.0 * v + 0.1 * (20.0 - 4.0) * a)
@@ -44,10 +44,10 @@ def test_without_a_place_the_gain_counts_as_one() -> None:
 def test_a_command_is_felt_after_its_delay() -> None:
     t = even(4000, 2.5e-5)
     still = np.zeros(4000)
-    felt = KnownRig(delay_s=1e-3, electric_lag_s=6e-4).felt_cN(t, still, still, still, 1000 * t)
+    felt = RigModel(delay_s=1e-3, electric_lag_s=6e-4).felt_cN(t, still, still, still, 1000 * t)
     np.testing.assert_allclose(felt[1000:], 1000 * (t[1000:] - 1e-3), atol=1e-6)
 
 
 def test_numbers_that_are_not_finite_are_refused() -> None:
     with pytest.raises(ModelError, match="finite"):
-        KnownRig(mass_g=float("nan"))
+        RigModel(mass_g=float("nan"))

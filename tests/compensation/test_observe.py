@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from fdvv.compensate import Delays, Span, bin_force, grid_mm, observe
+from fdvv.compensation.identification.balance import Delays, observe
+from fdvv.compensation.presses import Span
+from fdvv.compensation.tables import bin_force, grid_mm
 from fdvv.errors import ModelError
 
 GRID = grid_mm(4.0, 0.05)

@@ -9,9 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.compensate import Delays, GainSchedule, PaperLaw, State, bump_kept_ratio, grid_mm
+from fdvv.compensation.identification.balance import Delays
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.tables import CurveState, GainSchedule, bump_kept_ratio, grid_mm
 from fdvv.errors import ModelError
-from fdvv.model import load_builtin
+from fdvv.model.file import load_builtin
 from fdvv.units import FloatArray
 
 GRID = grid_mm(4.0, 0.05)
@@ -25,7 +27,7 @@ def plain(gain: float, **changes: object) -> PaperLaw:
     return PaperLaw.literal(**{**bare, **changes})
 
 
-def run(law: PaperLaw, plant: Callable[[FloatArray], FloatArray], presses: int) -> list[State]:
+def run(law: PaperLaw, plant: Callable[[FloatArray], FloatArray], presses: int) -> list[CurveState]:
     """Press a plant and give the state after each press."""
     states = [law.init(TARGET, GRID, LIMIT)]
     for _ in range(presses):

@@ -5,16 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import Count, GainSchedule, Job, PaperLaw, PerCurve, dense_velocities
+from fdvv.compensation.method import CompensationJob, PressCount
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.tables import GainSchedule, dense_velocities
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, Press, load_builtin
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
 
 MODEL = load_builtin("mx-clear")
 LAW = PaperLaw.literal(rounds=1, presses_per_round=2, start="target", gain=GainSchedule.constant(0.5))
 
 
-def job(speeds: tuple[float, ...] = (50.0, 100.0)) -> Job:
-    return Job(ForceSurface.of_model(MODEL, speeds), MODEL.travel_mm, 440.0)
+def job(speeds: tuple[float, ...] = (50.0, 100.0)) -> CompensationJob:
+    return CompensationJob(ForceSurface.of_model(MODEL, speeds), MODEL.travel_mm, 440.0)
 
 
 def press(speed: float = 50.0, depth_mm: float = 4.0, force_cN: float = 0.0) -> Press:
@@ -33,7 +38,7 @@ def test_speeds_take_turns_on_the_whole_surface() -> None:
         assert trial.surface.velocity_mm_s.size == 2
         state = method.step(press(trial.velocity_mm_s), state)
     assert asked == [50.0, 100.0, 50.0, 100.0]
-    assert method.count(state) == Count(made=4, total=4, wanted=(2, 2))
+    assert method.count(state) == PressCount(made=4, total=4, wanted=(2, 2))
 
 
 def test_one_row_at_a_time_finishes_a_speed_before_the_next() -> None:

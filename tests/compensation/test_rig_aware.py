@@ -8,28 +8,31 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.compensate import Count, Job, KnownRig, RigAware, RigMemory, RigState, Trial, Tuning, identify
-from fdvv.compensate._feed_forward import LIFT_cN, command_cN
-from fdvv.compensate._rig_aware import LOOSE_PACE_ratio
-from fdvv.compensate._rig_learning import Felt
-from fdvv.compensate._strokes import HOME_mm
+from fdvv.compensation.identification.identify import identify
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.method import CompensationJob, PressCount, Trial, Tuning
+from fdvv.compensation.presses import HOME_mm
+from fdvv.compensation.rig_aware import LOOSE_SPEED_TOLERANCE_ratio, RigAware, RigState
+from fdvv.compensation.rig_learning import LIFT_cN, PressError, command_cN
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, Press, load_builtin
-
-from ._plant import Plant, TRAVEL_mm, known_of
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from tests.compensation._plant import Plant, TRAVEL_mm, known_of
 
 MODEL = load_builtin("mx-clear")
 SPEEDS_mm_s = np.array([50.0, 100.0, 200.0])
 TARGET = ForceSurface.of_model(MODEL, SPEEDS_mm_s)
-JOB = Job(TARGET, TRAVEL_mm, 440.0)
+JOB = CompensationJob(TARGET, TRAVEL_mm, 440.0)
 PLANT = Plant(position_noise_mm=0.003, force_noise_cN=0.3, half_play_cN=0.5)
 METHOD = RigAware(rounds=2)
 
 
-def memory_of(known: KnownRig, rows_cN: float = 0.0) -> RigMemory:
+def learned_on(known: RigModel, rows_cN: float = 0.0) -> LearnedRig:
     rows = np.full(TARGET.press_cN.shape, rows_cN)
     residual = ForceSurface(TARGET.displacement_mm, SPEEDS_mm_s, rows, -rows)
-    return RigMemory(known, residual, TRAVEL_mm, np.full((2, 3), 2.0))
+    return LearnedRig(known, residual, TRAVEL_mm, np.full((2, 3), 2.0))
 
 
 def pressed(method: RigAware, state: RigState, seed: int) -> RigState:
@@ -50,14 +53,14 @@ def states() -> list[RigState]:
 def test_a_job_takes_four_presses_and_the_rounds_at_every_speed(states: list[RigState]) -> None:
     trials = [trial for state in states if (trial := METHOD.trial(state))]
     assert [t.velocity_mm_s for t in trials] == [50, 100, 200, 50, *[50, 100, 200] * 2]
-    assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [LOOSE_PACE_ratio] * 6
+    assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [LOOSE_SPEED_TOLERANCE_ratio] * 6
     assert [t.tuning == Tuning() for t in trials] == [True] * 4 + [False] * 6
     assert len(states) == 11
 
 
 def test_the_count_is_that_of_the_presses_throughout(states: list[RigState]) -> None:
     for made, state in enumerate(states):
-        assert METHOD.count(state) == Count(made, 10, (4, 3, 3))
+        assert METHOD.count(state) == PressCount(made, 10, (4, 3, 3))
 
 
 def test_done_works_at_any_time_and_is_complete_at_the_end_alone(states: list[RigState]) -> None:
@@ -74,20 +77,20 @@ def test_done_works_at_any_time_and_is_complete_at_the_end_alone(states: list[Ri
 
 def test_every_press_is_explained(states: list[RigState]) -> None:
     told = [METHOD.explain(state) for state in states]
-    assert told[:3] == ["", "1 of 4 presses to know the rig by", "2 of 4 presses to know the rig by"]
+    assert told[:3] == ["", "1 of 4 identification presses", "2 of 4 identification presses"]
     assert "from 4 presses" in told[4]
-    assert all(text.startswith("felt ") and "moved them by up to" in text for text in told[5:])
+    assert all(text.startswith("mean error ") and "tables moved by up to" in text for text in told[5:])
     assert not any("\n" in text for text in told)
 
 
 def test_a_state_is_never_changed_and_a_step_repeats_itself(states: list[RigState]) -> None:
     with pytest.raises(FrozenInstanceError):
-        states[0].told = "other"  # type: ignore[misc] # the point of the test
+        states[0].message = "other"  # type: ignore[misc] # the point of the test
     for made in (3, 6):
         before, tables = states[made], states[made].tables
         rows = tables[0].rows_cN.copy() if tables else None
         again = pressed(METHOD, before, made + 1)
-        assert again.told == states[made + 1].told
+        assert again.message == states[made + 1].message
         assert tables is before.tables
         if rows is not None and tables is not None:
             np.testing.assert_array_equal(tables[0].rows_cN, rows)
@@ -95,16 +98,16 @@ def test_a_state_is_never_changed_and_a_step_repeats_itself(states: list[RigStat
 
 def test_the_rig_is_that_of_identification_from_the_same_presses(states: list[RigState]) -> None:
     speeds = [50.0, 100.0, 200.0, 50.0]
-    assert states[4].known == identify([PLANT.press(v, k + 1) for k, v in enumerate(speeds)], TRAVEL_mm)
-    assert states[-1].known is states[4].known
+    assert states[4].rig == identify([PLANT.press(v, k + 1) for k, v in enumerate(speeds)], TRAVEL_mm)
+    assert states[-1].rig is states[4].rig
 
 
 def test_a_memory_gives_tables_without_a_press() -> None:
     known = known_of(PLANT)
-    method = RigAware(rounds=0, memory=memory_of(known, 3.0))
+    method = RigAware(rounds=0, learned_rig=learned_on(known, 3.0))
     state = method.init(JOB)
     assert method.trial(state) is None
-    assert method.count(state) == Count(0, 0, (0, 0, 0))
+    assert method.count(state) == PressCount(0, 0, (0, 0, 0))
     outcome = method.done(state)
     assert outcome.complete
     beyond = TARGET.displacement_mm > HOME_mm
@@ -116,12 +119,12 @@ def test_a_memory_gives_tables_without_a_press() -> None:
         np.testing.assert_allclose(table[:, beyond], told[:, beyond])
     assert [c.mean_error_cN for c in outcome.curves] == [2.0] * 6
     with_presses = replace(method, rounds=1)
-    assert with_presses.count(with_presses.init(JOB)) == Count(0, 3, (1, 1, 1))
+    assert with_presses.count(with_presses.init(JOB)) == PressCount(0, 3, (1, 1, 1))
 
 
 def test_an_edited_button_moves_the_tables_by_the_edit_over_the_gain() -> None:
     known = known_of(PLANT)
-    method = RigAware(rounds=0, memory=memory_of(known, 3.0))
+    method = RigAware(rounds=0, learned_rig=learned_on(known, 3.0))
     bump = 10.0 * np.exp(-(((TARGET.displacement_mm - 2.0) / 0.3) ** 2))
     edited = replace(JOB, target=replace(TARGET, press_cN=TARGET.press_cN + bump))
     before, after = (method.done(method.init(job)).surface for job in (JOB, edited))
@@ -132,7 +135,7 @@ def test_an_edited_button_moves_the_tables_by_the_edit_over_the_gain() -> None:
 
 def test_the_cap_is_held_up_at_home_and_the_limit_is_kept() -> None:
     known = known_of(PLANT)
-    method = RigAware(rounds=0, memory=memory_of(known, -300.0))
+    method = RigAware(rounds=0, learned_rig=learned_on(known, -300.0))
     surface = method.done(method.init(JOB)).surface
     home = TARGET.displacement_mm <= HOME_mm
     lift = (LIFT_cN + known.weight_cN) / known.gain_at(TARGET.displacement_mm[home])
@@ -143,7 +146,7 @@ def test_the_cap_is_held_up_at_home_and_the_limit_is_kept() -> None:
 
 def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_does_not() -> None:
     known = known_of(PLANT)
-    method = RigAware(rounds=0, memory=memory_of(known))
+    method = RigAware(rounds=0, learned_rig=learned_on(known))
     job = replace(JOB, target=ForceSurface.of_model(MODEL, [5.0, 20.0]))
     surface, grid = method.done(method.init(job)).surface, TARGET.displacement_mm
     beyond, part = grid > HOME_mm, np.array([[0.5], [0.0]])
@@ -160,28 +163,31 @@ def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_d
 
 
 def test_what_was_taught_begins_the_next_job(states: list[RigState]) -> None:
-    memory = METHOD.remembered(states[-1])
+    memory = METHOD.learned(states[-1])
     end = METHOD.done(states[-1])
-    again = RigAware(rounds=0, memory=memory)
+    again = RigAware(rounds=0, learned_rig=memory)
     np.testing.assert_allclose(again.done(again.init(JOB)).surface.press_cN, end.surface.press_cN)
     expected = [c.mean_error_cN for c in again.done(again.init(JOB)).curves]
     assert expected == pytest.approx([c.mean_error_cN for c in end.curves])
-    with pytest.raises(ModelError, match="not known yet"):
-        METHOD.remembered(states[2])
+    with pytest.raises(ModelError, match="not identified yet"):
+        METHOD.learned(states[2])
 
 
 def test_after_a_press_that_went_astray_the_best_row_is_given_and_remembered() -> None:
-    method = RigAware(memory=memory_of(known_of(PLANT)))
+    method = RigAware(learned_rig=learned_on(known_of(PLANT)))
     start = method.init(JOB)
     count = TARGET.displacement_mm.size
-    good, bad = Felt(2.0, 1.0, 4.0, np.full(count, 7.0)), Felt(9.0, 6.0, 20.0, np.full(count, -50.0))
-    state = replace(start, felt=(((good, good), (bad, good)), ((good, good),), ()))
+    good, bad = (
+        PressError(2.0, 1.0, 4.0, np.full(count, 7.0)),
+        PressError(9.0, 6.0, 20.0, np.full(count, -50.0)),
+    )
+    state = replace(start, errors=(((good, good), (bad, good)), ((good, good),), ()))
     plain, kept = method.done(start).surface, method.done(state).surface
     beyond = TARGET.displacement_mm > HOME_mm
     np.testing.assert_allclose((kept.press_cN - plain.press_cN)[0, beyond], 7.0)
     np.testing.assert_array_equal(kept.press_cN[1:], plain.press_cN[1:])
     np.testing.assert_array_equal(kept.release_cN, plain.release_cN)
-    np.testing.assert_array_equal(method.remembered(state).residual.press_cN[0], 7.0)
+    np.testing.assert_array_equal(method.learned(state).residual.press_cN[0], 7.0)
     assert method.done(state).curves[0].mean_error_cN == 1.0
 
 
@@ -199,7 +205,7 @@ TELL_NOTHING: dict[str, Any] = {
 
 @pytest.mark.parametrize("spoilt", TELL_NOTHING.values(), ids=TELL_NOTHING)
 def test_a_press_that_tells_nothing_is_refused_in_one_line_and_changes_nothing(spoilt: Any) -> None:
-    method = RigAware(memory=memory_of(known_of(PLANT)))
+    method = RigAware(learned_rig=learned_on(known_of(PLANT)))
     state = method.init(JOB)
     with pytest.raises(ModelError) as told:
         method.step(spoilt(PLANT.press(50.0)), state)
@@ -208,7 +214,7 @@ def test_a_press_that_tells_nothing_is_refused_in_one_line_and_changes_nothing(s
 
 
 def test_more_presses_are_asked_for_while_a_rig_cannot_be_known_and_the_last_is_refused() -> None:
-    method, state = RigAware(meet=2, meet_most=4), RigAware().init(JOB)
+    method, state = RigAware(identification_presses=2, max_identification_presses=4), RigAware().init(JOB)
     still = PLANT.press(50.0)
     assert still.sensed_mm is not None
     still = replace(still, sensed_mm=np.zeros(still.t_s.size))
@@ -223,21 +229,30 @@ def test_more_presses_are_asked_for_while_a_rig_cannot_be_known_and_the_last_is_
 
 def test_a_press_far_off_its_pace_tells_the_rig_but_not_the_tables() -> None:
     def met(asked_mm_s: float) -> RigState:
-        method, job = RigAware(meet=2), replace(JOB, target=ForceSurface.of_model(MODEL, [asked_mm_s]))
+        method, job = (
+            RigAware(identification_presses=2),
+            replace(JOB, target=ForceSurface.of_model(MODEL, [asked_mm_s])),
+        )
         state = method.init(job)
         for seed in (1, 2):
             state = method.step(PLANT.press(150.0, seed), state)
         return state
 
     on, off = met(150.0), met(50.0)
-    assert on.known == off.known
-    assert np.abs(on.rig[1][0].rows_cN).max() > 0.5
-    np.testing.assert_array_equal(off.rig[1][0].rows_cN, 0.0)
+    assert on.rig == off.rig
+    assert np.abs(on.identified[1][0].rows_cN).max() > 0.5
+    np.testing.assert_array_equal(off.identified[1][0].rows_cN, 0.0)
 
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"rounds": -1}, {"meet": 0}, {"meet": 5, "meet_most": 4}, {"bandwidth_Hz": 0.0}, {"bin_mm": 0.0}],
+    [
+        {"rounds": -1},
+        {"identification_presses": 0},
+        {"identification_presses": 5, "max_identification_presses": 4},
+        {"bandwidth_Hz": 0.0},
+        {"bin_mm": 0.0},
+    ],
 )
 def test_settings_without_sense_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ModelError):
@@ -247,5 +262,5 @@ def test_settings_without_sense_are_refused(wrong: dict[str, Any]) -> None:
 def test_the_name_says_what_is_done() -> None:
     assert "identified from 4 presses" in METHOD.name
     assert "2 rounds of learning" in METHOD.name
-    assert "known before" in RigAware(1, memory_of(KnownRig())).name
-    assert "1 round of learning" in RigAware(1, memory_of(KnownRig())).name
+    assert "known before" in RigAware(1, learned_on(RigModel())).name
+    assert "1 round of learning" in RigAware(1, learned_on(RigModel())).name

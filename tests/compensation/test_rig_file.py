@@ -10,18 +10,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.compensate import (
-    KnownRig,
-    RigMemory,
-    load_memory,
+from fdvv.compensation.identification.rig_file import (
+    LearnedRig,
+    learned_rig_from_json,
+    load_learned_rig,
     load_rig,
-    memory_from_json,
     rig_from_json,
     rig_to_json,
     save_rig,
 )
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import InputError
-from fdvv.model import ForceSurface
+from fdvv.model.surface import ForceSurface
 
 NUMBER = st.floats(-1e6, 1e6)
 
@@ -36,12 +36,12 @@ NUMBER = st.floats(-1e6, 1e6)
 def test_a_round_trip_is_exact(
     gain: tuple[float, float, float], mass: float, presses: int, error: dict[str, float]
 ) -> None:
-    known = KnownRig(gain=gain, mass_g=mass, presses=presses, error=error)
+    known = RigModel(gain=gain, mass_g=mass, presses=presses, error=error)
     assert rig_from_json(rig_to_json(known)) == known
 
 
 def test_a_file_is_written_whole_and_read_back(tmp_path: Path) -> None:
-    known = KnownRig(gain=(0.9, 0.07, -0.01), delay_s=3e-4, error={"gain": 0.01})
+    known = RigModel(gain=(0.9, 0.07, -0.01), delay_s=3e-4, error={"gain": 0.01})
     save_rig(known, tmp_path / "new" / "a.rig.json")
     assert load_rig(tmp_path / "new" / "a.rig.json") == known
     assert [p.name for p in (tmp_path / "new").iterdir()] == ["a.rig.json"]
@@ -50,7 +50,7 @@ def test_a_file_is_written_whole_and_read_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"format": "other"}, r"\$.format: not a known rig"),
+        ({"format": "other"}, r"\$.format: not an identified rig"),
         ({"version": 9}, "this fdvv reads version 1"),
         ({"mass_g": "heavy"}, r"\$.mass_g: Expected `float`, got `str`"),
         ({"gain": [1.0]}, r"\$.gain"),
@@ -58,7 +58,7 @@ def test_a_file_is_written_whole_and_read_back(tmp_path: Path) -> None:
     ],
 )
 def test_a_broken_file_is_told_in_one_line(change: dict[str, object], says: str) -> None:
-    text = json.dumps({**json.loads(rig_to_json(KnownRig())), **change})
+    text = json.dumps({**json.loads(rig_to_json(RigModel())), **change})
     with pytest.raises(InputError, match=says) as told:
         rig_from_json(text, "a.rig.json")
     assert str(told.value).startswith("a.rig.json: ")
@@ -69,21 +69,21 @@ def test_a_missing_file_is_told(tmp_path: Path) -> None:
         load_rig(tmp_path / "none.rig.json")
 
 
-def memory(seed: int = 0) -> RigMemory:
+def memory(seed: int = 0) -> LearnedRig:
     random = np.random.default_rng(seed)
     tables = random.normal(size=(2, 3, 81))
     residual = ForceSurface(
         0.05 * np.arange(81, dtype=np.float64), np.array([50.0, 100.0, 150.0]), tables[0], tables[1]
     )
-    return RigMemory(KnownRig(gain=(0.9, 0.07, -0.01)), residual, 4.0, random.uniform(1, 5, (2, 3)))
+    return LearnedRig(RigModel(gain=(0.9, 0.07, -0.01)), residual, 4.0, random.uniform(1, 5, (2, 3)))
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_what_was_taught_comes_back_to_the_bit(tmp_path: Path, seed: int) -> None:
     saved = memory(seed)
     save_rig(saved, tmp_path / "a.rig.json")
-    again = load_memory(tmp_path / "a.rig.json")
-    assert again.known == saved.known == load_rig(tmp_path / "a.rig.json")
+    again = load_learned_rig(tmp_path / "a.rig.json")
+    assert again.rig == saved.rig == load_rig(tmp_path / "a.rig.json")
     assert again.travel_mm == saved.travel_mm
     np.testing.assert_array_equal(again.error_cN, saved.error_cN)
     for name in ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN"):
@@ -91,9 +91,9 @@ def test_what_was_taught_comes_back_to_the_bit(tmp_path: Path, seed: int) -> Non
 
 
 def test_a_rigs_numbers_alone_have_taught_nothing(tmp_path: Path) -> None:
-    save_rig(KnownRig(), tmp_path / "a.rig.json")
-    with pytest.raises(InputError, match=r"\$\.learned: holds the rig's numbers.*--save-rig") as told:
-        load_memory(tmp_path / "a.rig.json")
+    save_rig(RigModel(), tmp_path / "a.rig.json")
+    with pytest.raises(InputError, match=r"\$\.learned: holds the rig's model.*--save-rig") as told:
+        load_learned_rig(tmp_path / "a.rig.json")
     assert "\n" not in str(told.value)
 
 
@@ -113,7 +113,7 @@ def test_a_rigs_numbers_alone_have_taught_nothing(tmp_path: Path) -> None:
 def test_damage_in_what_was_taught_is_told_in_one_line(change: dict[str, object], says: str) -> None:
     document = json.loads(rig_to_json(memory()))
     document["learned"] |= change
-    for read in (memory_from_json, rig_from_json):
+    for read in (learned_rig_from_json, rig_from_json):
         with pytest.raises(InputError, match=says) as told:
             read(json.dumps(document), "a.rig.json")
         assert str(told.value).startswith("a.rig.json: ")
@@ -127,7 +127,7 @@ def test_a_cut_file_is_told_and_a_failed_write_leaves_the_old_one(
     save_rig(memory(), path)
     before = path.read_bytes()
     with pytest.raises(InputError, match="not valid JSON"):
-        memory_from_json(before[:1000])
+        learned_rig_from_json(before[:1000])
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")

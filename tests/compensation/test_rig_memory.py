@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import KnownRig, RigMemory
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
+from fdvv.model.surface import ForceSurface
 
 GRID_mm = np.arange(81, dtype=np.float64) * 0.05
 SPEEDS_mm_s = np.array([50.0, 100.0, 200.0])
 ROWS_cN = SPEEDS_mm_s[:, np.newaxis] ** 2 * 1e-4 + GRID_mm
-MEMORY = RigMemory(
-    KnownRig(mass_g=12.0),
+MEMORY = LearnedRig(
+    RigModel(mass_g=12.0),
     ForceSurface(GRID_mm, SPEEDS_mm_s, ROWS_cN, -ROWS_cN),
     4.0,
     np.array([[1.0, 2.0, 5.0], [2.0, 3.0, 6.0]]),
@@ -53,11 +54,11 @@ def test_on_another_travel_places_are_scaled() -> None:
 
 def test_a_rig_met_at_one_speed_gives_its_row_at_every_speed() -> None:
     one = ForceSurface(GRID_mm, SPEEDS_mm_s[:1], ROWS_cN[:1], ROWS_cN[:1])
-    press, _ = RigMemory(KnownRig(), one, 4.0, np.ones((2, 1))).rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
+    press, _ = LearnedRig(RigModel(), one, 4.0, np.ones((2, 1))).rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
     np.testing.assert_allclose(press, np.repeat(ROWS_cN[:1], 3, axis=0))
 
 
 @pytest.mark.parametrize("error_cN", [np.ones((2, 2)), np.ones(3), np.full((2, 3), np.nan)])
 def test_errors_that_do_not_fit_its_speeds_are_refused(error_cN: np.ndarray) -> None:
     with pytest.raises(ModelError, match=r"needs \(2, 3\) finite errors"):
-        RigMemory(KnownRig(), MEMORY.residual, 4.0, error_cN)
+        LearnedRig(RigModel(), MEMORY.residual, 4.0, error_cN)

@@ -5,16 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import Job, KnownRig, PaperLaw, PerCurve, RigMemory
-from fdvv.compensate._rig_learning import Felt
-from fdvv.compensate._rig_outcome import WORSE_ratio, curves_of, held_up, kept_rows
-from fdvv.compensate._shared_table import SharedTable
-from fdvv.model import ForceSurface, load_builtin
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.method import CompensationJob
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.rig_learning import PressError, WORSE_ratio, best_rows, curves_of, minimum_lift_surface
+from fdvv.compensation.tables import SharedTable
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
 
 MODEL = load_builtin("mx-clear")
 SPEEDS_mm_s = np.array([50.0, 100.0])
 TARGET = ForceSurface.of_model(MODEL, SPEEDS_mm_s)
-JOB = Job(TARGET, MODEL.travel_mm, 440.0)
+JOB = CompensationJob(TARGET, MODEL.travel_mm, 440.0)
 COUNT = TARGET.displacement_mm.size
 
 
@@ -22,18 +26,18 @@ def table(value_cN: float) -> SharedTable:
     return SharedTable(TARGET.displacement_mm, SPEEDS_mm_s, np.full((2, COUNT), value_cN), np.eye(2))
 
 
-def felt(error_cN: float, row_cN: float) -> Felt:
-    return Felt(error_cN, 0.5 * error_cN, 3 * error_cN, np.full(COUNT, row_cN))
+def felt(error_cN: float, row_cN: float) -> PressError:
+    return PressError(error_cN, 0.5 * error_cN, 3 * error_cN, np.full(COUNT, row_cN))
 
 
-def presses(errors_cN: list[float], release_cN: float = 2.0) -> tuple[tuple[Felt, Felt], ...]:
+def presses(errors_cN: list[float], release_cN: float = 2.0) -> tuple[tuple[PressError, PressError], ...]:
     """Give the presses of one speed; press k was made on a row of k."""
     return tuple((felt(error, k), felt(release_cN, k)) for k, error in enumerate(errors_cN))
 
 
 def test_the_row_of_the_best_press_is_kept_where_the_last_got_much_worse() -> None:
     history = (presses([6.0, 2.0, 2.0 * WORSE_ratio + 0.1]), presses([6.0, 3.0, 3.1]))
-    press, release = kept_rows((table(9.0), table(8.0)), history)
+    press, release = best_rows((table(9.0), table(8.0)), history)
     np.testing.assert_array_equal(press.rows_cN[:, 0], [1.0, 9.0])
     np.testing.assert_array_equal(release.rows_cN[:, 0], [8.0, 8.0])
     curves = curves_of(JOB, history, None)
@@ -44,7 +48,7 @@ def test_the_row_of_the_best_press_is_kept_where_the_last_got_much_worse() -> No
 
 def test_what_was_learned_since_the_last_press_is_kept_if_that_was_no_worse_than_chance() -> None:
     history = (presses([2.0, 2.0 * WORSE_ratio]), presses([1.0]))
-    for kept in kept_rows((table(9.0), table(9.0)), history):
+    for kept in best_rows((table(9.0), table(9.0)), history):
         np.testing.assert_array_equal(kept.rows_cN, 9.0)
 
 
@@ -63,7 +67,7 @@ def test_curves_come_press_first_with_the_error_of_every_press() -> None:
 
 def test_what_was_not_pressed_is_expected_from_a_memory_or_unknown() -> None:
     residual = ForceSurface(TARGET.displacement_mm, SPEEDS_mm_s, *np.zeros((2, 2, COUNT)))
-    memory = RigMemory(KnownRig(), residual, 4.0, np.array([[1.0, 2.0], [3.0, 4.0]]))
+    memory = LearnedRig(RigModel(), residual, 4.0, np.array([[1.0, 2.0], [3.0, 4.0]]))
     expected = curves_of(JOB, ((), presses([6.0])), memory)
     assert [c.mean_error_cN for c in expected] == [1.0, 3.0, 3.0, 1.0]
     assert "1.0 cN expected" in expected[0].sentence
@@ -76,6 +80,6 @@ def test_what_was_not_pressed_is_expected_from_a_memory_or_unknown() -> None:
 def test_an_unknown_rig_starts_where_the_papers_law_does() -> None:
     law = PerCurve(PaperLaw())
     paper = law.done(law.init(JOB)).surface
-    np.testing.assert_array_equal(held_up(JOB).press_cN, paper.press_cN)
-    np.testing.assert_array_equal(held_up(JOB).release_cN, paper.release_cN)
-    assert held_up(Job(TARGET, 4.0, 60.0)).press_cN.max() == 60.0
+    np.testing.assert_array_equal(minimum_lift_surface(JOB).press_cN, paper.press_cN)
+    np.testing.assert_array_equal(minimum_lift_surface(JOB).release_cN, paper.release_cN)
+    assert minimum_lift_surface(CompensationJob(TARGET, 4.0, 60.0)).press_cN.max() == 60.0

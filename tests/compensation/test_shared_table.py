@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.compensate._shared_table import GATE, SharedTable
+from fdvv.compensation.tables import GATE_sigma, SharedTable
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
@@ -16,9 +16,9 @@ SPEEDS_mm_s = np.array([50.0, 100.0, 150.0, 200.0])
 INERTIA_cN = np.array([0.5, 2.0, 4.5, 8.0])
 
 
-def believed(speeds_mm_s: FloatArray = SPEEDS_mm_s) -> SharedTable:
+def fresh(speeds_mm_s: FloatArray = SPEEDS_mm_s) -> SharedTable:
     inertia = INERTIA_cN[: speeds_mm_s.size]
-    return SharedTable.believed(GRID_mm, speeds_mm_s, 4.0, inertia, 1.0 + 0.3 * inertia)
+    return SharedTable.prior(GRID_mm, speeds_mm_s, 4.0, inertia, 1.0 + 0.3 * inertia)
 
 
 def even(force_cN: float) -> FloatArray:
@@ -34,12 +34,12 @@ def shares_by_hand(speed_mm_s: float) -> FloatArray:
 
 
 def by_regression(
-    prior: FloatArray, seen: FloatArray, rows: FloatArray, noises: FloatArray, fading: float
+    spread: FloatArray, seen: FloatArray, rows: FloatArray, noises: FloatArray, fading: float
 ) -> tuple[FloatArray, FloatArray]:
     """Weigh all that was seen at once: Bayesian linear regression, what is older faded."""
     count = len(rows)
     weights = fading ** np.arange(count - 1, -1, -1.0) / noises**2
-    precision = fading**count * np.linalg.inv(prior) + rows.T @ (weights[:, np.newaxis] * rows)
+    precision = fading**count * np.linalg.inv(spread) + rows.T @ (weights[:, np.newaxis] * rows)
     covariance = np.asarray(np.linalg.inv(precision), dtype=np.float64)
     return covariance @ rows.T @ (weights[:, np.newaxis] * seen), covariance
 
@@ -49,16 +49,16 @@ def by_regression(
 def test_any_sequence_ends_where_bayesian_regression_over_all_of_it_ends(
     seed: int, count: int, fading: float, between: bool
 ) -> None:
-    random, table = np.random.default_rng(seed), believed()
+    random, table = np.random.default_rng(seed), fresh()
     speeds = random.uniform(30.0, 240.0, count) if between else random.choice(SPEEDS_mm_s, count)
     rows, noises = np.array([shares_by_hand(v) for v in speeds]), random.uniform(1.0, 6.0, count)
-    prior = table.covariance_cN2
+    spread = table.covariance_cN2
     # within 0.3 standard deviations of every belief, so nothing surprises and the gate stays open
-    truth = np.linalg.cholesky(prior) @ random.uniform(-0.3, 0.3, (4, GRID_mm.size))
+    truth = np.linalg.cholesky(spread) @ random.uniform(-0.3, 0.3, (4, GRID_mm.size))
     seen = rows @ truth + noises[:, np.newaxis] * random.uniform(-0.3, 0.3, (count, GRID_mm.size))
     for force, speed, noise in zip(seen, speeds.tolist(), noises.tolist(), strict=True):
-        table = table.learned(force, speed, noise, 0.0, fading)
-    mean, covariance = by_regression(prior, seen, rows, noises, fading)
+        table = table.updated(force, speed, noise, 0.0, fading)
+    mean, covariance = by_regression(spread, seen, rows, noises, fading)
     np.testing.assert_allclose(table.rows_cN, mean, atol=1e-8)
     np.testing.assert_allclose(table.covariance_cN2, covariance, atol=1e-8 * covariance.max())
 
@@ -66,27 +66,27 @@ def test_any_sequence_ends_where_bayesian_regression_over_all_of_it_ends(
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10_000), st.integers(1, 60), st.floats(0.8, 1.0))
 def test_the_covariance_stays_symmetric_and_positive(seed: int, count: int, fading: float) -> None:
-    random, table = np.random.default_rng(seed), believed()
+    random, table = np.random.default_rng(seed), fresh()
     for _ in range(count):
         force = random.normal(0.0, 30.0, GRID_mm.size)
-        table = table.learned(force, random.uniform(20, 300), random.uniform(0.1, 9), 0.0, fading)
+        table = table.updated(force, random.uniform(20, 300), random.uniform(0.1, 9), 0.0, fading)
     np.testing.assert_array_equal(table.covariance_cN2, table.covariance_cN2.T)
     assert np.linalg.eigvalsh(table.covariance_cN2).min() > 0
 
 
 def test_one_speed_is_the_scalar_filter() -> None:
-    table = believed(np.array([100.0]))
+    table = fresh(np.array([100.0]))
     variance = float(table.covariance_cN2[0, 0])
     assert variance == pytest.approx(4.0**2 + 0.5**2 + 1.15**2)
     for pressed in (100.0, 80.0, 300.0):  # whatever the press was, there is one row
-        once = table.learned(even(3.0), pressed, 2.0, 0.0, 1.0)
+        once = table.updated(even(3.0), pressed, 2.0, 0.0, 1.0)
         np.testing.assert_allclose(once.rows_cN, 3.0 * variance / (variance + 4.0))
         np.testing.assert_allclose(once.covariance_cN2, 1 / (1 / variance + 1 / 4.0))
 
 
 def test_a_press_moves_other_rows_by_what_the_covariance_says() -> None:
-    before = believed()
-    after = before.learned(even(5.0), 150.0, 2.0, 0.0, 1.0)
+    before = fresh()
+    after = before.updated(even(5.0), 150.0, 2.0, 0.0, 1.0)
     covariance = before.covariance_cN2
     np.testing.assert_allclose(after.rows_cN[:, 7], 5.0 * covariance[:, 2] / (covariance[2, 2] + 4.0))
     # 4 cN are common and inertia is shared: 200 mm/s moves more than 100, which moves more than 50
@@ -97,23 +97,23 @@ def test_a_press_moves_other_rows_by_what_the_covariance_says() -> None:
 
 def test_rows_believed_alone_are_not_moved_by_others() -> None:
     alone = SharedTable(GRID_mm, SPEEDS_mm_s, np.zeros((4, GRID_mm.size)), np.diag([9.0, 9.0, 9.0, 9.0]))
-    after = alone.learned(even(5.0), 100.0, 2.0, 0.0, 1.0)
+    after = alone.updated(even(5.0), 100.0, 2.0, 0.0, 1.0)
     np.testing.assert_array_equal(after.rows_cN[[0, 2, 3]], 0.0)
     np.testing.assert_allclose(after.rows_cN[1], 5.0 * 9 / 13)
 
 
 def test_what_is_noise_alone_teaches_nothing() -> None:
-    before = believed()
-    after = before.learned(even(5.0), 100.0, 1e6, 0.0, 1.0)
+    before = fresh()
+    after = before.updated(even(5.0), 100.0, 1e6, 0.0, 1.0)
     np.testing.assert_allclose(after.rows_cN, 0.0, atol=1e-9)
     np.testing.assert_allclose(after.covariance_cN2, before.covariance_cN2, rtol=1e-9)
 
 
 def test_a_row_that_many_presses_have_told_moves_little_more() -> None:
-    table = believed()
+    table = fresh()
     moved = []
     for _ in range(12):
-        after = table.learned(even(3.0), 100.0, 3.0, 0.0, 1.0)
+        after = table.updated(even(3.0), 100.0, 3.0, 0.0, 1.0)
         moved.append(abs(after.rows_cN - table.rows_cN)[1, 0])
         table = after
     assert moved == sorted(moved, reverse=True)
@@ -123,32 +123,32 @@ def test_a_row_that_many_presses_have_told_moves_little_more() -> None:
 def test_bins_that_tell_nothing_take_their_neighbours_surprise() -> None:
     force = np.where((np.arange(GRID_mm.size) > 9) & (np.arange(GRID_mm.size) < 20), 4.0, np.nan)
     force[14] = np.nan
-    holed = believed().learned(force, 100.0, 2.0, 0.0, 1.0)
-    whole = believed().learned(even(4.0), 100.0, 2.0, 0.0, 1.0)
+    holed = fresh().updated(force, 100.0, 2.0, 0.0, 1.0)
+    whole = fresh().updated(even(4.0), 100.0, 2.0, 0.0, 1.0)
     np.testing.assert_allclose(holed.rows_cN, whole.rows_cN)
 
 
 def test_a_stroke_that_tells_nothing_anywhere_is_refused() -> None:
     with pytest.raises(ModelError, match="within the guards"):
-        believed().learned(even(np.nan), 100.0, 2.0, 0.0, 1.0)
+        fresh().updated(even(np.nan), 100.0, 2.0, 0.0, 1.0)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_a_bounce_counts_as_two_standard_deviations(sign: float) -> None:
-    before = believed()
+    before = fresh()
     force = even(1.0)
     force[10] = sign * 500.0
-    after = before.learned(force, 100.0, 2.0, 0.0, 1.0)
+    after = before.updated(force, 100.0, 2.0, 0.0, 1.0)
     expected = before.covariance_cN2[1, 1] + 4.0
     weight = before.covariance_cN2[1, 1] / expected
-    assert after.rows_cN[1, 10] == pytest.approx(sign * weight * GATE * np.sqrt(expected))
+    assert after.rows_cN[1, 10] == pytest.approx(sign * weight * GATE_sigma * np.sqrt(expected))
     np.testing.assert_allclose(np.delete(after.rows_cN[1], 10), weight)
 
 
 def test_smoothing_keeps_a_straight_correction_and_takes_what_is_short() -> None:
     line, ripple = 2.0 * GRID_mm, np.cos(np.pi * np.arange(GRID_mm.size))
     plain, smoothed, short = (
-        believed().learned(force, 100.0, 2.0, sigma_mm, 1.0).rows_cN[1]
+        fresh().updated(force, 100.0, 2.0, sigma_mm, 1.0).rows_cN[1]
         for force, sigma_mm in ((line, 0.0), (line, 0.1), (ripple, 0.1))
     )
     np.testing.assert_allclose(smoothed, plain, atol=1e-9)
@@ -156,7 +156,7 @@ def test_smoothing_keeps_a_straight_correction_and_takes_what_is_short() -> None
 
 
 def test_a_table_between_speeds_is_straight_in_the_square_of_speed() -> None:
-    table = believed()
+    table = fresh()
     rows = SPEEDS_mm_s[:, np.newaxis] ** 2 * 1e-4 + GRID_mm
     table = SharedTable(GRID_mm, SPEEDS_mm_s, rows, table.covariance_cN2)
     for speed in (50.0, 77.0, 100.0, 180.0, 200.0, 210.0):

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import (
-    KnownRig,
+from fdvv.compensation.feasibility.limits import RigLimits
+from fdvv.compensation.feasibility.stability import (
     NominalFinger,
-    RigLimits,
     SampledLoop,
     grain_limit_N_m,
     passive_limit_N_m,
@@ -18,13 +17,15 @@ from fdvv.compensate import (
     step_limit_cN,
     stiffness_limit_N_m,
 )
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
-from fdvv.protocol import Settings
-from fdvv.testing import LinearLoop, bare_loop, rig_truth
+from fdvv.protocol.tables import Settings
 from fdvv.units import FloatArray
+from tests.support.loop import LinearLoop, bare_loop
+from tests.support.rig_truth import rig_truth
 
 TICK_s = 2.5e-4
-RIG = KnownRig((0.9, 0.05, -0.01), 7e-4, 4e-4, 5e-4, 3.0, 2.4, 3.0, 15.0, 25.0)
+RIG = RigModel((0.9, 0.05, -0.01), 7e-4, 4e-4, 5e-4, 3.0, 2.4, 3.0, 15.0, 25.0)
 LIMITS = RigLimits.of_settings(Settings())
 FINE = 25
 """Steps of the plain simulation per tick."""
@@ -45,7 +46,7 @@ def swing_mm(loop: SampledLoop, stiffness_N_m: FloatArray, ticks: int) -> FloatA
         queue.append(drive)
         push = np.zeros_like(x)
         if hand:
-            pulp = hand.pulp_N_m(loop.held_cN)
+            pulp = hand.pad_N_m(loop.held_cN)
             push = 1e-3 * (1 - hand.relaxing_ratio) * pulp * (finger - x) + arm
             pull = -1e-3 * hand.stiffness_N_m * finger - 1e-3 * hand.damping_N_s_m * finger_v - push
             arm = arm + dt * (1e-3 * hand.relaxing_ratio * pulp * (finger_v - v) - arm / hand.relax_s)
@@ -74,12 +75,12 @@ def test_the_onset_lies_within_a_twentieth_of_a_plain_simulation(
 @pytest.mark.parametrize("tick_s", [1e-3, TICK_s])
 def test_the_onset_without_a_finger_is_that_of_the_twins_own_matrices(tick_s: float) -> None:
     rig = bare_loop(tick_s)
-    found = stiffness_limit_N_m(SampledLoop.of_known(rig_truth(rig), tick_s, 1.0))
+    found = stiffness_limit_N_m(SampledLoop.of_rig(rig_truth(rig), tick_s, 1.0))
     assert found == pytest.approx(LinearLoop(rig).limit_N_m(), rel=0.05)
 
 
 def test_the_largest_eigenvalue_is_one_at_the_onset_and_grows_with_stiffness() -> None:
-    loop = SampledLoop.of_known(RIG, TICK_s, 2.0, NominalFinger(), 60.0)
+    loop = SampledLoop.of_rig(RIG, TICK_s, 2.0, NominalFinger(), 60.0)
     limit = stiffness_limit_N_m(loop)
     assert spectral_radius(loop, limit) == pytest.approx(1.0, abs=1e-6)
     assert spectral_radius(loop, 0.8 * limit) < 1 < spectral_radius(loop, 1.2 * limit)
@@ -96,21 +97,21 @@ def test_a_delay_of_one_tick_is_the_next_reading_and_not_a_jump() -> None:
 
 def test_a_heavy_cap_without_lag_swings_where_passivity_ends() -> None:
     """With little stiffness per mass the delay is all phase there is: K = b / (T/2 + t_d)."""
-    heavy = KnownRig((1.0, 0.0, 0.0), 3e-4, 1e-5, 1e-5, drag_N_s_m=5.0, mass_g=5000.0)
-    onset = stiffness_limit_N_m(SampledLoop.of_known(heavy, TICK_s, 0.0))
+    heavy = RigModel((1.0, 0.0, 0.0), 3e-4, 1e-5, 1e-5, drag_N_s_m=5.0, mass_g=5000.0)
+    onset = stiffness_limit_N_m(SampledLoop.of_rig(heavy, TICK_s, 0.0))
     assert onset == pytest.approx(passive_limit_N_m(heavy, TICK_s, 0.0), rel=0.005)
 
 
 def test_without_delay_the_passive_limit_is_that_of_colgate_and_brown() -> None:
-    ideal = KnownRig(delay_s=0.5 * TICK_s, drag_N_s_m=4.0)
+    ideal = RigModel(delay_s=0.5 * TICK_s, drag_N_s_m=4.0)
     assert passive_limit_N_m(ideal, TICK_s, 0.0) == pytest.approx(2 * 4.0 / TICK_s)
 
 
 def test_the_grain_is_bounded_by_friction_and_by_drag() -> None:
     limits = RigLimits.of_settings(Settings())
-    rough = KnownRig(drag_N_s_m=50.0, friction_cN=3.0)
+    rough = RigModel(drag_N_s_m=50.0, friction_cN=3.0)
     assert grain_limit_N_m(rough, limits, 0.0) == pytest.approx(2 * 0.03 / (1e-3 * limits.grain_mm))
-    smooth = KnownRig(drag_N_s_m=0.5, friction_cN=300.0)
+    smooth = RigModel(drag_N_s_m=0.5, friction_cN=300.0)
     assert grain_limit_N_m(smooth, limits, 0.0) == pytest.approx(2 * 0.5 / limits.tick_s)
 
 
@@ -143,7 +144,7 @@ def flank(rise_cN_mm: float) -> tuple[FloatArray, FloatArray]:
 
 
 def test_what_holds_weakens_as_the_curve_gets_steeper() -> None:
-    sticky = KnownRig(RIG.gain, 7e-4, 4e-4, 5e-4, 3.0, 2.4, 30.0, 15.0, 25.0)
+    sticky = RigModel(RIG.gain, 7e-4, 4e-4, 5e-4, 3.0, 2.4, 30.0, 15.0, 25.0)
     first = stability(sticky, LIMITS, *flank(20.0))
     bounds = [first.passive_cN_mm, first.alone_cN_mm, first.finger_cN_mm]
     assert bounds == sorted(bounds)
@@ -168,6 +169,6 @@ def test_a_step_between_the_strokes_is_judged_only_where_both_are_given() -> Non
 
 def test_a_rig_without_mass_and_a_curve_without_length_are_refused() -> None:
     with pytest.raises(ModelError, match="identify it again"):
-        SampledLoop.of_known(KnownRig(), TICK_s, 0.0)
+        SampledLoop.of_rig(RigModel(), TICK_s, 0.0)
     with pytest.raises(ModelError, match="too short"):
         steepest(np.array([0.0, 0.05, 0.1]), np.zeros(3))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fdvv.compensate import Span, mean_speed_mm_s, split_strokes, why_incomplete
+from fdvv.compensation.presses import Span, mean_speed_mm_s, split_strokes, why_incomplete
 from fdvv.units import FloatArray
 
 T = np.arange(0.0, 0.301, 0.001)

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import RigLimits, held_until_s, rise_K, thermal_dose
+from fdvv.compensation.feasibility.limits import RigLimits
+from fdvv.compensation.feasibility.thermal import held_until_s, rise_K, thermal_dose
 from fdvv.errors import ModelError
-from fdvv.protocol import Settings
+from fdvv.protocol.tables import Settings
 
 LIMITS = RigLimits.of_settings(Settings())
 

@@ -4,7 +4,7 @@ from typing import Literal
 
 import pytest
 
-from fdvv.compensate import RIG_DELAYS, HOLDS_cN, PaperLaw, tuned_paper_law
+from fdvv.compensation.paper import RIG_DELAYS, HOLDS_cN, PaperLaw, tuned_paper_law
 
 SPEEDS = 4
 

@@ -7,8 +7,7 @@ import ctypes
 import numpy as np
 
 from fdvv._native import library
-
-from . import _arithmetic as exact
+from tests.support.core import arithmetic as exact
 
 
 def test_a_reciprocal_is_wrong_by_5e_5_at_most_and_fits_16_bits() -> None:

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.core import Core, inputs_at
 from fdvv.errors import ModelError
-from fdvv.protocol import Fault, Mode, Settings, TickFlag
-
-from ._programs import REST, Table, armed, image
+from fdvv.firmware.core import Core, inputs_at
+from fdvv.protocol.tables import Fault, Mode, Settings, TickFlag
+from tests.support.core.programs import REST, Table, armed, image
 
 RAMP: Table = (0, 16000, [1600], [[0, 1600, 3200, 4800, 6400]])
 PROGRAM = image(tables=[RAMP])

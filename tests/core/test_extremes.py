@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.core import INPUTS, OUTPUTS, Ask, Core, RecordArray
 from fdvv.errors import ModelError
-from fdvv.protocol import Mode, Settings
-from fdvv.testing import random_image
+from fdvv.firmware.core import INPUTS, OUTPUTS, Core, CoreRequest, RecordArray
+from fdvv.protocol.tables import Mode, Settings
+from tests.support.random_programs import random_image
 
 CORE = Path(__file__).resolve().parents[2] / "firmware" / "core"
 FLAGS = [
@@ -83,9 +83,9 @@ def expected(settings: Settings, image: bytes, inputs: RecordArray) -> bytes:
     for k, given in enumerate(inputs):
         core.hear(int(given["time_us"]))
         if core.mode is Mode.FAULT:
-            core.ask(Ask.CLEAR, core.fault)
-        core.ask(Ask.BOOTED)
-        core.ask(Ask.ARM)
+            core.ask(CoreRequest.CLEAR, core.fault)
+        core.ask(CoreRequest.BOOTED)
+        core.ask(CoreRequest.ARM)
         core.event(int(given["sum"]) & 31)
         found[k] = core.tick(given, host_heard=False)
     return found.tobytes()

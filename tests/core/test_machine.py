@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.core import Core, inputs_at
-from fdvv.protocol import NONE, Condition, Settings, Transition
-
-from ._programs import FINE, REST, Table, armed, image, when
+from fdvv.firmware.core import Core, inputs_at
+from fdvv.protocol.tables import NONE, Condition, Settings, Transition
+from tests.support.core.programs import FINE, REST, Table, armed, image, when
 
 C = Condition
 FLATS: list[Table] = [(0, 16000, [1600], [[force, force]]) for force in (0, 640, 6400)]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.core import Core, inputs_at, inputs_like
-from fdvv.protocol import Settings, TickFlag
+from fdvv.firmware.core import Core, inputs_at, inputs_like
+from fdvv.protocol.tables import Settings, TickFlag
 
 
 @given(

@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.core import Core, RecordArray, inputs_at
-from fdvv.protocol import Condition, Settings, VelocitySource
-from fdvv.testing import random_image, random_inputs, random_settings
-from fdvv.testing._random_presses import random_path_mm
-
-from ._predictor import Predictor
-from ._programs import REST, armed, image, when
+from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.protocol.tables import Condition, Settings, VelocitySource
+from tests.support.core.predictor import Predictor
+from tests.support.core.programs import REST, armed, image, when
+from tests.support.random_presses import random_inputs, random_path_mm, random_settings
+from tests.support.random_programs import random_image
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.core import OUTPUTS, Core
-from fdvv.testing import random_image, random_inputs, random_settings
-
-from ._program import Program
-from ._reference import Reference
+from fdvv.firmware.core import OUTPUTS, Core
+from tests.support.core.program import Program
+from tests.support.core.tick import Reference
+from tests.support.random_presses import random_inputs, random_settings
+from tests.support.random_programs import random_image
 
 TICKS = 500
 

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.core import inputs_at
-from fdvv.protocol import Settings
-
-from ._programs import FINE, REST, armed, image
+from fdvv.firmware.core import inputs_at
+from fdvv.protocol.tables import Settings
+from tests.support.core.programs import FINE, REST, armed, image
 
 WIDE = replace(FINE, announced_mm_s16=8)
 

@@ -10,13 +10,13 @@ import tty
 
 import numpy as np
 import pytest
-from tests.device.benches import HEAD, Board, spoken
 
-from fdvv.device import Cue, Pacing, SerialBench, TwinBench, open_bench
+from fdvv.device.bench import Cue, Pacing, SerialBench, TwinBench, open_bench
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.recording import Quantity, Stage, Take
-from fdvv.twin import load_button
+from fdvv.recording.types import Quantity, Stage, Take
+from fdvv.twin.files import load_button
 from fdvv.units import FloatArray
+from tests.support.scripted_bench import HEAD, Board, spoken
 
 CUE = Cue(2.0, (("cue contact", 1.5), ("cue bottom", 1.54)))
 

@@ -5,19 +5,15 @@ from __future__ import annotations
 import random
 
 import pytest
-from tests.device.rigs import LONG, PROGRAMS, linked
 
-from fdvv.device import (
-    Client,
-    HostBoard,
-    LibraryBoard,
-    LinkedDevice,
-    LockstepPort,
-    RefusedError,
-    ScriptedPerson,
-)
+from fdvv.device.boards import HostBoard, LibraryBoard
+from fdvv.device.client import Client
+from fdvv.device.linked import LinkedDevice, LockstepPort
+from fdvv.device.plant import ScriptedPerson
+from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError
-from fdvv.protocol import FaultedRequest, Refusal, Settings
+from fdvv.protocol.tables import FaultedRequest, Refusal, Settings
+from tests.support.link_rigs import LONG, PROGRAMS, linked
 
 
 class BadLine(LibraryBoard):

@@ -3,21 +3,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.device import Device, TwinDevice
+from fdvv.device.contract import Device
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError
-from fdvv.model import ForceSurface
-from fdvv.testing import DeviceConformance, ScriptedDevice, plain_surface
-from fdvv.twin import (
-    Finger,
-    Rig,
-    image_of,
-    mean_speed_mm_s,
-    plan,
-    settings_of,
-    silence,
-    simulate_program,
-    solve_program_pace,
-)
+from fdvv.model.surface import ForceSurface
+from fdvv.testing.conformance import DeviceConformance, plain_surface
+from fdvv.testing.scripted import ScriptedDevice
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import silence
+from fdvv.twin.pace import mean_speed_mm_s, solve_program_pace
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv.twin.simulate import simulate_program
 
 
 class TestScriptedDevice(DeviceConformance):

@@ -15,31 +15,28 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.device.rigs import PROGRAMS
 
-from fdvv.device import Board, HostBoard, LibraryBoard, LockstepPort, ScriptedPerson
-from fdvv.device._wire import REASONS
-from fdvv.protocol import (
+from fdvv.device.boards import HostBoard, LibraryBoard
+from fdvv.device.linked import Board, LockstepPort
+from fdvv.device.plant import ScriptedPerson
+from fdvv.device.wire import REASONS
+from fdvv.protocol.frame import Frame, FrameDecoder, encode
+from fdvv.protocol.messages import data_request, read_notice, read_reply, request_frame
+from fdvv.protocol.tables import (
     DATA_BYTES,
     HASH,
     VERSION,
     BeginRequest,
     ClearFaultRequest,
     Fault,
-    Frame,
-    FrameDecoder,
     HelloRequest,
     Message,
     Mode,
     Refusal,
     RefusedReply,
     Settings,
-    data_request,
-    encode,
-    read_notice,
-    read_reply,
-    request_frame,
 )
+from tests.support.link_rigs import PROGRAMS
 
 ROOT = Path(__file__).resolve().parents[2]
 BASE = Settings()

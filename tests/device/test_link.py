@@ -8,11 +8,12 @@ import zlib
 from itertools import pairwise
 
 import pytest
-from tests.device.rigs import LONG, PROGRAMS, Bench
 
 from fdvv import _native
-from fdvv.device import surface_image
-from fdvv.protocol import (
+from fdvv.device.remote import surface_image
+from fdvv.protocol.frame import Frame, encode
+from fdvv.protocol.messages import data_request, read_notice, request_frame
+from fdvv.protocol.tables import (
     DATA_BYTES,
     HASH,
     IMAGE_BYTES,
@@ -24,7 +25,6 @@ from fdvv.protocol import (
     EventRequest,
     Fault,
     FaultedRequest,
-    Frame,
     HelloReply,
     HelloRequest,
     Message,
@@ -37,16 +37,13 @@ from fdvv.protocol import (
     Refusal,
     RefusedReply,
     SelftestReply,
+    SelfTestResult,
     Settings,
     TelemetryRequest,
-    Verdict,
     VibrateRequest,
-    data_request,
-    encode,
-    read_notice,
-    request_frame,
 )
-from fdvv.testing import plain_surface
+from fdvv.testing.conformance import plain_surface
+from tests.support.link_rigs import LONG, PROGRAMS, Bench
 
 IMAGE, OTHER = PROGRAMS
 
@@ -405,8 +402,8 @@ def test_silence_of_the_host_ends_rendering(known: Bench) -> None:
 
 def test_the_selftest_names_verdicts(known: Bench) -> None:
     reply = SelftestReply.unpack(known.ask(Message.SELFTEST, ticks=20).payload)
-    assert Verdict.FAILED not in [Verdict(v) for v in reply.verdicts]
-    assert reply.verdicts[0] == Verdict.PASSED
+    assert SelfTestResult.FAILED not in [SelfTestResult(v) for v in reply.verdicts]
+    assert reply.verdicts[0] == SelfTestResult.PASSED
 
 
 def test_numbers_out_of_range_are_refused(known: Bench) -> None:

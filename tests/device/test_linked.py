@@ -12,33 +12,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.device.rigs import linked
 
 from fdvv import _native
-from fdvv.device import (
-    HostBoard,
-    Inputs,
-    LibraryBoard,
-    LinkedDevice,
-    ProgramDevice,
-    ScriptedPerson,
-    SimulatedPerson,
-)
+from fdvv.device.boards import HostBoard, LibraryBoard
+from fdvv.device.contract import ProgramDevice
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import DeviceError
-from fdvv.model import ForceSurface
-from fdvv.protocol import (
-    HASH,
-    VERSION,
-    Fault,
-    Frame,
-    FrameDecoder,
-    HelloRequest,
-    Message,
-    Settings,
-    encode,
-    request_frame,
-)
-from fdvv.testing import ProgramConformance, plain_surface
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.frame import Frame, FrameDecoder, encode
+from fdvv.protocol.messages import request_frame
+from fdvv.protocol.tables import HASH, VERSION, Fault, HelloRequest, Message, Settings
+from fdvv.testing.conformance import ProgramConformance, plain_surface
+from tests.support.link_rigs import linked
 
 AHEAD = {
     "predictor_q16": 6000,

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.core import INPUTS, OUTPUTS
-from fdvv.device import Inputs, Outputs
-from fdvv.device._plant import INPUTS_BYTES, OUTPUTS_BYTES
+from fdvv.device.plant import INPUTS_BYTES, OUTPUTS_BYTES, Inputs, Outputs
+from fdvv.firmware.core import INPUTS, OUTPUTS
 
 
 def test_inputs_are_those_of_the_core() -> None:

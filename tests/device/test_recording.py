@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.device.rigs import PROGRAMS, linked
 
-from fdvv.device import Device, Recorder, ReplayDevice, read_session
+from fdvv.device.contract import Device
+from fdvv.device.recording import Recorder, ReplayDevice, read_session
 from fdvv.errors import DeviceError, InputError
-from fdvv.protocol import Settings
-from fdvv.testing import DeviceConformance, ScriptedDevice, plain_surface
-from fdvv.testing._conformance import other_settings
+from fdvv.protocol.tables import Settings
+from fdvv.testing.conformance import DeviceConformance, other_settings, plain_surface
+from fdvv.testing.scripted import ScriptedDevice
+from tests.support.link_rigs import PROGRAMS, linked
 
 
 def session(path: Path) -> Path:

@@ -3,91 +3,26 @@
 from __future__ import annotations
 
 import os
-import threading
-import time
 import tty
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 
-from fdvv.device import (
-    Inputs,
-    LibraryBoard,
-    LockstepPort,
-    PressedDevice,
-    ScriptedPerson,
-    SerialPort,
-    surface_image,
-)
-from fdvv.device._pressed import find_press
-from fdvv.device._telemetry import TickColumns
+from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.remote import PressedDevice, find_press
+from fdvv.device.serial import SerialPort
+from fdvv.device.telemetry import TickColumns
 from fdvv.errors import DeviceError
-from fdvv.protocol import Fault, Settings
-from fdvv.testing import plain_surface
-
-SETTINGS = Settings(host_timeout_ms=5000)
-"""Patient, as this machine may be busy; otherwise the board's own."""
+from fdvv.protocol.tables import Fault
+from fdvv.testing.conformance import plain_surface
+from tests.support.pressed_rig import SETTINGS, Rig
 
 
 def opened(rig: Rig, patience_s: float = 20.0) -> PressedDevice:
     device = PressedDevice(SerialPort(rig.path), patience_s)
     device.client.write_settings(SETTINGS)
     return device
-
-
-class Rig(threading.Thread):
-    """A board that runs in real time behind a pseudo-terminal, and someone who presses while it is armed.
-
-    Attributes
-    ----------
-    between : ticks from the beginning of one press to that of the next.
-    """
-
-    between = 100
-
-    def __init__(self, person: ScriptedPerson, presses: int) -> None:
-        super().__init__(daemon=True)
-        self.person, self.presses = person, presses
-        self.line, self.slave = os.openpty()
-        tty.setraw(self.slave)
-        os.set_blocking(self.line, False)
-        self.path = os.ttyname(self.slave)
-        self.board = LibraryBoard()
-        self.port = LockstepPort(self.board, person.rest(SETTINGS), SETTINGS.tick_us)
-        self.over = threading.Event()
-
-    def run(self) -> None:
-        last_s = time.monotonic()
-        while not self.over.wait(0.001):
-            self.hear()
-            # time that the machine had no time for is left out, so that the rig never runs ahead of its host
-            last_s = max(last_s, time.monotonic() - 0.01)
-            for _ in range(int((time.monotonic() - last_s) / 250e-6)):
-                self.tick()
-                last_s += 250e-6
-
-    def hear(self) -> None:
-        try:
-            self.board.write(os.read(self.line, 4096))
-        except BlockingIOError:
-            return
-
-    def tick(self) -> None:
-        out = self.port.step()
-        try:
-            os.write(self.line, self.board.read())
-        except BlockingIOError:
-            return
-        if out.enable and self.presses and len(self.port.ticks) > self.between:
-            self.presses -= 1
-            self.port.connect(self.person.press(surface_image(plain_surface(), 4.0), 100.0, SETTINGS))
-
-    def end(self) -> None:
-        self.over.set()
-        self.join()
-        os.close(self.line)
-        os.close(self.slave)
 
 
 @pytest.fixture

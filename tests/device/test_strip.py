@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.device import LibraryStrip, StripRound, StripTask, open_strip
+from fdvv.device.strip import LedPointingTask, StripRound
+from fdvv.device.strip_library import LibraryStrip, open_strip
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.protocol import (
-    REPLY,
-    STRIP_HASH,
-    Frame,
-    FrameDecoder,
-    StripHelloReply,
-    StripMessage,
-    StripMode,
-    encode,
-)
+from fdvv.protocol.frame import Frame, FrameDecoder, encode
+from fdvv.protocol.messages import REPLY
+from fdvv.protocol.strip_tables import STRIP_HASH, StripHelloReply, StripMessage, StripMode
 
 QUICK = StripRound(200, 0.1, zone_px=40, after_s=0.2)
 
@@ -77,7 +71,7 @@ class Newer(Silent):
 
 
 def test_a_round_is_played_and_its_press_timed(line: LibraryStrip) -> None:
-    task = StripTask(line)
+    task = LedPointingTask(line)
     start = task.begin(QUICK)
     line.press_at(start.target_s + 0.0804)
     result = task.wait(start)
@@ -88,7 +82,7 @@ def test_a_round_is_played_and_its_press_timed(line: LibraryStrip) -> None:
 
 
 def test_the_bullet_runs_while_the_round_goes_on(line: LibraryStrip) -> None:
-    task = StripTask(line)
+    task = LedPointingTask(line)
     start = task.begin(QUICK)
     for share in (0.1, 0.5, 0.9):
         line.read(start.start_s + share * 0.2)
@@ -104,47 +98,47 @@ def test_the_bullet_runs_while_the_round_goes_on(line: LibraryStrip) -> None:
 def test_a_silent_line_is_one_clear_line_and_closed() -> None:
     line = Silent()
     with pytest.raises(DeviceError, match=r"^/dev/ttyACM7: no answer \(hello, 3.0 s\); check the port"):
-        StripTask(line)
+        LedPointingTask(line)
     assert not line.open
     assert line.t_s == pytest.approx(3.0, abs=0.01)
 
 
 def test_something_else_at_the_port_is_told_from_silence() -> None:
     with pytest.raises(DeviceError, match="what answers there is no LED strip's board"):
-        StripTask(Silent(b"FD 1000 5 6\r\n"))
+        LedPointingTask(Silent(b"FD 1000 5 6\r\n"))
 
 
 def test_a_board_of_another_version_is_one_clear_line() -> None:
     with pytest.raises(DeviceError, match=r"speaks protocol [0-9a-f]{8}, this fdvv [0-9a-f]{8}; update"):
-        StripTask(Newer())
+        LedPointingTask(Newer())
 
 
 def test_lost_requests_and_replies_cost_a_round_nothing() -> None:
     line = Lossy()
-    task = StripTask(line)
+    task = LedPointingTask(line)
     start = task.begin(QUICK)
     line.press_at(start.target_s - 0.05)
     assert task.wait(start).activations_s[0] - start.target_s == pytest.approx(-0.05, abs=1e-6)
 
 
 def test_a_busy_strip_is_one_clear_line(line: LibraryStrip) -> None:
-    StripTask(line).begin(QUICK)
+    LedPointingTask(line).begin(QUICK)
     with pytest.raises(DeviceError, match="at a round of another program; wait for its end, or stop it"):
-        StripTask(line)
+        LedPointingTask(line)
 
 
 def test_what_the_wire_cannot_say_is_refused_by_name(line: LibraryStrip) -> None:
     with pytest.raises(ModelError, match="speed_px_s must be 20 to 200, got 300"):
-        StripTask(line).begin(StripRound(300))
+        LedPointingTask(line).begin(StripRound(300))
 
 
 def test_a_zone_beside_the_strip_is_refused(line: LibraryStrip) -> None:
     with pytest.raises(DeviceError, match=r"refused begin: a value is out of range \(field 6\)"):
-        StripTask(line).begin(StripRound(pixels=104))
+        LedPointingTask(line).begin(StripRound(pixels=104))
 
 
 def test_a_round_of_a_silent_host_is_not_whole(line: LibraryStrip) -> None:
-    task = StripTask(line)
+    task = LedPointingTask(line)
     task.begin(StripRound(delay_s=0.1))
     line.read(line.now_s() + 0.8)
     result = task.result()
@@ -154,7 +148,7 @@ def test_a_round_of_a_silent_host_is_not_whole(line: LibraryStrip) -> None:
 
 
 def test_the_clock_may_turn_over_in_a_round(line: LibraryStrip) -> None:
-    task = StripTask(line)
+    task = LedPointingTask(line)
     line._time_us = 2**32 - 250_000
     task.status()
     start = task.begin(QUICK)

@@ -11,7 +11,8 @@ from contextlib import suppress
 
 import pytest
 
-from fdvv.device import LibraryStrip, StripRound, StripTask, open_strip
+from fdvv.device.strip import LedPointingTask, StripRound
+from fdvv.device.strip_library import LibraryStrip, open_strip
 from fdvv.errors import DeviceError
 
 QUICK = StripRound(200, 0.3, zone_px=40, after_s=0.1)
@@ -62,7 +63,7 @@ def test_a_round_over_a_serial_port_ends_with_the_time_of_its_press(behind: Stri
 
 
 def test_a_strip_that_was_unplugged_is_one_clear_line(behind: StripBehindTerminal) -> None:
-    task: StripTask = open_strip(behind.spec)
+    task: LedPointingTask = open_strip(behind.spec)
     behind.over.set()
     behind.join()
     with pytest.raises(DeviceError, match=r"no answer \(status, 0.4 s\)"):

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.device import Exchange, relate
-from fdvv.device._clocks import unwrap_us
+from fdvv.device.wire import Exchange, relate, unwrap_us
 from fdvv.errors import DeviceError
 
 Rng = np.random.Generator

@@ -1,1 +1,1 @@
-"""The documents are whole, true and found: coverage, examples, links, site."""
+"""Tests of the documents."""

@@ -1,4 +1,4 @@
-"""The pages that people read, and how what they show is run."""
+"""Run the commands and programs that a page shows, and compare what they print with the page."""
 
 from __future__ import annotations
 
@@ -6,45 +6,44 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tools.markdown import Block, blocks
+from tools.markdown import SPAN, Block, blocks
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DOCS = REPOSITORY / "docs"
-API = DOCS / "reference" / "api"
 PAGES = [*sorted(REPOSITORY.glob("*.md")), *sorted(DOCS.rglob("*.md"))]
-NOT_OURS = ("make", ".", "pip", "python")
-"""What sets things up has runs of its own."""
+SETUP = ("make", ".", "pip", "python")
+"""Commands that install something; tests/package runs them."""
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
 MILLISECONDS = re.compile(r"\s+\d+\.\d$")
 LEARNED = ("compensate", "probe", "feasible")
-"""Figures of learning follow from rounding: held to LEARNED_ratio, not to the digit."""
+"""Commands whose figures depend on rounding; they are compared within the tolerances below."""
 LEARNED_ratio, LEARNED_absolute = 0.35, 2.5
 
 
 @dataclass(frozen=True)
 class Step:
-    """A command as a page shows it, with the lines that are shown for it."""
+    """A command and the output that the page shows for it."""
 
     command: tuple[str, ...]
     shown: tuple[str, ...]
 
 
 def name_of(page: Path) -> str:
-    """Give a page's path as people would write it."""
+    """Return a page's path relative to the repository."""
     return str(page.relative_to(REPOSITORY))
 
 
 def blocks_of(page: Path) -> list[Block]:
-    """Give the blocks of a page."""
+    """Return the fenced blocks of a page."""
     return blocks(page.read_text(encoding="utf-8"))
 
 
 def steps(text: str) -> list[Step]:
-    """Split a console block into commands, each with the lines shown for it; a backslash joins lines."""
+    """Split a console block into commands with their output; a backslash joins lines."""
     found: list[tuple[list[str], list[str]]] = []
     for line in text.replace("\\\n", "").splitlines():
         if line.startswith("$ "):
@@ -54,15 +53,25 @@ def steps(text: str) -> list[Step]:
     return [Step(tuple(command), tuple(shown)) for command, shown in found]
 
 
-def run(command: list[str], folder: Path, environment: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
-    """Run a command as a reader would, in a folder."""
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8", check=False
-    )
+def commands_on(text: str) -> Iterator[str]:
+    """Yield every fdvv command on a page, in blocks and in lines of text."""
+    for block in blocks(text):
+        for line in block.text.replace("\\\n", "").splitlines():
+            if found := re.match(r"(?:\$ )?(fdvv [a-z].*)", line):
+                yield found[1]
+    for span in SPAN.finditer(re.sub(r"(?ms)^```.*?^```$", "", text)):
+        words = " ".join(span[0].strip("`").split())
+        if re.match(r"fdvv [a-z]+( |$)", words):
+            yield words
 
 
-def follow(page: Path, folder: Path, environment: Mapping[str, str]) -> None:
-    """Run everything that a page shows, in its order, in one folder, and hold it against what is shown."""
+def follow(
+    page: Path, folder: Path, environment: Mapping[str, str], shorter: Mapping[str, tuple[str, ...]]
+) -> None:
+    """Run everything that a page shows, in order, in one folder.
+
+    shorter : options to append to a subcommand that would take minutes.
+    """
     (folder / "src").symlink_to(REPOSITORY / "src")
     printed = ""
     for block in blocks_of(page):
@@ -73,7 +82,7 @@ def follow(page: Path, folder: Path, environment: Mapping[str, str]) -> None:
             printed = ran.stdout
         elif block.language == "console":
             for step in steps(block.text):
-                check(step, where, folder, environment)
+                run_step(step, where, folder, environment, shorter)
         elif block.name:
             (folder / block.name).write_text(block.text, encoding="utf-8")
         elif block.language == "" and printed:
@@ -81,30 +90,43 @@ def follow(page: Path, folder: Path, environment: Mapping[str, str]) -> None:
             printed = ""
 
 
-def check(step: Step, where: str, folder: Path, environment: Mapping[str, str]) -> None:
-    """Run one command; every line that is shown must be printed, figures of learning nearly so."""
-    if step.command[0] in NOT_OURS:
+def run_step(
+    step: Step,
+    where: str,
+    folder: Path,
+    environment: Mapping[str, str],
+    shorter: Mapping[str, tuple[str, ...]],
+) -> None:
+    """Run one command; every line that the page shows must be printed."""
+    if step.command[0] in SETUP:
         return
-    told = f"{where}: {shlex.join(step.command)}"
-    assert step.command[0] == "fdvv", (
-        f"{told}: is no command of this package; use a block of another language"
-    )
-    ran = run([sys.executable, "-m", *step.command], folder, environment)
+    place = f"{where}: {shlex.join(step.command)}"
+    assert step.command[0] == "fdvv", f"{place}: use a text block for commands of other programs"
+    more = next((shorter[word] for word in step.command if word in shorter), ())
+    ran = run([sys.executable, "-m", *step.command, *more], folder, environment)
     expected = 2 if step.shown and step.shown[0].startswith("fdvv: ") else 0
-    assert ran.returncode == expected, f"{told}: ended with {ran.returncode}: {ran.stderr}"
-    printed = [plain(line) for line in (ran.stdout + ran.stderr).splitlines()]
+    assert ran.returncode == expected, f"{place}: exit status {ran.returncode}: {ran.stderr}"
+    printed = [normalised(line) for line in (ran.stdout + ran.stderr).splitlines()]
+    learned = step.command[1] in LEARNED
     for line in step.shown:
-        same = any(alike(plain(line), other, step.command[1] in LEARNED) for other in printed)
-        assert same, f"{told}: does not print {line!r} but\n{ran.stdout}{ran.stderr}"
+        matches = any(alike(normalised(line), other, learned) for other in printed)
+        assert matches, f"{place}: does not print {line!r} but\n{ran.stdout}{ran.stderr}"
 
 
-def plain(line: str) -> str:
-    """Drop milliseconds, and the column widths that they set."""
+def run(command: list[str], folder: Path, environment: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
+    """Run a command in a folder."""
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8", check=False
+    )
+
+
+def normalised(line: str) -> str:
+    """Drop milliseconds, and the column widths that depend on them."""
     return " ".join(MILLISECONDS.sub("", line).split())
 
 
 def alike(shown: str, printed: str, learned: bool) -> bool:
-    """Tell whether two lines say the same; numbers of learning may differ a little."""
+    """Return whether two lines agree; learned figures may differ within the tolerances."""
     if shown == printed or not learned:
         return shown == printed
     if NUMBER.sub("#", shown) != NUMBER.sub("#", printed):

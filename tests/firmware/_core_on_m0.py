@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.core import INPUTS, OUTPUTS, RecordArray
-from fdvv.protocol import Settings
+from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
+from fdvv.protocol.tables import Settings
 
 from ._m0 import BOARD, REPOSITORY, require_tools
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.core import Core
-from fdvv.protocol import Refusal, Settings
-from fdvv.testing import random_image, random_inputs, random_settings
+from fdvv.firmware.core import Core
+from fdvv.protocol.tables import Refusal, Settings
+from tests.support.random_presses import random_inputs, random_settings
+from tests.support.random_programs import random_image
 
 from ._core_on_m0 import CoreOnM0, board_flags, compile_core
 from ._simavr import say

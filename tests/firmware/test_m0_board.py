@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.device._m0 import M0Emulator, TickInputs, TickOutputs
+from fdvv_m0.emulator import M0Emulator
+from fdvv_m0.records import TickInputs, TickOutputs
 
 from ._m0 import CHECK, build, frames, sizes_bytes
 from ._simavr import say

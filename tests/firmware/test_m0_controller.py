@@ -8,20 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import (
-    EmulatedBoard,
-    LibraryBoard,
-    LinkedDevice,
-    ScriptedPerson,
-    ScriptedPlant,
-    surface_image,
-)
-from fdvv.device._emulated import SHARE_OF_TICK
-from fdvv.device._m0 import M0Emulator, TickInputs
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.program import compile_button
-from fdvv.protocol import Settings, TickFlag
-from fdvv.testing import plain_surface
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import ScriptedPerson, ScriptedPlant
+from fdvv.device.remote import surface_image
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.program.button import compile_button
+from fdvv.protocol.tables import Settings, TickFlag
+from fdvv.testing.conformance import plain_surface
+from fdvv_m0.board import SHARE_OF_TICK, EmulatedBoard
+from fdvv_m0.emulator import M0Emulator
+from fdvv_m0.records import TickInputs
 
 from ._m0 import CONTROLLER, build, sizes_bytes
 from ._simavr import say

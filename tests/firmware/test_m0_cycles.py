@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import pytest
 
 from fdvv._native import library
-from fdvv.device._m0._bus import NEVER, Bus, Clockwork, Window
+from fdvv_m0.bus import NEVER, Bus, Clockwork, Window
 
 START = 0x2000
 

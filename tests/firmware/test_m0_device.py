@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import LinkedDevice, ProgramDevice, ScriptedPerson, open_device
-from fdvv.device._emulated import EmulatedBoard
+from fdvv.device.contract import ProgramDevice
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.open import open_device
+from fdvv.device.plant import ScriptedPerson
 from fdvv.errors import InputError
-from fdvv.testing import ProgramConformance, plain_surface
+from fdvv.testing.conformance import ProgramConformance, plain_surface
+from fdvv_m0.board import EmulatedBoard
 
 from ._m0 import CONTROLLER, build
 

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.device._m0 import M0Emulator, TickInputs, TickOutputs
-from fdvv.device._m0._elf import read_elf
 from fdvv.errors import DeviceError, InputError
+from fdvv_m0.elf import read_elf
+from fdvv_m0.emulator import M0Emulator
+from fdvv_m0.records import TickInputs, TickOutputs
 
 pytest.importorskip("unicorn")
 

@@ -9,11 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import EmulatedBoard, LinkedDevice, SimulatedPerson, StripStart, StripTask
-from fdvv.model import load_builtin
-from fdvv.optimize import SimulatedUser, TemporalPointing
-from fdvv.program import compile_button
-from fdvv.workflow import play, play_on_strip, played_presser
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.strip import LedPointingTask, StripStart
+from fdvv.device.twin import SimulatedPerson
+from fdvv.model.file import load_builtin
+from fdvv.optimize.people.simulate import simulate_task
+from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.run.strip import play_on_strip, played_presser
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.program.button import compile_button
+from fdvv_m0.board import EmulatedBoard
 
 from ._m0 import CONTROLLER
 from ._m0 import build as build_controller
@@ -35,8 +40,8 @@ def uno(tmp_path: Path) -> Iterator[UnoStrip]:
 
 
 def test_what_a_simulated_person_does_comes_back_from_the_strip_and_is_scored(uno: UnoStrip) -> None:
-    presses = play(HARD, BROWN, SimulatedUser(), 5)
-    told = play_on_strip(StripTask(uno), HARD, 5, presser=played_presser(uno, presses))
+    presses = simulate_task(HARD, BROWN, SimulatedUser(), 5)
+    told = play_on_strip(LedPointingTask(uno), HARD, 5, presser=played_presser(uno, presses))
     there, here = ([HARD.asynchrony_ms(press) for press in found] for found in (told, presses))
     assert None not in there
     apart_us = 1e3 * np.abs(np.array(there, float) - np.array(here, float))
@@ -63,7 +68,7 @@ def test_the_controllers_own_key_line_ends_as_an_asynchrony(uno: UnoStrip) -> No
                 wanted_ms.append(1e3 * (at_s - start.target_s))
                 uno.press_at(at_s)
 
-    told = play_on_strip(StripTask(uno), replace(HARD, rounds=2), 1, presser=press)
+    told = play_on_strip(LedPointingTask(uno), replace(HARD, rounds=2), 1, presser=press)
     late_ms = [late for late in map(HARD.asynchrony_ms, told) if late is not None]
     say(f"the controller's key line {wanted_ms[0]:.4f}, {wanted_ms[1]:.4f} ms after the target")
     say(f"told by the strip's board {late_ms[0]:.4f}, {late_ms[1]:.4f} ms")

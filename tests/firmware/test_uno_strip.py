@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.device import StripResult, StripRound, StripTask
+from fdvv.device.strip import LedPointingTask, StripResult, StripRound
 from fdvv.errors import DeviceError
-from fdvv.protocol import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
+from fdvv.protocol.strip_tables import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
 
 from ._simavr import build_board, require_tools, say
 from ._uno_strip import CYCLES_us, StripFrame, UnoStrip, build_strip_emulator
@@ -51,8 +51,8 @@ def uno(build: Build) -> Iterator[UnoStrip]:
 
 
 @pytest.fixture
-def task(uno: UnoStrip) -> StripTask:
-    return StripTask(uno)
+def task(uno: UnoStrip) -> LedPointingTask:
+    return LedPointingTask(uno)
 
 
 def bullets(frames: list[StripFrame]) -> list[tuple[int, StripFrame]]:
@@ -72,7 +72,7 @@ def lateness_us(frames: list[StripFrame], order: StripRound, result: StripResult
     return np.asarray(np.array(shown_us) - wanted_us, np.float64)
 
 
-def played_with(uno: UnoStrip, task: StripTask, order: StripRound, cycles: list[int]) -> StripResult:
+def played_with(uno: UnoStrip, task: LedPointingTask, order: StripRound, cycles: list[int]) -> StripResult:
     """Play a round in which the key line rises at these cycles after the target's."""
     start = task.begin(order)
     target = uno.cycle_of(1e6 * start.target_s)
@@ -103,7 +103,7 @@ def cycles_around_frames(order: StripRound, seed: int) -> list[int]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_an_edge_is_told_to_a_microsecond_whatever_the_board_is_sending(
-    uno: UnoStrip, task: StripTask, seed: int
+    uno: UnoStrip, task: LedPointingTask, seed: int
 ) -> None:
     uno.frames()
     cycles = cycles_around_frames(SHORT, seed)
@@ -118,7 +118,9 @@ def test_an_edge_is_told_to_a_microsecond_whatever_the_board_is_sending(
     assert max(map(abs, found)) <= 1.0
 
 
-def test_an_edge_at_the_timers_overflow_is_told_to_a_microsecond(uno: UnoStrip, task: StripTask) -> None:
+def test_an_edge_at_the_timers_overflow_is_told_to_a_microsecond(
+    uno: UnoStrip, task: LedPointingTask
+) -> None:
     found = []
     for offset in range(-24, 25, 3):
         start = task.begin(SHORT)
@@ -134,7 +136,7 @@ def test_an_edge_at_the_timers_overflow_is_told_to_a_microsecond(uno: UnoStrip, 
 @pytest.mark.parametrize("led", list(StripLed))
 @pytest.mark.parametrize("speed_px_s", [100, 150])
 def test_the_bullet_is_at_the_pixel_that_its_time_says(
-    uno: UnoStrip, task: StripTask, speed_px_s: int, led: StripLed
+    uno: UnoStrip, task: LedPointingTask, speed_px_s: int, led: StripLed
 ) -> None:
     order = replace(BOARD, speed_px_s=speed_px_s, led=led)
     uno.frames()
@@ -151,7 +153,7 @@ def test_the_bullet_is_at_the_pixel_that_its_time_says(
 
 
 def test_neither_noise_on_the_line_nor_a_chattering_key_moves_bullet_or_edges(
-    uno: UnoStrip, task: StripTask
+    uno: UnoStrip, task: LedPointingTask
 ) -> None:
     order = replace(BOARD, speed_px_s=150, delay_s=0.1, after_s=0.4)
     uno.frames()
@@ -177,7 +179,9 @@ def test_neither_noise_on_the_line_nor_a_chattering_key_moves_bullet_or_edges(
     assert result.is_whole
 
 
-def test_the_longest_strip_at_the_greatest_speed_is_sent_in_time(uno: UnoStrip, task: StripTask) -> None:
+def test_the_longest_strip_at_the_greatest_speed_is_sent_in_time(
+    uno: UnoStrip, task: LedPointingTask
+) -> None:
     uno.frames()
     result = task.play(LONG)
     frames = uno.frames()
@@ -188,7 +192,9 @@ def test_the_longest_strip_at_the_greatest_speed_is_sent_in_time(uno: UnoStrip, 
     assert late_us.max() < 60
 
 
-def test_a_frame_of_the_papers_strip_leaves_three_quarters_of_a_step(uno: UnoStrip, task: StripTask) -> None:
+def test_a_frame_of_the_papers_strip_leaves_three_quarters_of_a_step(
+    uno: UnoStrip, task: LedPointingTask
+) -> None:
     uno.frames()
     task.play(replace(BOARD, speed_px_s=150))
     lengths_us = [f.ended_us - f.begun_us for _, f in bullets(uno.frames())]
@@ -207,7 +213,7 @@ def test_the_strip_is_dark_from_the_first_frame_on(uno: UnoStrip) -> None:
 
 
 def test_the_zone_is_shown_from_the_start_to_the_end_and_the_bullet_passes_over_it(
-    uno: UnoStrip, task: StripTask
+    uno: UnoStrip, task: LedPointingTask
 ) -> None:
     uno.run_s(0.01)
     uno.frames()
@@ -219,7 +225,7 @@ def test_the_zone_is_shown_from_the_start_to_the_end_and_the_bullet_passes_over_
     assert sum(bool(f.lit(*WHITE)) for f in frames) == 144
 
 
-def test_a_few_pixels_can_be_lit_to_check_the_strip(uno: UnoStrip, task: StripTask) -> None:
+def test_a_few_pixels_can_be_lit_to_check_the_strip(uno: UnoStrip, task: LedPointingTask) -> None:
     uno.run_s(0.06)
     uno.frames()
     task.show(3, 2, (10, 20, 30))
@@ -230,7 +236,7 @@ def test_a_few_pixels_can_be_lit_to_check_the_strip(uno: UnoStrip, task: StripTa
     assert uno.frames()[-1].is_dark
 
 
-def test_more_pixels_than_the_supply_bears_are_refused(task: StripTask) -> None:
+def test_more_pixels_than_the_supply_bears_are_refused(task: LedPointingTask) -> None:
     with pytest.raises(DeviceError, match=r"refused show: a value is out of range \(field 2\)"):
         task.show(230, 16, WHITE)
 
@@ -239,7 +245,7 @@ def test_more_pixels_than_the_supply_bears_are_refused(task: StripTask) -> None:
 
 
 def test_the_strip_goes_dark_when_the_host_is_gone_and_the_round_says_so(
-    uno: UnoStrip, task: StripTask
+    uno: UnoStrip, task: LedPointingTask
 ) -> None:
     start = task.begin(replace(BOARD, delay_s=0.05))
     uno.run_s(0.05 + STRIP_HOST_TIMEOUT_MS * 1e-3 + 0.1)
@@ -253,7 +259,9 @@ def test_the_strip_goes_dark_when_the_host_is_gone_and_the_round_says_so(
     assert not result.is_whole
 
 
-def test_a_board_that_stands_still_is_reset_and_dark_and_says_why(uno: UnoStrip, task: StripTask) -> None:
+def test_a_board_that_stands_still_is_reset_and_dark_and_says_why(
+    uno: UnoStrip, task: LedPointingTask
+) -> None:
     task.begin(BOARD)
     uno.run_s(0.02)
     uno.poke(TIMSK1, 0)
@@ -262,17 +270,19 @@ def test_a_board_that_stands_still_is_reset_and_dark_and_says_why(uno: UnoStrip,
     assert frames[-1].is_dark
     with pytest.raises(DeviceError, match="refused status: it was started anew and knows nobody"):
         task.status()
-    assert StripTask(uno).was_reset
+    assert LedPointingTask(uno).was_reset
 
 
-def test_a_strip_at_a_round_refuses_another_program_with_one_line(uno: UnoStrip, task: StripTask) -> None:
+def test_a_strip_at_a_round_refuses_another_program_with_one_line(
+    uno: UnoStrip, task: LedPointingTask
+) -> None:
     task.begin(BOARD)
     with pytest.raises(DeviceError, match="the strip is at a round of another program; wait for its end"):
-        StripTask(uno)
+        LedPointingTask(uno)
 
 
 def test_presses_beyond_the_eighth_and_outside_the_round_are_counted_only(
-    uno: UnoStrip, task: StripTask
+    uno: UnoStrip, task: LedPointingTask
 ) -> None:
     uno.key_at(uno.cycle + 100)
     uno.run_s(0.01)
@@ -286,7 +296,7 @@ def test_presses_beyond_the_eighth_and_outside_the_round_are_counted_only(
     assert task.status().mode == StripMode.OVER
 
 
-def test_the_key_line_is_read_and_has_no_pull_up(uno: UnoStrip, task: StripTask) -> None:
+def test_the_key_line_is_read_and_has_no_pull_up(uno: UnoStrip, task: LedPointingTask) -> None:
     assert task.status().key == 0
     uno.key_at(uno.cycle + 10, 1_600_000)
     uno.run_s(0.01)
@@ -295,14 +305,16 @@ def test_the_key_line_is_read_and_has_no_pull_up(uno: UnoStrip, task: StripTask)
     assert uno.peek(PORTB) & 1 == 0
 
 
-def test_a_damaged_request_is_counted_and_asked_again(uno: UnoStrip, task: StripTask) -> None:
+def test_a_damaged_request_is_counted_and_asked_again(uno: UnoStrip, task: LedPointingTask) -> None:
     uno.write(b"\x05\x02\x01\x07\x08\0")
     before = task.status()
     assert before.bad_frames == 1
     assert task.status().time_us > before.time_us
 
 
-def test_flash_and_ram_hold_the_program_and_its_stack(uno: UnoStrip, task: StripTask, build: Build) -> None:
+def test_flash_and_ram_hold_the_program_and_its_stack(
+    uno: UnoStrip, task: LedPointingTask, build: Build
+) -> None:
     out = subprocess.run(["avr-size", str(build.elf)], check=True, capture_output=True, text=True).stdout
     text, data, bss = (int(word) for word in out.splitlines()[1].split()[:3])
     # paint what nothing has used, work, and see how far the paint was worn off

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.program import (
+from fdvv.program.synth import (
     SILENCE_counts,
     Slot,
     Waveform,

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.capture import Cycle, ForceFile, average_by_velocity, average_cycles, read_force_file
-from fdvv.model import MeasuredCurve, Stroke
+from fdvv.formats.force.average import average_by_velocity, average_cycles
+from fdvv.formats.force.read import read_force_file
+from fdvv.formats.force.types import Cycle, ForceFile
+from fdvv.model.curve import MeasuredCurve, Stroke
 
 
 def cycle(shift_mm: float = 0.0, extra_cN: float = 0.0, speed: float | None = None, label: str = "") -> Cycle:

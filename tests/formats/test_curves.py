@@ -8,10 +8,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from fdvv.capture import read_force_file
 from fdvv.errors import ModelError
-from fdvv.exchange import Exported, bluepylons_csv, curves_csv, haata_csv, switch_tester_json
-from fdvv.model import FDVVModel, ForceCurve, Stroke, builtin_names, load_builtin
+from fdvv.formats.exchange.curves import bluepylons_csv, curves_csv, haata_csv, switch_tester_json
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.force.read import read_force_file
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
 
 WRITERS: dict[str, tuple[Callable[[FDVVModel], Exported], str]] = {
     "plain-csv": (curves_csv, ".csv"),

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.capture import find_force_files, read_force_file, reader_names
 from fdvv.errors import InputError
+from fdvv.formats.force.read import find_force_files, read_force_file, reader_names
 from fdvv.units import GRAM_FORCE_cN
 
 FORMATS = [name for name in reader_names() if name != "bluepylons-ods"]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from fdvv.errors import ModelError
-from fdvv.exchange import (
+from fdvv.formats.exchange.frames import (
     model_to_xarray,
     presses_from_pandas,
     presses_to_pandas,
@@ -20,8 +20,10 @@ from fdvv.exchange import (
     recording_to_pandas,
     recording_to_xarray,
 )
-from fdvv.model import FDVVModel, Press, builtin_names, load_builtin
-from fdvv.recording import UNITS, Mark, Quantity, Recording, Stream, Take
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.recording.types import UNITS, Mark, Quantity, Recording, Stream, Take
 
 pd = pytest.importorskip("pandas")
 xr = pytest.importorskip("xarray")
@@ -171,7 +173,8 @@ def test_streams_whose_names_would_clash_are_refused() -> None:
 def test_without_pandas_the_extra_is_named() -> None:
     code = (
         "import sys; sys.modules['pandas'] = None\n"
-        "from fdvv.exchange import model_to_xarray\nfrom fdvv.model import load_builtin\n"
+        "from fdvv.formats.exchange.frames import model_to_xarray\n"
+        "from fdvv import load_builtin\n"
         "try:\n    model_to_xarray(load_builtin('mx-red'))\nexcept Exception as error:\n    print(error)"
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

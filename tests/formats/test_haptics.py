@@ -11,21 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
-from fdvv.exchange import (
-    Exported,
-    Pulse,
-    ahap,
-    frequency_Hz,
-    hjif,
-    meta_haptic,
-    mode_of,
-    pulse_of,
-    read_ahap,
-    read_hjif,
-    read_meta_haptic,
-    sharpness,
-)
-from fdvv.model import Mode, Stroke, Vibration
+from fdvv.formats.exchange.ahap import ahap, read_ahap
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.hjif import hjif, read_hjif
+from fdvv.formats.exchange.meta_haptic import meta_haptic, read_meta_haptic
+from fdvv.formats.exchange.pulse import Pulse, frequency_Hz, mode_of, pulse_of, sharpness
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
 
 DATE = "2026-01-01"
 SNAP = Vibration(Stroke.PRESS, None, 1.0, 0.03, (Mode(239.0, 4.6, 131.0),))

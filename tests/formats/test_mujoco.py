@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from fdvv.errors import BuildError, ModelError
-from fdvv.exchange import MujocoButton, mjcf, mujoco_button, spring_button
-from fdvv.exchange._polyline import polyline
-from fdvv.model import FDVVModel, Stroke, builtin_names, load_builtin
+from fdvv.formats.exchange.mjcf import mjcf, polyline, spring_button
+from fdvv.formats.exchange.mujoco import MujocoButton, mujoco_button
+from fdvv.model.curve import Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 mujoco: Any = pytest.importorskip("mujoco")

@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.damage import DAMAGES, Damage
 
-from fdvv.capture import average_cycles, read_force_file, reader_names
 from fdvv.errors import InputError
+from fdvv.formats.force.average import average_cycles
+from fdvv.formats.force.read import read_force_file, reader_names
+from tests.support.damage import DAMAGES, Damage
 
 
 def check(path: Path) -> None:

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.capture import ForceFile, read_force_file
-from fdvv.capture import _read as reading
 from fdvv.errors import InputError
-from fdvv.model import MeasuredCurve
+from fdvv.formats.force import read as reading
+from fdvv.formats.force.read import read_force_file
+from fdvv.formats.force.types import ForceFile
+from fdvv.model.curve import MeasuredCurve
 
 
 def read(files: Any, folder: Path, x: Any, force: Any) -> ForceFile:

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.capture import average_by_velocity, average_cycles, find_force_files, read_force_file
 from fdvv.errors import InputError
-from fdvv.model import find_contact_mm
+from fdvv.formats.force.average import average_by_velocity, average_cycles
+from fdvv.formats.force.read import find_force_files, read_force_file
+from fdvv.model.bump import find_contact_mm
 
 pytestmark = pytest.mark.shared
 

@@ -9,8 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.exchange import KnobDetents, knob_detents, smartknob
-from fdvv.model import FDVVModel, ForceCurve, Stroke, find_bump, load_builtin
+from fdvv.formats.exchange.smartknob import KnobDetents, knob_detents, smartknob
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
 
 
 def _snapped(detents: KnobDetents, way: list[float]) -> list[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fdvv.hardware import Circuit, Component, Pin, load_circuit
+from fdvv_rig.circuit.circuit import Circuit, Component, Pin, load_circuit
 
 CIRCUIT = load_circuit()
 

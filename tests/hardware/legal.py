@@ -6,7 +6,8 @@ import dataclasses
 
 from hypothesis import strategies as st
 
-from fdvv.hardware import Dimensions, misses
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.fits import misses
 
 RANGES = {
     "travel_mm": (2.0, 6.4),

@@ -5,12 +5,16 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
-from fdvv.hardware import RIG, Dimensions, State, assemble, meetings, printed_parts, read_manifest
+from fdvv_rig.check import assemble, meetings
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.manifest import read_manifest
+from fdvv_rig.parts import printed_parts
+from fdvv_rig.placement import RIG, State
 
 from .legal import legal_dimensions
 
-pytest.importorskip("build123d", reason="the CAD kernel is not installed (fdvv[cad])")
-pytest.importorskip("manifold3d", reason="manifold3d is not installed (fdvv[hardware])")
+pytest.importorskip("build123d", reason="the CAD kernel is not installed (fdvv-rig[cad])")
+pytest.importorskip("manifold3d", reason="manifold3d is not installed")
 
 HARDWARE = Path(__file__).resolve().parents[2] / "hardware"
 KERNEL_WARNINGS = pytest.mark.filterwarnings("ignore")
@@ -21,7 +25,7 @@ KERNEL_WARNINGS = pytest.mark.filterwarnings("ignore")
 @pytest.mark.timeout(300)
 @KERNEL_WARNINGS
 def test_exports_made_again_are_the_same_bytes(tmp_path: Path) -> None:
-    from fdvv.hardware.cad import export_parts
+    from fdvv_rig.cad.export import export_parts
 
     export_parts(tmp_path, Dimensions())
     for made in read_manifest(HARDWARE).parts.values():
@@ -41,8 +45,8 @@ def test_exports_made_again_are_the_same_bytes(tmp_path: Path) -> None:
 )
 @given(legal_dimensions)
 def test_parts_of_random_legal_dimensions_are_whole_and_go_together(d: Dimensions) -> None:
-    from fdvv.hardware.cad import build
-    from fdvv.hardware.cad._files import mesh_of_solid
+    from fdvv_rig.cad.build import build
+    from fdvv_rig.cad.files import mesh_of_solid
 
     meshes = {}
     for name in RIG:
@@ -60,6 +64,6 @@ def test_parts_of_random_legal_dimensions_are_whole_and_go_together(d: Dimension
 @KERNEL_WARNINGS
 @pytest.mark.slow
 def test_every_part_has_a_builder() -> None:
-    from fdvv.hardware.cad._build import BUILDERS
+    from fdvv_rig.cad.build import BUILDERS
 
     assert set(BUILDERS) == {part.name for part in printed_parts()}

@@ -8,19 +8,13 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.hardware.circuits import CIRCUIT, with_nets, with_pin, with_value, without
 
 from fdvv.errors import InputError
-from fdvv.hardware import (
-    PowerState,
-    check_circuit,
-    levels,
-    load_circuit,
-    power_budget,
-    read_circuit,
-    require_sound,
-    undrawn,
-)
+from fdvv_rig.circuit.circuit import load_circuit, read_circuit
+from fdvv_rig.circuit.levels import PowerState, levels
+from fdvv_rig.circuit.power import power_budget
+from fdvv_rig.circuit.rules import check_circuit, require_sound, undrawn
+from tests.hardware.circuits import CIRCUIT, with_nets, with_pin, with_value, without
 
 BOARDS = Path(__file__).resolve().parents[2] / "firmware" / "boards"
 RESISTORS = sorted(ref for ref, part in CIRCUIT.parts.items() if part.kind.name == "resistor")
@@ -158,9 +152,9 @@ def test_a_dividers_level_and_resistance_are_those_of_the_textbook(top: float, l
     ],
 )
 def test_a_broken_file_is_refused_with_its_place(change: tuple[str, str], place: str) -> None:
-    import fdvv.hardware
+    import fdvv_rig.circuit
 
-    text = Path(fdvv.hardware.__file__).with_name("circuit.toml").read_text()
+    text = Path(fdvv_rig.circuit.__file__).with_name("circuit.toml").read_text()
     assert change[0] in text
     with pytest.raises(InputError) as found:
         read_circuit(text.replace(*change), "mine.toml")

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.hardware import Bounds, Evidence, Latched, Lift, Verdict, diagnose
+from fdvv_rig.selftest.diagnosis import Bounds, Verdict, diagnose
+from fdvv_rig.selftest.evidence import Evidence, Latched, Lift
 
 SOUND = Evidence(
     nominal_mV=12000.0,

@@ -9,20 +9,13 @@ import pytest
 from hypothesis import given, settings
 
 from fdvv.errors import InputError
-from fdvv.hardware import (
-    Dimensions,
-    Layout,
-    Limiter,
-    assumed,
-    check_fits,
-    core_stack,
-    dimensions_toml,
-    load_dimensions,
-    meaning_of,
-    misses,
-    printed_parts,
-    source_of,
-)
+from fdvv_rig.dimension_file import assumed, dimensions_toml, load_dimensions
+from fdvv_rig.dimensions import Dimensions, meaning_of, source_of
+from fdvv_rig.fits import check_fits, misses
+from fdvv_rig.layout import Layout
+from fdvv_rig.limiter import Limiter
+from fdvv_rig.parts import printed_parts
+from fdvv_rig.tolerance import core_stack
 
 from .legal import legal_dimensions
 

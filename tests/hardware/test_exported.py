@@ -10,33 +10,18 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.hardware import (
-    RIG,
-    Assembly,
-    Dimensions,
-    Limiter,
-    Mesh,
-    Pose,
-    State,
-    assemble,
-    body_of,
-    bought_parts,
-    check_exported,
-    clearances,
-    gap_mm,
-    in_rig,
-    meetings,
-    on_jig,
-    part_named,
-    placed,
-    printed_parts,
-    read_manifest,
-    read_stl,
-    shared_mm3,
-    states,
-)
+from fdvv_rig.bought import bought_parts
+from fdvv_rig.check import Assembly, assemble, clearances, meetings, states
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.exported import check_exported
+from fdvv_rig.limiter import Limiter
+from fdvv_rig.manifest import read_manifest
+from fdvv_rig.mesh import Mesh, read_stl
+from fdvv_rig.parts import part_named, printed_parts
+from fdvv_rig.placement import RIG, Pose, State, in_rig, on_jig
+from fdvv_rig.solids import body_of, gap_mm, placed, shared_mm3
 
-pytest.importorskip("manifold3d", reason="manifold3d is not installed (fdvv[hardware])")
+pytest.importorskip("manifold3d", reason="manifold3d is not installed")
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 HARDWARE = REPOSITORY / "hardware"
@@ -96,7 +81,7 @@ def test_the_package_tells_of_the_parts_what_the_manifest_tells() -> None:
     assert spec.loader is not None
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
-    kept = (REPOSITORY / "src" / "fdvv" / "hardware" / "printed.json").read_text()
+    kept = (REPOSITORY / "extras/fdvv-rig/src/fdvv_rig/printed.json").read_text()
     assert kept == tool.printed(read_manifest(HARDWARE)), "run python tools/make_hardware.py"
     assert part_named("base").made.volume_cm3 == read_manifest(HARDWARE).parts["base"].volume_cm3
 

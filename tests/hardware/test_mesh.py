@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.hardware import Mesh, Pose, joined, read_stl, stl_bytes
+from fdvv_rig.mesh import Mesh, joined, read_stl, stl_bytes
+from fdvv_rig.placement import Pose
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 2.0) for y in (0.0, 3.0) for z in (0.0, 4.0)])
 FACES = np.array(

@@ -9,32 +9,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import LibraryBoard, LinkedDevice, TickColumns
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.telemetry import TickColumns
 from fdvv.errors import DeviceError, InputError
-from fdvv.hardware import Diagnosis, Evidence, diagnose
-from fdvv.protocol import Settings
-from fdvv.twin import Rig
-from fdvv.workflow import (
-    RIG_FAULTS,
-    SOUND,
-    AskedHands,
-    SimulatedHands,
-    calibrated,
-    changed,
-    measure_rig,
-    open_rig,
-    read_selftest,
-    write_selftest,
-)
-from fdvv.workflow._hardware_faults import SLOW_PWM_Hz, _slow_pwm
-from fdvv.workflow._hardware_measure import line_um
-from fdvv.workflow._hardware_open import with_sensor
+from fdvv.protocol.tables import Settings
+from fdvv.twin.rig import Rig
+from fdvv_rig.selftest.diagnosis import Diagnosis, diagnose
+from fdvv_rig.selftest.evidence import Evidence
+from fdvv_rig.selftest.faults import RIG_FAULTS, SLOW_PWM_Hz, _slow_pwm
+from fdvv_rig.selftest.measure import line_um, measure_rig
+from fdvv_rig.selftest.open import open_rig, with_sensor
+from fdvv_rig.selftest.operator import SOUND, PromptedOperator, SimulatedOperator
+from fdvv_rig.selftest.receipt import calibrated, changed, read_selftest, write_selftest
 
 HEAD = {"device": "host", "serial": 1, "simulated": True, "tested": "2026-01-01T00:00:00", "settings": {}}
 
 
 def trial(fault: str | None = None, seed: int = 0) -> tuple[Evidence, Diagnosis]:
-    hands = SimulatedHands(with_sensor(Rig()), seed, RIG_FAULTS[fault] if fault else SOUND)
+    hands = SimulatedOperator(with_sensor(Rig()), seed, RIG_FAULTS[fault] if fault else SOUND)
     device = LinkedDevice(LibraryBoard(), hands)
     try:
         before = device.settings()
@@ -92,7 +85,7 @@ def test_calibration_takes_out_what_gauges_and_weight_have_shown(sound: tuple[Ev
     import dataclasses
 
     evidence, _ = sound
-    settings = SimulatedHands(with_sensor(Rig())).settings
+    settings = SimulatedOperator(with_sensor(Rig())).settings
     off = dataclasses.replace(
         evidence, gauge_mm=(4.5 * 1.05 + 0.1, 2.0 * 1.05 + 0.1), sensor_zero_cN=2.0, sensor_weight_cN=47.0
     )
@@ -142,7 +135,7 @@ def test_a_real_rig_is_neither_drawn_nor_broken_on_purpose(tmp_path: Path) -> No
 
 def test_a_person_is_asked_for_every_gauge_and_weight() -> None:
     said: list[str] = []
-    hands = AskedHands(said.append)
+    hands = PromptedOperator(said.append)
     hands.gauge(2.0)
     hands.let_go()
     hands.gauge(None)

@@ -11,26 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from tests.hardware.circuits import CIRCUIT, with_value
 
-from fdvv.hardware import (
-    PAPER_USD,
-    circuit_report,
-    coil_drive,
-    converter_steps,
-    filter_values,
-    group_totals,
-    load_bill,
-    paper_cutoff_Hz,
-    printed_parts,
-    read_bill,
-    rig_settings,
-    to_csv,
-    to_document,
-    to_kicad,
-    wiring_rows,
-)
-from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import Settings
+from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, read_bill, to_csv
+from fdvv_rig.circuit.circuit_report import circuit_report
+from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
+from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
+from fdvv_rig.circuit.power import coil_drive
+from fdvv_rig.parts import printed_parts
+from tests.hardware.circuits import CIRCUIT, with_value
 
 ROOT = Path(__file__).resolve().parents[2]
 

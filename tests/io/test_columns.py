@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from fdvv.columns import KINDS, pack_column, unpack_column
+from fdvv.io.columns import KINDS, pack_column, unpack_column
 
 
 @given(

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited, sync_folder, write_atomic
+from fdvv.io.files import read_limited, sync_folder, write_atomic
 
 
 def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
@@ -31,7 +31,7 @@ def test_a_process_killed_while_writing_leaves_the_old_file_whole(tmp_path: Path
     target = tmp_path / "a.txt"
     write_atomic(target, "old")
     code = (
-        "import os, sys, pathlib, fdvv.files as f\n"
+        "import os, sys, pathlib, fdvv.io.files as f\n"
         "os.fsync = lambda _fd: os._exit(9)\n"
         f"f.write_atomic(pathlib.Path({str(target)!r}), 'new' * 100000)\n"
     )

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.workflow._part_store import PARTS, GROUP_rows, PartStore
+from fdvv.io.part_store import PARTS, GROUP_rows, PartStore
 
 SCHEMA = pa.schema([("n", pa.int64()), ("text", pa.string())], metadata={"version": "1"})
 

@@ -6,13 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.conftest import write_cycle
-from tests.workflow.shelves import bumped, button, dome, row, spring
 
-from fdvv.model import FDVVModel, ForceCurve, Stroke, builtin_names, landmarks, load_builtin
+from fdvv.button.fit import fit_file
+from fdvv.library.figures import row_of_file
+from fdvv.library.row import NUMBERS as SHELF_NUMBERS
+from fdvv.library.row import ButtonType, Origin
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
-from fdvv.workflow import SHELF_NUMBERS, ButtonType, Origin, fit_file
-from fdvv.workflow._shelf_read import row_of_file
+from tests.support.buttons import write_cycle
+from tests.support.catalog_rows import bumped, button, dome, row, spring
 
 
 def test_a_straight_spring_is_linear_and_has_no_bump_but_a_reason() -> None:

@@ -8,12 +8,13 @@ from pathlib import Path
 from threading import Event
 
 import pytest
-from tests.workflow.conftest import write_cycle
-from tests.workflow.shelves import write_folder
 
-from fdvv.model import SUFFIX, builtin_names, load_builtin, save_model
-from fdvv.workflow import Origin, Shelf, ShelfIndex, ShelfStand
-from fdvv.workflow._shelf_worker import ReadAnswer, ReadAsk, ReadProcess
+from fdvv.library.catalog import Catalog
+from fdvv.library.index import CatalogIndex, IndexStatus, ReadAnswer, ReadRequest, RowReader
+from fdvv.library.row import Origin
+from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_model
+from tests.support.buttons import write_cycle
+from tests.support.catalog_rows import write_folder
 
 
 @pytest.fixture
@@ -23,18 +24,20 @@ def bench(tmp_path: Path) -> Path:
     return folder
 
 
-def indexed(tmp_path: Path, *sources: Path) -> ShelfIndex:
-    index = ShelfIndex(Shelf(tmp_path / "project", sources), tmp_path / "project" / "cache.jsonl", workers=0)
+def indexed(tmp_path: Path, *sources: Path) -> CatalogIndex:
+    index = CatalogIndex(
+        Catalog(tmp_path / "project", sources), tmp_path / "project" / "cache.jsonl", workers=0
+    )
     index.scan()
     return index
 
 
-def measured(stand: ShelfStand) -> list[str]:
+def measured(stand: IndexStatus) -> list[str]:
     return [row.name for row in stand.rows if row.origin is not Origin.BUILTIN]
 
 
 def test_a_scan_reads_every_file_or_says_why_not(tmp_path: Path, bench: Path) -> None:
-    stand = indexed(tmp_path, bench).stand
+    stand = indexed(tmp_path, bench).status
     assert stand.ended
     assert (stand.done, stand.total) == (4, 4)
     assert measured(stand) == ["a", "b", "c"]
@@ -46,39 +49,39 @@ def test_a_scan_reads_every_file_or_says_why_not(tmp_path: Path, bench: Path) ->
 
 
 def test_a_restart_reads_nothing_that_did_not_change(tmp_path: Path, bench: Path) -> None:
-    first = indexed(tmp_path, bench).stand
+    first = indexed(tmp_path, bench).status
     told = (bench / "a.csv").stat()
     (bench / "a.csv").write_bytes(b"x" * told.st_size)
     os.utime(bench / "a.csv", ns=(told.st_atime_ns, told.st_mtime_ns))
-    again = indexed(tmp_path, bench).stand
+    again = indexed(tmp_path, bench).status
     assert again.rows == first.rows
     assert again.refused == first.refused
 
 
 def test_what_comes_goes_and_changes_is_followed(tmp_path: Path, bench: Path) -> None:
     index = indexed(tmp_path, bench)
-    before = index.stand
+    before = index.status
     (bench / "b.csv").unlink()
     write_cycle(bench / "new.csv")
     write_cycle(bench / "bad.csv")
     (bench / "a.csv").write_text("now,it,is,bad\n1,2,3,4\n")
     index.scan()
-    assert sorted(measured(index.stand)) == ["bad", "c", "new"]
-    assert [one.place for one in index.stand.refused] == ["bench/a.csv"]
-    assert index.stand.epoch == before.epoch + 1
-    assert measured(indexed(tmp_path, bench).stand) == ["bad", "c", "new"]
+    assert sorted(measured(index.status)) == ["bad", "c", "new"]
+    assert [one.place for one in index.status.refused] == ["bench/a.csv"]
+    assert index.status.epoch == before.epoch + 1
+    assert measured(indexed(tmp_path, bench).status) == ["bad", "c", "new"]
 
 
 def test_a_rescan_without_changes_keeps_everything_as_it_is(tmp_path: Path, bench: Path) -> None:
     index = indexed(tmp_path, bench)
-    before = index.stand
+    before = index.status
     index.scan()
-    assert index.stand is before
+    assert index.status is before
 
 
 @pytest.mark.parametrize("damage", ["half", "noise", "other version", "not text"])
 def test_a_damaged_cache_costs_a_reading_and_nothing_else(tmp_path: Path, bench: Path, damage: str) -> None:
-    expected = indexed(tmp_path, bench).stand.rows
+    expected = indexed(tmp_path, bench).status.rows
     cache = tmp_path / "project" / "cache.jsonl"
     whole = cache.read_bytes()
     cache.write_bytes(
@@ -89,24 +92,24 @@ def test_a_damaged_cache_costs_a_reading_and_nothing_else(tmp_path: Path, bench:
             "not text": os.urandom(1000),
         }[damage]
     )
-    found = indexed(tmp_path, bench).stand
+    found = indexed(tmp_path, bench).status
     assert sorted(row.id for row in found.rows) == sorted(row.id for row in expected)
     assert {row.id: row for row in found.rows} == {row.id: row for row in expected}
 
 
 def test_a_cache_that_cannot_be_written_is_told_and_harms_nothing(tmp_path: Path, bench: Path) -> None:
     (tmp_path / "project").write_text("a file where the folder should be")
-    stand = indexed(tmp_path, bench).stand
+    stand = indexed(tmp_path, bench).status
     assert measured(stand) == ["a", "b", "c"]
     assert "cannot be written" in stand.trouble
 
 
 def test_own_models_and_models_of_sources_are_rows(tmp_path: Path, bench: Path) -> None:
-    save_model(load_builtin("mx-red"), tmp_path / "project" / "buttons" / f"mine{SUFFIX}")
-    save_model(load_builtin("mx-blue"), bench / f"published{SUFFIX}")
-    (tmp_path / "project" / "buttons" / f"broken{SUFFIX}").write_text("{}")
+    save_model(load_builtin("mx-red"), tmp_path / "project" / "buttons" / f"mine{MODEL_SUFFIX}")
+    save_model(load_builtin("mx-blue"), bench / f"published{MODEL_SUFFIX}")
+    (tmp_path / "project" / "buttons" / f"broken{MODEL_SUFFIX}").write_text("{}")
     (bench / "receipt.json").write_text('{"format": "fdvv-receipt"}')
-    stand = indexed(tmp_path, bench).stand
+    stand = indexed(tmp_path, bench).status
     rows = {row.id: row for row in stand.rows}
     assert rows["own:mine"].origin is Origin.OWN
     assert rows["own:mine"].licence == load_builtin("mx-red").provenance.licence
@@ -117,41 +120,41 @@ def test_own_models_and_models_of_sources_are_rows(tmp_path: Path, bench: Path) 
 def test_the_background_tells_and_stops(tmp_path: Path, bench: Path) -> None:
     ended = Event()
 
-    def tell(stand: ShelfStand) -> None:
+    def tell(stand: IndexStatus) -> None:
         if stand.ended:
             ended.set()
 
-    index = ShelfIndex(Shelf(tmp_path / "project", [bench]), tmp_path / "cache.jsonl", tell, workers=1)
+    index = CatalogIndex(Catalog(tmp_path / "project", [bench]), tmp_path / "cache.jsonl", tell, workers=1)
     index.start()
     assert ended.wait(30)
-    assert measured(index.stand) == ["a", "b", "c"]
+    assert measured(index.status) == ["a", "b", "c"]
     ended.clear()
     write_cycle(bench / "new.csv")
     index.rescan()
     assert ended.wait(30)
-    assert "new" in measured(index.stand)
+    assert "new" in measured(index.status)
     index.close()
     index.close()
 
 
 def test_without_folders_nothing_is_written(tmp_path: Path) -> None:
-    stand = indexed(tmp_path).stand
+    stand = indexed(tmp_path).status
     assert stand.ended
     assert not (tmp_path / "project").exists()
 
 
 @pytest.fixture
-def reader() -> Iterator[ReadProcess]:
-    reader = ReadProcess()
+def reader() -> Iterator[RowReader]:
+    reader = RowReader()
     yield reader
     reader.close()
 
 
-def read_by(reader: ReadProcess, path: Path) -> ReadAnswer:
-    return reader.read(ReadAsk(os.fsencode(path), "measured:0", "", Origin.MEASURED))
+def read_by(reader: RowReader, path: Path) -> ReadAnswer:
+    return reader.read(ReadRequest(os.fsencode(path), "measured:0", "", Origin.MEASURED))
 
 
-def test_a_reader_that_died_is_started_again(tmp_path: Path, reader: ReadProcess) -> None:
+def test_a_reader_that_died_is_started_again(tmp_path: Path, reader: RowReader) -> None:
     path = write_cycle(tmp_path / "good.csv")
     assert read_by(reader, path).row is not None
     assert reader._process is not None
@@ -162,6 +165,6 @@ def test_a_reader_that_died_is_started_again(tmp_path: Path, reader: ReadProcess
 
 def test_a_file_that_is_never_read_to_its_end_is_given_up(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "stuck.csv")
-    reader = ReadProcess(longest_s=0.2)
+    reader = RowReader(longest_s=0.2)
     assert "took over 0.2 s" in read_by(reader, tmp_path / "stuck.csv").reason
     assert reader._process is None

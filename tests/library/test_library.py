@@ -12,32 +12,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.conftest import write_cycle
-from tests.workflow.executors import Here
-from tests.workflow.shelves import write_folder
 
 from fdvv.errors import BuildError, InputError, WorkerError
-from fdvv.model import load_builtin, save_model
-from fdvv.testing import DeadlyReader
-from fdvv.workflow import (
-    LIBRARY_COLUMNS,
-    SHELF_NUMBERS,
-    Library,
-    LibraryBuilt,
-    Shelf,
-    ShelfIndex,
-    ShelfQuery,
-    build_library,
-    library_query,
-    open_executor,
-    row_of_model,
-    write_hits,
-)
-from fdvv.workflow._library_build import BUTTONS, read_manifest
-from fdvv.workflow._library_columns import library_schema
-from fdvv.workflow._library_work import LibraryWork, read_button
-from fdvv.workflow._shelf_files import source_files
-from fdvv.workflow._shelf_read import row_of_file
+from fdvv.library.build import BUTTONS, LibraryBuilt, LibraryWork, build_library, read_button, read_manifest
+from fdvv.library.catalog import Catalog, source_files
+from fdvv.library.figures import row_of_file, row_of_model
+from fdvv.library.index import CatalogIndex
+from fdvv.library.library import Library, library_query, write_hits
+from fdvv.library.row import NUMBERS as SHELF_NUMBERS
+from fdvv.library.search import SearchQuery
+from fdvv.library.table import COLUMNS as LIBRARY_COLUMNS
+from fdvv.library.table import library_schema
+from fdvv.model.file import load_builtin, save_model
+from fdvv.parallel.open import open_executor
+from tests.support.buttons import write_cycle
+from tests.support.catalog_rows import write_folder
+from tests.support.deadly_work import DeadlyReader
+from tests.support.executors import Here
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "library-files.md"
 NAMES = {"reds/light red.csv": 0.0, "reds/dark red.csv": 3.0, "blues/navy.csv": 25.0, "plain.csv": 12.0}
@@ -134,7 +125,7 @@ def test_nothing_is_read_again_that_did_not_change(source: Path, tmp_path: Path)
 def test_a_build_that_is_stopped_goes_on_and_ends_the_same(
     source: Path, library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._library_build.FILES", 2)
+    monkeypatch.setattr("fdvv.library.build.FILES", 2)
 
     def stop(done: int, _whole: int) -> None:
         if done == 4:
@@ -202,7 +193,7 @@ def test_the_nearest_is_the_one_that_differs_least(library: Library, source: Pat
     distances = [hit.distance_JND for hit in hits]
     assert distances == sorted(d for d in distances if d is not None)
     # buttons that were only asked about are never found
-    assert len(library.find(ShelfQuery())[0]) == len(library.rows) == 5
+    assert len(library.find(SearchQuery())[0]) == len(library.rows) == 5
 
 
 def test_hits_are_written_as_csv_with_their_units(library: Library, tmp_path: Path) -> None:
@@ -247,7 +238,7 @@ def deadly(tmp_path: Path) -> Path:
 def test_a_file_that_ends_its_reader_is_refused_and_costs_no_other(
     deadly: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._process_executor.TRIES", 1)
+    monkeypatch.setattr("fdvv.parallel.executor.TRIES", 1)
     with open_executor(processes=2) as executor:
         work = LibraryWork((deadly,), DeadlyReader(read_button, "bomb"))
         found = build_library([deadly], tmp_path / "library", executor, work=work)
@@ -260,10 +251,10 @@ def test_a_file_that_ends_its_reader_is_refused_and_costs_no_other(
 RUN = """
 import sys
 from pathlib import Path
-import fdvv.workflow._library_build as build
-from fdvv.testing import DeadlyReader
-from fdvv.workflow import open_executor
-from fdvv.workflow._library_work import LibraryWork, read_button
+import fdvv.library.build as build
+from tests.support.deadly_work import DeadlyReader
+from fdvv.parallel.open import open_executor
+from fdvv.library.build import LibraryWork, read_button
 if __name__ == "__main__":
     source, library = map(Path, sys.argv[1:])
     build.FILES = 2
@@ -283,8 +274,12 @@ def test_a_build_killed_at_random_moments_loses_nothing(tmp_path: Path) -> None:
     script.write_text(RUN)
     random, done, kills = np.random.default_rng(4), 0, 0
     while True:
+        # the script imports tests.support
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
         command = [sys.executable, str(script), str(source), str(library)]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, start_new_session=True, env=environment
+        ) as process:
             assert process.stdout is not None
             first = int(process.stdout.readline() or done)
             assert first >= done  # what was told as done is still there
@@ -310,7 +305,7 @@ def test_a_build_killed_at_random_moments_loses_nothing(tmp_path: Path) -> None:
 def test_whoever_builds_it_the_library_is_the_same(
     source: Path, library: Library, tmp_path: Path, options: dict[str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._library_build.FILES", 2)
+    monkeypatch.setattr("fdvv.library.build.FILES", 2)
     with open_executor(options.get("processes"), options.get("workers")) as executor:
         build_library([source], tmp_path / "library", executor)
     assert (tmp_path / "library" / BUTTONS).read_bytes() == (library.folder / BUTTONS).read_bytes()
@@ -342,13 +337,13 @@ def test_real_measurements_become_a_library_in_which_makes_find_each_other(
 def test_a_shelf_with_a_library_of_its_folder_reads_nothing(
     library: Library, source: Path, tmp_path: Path
 ) -> None:
-    def index(name: str, *libraries: Path) -> ShelfIndex:
-        shelf = Shelf(tmp_path / name, [source])
-        return ShelfIndex(shelf, tmp_path / f"{name}.jsonl", workers=0, libraries=libraries)
+    def index(name: str, *libraries: Path) -> CatalogIndex:
+        shelf = Catalog(tmp_path / name, [source])
+        return CatalogIndex(shelf, tmp_path / f"{name}.jsonl", workers=0, libraries=libraries)
 
     plain, known = index("plain"), index("known", library.folder)
     plain.scan()
     known._read = lambda *_: pytest.fail("a file was read")  # type: ignore[method-assign]
     known.scan()
-    assert known.stand.rows == plain.stand.rows
-    assert known.stand.refused == plain.stand.refused
+    assert known.status.rows == plain.status.rows
+    assert known.status.refused == plain.status.refused

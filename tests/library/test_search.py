@@ -11,15 +11,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.workflow.shelves import bumped, button, dome, row, spring
 
 from fdvv.errors import InputError
-from fdvv.model import builtin_names, load_builtin
+from fdvv.library.catalog import source_files
+from fdvv.library.figures import row_of_file
+from fdvv.library.like import LikeTable, distances
+from fdvv.library.row import NUMBERS as SHELF_NUMBERS
+from fdvv.library.row import ButtonRow, ButtonType, Origin
+from fdvv.library.search import CatalogSearch, SearchQuery
+from fdvv.model.file import builtin_names, load_builtin
 from fdvv.units import FloatArray
-from fdvv.workflow import SHELF_NUMBERS, ButtonType, Origin, ShelfQuery, ShelfRow, ShelfSearch
-from fdvv.workflow._shelf_files import source_files
-from fdvv.workflow._shelf_like import LikeTable
-from fdvv.workflow._shelf_read import row_of_file
+from tests.support.catalog_rows import bumped, button, dome, row, spring
 
 NAMES = ("Cherry MX Clear", "Cherry MX Blue", "Gateron Yellow Pro", "Kailh Box Navy", "Topre 45g", "Omron B3")
 FORCES = (bumped(15), bumped(20, 0.03), spring, bumped(30, 0.03), dome, bumped(9))
@@ -30,7 +32,7 @@ def below(force: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], F
     return lambda x: force(x) - 3
 
 
-def rows() -> list[ShelfRow]:
+def rows() -> list[ButtonRow]:
     return [
         row(button(force, below(force), name), f"measured:{i:016x}", f"bench {i % 2}")
         for i, (name, force) in enumerate(zip(NAMES, FORCES, strict=True))
@@ -40,8 +42,8 @@ def rows() -> list[ShelfRow]:
 ROWS = rows()
 
 
-def search_of(found: list[ShelfRow]) -> ShelfSearch:
-    search = ShelfSearch()
+def search_of(found: list[ButtonRow]) -> CatalogSearch:
+    search = CatalogSearch()
     search.extend(found)
     return search
 
@@ -49,32 +51,32 @@ def search_of(found: list[ShelfRow]) -> ShelfSearch:
 SEARCH = search_of(ROWS)
 
 
-def names(query: ShelfQuery) -> list[str]:
+def names(query: SearchQuery) -> list[str]:
     return [ROWS[at].name for at in SEARCH.find(query).positions]
 
 
 def test_every_word_must_match_in_any_case_and_order() -> None:
-    assert names(ShelfQuery("cherry")) == ["Cherry MX Clear", "Cherry MX Blue"]
-    assert names(ShelfQuery("CLEAR mx")) == ["Cherry MX Clear"]
-    assert names(ShelfQuery("cherry navy")) == []
-    assert len(names(ShelfQuery("  "))) == len(ROWS)
-    assert names(ShelfQuery("bench 45")) == ["Topre 45g"]
+    assert names(SearchQuery("cherry")) == ["Cherry MX Clear", "Cherry MX Blue"]
+    assert names(SearchQuery("CLEAR mx")) == ["Cherry MX Clear"]
+    assert names(SearchQuery("cherry navy")) == []
+    assert len(names(SearchQuery("  "))) == len(ROWS)
+    assert names(SearchQuery("bench 45")) == ["Topre 45g"]
 
 
 @pytest.mark.parametrize("typed", ["gatreon", "gatron", "gateeron", "gateran", "gaterom", "gatero"])
 def test_one_letter_added_left_out_changed_or_swapped_is_forgiven(typed: str) -> None:
-    found = SEARCH.find(ShelfQuery(typed))
+    found = SEARCH.find(SearchQuery(typed))
     assert [ROWS[at].name for at in found.positions] == ["Gateron Yellow Pro"]
     assert found.mended == (() if typed == "gatero" else (typed,))
 
 
 def test_another_first_letter_is_another_word() -> None:
-    assert names(ShelfQuery("later")) == []
+    assert names(SearchQuery("later")) == []
 
 
 def test_short_words_and_words_that_match_are_taken_as_they_stand() -> None:
-    assert names(ShelfQuery("nx")) == []
-    assert SEARCH.find(ShelfQuery("clear")).mended == ()
+    assert names(SearchQuery("nx")) == []
+    assert SEARCH.find(SearchQuery("clear")).mended == ()
 
 
 def test_names_that_begin_with_the_words_come_first() -> None:
@@ -82,7 +84,7 @@ def test_names_that_begin_with_the_words_come_first() -> None:
         msgspec.structs.replace(ROWS[0], id=f"measured:{n}", name=n)
         for n in ("Pro Box", "Boxer", "Big box", "Abox")
     ]
-    order = search_of(found).find(ShelfQuery("box")).positions
+    order = search_of(found).find(SearchQuery("box")).positions
     assert [found[at].name for at in order] == ["Boxer", "Pro Box", "Big box", "Abox"]
 
 
@@ -103,14 +105,14 @@ ranges = st.dictionaries(
 def test_filters_and_order_are_those_of_a_look_at_every_row(
     asked: dict[str, tuple[float | None, float | None]], kinds: list[ButtonType], sort: str, descending: bool
 ) -> None:
-    def fits(one: ShelfRow) -> bool:
+    def fits(one: ButtonRow) -> bool:
         def within(name: str, low: float | None, high: float | None) -> bool:
             value = getattr(one, name)
             return value is not None and (low is None or value >= low) and (high is None or value <= high)
 
         return (not kinds or one.kind in kinds) and all(within(n, *ends) for n, ends in asked.items())
 
-    query = ShelfQuery(kinds=tuple(kinds), ranges=asked, sort=sort, descending=descending)
+    query = SearchQuery(kinds=tuple(kinds), ranges=asked, sort=sort, descending=descending)
     found = [ROWS[at] for at in SEARCH.find(query).positions]
     assert sorted(one.id for one in found) == [one.id for one in ROWS if fits(one)]
     if sort in SHELF_NUMBERS:
@@ -121,7 +123,7 @@ def test_filters_and_order_are_those_of_a_look_at_every_row(
 
 
 def test_counts_say_what_each_filter_costs() -> None:
-    query = ShelfQuery("cherry", kinds=(ButtonType.TACTILE,), ranges={"drop_cN": (50, None)})
+    query = SearchQuery("cherry", kinds=(ButtonType.TACTILE,), ranges={"drop_cN": (50, None)})
     found = SEARCH.find(query)
     assert found.positions.size == 0
     assert found.without == {"text": 0, "kinds": 0, "drop_cN": 1}
@@ -129,7 +131,7 @@ def test_counts_say_what_each_filter_costs() -> None:
 
 
 def test_histograms_count_as_numpy_does_with_what_lies_beyond_the_ends_in_the_outermost_bins() -> None:
-    for name, found in SEARCH.find(ShelfQuery()).histograms.items():
+    for name, found in SEARCH.find(SearchQuery()).histograms.items():
         known = [value for one in ROWS if (value := getattr(one, name)) is not None]
         inside = np.clip(known, found.lowest, found.highest)
         expected = np.histogram(inside, found.counts.size, (found.lowest, found.highest))[0]
@@ -137,50 +139,50 @@ def test_histograms_count_as_numpy_does_with_what_lies_beyond_the_ends_in_the_ou
 
 
 def test_histograms_hold_every_known_figure_once() -> None:
-    found = SEARCH.find(ShelfQuery())
+    found = SEARCH.find(SearchQuery())
     for name, histogram in found.histograms.items():
         known = [getattr(one, name) for one in ROWS if getattr(one, name) is not None]
         assert histogram.counts.sum() == len(known), name
-    narrowed = SEARCH.find(ShelfQuery(ranges={"drop_cN": (18, None)}))
+    narrowed = SEARCH.find(SearchQuery(ranges={"drop_cN": (18, None)}))
     np.testing.assert_array_equal(narrowed.histograms["drop_cN"].counts, found.histograms["drop_cN"].counts)
     assert narrowed.histograms["peak_cN"].counts.sum() == narrowed.positions.size == 3
 
 
 def test_a_column_or_a_button_that_is_not_there_is_refused() -> None:
     for query in (
-        ShelfQuery(sort="weight"),
-        ShelfQuery(ranges={"weight": (1, 2)}),
-        ShelfQuery(like="own:none"),
+        SearchQuery(sort="weight"),
+        SearchQuery(ranges={"weight": (1, 2)}),
+        SearchQuery(like="own:none"),
     ):
         with pytest.raises(InputError):
             SEARCH.find(query)
 
 
 def test_an_empty_shelf_finds_nothing() -> None:
-    found = ShelfSearch().find(ShelfQuery("x", sort="peak_cN"))
+    found = CatalogSearch().find(SearchQuery("x", sort="peak_cN"))
     assert found.positions.size == 0
     assert found.without == {"text": 0}
 
 
 def test_rows_that_come_later_are_found_as_if_they_had_been_there() -> None:
     grown = search_of(ROWS[:2])
-    grown.find(ShelfQuery(like=ROWS[0].id))
+    grown.find(SearchQuery(like=ROWS[0].id))
     grown.extend(ROWS[2:])
-    for query in (ShelfQuery(like=ROWS[0].id), ShelfQuery("bench", sort="peak_cN")):
+    for query in (SearchQuery(like=ROWS[0].id), SearchQuery("bench", sort="peak_cN")):
         np.testing.assert_array_equal(grown.find(query).positions, SEARCH.find(query).positions)
 
 
 def test_distance_is_zero_to_itself_and_the_same_both_ways() -> None:
     table = LikeTable()
     table.extend(ROWS)
-    gaps = np.array([table.distances(at) for at in range(len(ROWS))])
+    gaps = np.array([distances(table.parts(at)) for at in range(len(ROWS))])
     np.testing.assert_allclose(gaps, gaps.T, atol=1e-12)
     np.testing.assert_array_equal(np.diag(gaps), 0)
     assert (gaps[~np.eye(len(ROWS), dtype=bool)] > 0.5).all()
 
 
 def test_a_force_8_percent_higher_is_about_one_noticeable_difference_in_force_and_none_in_shape() -> None:
-    def strong(scale: float) -> ShelfRow:
+    def strong(scale: float) -> ButtonRow:
         return row(button(lambda x: scale * (100 + 10 * x), lambda x: scale * (95 + 10 * x)))
 
     table = LikeTable()
@@ -193,7 +195,7 @@ def test_a_force_8_percent_higher_is_about_one_noticeable_difference_in_force_an
 def test_a_button_without_a_press_is_infinitely_far() -> None:
     found = [row(load_builtin(name), f"builtin:{name}") for name in builtin_names()]
     found.append(msgspec.structs.replace(found[0], id="own:half", sketch=type(found[0].sketch)()))
-    distances = search_of(found).find(ShelfQuery(like=found[0].id)).distances
+    distances = search_of(found).find(SearchQuery(like=found[0].id)).distances
     assert np.isinf(distances[-1])
 
 
@@ -214,7 +216,7 @@ def test_switches_of_one_make_are_nearest_to_each_other_on_one_bench(shared_data
     group = [next((make for make in SAME_SWITCH if one.name.startswith(make)), None) for one in found]
     search = search_of(found)
     asked = [at for at, make in enumerate(group) if make]
-    nearest = [int(search.find(ShelfQuery(like=found[at].id)).positions[0]) for at in asked]
+    nearest = [int(search.find(SearchQuery(like=found[at].id)).positions[0]) for at in asked]
     hits = sum(group[at] == group[near] for at, near in zip(asked, nearest, strict=True))
     assert len(asked) == 28
     assert hits >= 24  # by chance 3
@@ -235,6 +237,6 @@ def test_the_same_switch_of_another_bench_is_among_the_nearest_three(shared_data
             if one.name in (f"Cherry MX {make}", f"Cherry MX Hyperglide {make}")
         ]
         for at in mates:
-            positions = search.find(ShelfQuery(like=found[at].id)).positions
+            positions = search.find(SearchQuery(like=found[at].id)).positions
             other = [p for p in positions if found[p].collection != found[at].collection]
             assert set(other[:3]) & set(mates), found[at].name

@@ -7,42 +7,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from tests.device.test_pressed import Rig
 
-from fdvv.device import Inputs, LinkedDevice, ScriptedPerson, open_device
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.open import open_device
+from fdvv.device.plant import Inputs, ScriptedPerson
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.model import load_builtin
-from fdvv.protocol import FrameDecoder, Message
-from fdvv.workflow import DeviceKey
-
-
-class KeyedRig(Rig):
-    """A rig that notes when its board reports a key that went down, as its tick runs.
-
-    Attributes
-    ----------
-    pressed_s : when, on the host's clock. lose : so many of the next frames of ticks are lost on the line.
-    """
-
-    between = 1200
-
-    def __init__(self, presses: int, person: ScriptedPerson | None = None) -> None:
-        super().__init__(person or ScriptedPerson(), presses)
-        self.pressed_s: list[float] = []
-        self.lose = 0
-        self._decoder, read = FrameDecoder(), self.board.read
-
-        def noted() -> bytes:
-            told, now_s = read(), time.monotonic()
-            for frame in self._decoder.feed(told):
-                if frame.message == Message.KEY and frame.payload[0] > 0:
-                    self.pressed_s.append(now_s)
-                elif frame.message == Message.RECORDS and self.lose:
-                    self.lose -= 1
-                    return b""
-            return told
-
-        self.board.read = noted  # type: ignore[method-assign]
+from fdvv.live.device_key import DeviceKey
+from fdvv.model.file import load_builtin
+from tests.support.pressed_rig import KeyedRig
 
 
 @pytest.fixture

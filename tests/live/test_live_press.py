@@ -8,23 +8,16 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import Stroke, load_builtin
-from fdvv.program import load_shipped, programs
-from fdvv.protocol import Fault, Mode
-from fdvv.twin import LedTicks
-from fdvv.workflow import (
-    LiveEvent,
-    LiveEventKind,
-    LivePress,
-    PressMode,
-    PressSubject,
-    drawn_trace,
-    model_subject,
-    program_subject,
-)
+from fdvv.live.press import LiveEvent, LiveEventKind, LivePress
+from fdvv.live.press_subject import PressMode, PressSubject, drawn_trace, model_subject, program_subject
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.program.library import load_shipped, programs
+from fdvv.protocol.tables import Fault, Mode
+from fdvv.twin.interactive import InteractiveTicks
 
 
-def slow(press: LivePress, speed_mm_s: float, travel_mm: float) -> tuple[LedTicks, LedTicks]:
+def slow(press: LivePress, speed_mm_s: float, travel_mm: float) -> tuple[InteractiveTicks, InteractiveTicks]:
     """Lead the finger down past the stop and up again, evenly."""
     way_s, strokes = (travel_mm + 4.0) / speed_mm_s, []
     for start, speed in ((-1.9, speed_mm_s), (travel_mm + 2.1, -speed_mm_s)):
@@ -34,7 +27,7 @@ def slow(press: LivePress, speed_mm_s: float, travel_mm: float) -> tuple[LedTick
 
 
 def error_cN(
-    subject: PressSubject, ticks: LedTicks, stroke: Stroke
+    subject: PressSubject, ticks: InteractiveTicks, stroke: Stroke
 ) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     x = ticks.displacement_mm
     inside = (x > 0.2) & (x < subject.travel_mm - 0.1)
@@ -184,7 +177,7 @@ def test_a_fault_ends_the_force_with_a_reason_and_can_be_cleared() -> None:
     ticks, events = press.advance(0.2)
     assert kinds(events).count(LiveEventKind.FAULT) == 1
     fell = next(event for event in events if event.kind is LiveEventKind.FAULT)
-    assert "position_stuck" in fell.told
+    assert "position_stuck" in fell.message
     assert ticks.commanded_cN[1:].max() == 0.0
     assert ticks.mode[-1] == Mode.FAULT
     assert press.advance(0.2)[1] == () or LiveEventKind.FAULT not in kinds(press.advance(0.2)[1])

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError
-from fdvv.model import load_builtin
-from fdvv.workflow import LiveEventKind, LiveFrame, LivePress, LiveRun, RealPace, model_subject
+from fdvv.live.press import LiveEventKind, LivePress
+from fdvv.live.press_subject import model_subject
+from fdvv.live.run import LiveFrame, LiveRun, RealTimeClock
+from fdvv.model.file import load_builtin
 
 
 class Seen:
@@ -48,7 +50,7 @@ def begun(seen: Seen, silent_s: float = 60.0) -> LiveRun:
 
 def test_time_that_cannot_be_kept_up_with_is_dropped_and_told() -> None:
     times = iter([0.0, 0.01, 0.02, 0.52, 0.53, 9.0, 9.01])
-    pace = RealPace(lambda: next(times), longest_s=0.1)
+    pace = RealTimeClock(lambda: next(times), longest_s=0.1)
     found = [pace.due() for _ in range(5)]
     assert np.array(found) == pytest.approx(
         np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.0), (0.1, 0.4), (0.01, 0.0)])

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.model import load_builtin
-from fdvv.optimize import paper_model, paper_space
-from fdvv.workflow import KeyHand, LiveEventKind, LivePress, PressTimes, model_subject
+from fdvv.live.binary_finger import BinaryFinger
+from fdvv.live.press import LiveEventKind, LivePress, PressTimes
+from fdvv.live.press_subject import model_subject
+from fdvv.model.file import load_builtin
+from fdvv.optimize.paper_space import paper_model, paper_space
 
 
 def test_an_activation_is_as_long_after_the_hand_as_after_its_lead() -> None:
@@ -40,7 +42,7 @@ def test_what_lies_between_hand_and_simulation_changes_no_time() -> None:
 @pytest.mark.parametrize("name", ["mx-red", "mx-clear", "rubber-dome"])
 def test_a_key_hand_presses_and_lets_go_of_any_button_alike_each_time(name: str) -> None:
     press = LivePress(model_subject(load_builtin(name)), seed=None)
-    hand = KeyHand.of(press.subject)
+    hand = BinaryFinger.of(press.subject)
     taken_s = []
     for _ in range(3):
         start_s = press.time_s
@@ -60,5 +62,5 @@ def test_every_design_of_the_papers_space_is_pressed_to_its_activation(seed: int
     places = np.random.default_rng(seed).uniform(low, high)
     places[5], places[6] = high[5], high[6]  # the stiffest last point, the deepest activation
     press = LivePress(model_subject(paper_model(dict(zip(space.names, places, strict=True)))))
-    KeyHand.of(press.subject).down(press)
+    BinaryFinger.of(press.subject).down(press)
     assert LiveEventKind.ACTUATION in [event.kind for event in press.advance(0.5)[1]]

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import load_builtin
-from fdvv.workflow import LiveEventKind, LivePress, drawn_traces, model_subject, read_press_trace
+from fdvv.live.press import LiveEventKind, LivePress
+from fdvv.live.press_subject import model_subject
+from fdvv.live.press_trace import drawn_traces, read_press_trace
+from fdvv.model.file import load_builtin
 
 
 def test_drawn_traces_begin_and_end_with_the_key_up_and_have_names_of_their_own() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.workflow import TickBinner, TickPiece
+from fdvv.live.tick_bins import TickBinner, TickPiece
 
 
 def piece(t_s: np.ndarray, seed: int = 0) -> TickPiece:

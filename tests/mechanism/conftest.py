@@ -5,21 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.mechanism import (
-    Coil,
-    Dome,
-    DomeMechanism,
-    Guide,
-    Making,
-    Mechanism,
-    Pin,
-    SpringMechanism,
-    Target,
-    design,
-    target_of,
-)
-from fdvv.model import load_builtin
+from fdvv.model.file import load_builtin
 from fdvv.units import FloatArray
+from fdvv_switch.coil import Coil
+from fdvv_switch.dome import Dome, DomeMechanism, Pin
+from fdvv_switch.guide import Guide
+from fdvv_switch.making import Making
+from fdvv_switch.mechanism import Mechanism, design
+from fdvv_switch.spring import SpringMechanism
+from fdvv_switch.target import Target, target_of
 
 COIL = Coil(0.25, 3.5, 8.0, 12.5, 9.5)
 GUIDE = Guide(2.0, 0.01, 0.03)

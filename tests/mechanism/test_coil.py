@@ -8,10 +8,11 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.mechanism.conftest import COIL
 
 from fdvv.errors import ModelError
-from fdvv.mechanism import WIRES, Coil, Envelope, choose_coil
+from fdvv_switch.coil import Coil, Envelope, choose_coil
+from fdvv_switch.material import WIRES
+from tests.mechanism.conftest import COIL
 
 
 def test_a_rate_is_what_can_be_done_by_hand() -> None:

@@ -6,23 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.mechanism.conftest import target_like
 
 from fdvv.errors import ModelError
-from fdvv.mechanism import (
-    DomeMechanism,
-    LeafMechanism,
-    Making,
-    Mechanism,
-    SpringMechanism,
-    Target,
-    WANTED_cN,
-    bump_of,
-    design,
-    residual_of,
-    target_of,
-)
-from fdvv.model import FDVVModel, ForceCurve, Stroke, load_builtin
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.making import Making
+from fdvv_switch.mechanism import Mechanism, design
+from fdvv_switch.residual import WANTED_cN, residual_of
+from fdvv_switch.spring import SpringMechanism
+from fdvv_switch.target import Target, target_of
+from fdvv_switch.tolerance import bump_of
+from tests.mechanism.conftest import target_like
 
 MAKING = Making()
 

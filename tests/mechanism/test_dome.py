@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.mechanism import Dome, DomeMechanism, Guide, Pin, cone_force_N, hardness_shoreA, rubber_MPa
 from fdvv.units import FloatArray
+from fdvv_switch.dome import Dome, DomeMechanism, Pin, cone_force_N
+from fdvv_switch.guide import Guide
+from fdvv_switch.material import hardness_shoreA, rubber_MPa
 
 DOME = Dome(10.0, 4.0, 2.4, 0.6, 0.4, 50.0, 0.1)
 

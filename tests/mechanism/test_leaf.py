@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.mechanism.conftest import COIL
 
 from fdvv.errors import ModelError
-from fdvv.mechanism import Cam, Guide, Leaf, LeafMechanism, Making, choose_leaf
 from fdvv.units import FloatArray
+from fdvv_switch.guide import Guide
+from fdvv_switch.leaf import Cam, Leaf, LeafMechanism, choose_leaf
+from fdvv_switch.making import Making
+from tests.mechanism.conftest import COIL
 
 LEAF = Leaf(0.12, 2.0, 8.0, 5.5, 1.0)
 X: FloatArray = np.linspace(0.0, 3.9, 3901)

@@ -10,11 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fdvv.button.open import open_button
 from fdvv.errors import InputError
-from fdvv.mechanism import Envelope, LeafMechanism, Making, WANTED_cN
-from fdvv.model import FDVVModel, load_builtin
-from fdvv.twin import load_button, probe_button
-from fdvv.workflow import MechanismResult, design_mechanism, open_model, press_design, write_mechanism
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.twin.files import load_button
+from fdvv.twin.simulate_button import probe_button
+from fdvv_switch.coil import Envelope
+from fdvv_switch.design_button import MechanismResult, design_mechanism
+from fdvv_switch.files import write_mechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.making import Making
+from fdvv_switch.residual import WANTED_cN
+from fdvv_switch.twin import press_design
 
 THREE = [("mx-red", "leaf"), ("mx-clear", "leaf"), ("rubber-dome", "dome")]
 DOMES = [
@@ -51,7 +59,7 @@ def test_auto_takes_a_leaf_for_leaf_switches_and_a_dome_for_a_dome(name: str) ->
 @pytest.mark.shared
 @pytest.mark.parametrize("name", DOMES)
 def test_measured_domes_come_back_within_3_cN(shared_data: Path, name: str) -> None:
-    result = design_mechanism(open_model(str(shared_data / name)), speeds_mm_s=())
+    result = design_mechanism(open_button(str(shared_data / name)), speeds_mm_s=())
     assert result.mechanism.kind == "dome"
     assert result.met
 

@@ -7,16 +7,12 @@ import io
 import numpy as np
 import pytest
 
-from fdvv.mechanism import (
-    DomeMechanism,
-    LeafMechanism,
-    Mechanism,
-    SpringMechanism,
-    cam_points_mm,
-    drawing_dxf,
-    drawings_of,
-)
 from fdvv.units import FloatArray
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.mechanism import Mechanism
+from fdvv_switch.section import cam_points_mm, drawing_dxf, drawings_of
+from fdvv_switch.spring import SpringMechanism
 
 
 def area(points: FloatArray) -> float:

@@ -7,20 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.mechanism import (
-    DomeMechanism,
-    LeafMechanism,
-    Mechanism,
-    SpringMechanism,
-    Target,
-    band_of,
-    bump_of,
-    facts_of,
-    notes_of,
-    tolerances_of,
-    varied,
-)
 from fdvv.units import FloatArray
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.facts import facts_of, notes_of
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.mechanism import Mechanism, varied
+from fdvv_switch.spring import SpringMechanism
+from fdvv_switch.target import Target
+from fdvv_switch.tolerance import band_of, bump_of, tolerances_of
 
 X: FloatArray = np.linspace(0.2, 3.9, 60)
 

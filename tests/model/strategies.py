@@ -5,19 +5,11 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    Interpolation,
-    Mode,
-    ModeSpread,
-    PointSpread,
-    Provenance,
-    Stroke,
-    Vibration,
-    VibrationSpread,
-)
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.spread import CurveSpread, ModeSpread, PointSpread, VibrationSpread
+from fdvv.model.velocity import Interpolation
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
 
 forces_cN = st.floats(-100, 300, allow_subnormal=False)

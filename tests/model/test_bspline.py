@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from fdvv.errors import ModelError
-from fdvv.model import _bspline
+from fdvv.model import bspline as _bspline
 from fdvv.units import FloatArray
 
 from .strategies import knots

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, Stroke, builtin_names, load_builtin, model_to_json
+from fdvv.model.curve import Stroke
+from fdvv.model.file import builtin_names, load_builtin, model_to_json
+from fdvv.model.model import FDVVModel
 
 ROOT = Path(__file__).parents[2]
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.model import find_bump
+from fdvv.model.bump import find_bump
 from fdvv.units import FloatArray
 
 

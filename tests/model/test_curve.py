@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
 
 from .strategies import curves, forces_cN
 

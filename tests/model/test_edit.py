@@ -4,23 +4,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    Interpolation,
-    Mode,
-    PointSpread,
-    Provenance,
-    Stroke,
-    Vibration,
-    VibrationSpread,
-    assign,
-    copy_curve,
-    load_builtin,
-    merge,
-    remove_curve,
-)
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.edit import assign, copy_curve, merge, remove_curve
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.spread import CurveSpread, PointSpread, VibrationSpread
+from fdvv.model.velocity import Interpolation
+from fdvv.model.vibration import Mode, Vibration
 
 CLEAR = load_builtin("mx-clear")
 X_mm = np.linspace(0, 4, 401)

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.model import MeasuredCurve, Stroke, active_part, find_bottom_out_mm, find_contact_mm
+from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import active_part
 from fdvv.units import FloatArray
 
 

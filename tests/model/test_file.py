@@ -13,14 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    ModeSpread,
-    PointSpread,
-    Stroke,
-    VibrationSpread,
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import (
     builtin_names,
     load_builtin,
     load_model,
@@ -29,6 +23,8 @@ from fdvv.model import (
     save_model,
     schema,
 )
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpread, ModeSpread, PointSpread, VibrationSpread
 
 from .strategies import models
 

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from fdvv.errors import FitError
-from fdvv.model import FitMethod, MeasuredCurve, Stroke, bic_star, fit_curve, scan_sizes, smooth
-from fdvv.model._bspline import design_matrix
+from fdvv.model.bspline import design_matrix
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import FitMethod, bic_star, fit_curve, scan_sizes, smooth
 from fdvv.units import FloatArray
 
 

@@ -3,19 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    LandmarkError,
-    MeasuredCurve,
-    PointSpread,
-    Stroke,
-    fit_curve,
-    landmark_errors,
-    landmarks,
-    load_builtin,
-)
+from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.fit import fit_curve
+from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpread, PointSpread
 
 CLEAR = load_builtin("mx-clear")
 RISING = CurveSpread(np.array([0.0, 4.0]), np.array([0.0, 8.0]), 16)

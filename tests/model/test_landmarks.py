@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, MeasuredCurve, Stroke, fit_curve, landmarks
+from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model.fit import fit_curve
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 

@@ -6,7 +6,10 @@ import pytest
 from hypothesis import given, settings
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, Mode, Stroke, Vibration, load_builtin
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Mode, Vibration
 
 from .strategies import models
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import Press
+from fdvv.model.press import Press
 
 
 def press(**fields: Any) -> Press:

@@ -4,8 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceCurve, Stroke, load_builtin
-from fdvv.model._splice import splice
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.edit import splice
+from fdvv.model.file import load_builtin
 
 from .strategies import curves
 

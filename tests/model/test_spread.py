@@ -2,17 +2,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import (
-    CurveSpread,
-    FDVVModel,
-    ForceCurve,
-    Mode,
-    ModeSpread,
-    PointSpread,
-    Stroke,
-    Vibration,
-    VibrationSpread,
-)
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpread, ModeSpread, PointSpread, VibrationSpread
+from fdvv.model.vibration import Mode, Vibration
 
 X_mm = np.array([0.0, 1.0, 3.0])
 

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceSurface, Stroke, load_builtin
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
 
 CLEAR = load_builtin("mx-clear")
 

@@ -10,8 +10,11 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline, PchipInterpolator
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, Interpolation, Stroke, load_builtin
-from fdvv.model._bspline import uniform_knots
+from fdvv.model.bspline import uniform_knots
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.velocity import Interpolation
 
 ROOT = Path(__file__).parents[2]
 CLEAR = load_builtin("mx-clear")

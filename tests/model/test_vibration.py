@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Stroke, Vibration
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
 
 SNAP = Mode(239.0, 4.6, 130.7, 0.3)
 

@@ -6,18 +6,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fdvv.optimize import (
-    Constraint,
-    Design,
-    DesignSpace,
-    Engine,
-    Objective,
-    Parameter,
-    Problem,
-    Score,
-    Trial,
-    TrialState,
-)
+from fdvv.optimize.problem import Engine, Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 
 BOWL = DesignSpace("bowl", tuple(Parameter(f"p{i}_mm", -2.0, 4.0) for i in range(3)))
 LIMIT = Constraint("sum", "the sum stays below 2 mm", lambda d: 2.0 - sum(d.values()))

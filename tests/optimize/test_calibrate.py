@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import FitError, InputError
-from fdvv.optimize import (
+from fdvv.optimize.people.calibration import (
     BAATH,
     Taps,
     fit_timing,

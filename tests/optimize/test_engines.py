@@ -7,27 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.optimize.problems import BOWL, HELD, bowl_ms, problem, run, scored
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import (
-    ENGINES,
-    Constraint,
-    DesignSpace,
-    Engine,
-    Objective,
-    Parameter,
-    Problem,
-    Score,
-    Trial,
-    TrialState,
-    engine_of,
-    paper_space,
-    torch_there,
-)
+from fdvv.optimize.engines.registry import engine_names, engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Engine, Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.space import Constraint, DesignSpace, Parameter
+from fdvv_botorch.models import torch_there
+from tests.optimize.problems import BOWL, HELD, bowl_ms, problem, run, scored
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")
-NAMES = [pytest.param(name, marks=NO_TORCH if name == "botorch" else ()) for name in ENGINES]
+NAMES = [pytest.param(name, marks=NO_TORCH if name == "botorch" else ()) for name in engine_names()]
 STARTED = [
     scored(i, d, bowl_ms(d)) for i, d in enumerate(BOWL.of_unit(np.random.default_rng(3).random((12, 3))))
 ]
@@ -39,7 +29,7 @@ def engine(request: pytest.FixtureRequest) -> Engine:
 
 
 def test_an_engine_bears_the_name_it_is_called_by(engine: Engine) -> None:
-    assert ENGINES[engine.name]() == engine
+    assert engine_of(engine.name) == engine
 
 
 def test_the_same_problem_and_trials_give_the_same_suggestion(engine: Engine) -> None:
@@ -157,7 +147,7 @@ def test_with_trials_of_others_the_first_design_is_near_what_they_did_best() -> 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_what_is_left_of_places_is_new_and_comes_once(seed: int) -> None:
-    from fdvv.optimize._places import SAME, fresh
+    from fdvv.optimize.engines.search import SAME, fresh
 
     rng = np.random.default_rng(seed)
     places = rng.integers(0, 3, (30, 2)) / 2 + rng.choice([0.0, 0.1 * SAME], (30, 2))

@@ -15,21 +15,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import SimulatedUser, paper_space
-from fdvv.workflow import (
-    ExperimentResult,
-    ExperimentSetup,
-    Observation,
-    Training,
-    WeekGap,
-    a_week_later,
-    blocks_of,
-    experiment_html,
-    judge_experiment,
-    random_design,
-    run_experiment,
-    write_experiment,
-)
+from fdvv.optimize.experiment.experiment import ExperimentResult, judge_experiment, run_experiment
+from fdvv.optimize.experiment.html import experiment_html, write_experiment
+from fdvv.optimize.experiment.setup import ExperimentSetup, WeekGap, a_week_later, blocks_of, random_design
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.people.user import SimulatedUser
+from tests.support.experiments import invented
 
 SMALL = ExperimentSetup(people=4, trials=2, presses=3, engine="sobol", seed=2)
 
@@ -143,22 +134,6 @@ def test_random_designs_hold_the_space_and_differ_between_people() -> None:
     designs = [random_design(space, 1, person) for person in range(20)]
     assert all(not space.broken(space.checked(design)) for design in designs)
     assert len({tuple(design.values()) for design in designs}) == 20
-
-
-def invented(optimal_ms: float, noise_ms: float = 2.0) -> ExperimentResult:
-    """Make scores in which only the optimised button differs, by so much less."""
-    setup, random = ExperimentSetup(people=8), np.random.default_rng(3)
-    observed = []
-    for person in range(8):
-        base = 90 + 6 * random.normal()
-        for block in blocks_of(setup, person):
-            for place, button in enumerate(block.buttons):
-                score = base + noise_ms * random.normal() + (optimal_ms if button == "optimal" else 0.0)
-                score += 11 if block.level == "hard" else 0
-                told = person, block.level, block.round, place, button, score, 1.0, 0.0
-                observed.append(Observation(*told))
-    trainings = [Training(p, level, (), {}) for p in range(8) for level in ("easy", "hard")]
-    return ExperimentResult(setup, tuple(trainings), tuple(observed))
 
 
 def test_an_effect_that_is_there_is_found_and_its_size_told() -> None:

@@ -2,13 +2,14 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.study import Effect, Estimate, Sphericity
-from fdvv.workflow._experiment_words import effect_text, interval_text, listed, p_text, sphericity_text, stars
+from fdvv.report.prose import effect_text, interval_text, listed, p_text, sphericity_text, stars
+from fdvv.stats.anova import AnovaEffect, Sphericity
+from fdvv.stats.effect_size import Estimate
 
 
-def effect(df: int = 5) -> Effect:
+def effect(df: int = 5) -> AnovaEffect:
     met = Sphericity(0.5, 0.02, 0.001) if df > 1 else Sphericity(1.0)
-    return Effect("button", df, 9 * df, 10.724, 1e-6, met, 0.0004, 1.0, 1.0, 0.5, 0.25)
+    return AnovaEffect("button", df, 9 * df, 10.724, 1e-6, met, 0.0004, 1.0, 1.0, 0.5, 0.25)
 
 
 @pytest.mark.parametrize(

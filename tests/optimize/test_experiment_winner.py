@@ -8,12 +8,18 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError
-from fdvv.model import Press, Stroke
-from fdvv.recording import Quantity
-from fdvv.workflow import Winner, open_winner_devices, recording_of, render_winner, winners_of
-from fdvv.workflow._experiment_winner import rendered_curves
-
-from .test_experiment import invented
+from fdvv.model.curve import Stroke
+from fdvv.model.press import Press
+from fdvv.optimize.experiment.winner import (
+    Winner,
+    open_winner_devices,
+    recording_of,
+    render_winner,
+    rendered_curves,
+    winners_of,
+)
+from fdvv.recording.types import Quantity
+from tests.support.experiments import invented
 
 DESIGN = {
     **{"x1_mm": 0.4, "x2_mm": 2.0, "x3_mm": 4.5, "y1_cN": 60.0, "y2_cN": 110.0, "y3_cN": 80.0},

@@ -5,16 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.stats import norm
-from tests.optimize.problems import BOWL, bowl_ms, problem, run, scored
 
 from fdvv.errors import InputError
-from fdvv.optimize import ChangeCost, Problem, Trial, TrialState, engine_of, paper_space, torch_there
-from fdvv.optimize._acquire import log_expected_improvement
-from fdvv.optimize._belief import believed_best
-from fdvv.optimize._belief import observed as scores_of
-from fdvv.optimize._gp import Basis, Observed, believe
-from fdvv.optimize._prior import prior_basis
+from fdvv.optimize.engines.gp import ChangeCost
+from fdvv.optimize.engines.gp_model import Basis, Observed, believe, believed_best, prior_basis
+from fdvv.optimize.engines.gp_model import observed as scores_of
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.engines.search import log_expected_improvement
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.units import FloatArray
+from fdvv_botorch.models import torch_there
+from tests.optimize.problems import BOWL, bowl_ms, problem, run, scored
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")
 

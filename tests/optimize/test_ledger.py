@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.optimize import Answer, Ledger, Score, Trial, TrialState, steps_before
+from fdvv.optimize.problem import Answer, Score, Trial, TrialState
+from fdvv.optimize.run.ledger import Ledger, steps_before
 
 A, B = {"p_mm": 1.0}, {"p_mm": 2.0}
 
@@ -92,13 +93,13 @@ def test_a_damaged_line_is_refused_by_its_number(tmp_path: Path) -> None:
 
 
 def test_a_record_that_cannot_follow_is_refused_by_its_number(tmp_path: Path) -> None:
-    from fdvv.journal import line_of
+    from fdvv.eventlog import line_of
 
     path = tmp_path / "trials.jsonl"
     filled(path).close()
     with path.open("ab") as stream:
         stream.write(line_of({"state": {"number": 0, "state": "shown"}}))
-    with pytest.raises(InputError, match="record 13"):
+    with pytest.raises(InputError, match="line 13"):
         Ledger(path)
 
 

@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import Stroke, find_bump, load_builtin, model_from_json, model_to_json
-from fdvv.optimize import (
-    Objective,
-    Problem,
-    engine_of,
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin, model_from_json, model_to_json
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.model_space import (
+    handles,
     model_of,
     model_parameters,
     model_space,
     monotone_constraint,
     neutral_design,
 )
-from fdvv.optimize._model_handles import handles
+from fdvv.optimize.problem import Objective, Problem
 
 CLEAR, RED, DOME = (load_builtin(name) for name in ("mx-clear", "mx-red", "rubber-dome"))
 X = np.linspace(0.3, 3.8, 60)

@@ -10,7 +10,7 @@ from benchmarks.optimize_engines import Runner, Variant, compare, runs_of
 from benchmarks.optimize_people import Person, expected_ms
 from benchmarks.optimize_tables import BASELINE, LOOKS, PEOPLE, SEEDS, SMOOTHED, Run, needed
 
-from fdvv.optimize import paper_model, paper_space
+from fdvv.optimize.paper_space import paper_model, paper_space
 
 
 def test_every_seed_meets_every_person_once() -> None:

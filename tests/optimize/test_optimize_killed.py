@@ -14,12 +14,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.optimize import Design, Objective, Problem, Score, Trial, TrialState, engine_of, paper_space
-from fdvv.workflow import OptimizeSession, OptimizeSetup
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.space import Design
 
 HATCHERY = """
 import sys
-from tests.workflow.test_optimize_killed import hatch
+from tests.optimize.test_optimize_killed import hatch
 hatch(sys.argv[1])
 """
 BUDGET = 100_000
@@ -33,7 +37,7 @@ def score(number: int, design: Design) -> Score:
     return Score(60.0 + 9.0 * abs(design["actuation_mm"] - 1.0) + 7.0 * noise, 7.0)
 
 
-def go_on(session: OptimizeSession):  # type: ignore[no-untyped-def]
+def go_on(session: Optimization):  # type: ignore[no-untyped-def]
     """Try what the session asks, now and then in a batch of two; yield each finished trial."""
     while asked := session.ask(2 if finished(session) % 5 == 0 else 1):
         for trial in asked:
@@ -43,7 +47,7 @@ def go_on(session: OptimizeSession):  # type: ignore[no-untyped-def]
             yield session.done(trial.number, {"asynchrony_ms": found})
 
 
-def finished(session: OptimizeSession) -> int:
+def finished(session: Optimization) -> int:
     return sum(trial.state is TrialState.DONE for trial in session.trials)
 
 
@@ -58,7 +62,7 @@ def undisturbed(engine: str, seed: int, count: int) -> tuple[Trial, ...]:
 
     with (
         tempfile.TemporaryDirectory() as folder,
-        OptimizeSession.create(Path(folder) / "run", setup_of(engine, seed)) as session,
+        Optimization.create(Path(folder) / "run", setup_of(engine, seed)) as session,
     ):
         steps = go_on(session)
         while len(session.trials) < count:
@@ -99,7 +103,7 @@ def tell(line: str) -> None:
 
 def acknowledge(folder: Path, into: int) -> None:
     """Go on with a run and tell every finished trial, until somebody kills this process."""
-    with OptimizeSession.open(folder) as session:
+    with Optimization.open(folder) as session:
         for trial in go_on(session):
             os.write(into, f"{trial.number}:{trial.scores['asynchrony_ms'].value!r}\n".encode())
     signal.pause()
@@ -135,12 +139,12 @@ class Hatchery:
 def check_kills(folder: Path, engine: str, seed: int, kills: int, longest_s: float) -> None:
     """Kill one run again and again; each time all that it acknowledged is there, and it is the same run."""
     rng = random.Random(seed)
-    OptimizeSession.create(folder, setup_of(engine, seed)).close()
+    Optimization.create(folder, setup_of(engine, seed)).close()
     acknowledged: dict[int, float] = {}
     hatchery = Hatchery(engine)
     for _ in range(kills):
         acknowledged |= hatchery.killed(folder, rng.uniform(0.0, longest_s))
-        with OptimizeSession.open(folder) as session:
+        with Optimization.open(folder) as session:
             trials = session.trials
         for number, value in acknowledged.items():
             assert trials[number].state is TrialState.DONE
@@ -148,7 +152,7 @@ def check_kills(folder: Path, engine: str, seed: int, kills: int, longest_s: flo
         # what the killed runs had not finished is what the next one begins with
         assert sum(trial.state is not TrialState.DONE for trial in trials) <= 2
     hatchery.close()
-    with OptimizeSession.open(folder) as session:
+    with Optimization.open(folder) as session:
         asked = session.ask(2 if finished(session) % 5 == 0 else 1)
         count = len(session.trials)
     wanted = undisturbed(engine, seed, count)
@@ -176,10 +180,10 @@ def test_no_finished_trial_is_lost_at_two_hundred_random_moments(
 
 
 def test_a_second_process_on_a_folder_is_told_so_in_one_line(tmp_path: Path) -> None:
-    code = "import sys; from pathlib import Path; from fdvv.workflow import OptimizeSession\n"
+    code = "import sys; from pathlib import Path; from fdvv.optimize.run.session import Optimization\n"
     code += "from fdvv.errors import InputError\n"
-    code += "try: OptimizeSession.open(Path(sys.argv[1]))\nexcept InputError as error: print(error)"
-    with OptimizeSession.create(tmp_path / "run", setup_of("sobol", 0)):
+    code += "try: Optimization.open(Path(sys.argv[1]))\nexcept InputError as error: print(error)"
+    with Optimization.create(tmp_path / "run", setup_of("sobol", 0)):
         command = [sys.executable, "-c", code, str(tmp_path / "run")]
         found = subprocess.run(command, capture_output=True, text=True, check=True)
     assert found.stdout.count("\n") == 1

@@ -8,17 +8,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import load_builtin
-from fdvv.optimize import DesignSpace, model_of, model_space
-from fdvv.workflow import (
-    OptimizeSession,
-    OptimizeSetup,
-    RigOnShelf,
-    RigShelf,
-    feasibility,
-    model_space_setup,
-    rig_constraints,
-)
+from fdvv.model.file import load_builtin
+from fdvv.optimize.model_space import model_of, model_space
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup, model_space_setup, rig_constraints
+from fdvv.optimize.space import DesignSpace
+from fdvv.rendering.feasibility import feasibility
+from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
 
 CLEAR = load_builtin("mx-clear")
 HARD = model_space(CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0)})
@@ -27,28 +23,28 @@ HARD = model_space(CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("project")
-    RigShelf(folder).rig("shipped:default")
+    RigCatalog(folder).rig("shipped:default")
     return folder
 
 
 @pytest.fixture(scope="module")
-def rig(project: Path) -> RigOnShelf:
-    return RigShelf(project).rig("shipped:default")
+def rig(project: Path) -> AvailableRig:
+    return RigCatalog(project).rig("shipped:default")
 
 
-def held(rig: RigOnShelf) -> DesignSpace:
+def held(rig: AvailableRig) -> DesignSpace:
     limits = rig_constraints(rig, lambda design: model_of(HARD, CLEAR, design))
     return DesignSpace("held", HARD.parameters, limits)
 
 
-def test_a_rig_bears_the_button_and_not_one_with_far_too_much_force(rig: RigOnShelf) -> None:
+def test_a_rig_bears_the_button_and_not_one_with_far_too_much_force(rig: AvailableRig) -> None:
     space = held(rig)
     assert space.broken({"force_ratio": 1.0, "snap_mm": 0.5}) == ()
     broken = space.broken({"force_ratio": 16.0, "snap_mm": 0.5})
-    assert "shipped:default" in broken[0].told
+    assert "shipped:default" in broken[0].text
 
 
-def test_slacks_are_those_of_a_report(rig: RigOnShelf) -> None:
+def test_slacks_are_those_of_a_report(rig: AvailableRig) -> None:
     design = {"force_ratio": 1.5, "snap_mm": 0.3}
     report = feasibility(model_of(HARD, CLEAR, design), rig.known, rig.settings, [100.0], info=rig.info)
     ratios = [c.reached.missed_cN / np.abs(c.reached.intended_cN).mean() for c in report.curves]
@@ -58,7 +54,7 @@ def test_slacks_are_those_of_a_report(rig: RigOnShelf) -> None:
     assert stability.slack(design) == pytest.approx(min(c.stable.margin for c in report.curves) - 0.5)
 
 
-def test_slack_falls_all_the_way_as_the_force_grows(rig: RigOnShelf) -> None:
+def test_slack_falls_all_the_way_as_the_force_grows(rig: AvailableRig) -> None:
     force = held(rig).constraints[0]
     slack = np.array([force.slack({"force_ratio": r, "snap_mm": 0.5}) for r in np.linspace(4.0, 16.0, 13)])
     assert slack[0] > 0 > slack[-1]
@@ -70,9 +66,9 @@ def test_a_run_carries_its_button_and_its_rig_with_it(tmp_path: Path, project: P
         CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0)}, "shipped:default"
     )
     setup = OptimizeSetup(engine="sobol", space=space, budget=3)
-    OptimizeSession.create(tmp_path / "run", setup, project).close()
+    Optimization.create(tmp_path / "run", setup, project).close()
     assert [path.name for path in (tmp_path / "run" / "rigs").iterdir()] == ["default.simulated.rig.json"]
-    with OptimizeSession.open(tmp_path / "run") as session:
+    with Optimization.open(tmp_path / "run") as session:
         for trial in session.ask(3):
             assert not session.space.broken(trial.design)
             assert session.model(trial.design).actuation_mm == CLEAR.actuation_mm
@@ -83,5 +79,5 @@ def test_a_run_carries_its_button_and_its_rig_with_it(tmp_path: Path, project: P
 def test_a_run_on_a_rig_that_nobody_knows_is_refused(tmp_path: Path) -> None:
     space = model_space_setup(CLEAR, ["bump_cN"], rig="own:mine")
     with pytest.raises(InputError, match="own:mine"):
-        OptimizeSession.create(tmp_path / "run", OptimizeSetup(space=space))
+        Optimization.create(tmp_path / "run", OptimizeSetup(space=space))
     assert not (tmp_path / "run" / "optimize.json").exists()

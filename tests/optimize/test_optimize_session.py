@@ -7,8 +7,11 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import Design, Score, TrialState, paper_space
-from fdvv.workflow import ObjectiveSetup, OptimizeSession, OptimizeSetup, replay_differences
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Score, TrialState
+from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup
+from fdvv.optimize.space import Design
 
 MIDDLE = paper_space().of_unit([0.5] * 8)[0]
 
@@ -21,7 +24,7 @@ def scored(design: Design) -> dict[str, Score]:
     return {"asynchrony_ms": Score(truth_ms(design), 7.0)}
 
 
-def go_on(session: OptimizeSession, count: int) -> None:
+def go_on(session: Optimization, count: int) -> None:
     for _ in range(count):
         (trial,) = session.ask()
         session.show(trial.number)
@@ -29,7 +32,7 @@ def go_on(session: OptimizeSession, count: int) -> None:
 
 
 def test_a_run_ends_with_its_budget_and_recommends_a_design(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="sobol", budget=4)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", budget=4)) as session:
         with pytest.raises(ModelError):
             session.best()
         go_on(session, 4)
@@ -40,7 +43,7 @@ def test_a_run_ends_with_its_budget_and_recommends_a_design(tmp_path: Path) -> N
 
 
 def test_a_trial_is_on_the_disk_before_it_is_given(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="random")) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="random")) as session:
         (trial,) = session.ask()
         assert repr(trial.design["x1_mm"]) in (tmp_path / "run" / "trials.jsonl").read_text()
 
@@ -48,47 +51,47 @@ def test_a_trial_is_on_the_disk_before_it_is_given(tmp_path: Path) -> None:
 @pytest.mark.parametrize("engine", ["sobol", "tpe"])
 def test_a_run_that_is_closed_and_opened_at_every_step_is_the_same_run(tmp_path: Path, engine: str) -> None:
     setup = OptimizeSetup(engine=engine, budget=14, seed=3)
-    with OptimizeSession.create(tmp_path / "whole", setup) as session:
+    with Optimization.create(tmp_path / "whole", setup) as session:
         go_on(session, 14)
         whole = session.trials
-    OptimizeSession.create(tmp_path / "pieces", setup).close()
+    Optimization.create(tmp_path / "pieces", setup).close()
     for _ in range(14):
-        with OptimizeSession.open(tmp_path / "pieces") as session:
+        with Optimization.open(tmp_path / "pieces") as session:
             session.ask()
-        with OptimizeSession.open(tmp_path / "pieces") as session:
+        with Optimization.open(tmp_path / "pieces") as session:
             (trial,) = session.ask()
             session.show(trial.number)
-        with OptimizeSession.open(tmp_path / "pieces") as session:
+        with Optimization.open(tmp_path / "pieces") as session:
             (trial,) = session.ask()
             assert trial.state is TrialState.SHOWN
             session.done(trial.number, scored(trial.design))
-    with OptimizeSession.open(tmp_path / "pieces") as session:
+    with Optimization.open(tmp_path / "pieces") as session:
         assert session.trials == whole
     assert replay_differences(tmp_path / "pieces") == ()
 
 
 def test_a_batch_that_was_half_written_comes_out_as_the_whole_one(tmp_path: Path) -> None:
     setup = OptimizeSetup(engine="tpe", seed=1)
-    with OptimizeSession.create(tmp_path / "a", setup) as session:
+    with Optimization.create(tmp_path / "a", setup) as session:
         go_on(session, 11)
         whole = session.ask(3)
-    with OptimizeSession.create(tmp_path / "b", setup) as session:
+    with Optimization.create(tmp_path / "b", setup) as session:
         go_on(session, 11)
         session.ask()
-    with OptimizeSession.open(tmp_path / "b") as session:
+    with Optimization.open(tmp_path / "b") as session:
         assert session.ask(3) == whole
         assert not {trial.number for trial in session.ask()} & {trial.number for trial in whole}
 
 
 def test_the_start_is_tried_first_and_told_apart(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="sobol", start=MIDDLE)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", start=MIDDLE)) as session:
         first, second = session.ask(2)
         assert (first.design, first.origin) == (MIDDLE, "start")
         assert second.origin == "sobol"
 
 
 def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
         (trial,) = session.ask()
         edited = session.edit(trial.number, MIDDLE)
         assert (edited.design, edited.suggested) == (MIDDLE, trial.design)
@@ -102,7 +105,7 @@ def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
 
 
 def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="tpe", budget=3)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="tpe", budget=3)) as session:
         a, b = session.ask(2)
         session.fail(a.number, "the rig refused it")
         session.abandon(b.number)
@@ -114,7 +117,7 @@ def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
 
 def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
     objectives = (ObjectiveSetup("asynchrony_ms"), ObjectiveSetup("effort_N_s"))
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(objectives=objectives)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(objectives=objectives)) as session:
         (trial,) = session.ask()
         with pytest.raises(InputError, match="effort_N_s"):
             session.done(trial.number, scored(trial.design))
@@ -123,45 +126,45 @@ def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
 def test_a_folder_in_use_or_with_something_in_it_is_refused_in_one_line(tmp_path: Path) -> None:
     setup = OptimizeSetup(engine="sobol")
     with (
-        OptimizeSession.create(tmp_path / "run", setup),
+        Optimization.create(tmp_path / "run", setup),
         pytest.raises(InputError, match="another process"),
     ):
-        OptimizeSession.open(tmp_path / "run")
+        Optimization.open(tmp_path / "run")
     with pytest.raises(InputError, match="not empty"):
-        OptimizeSession.create(tmp_path / "run", setup)
+        Optimization.create(tmp_path / "run", setup)
     with pytest.raises(InputError):
-        OptimizeSession.open(tmp_path / "nothing")
+        Optimization.open(tmp_path / "nothing")
 
 
 def test_a_setup_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:
     for setup in (OptimizeSetup(engine="annealing"), OptimizeSetup(start={"x1_mm": 0.1})):
         with pytest.raises(InputError):
-            OptimizeSession.create(tmp_path / "run", setup)
+            Optimization.create(tmp_path / "run", setup)
     assert not (tmp_path / "run").exists()
 
 
 def test_a_setup_is_read_back_as_it_was(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "a", OptimizeSetup(engine="sobol")) as session:
+    with Optimization.create(tmp_path / "a", OptimizeSetup(engine="sobol")) as session:
         go_on(session, 3)
         trials = session.trials
     setup = OptimizeSetup(engine="tpe", prior=trials, level="easy", about={"person": {"name": "P1"}})
-    with OptimizeSession.create(tmp_path / "b", setup) as session:
+    with Optimization.create(tmp_path / "b", setup) as session:
         assert session.setup == setup
         assert session.problem.prior == trials
 
 
 def test_comparisons_are_kept_resumed_and_replayed(tmp_path: Path) -> None:
     setup = OptimizeSetup(task="preference", engine="preference", budget=4, seed=2)
-    OptimizeSession.create(tmp_path / "run", setup).close()
+    Optimization.create(tmp_path / "run", setup).close()
     for turn in range(4):
-        with OptimizeSession.open(tmp_path / "run") as session:
+        with Optimization.open(tmp_path / "run") as session:
             pair = session.compare()
-        with OptimizeSession.open(tmp_path / "run") as session:
+        with Optimization.open(tmp_path / "run") as session:
             again = session.compare()
             assert again is not None
             assert again == pair
             session.answer(again.number, ("first", "equal", "second", "first")[turn])
-    with OptimizeSession.open(tmp_path / "run") as session:
+    with Optimization.open(tmp_path / "run") as session:
         assert session.finished
         assert session.compare() is None
         assert session.space.checked(session.best()) == session.best()
@@ -173,7 +176,7 @@ def test_comparisons_are_kept_resumed_and_replayed(tmp_path: Path) -> None:
 
 
 def test_a_run_whose_seed_was_changed_is_seen_by_its_replay(tmp_path: Path) -> None:
-    with OptimizeSession.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
         go_on(session, 2)
     path = tmp_path / "run" / "optimize.json"
     path.write_text(path.read_text().replace('"seed": 0', '"seed": 1'))
@@ -183,7 +186,7 @@ def test_a_run_whose_seed_was_changed_is_seen_by_its_replay(tmp_path: Path) -> N
 def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
     objectives = (ObjectiveSetup("asynchrony_ms"), ObjectiveSetup("effort_N_s"))
     setup = OptimizeSetup(engine="gp", objectives=objectives, budget=8)
-    with OptimizeSession.create(tmp_path / "run", setup) as session:
+    with Optimization.create(tmp_path / "run", setup) as session:
         for _ in range(8):
             (trial,) = session.ask()
             effort = Score(trial.design["y2_cN"] / 100)

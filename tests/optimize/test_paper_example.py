@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensate import GainSchedule, PaperLaw
-from fdvv.device import TwinDevice
-from fdvv.model import load_builtin
-from fdvv.twin import load_finger, load_rig, stage_finger
-from fdvv.workflow import compensate, fd_only, probe
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.tables import GainSchedule
+from fdvv.device.twin import TwinDevice
+from fdvv.model.file import load_builtin
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import fd_only, probe
+from fdvv.twin.files import load_finger, load_rig
+from fdvv.twin.finger import stage_finger
 
 LAW = PaperLaw.literal(gain=GainSchedule.constant(0.25), rounds=1, presses_per_round=12, start="target")
 MODEL = load_builtin("mx-clear")

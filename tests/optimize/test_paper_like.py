@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.model import Stroke, builtin_names, load_builtin
-from fdvv.optimize import paper_model, paper_space
-from fdvv.workflow import paper_design_like
+from fdvv.model.curve import Stroke
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.optimize.paper_space import paper_design_like, paper_model, paper_space
 
 
 @pytest.mark.parametrize("name", builtin_names())

@@ -6,16 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from fdvv.model import load_builtin
-from fdvv.optimize import (
+from benchmarks.paper_means import (
     PAPER_MEANS_ms,
-    SimulatedUser,
-    TemporalPointing,
-    folded_normal_mean,
-    timing_spread_s,
-)
-from fdvv.workflow import (
     PaperModel,
     PaperPresses,
     PaperStudy,
@@ -23,9 +15,14 @@ from fdvv.workflow import (
     adapted_ms,
     expected_ms,
     fit_paper,
+    folded_normal_mean,
     press_table,
-    score_design,
 )
+
+from fdvv.model.file import load_builtin
+from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.user import SimulatedUser, timing_spread_s
+from fdvv.optimize.tasks import TemporalPointing
 
 TASK = TemporalPointing("easy", quantised=False)
 USER = replace(SimulatedUser(), adaptation_ratio=0.0)

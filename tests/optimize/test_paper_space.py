@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.model import Stroke, model_from_json, model_to_json
-from fdvv.optimize import PAPER_TRAVEL_mm, paper_model, paper_space
+from fdvv.model.curve import Stroke
+from fdvv.model.file import model_from_json, model_to_json
+from fdvv.optimize.paper_space import PAPER_TRAVEL_mm, paper_model, paper_space
 
 SPACE = paper_space()
 PLACES = st.lists(st.floats(0, 1), min_size=8, max_size=8)

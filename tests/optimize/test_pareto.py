@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.optimize.problems import BOWL
 
 from fdvv.errors import InputError
-from fdvv.optimize import Objective, Problem, Score, Trial, TrialState, engine_of, pareto_front, torch_there
+from fdvv.optimize.engines.multi_objective import pareto_front
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
+from fdvv_botorch.models import torch_there
+from tests.optimize.problems import BOWL
 
 TWO = Problem(BOWL, (Objective("asynchrony_ms"), Objective("hits", larger_is_better=True)), 1)
 DESIGN = dict.fromkeys(BOWL.names, 0.0)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.optimize import LOST_ms, Task, TaskPress, TemporalPointing
+from fdvv.optimize.tasks import LOST_ms, Task, TaskPress, TemporalPointing
 
 EXACT = TemporalPointing("easy", quantised=False)
 

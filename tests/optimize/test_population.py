@@ -15,14 +15,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.optimize import Problem, TemporalPointing, engine_of, paper_space
-from fdvv.workflow import (
-    PopulationPlan,
-    PopulationResult,
-    open_executor,
-    read_population,
-    run_population,
-)
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import PopulationResult, read_population, run_population
+from fdvv.optimize.problem import Problem
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.parallel.open import open_executor
 
 PEOPLE = PopulationPlan(people=5, seed=3, engine="random", budget=3, rounds=5, judged=1)
 GRID = PopulationPlan(kind="grid", people=9, seed=3, designs=12, rounds=4)
@@ -107,7 +106,9 @@ def test_a_worker_killed_from_outside_costs_only_its_chunk(people: PopulationRes
 RUN = """
 import sys
 from pathlib import Path
-from fdvv.workflow import PopulationPlan, open_executor, run_population
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.parallel.open import open_executor
+from fdvv.optimize.population.population import run_population
 if __name__ == "__main__":
     plan = PopulationPlan(people=5, seed=3, engine="random", budget=3, rounds=5, judged=1)
     with open_executor(processes=2) as executor:

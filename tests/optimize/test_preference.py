@@ -6,22 +6,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from scipy.stats import norm
-from tests.optimize.problems import BOWL, HELD, bowl_ms, problem
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import (
-    PAIR_ENGINES,
-    Answer,
-    Comparison,
-    PairEngine,
-    Problem,
-    pair_engine_of,
-    torch_there,
-)
-from fdvv.optimize._preference_belief import NOISE, believe_answers
+from fdvv.optimize.engines.preference import NOISE, believe_answers
+from fdvv.optimize.engines.registry import pair_engine_names, pair_engine_of
+from fdvv.optimize.problem import Answer, Comparison, PairEngine, Problem
+from fdvv_botorch.models import torch_there
+from tests.optimize.problems import BOWL, HELD, bowl_ms, problem
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")
-NAMES = [pytest.param(n, marks=NO_TORCH if n.endswith("botorch") else ()) for n in PAIR_ENGINES]
+NAMES = [pytest.param(n, marks=NO_TORCH if n.endswith("botorch") else ()) for n in pair_engine_names()]
 
 
 @pytest.fixture(params=NAMES)

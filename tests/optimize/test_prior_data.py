@@ -3,34 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 import pytest
-from tests.workflow.executors import Here
 
 from fdvv.errors import InputError
-from fdvv.workflow import (
-    ExperimentSetup,
-    PopulationPlan,
-    experiment_html,
-    experiment_prior,
-    judge_experiment,
-    read_grid,
-    run_experiment,
-    run_population,
-)
-
-SEED = 7
-
-
-def grid(folder: Path, level: Literal["easy", "hard"], designs: int = 5) -> Path:
-    run_population(
-        folder,
-        PopulationPlan(kind="grid", people=2, designs=designs, rounds=2, seed=SEED, level=level),
-        Here(),
-    )
-    return folder
+from fdvv.optimize.experiment.experiment import judge_experiment, run_experiment
+from fdvv.optimize.experiment.html import experiment_html
+from fdvv.optimize.experiment.setup import ExperimentSetup
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import run_population
+from fdvv.optimize.run.begin import experiment_prior, read_grid
+from tests.support.executors import Here
+from tests.support.grids import SEED, grid
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, load_builtin
-from fdvv.optimize import Accuracy, LOST_ms, RapidTapping, SimulatedUser, TemporalPointing
-from fdvv.workflow import PlayBench, play, refusal_of, score_design
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.people.press_simulator import PressSimulator, refusal_of
+from fdvv.optimize.people.simulate import score_design, simulate_task
+from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.tasks import Accuracy, LOST_ms, RapidTapping, TemporalPointing
 
 EASY = TemporalPointing("easy")
 EXACT = replace(EASY, quantised=False)
@@ -36,30 +40,30 @@ def flat(force_cN: float, actuation_mm: float = 2.0) -> FDVVModel:
 
 
 def late_ms(model: FDVVModel, user: SimulatedUser = STILL, seed: int = 0) -> list[float]:
-    found = [EXACT.asynchrony_ms(press) for press in play(EXACT, model, user, seed)]
+    found = [EXACT.asynchrony_ms(press) for press in simulate_task(EXACT, model, user, seed)]
     assert None not in found
     return [late for late in found if late is not None]
 
 
 def test_the_same_arguments_give_the_same_presses_and_another_seed_others() -> None:
     user = SimulatedUser()
-    first = play(EASY, BROWN, user, 3)
-    assert play(EASY, BROWN, user, 3) == first
-    assert play(EASY, BROWN, user, 4) != first
-    assert play(EASY, BROWN, replace(user, number=1), 3) != first
+    first = simulate_task(EASY, BROWN, user, 3)
+    assert simulate_task(EASY, BROWN, user, 3) == first
+    assert simulate_task(EASY, BROWN, user, 4) != first
+    assert simulate_task(EASY, BROWN, replace(user, number=1), 3) != first
 
 
 def test_threads_do_not_disturb_each_other() -> None:
     user = SimulatedUser()
-    alone = [play(EASY, BROWN, user, seed) for seed in range(4)]
+    alone = [simulate_task(EASY, BROWN, user, seed) for seed in range(4)]
     with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(lambda seed: play(EASY, BROWN, user, seed), range(4))) == alone
+        assert list(pool.map(lambda seed: simulate_task(EASY, BROWN, user, seed), range(4))) == alone
 
 
 def test_a_deeper_actuation_is_told_later_by_what_the_finger_takes_for_the_way() -> None:
     """Identity: twenty presses on one force are one motion, so only the way between the points can differ."""
     shallow, deep = late_ms(flat(50.0, 1.0)), late_ms(flat(50.0, 3.0))
-    press = PlayBench(flat(50.0), STILL).press(np.random.default_rng([0, 0]))
+    press = PressSimulator(flat(50.0), STILL).press(np.random.default_rng([0, 0]))
     assert press is not None
     at = [np.argmax(press.ticks.displacement_mm >= mm) for mm in (1.0, 3.0)]
     way_ms = 1e3 * (press.t_s[at[1]] - press.t_s[at[0]])
@@ -83,17 +87,19 @@ def test_one_who_adapts_brings_the_felt_event_to_the_aim() -> None:
 
 def test_a_button_too_heavy_for_the_finger_is_missed_every_time() -> None:
     weak = replace(SimulatedUser(), push_cN=1.0, pace_mm_s=60.0)
-    presses = play(EASY, flat(400.0, 3.9), weak, 0)
+    presses = simulate_task(EASY, flat(400.0, 3.9), weak, 0)
     assert all(not press.activations_s for press in presses)
     assert score_design(EASY, flat(400.0, 3.9), weak, 0)["asynchrony_ms"].value == LOST_ms
 
 
 def test_a_heavy_resting_finger_triggers_a_light_button_before_the_bullet_comes() -> None:
     heavy = replace(SimulatedUser(), rest_cN=60.0)
-    presses = play(EASY, flat(15.0, 0.6), heavy, 0)
+    presses = simulate_task(EASY, flat(15.0, 0.6), heavy, 0)
     lost = [EASY.asynchrony_ms(press) is None for press in presses]
     assert np.mean(lost) > 0.9
-    assert np.mean([EASY.asynchrony_ms(p) is None for p in play(EASY, flat(80.0, 0.6), heavy, 0)]) < 0.2
+    assert (
+        np.mean([EASY.asynchrony_ms(p) is None for p in simulate_task(EASY, flat(80.0, 0.6), heavy, 0)]) < 0.2
+    )
 
 
 def test_a_design_that_the_firmware_cannot_hold_is_lost_and_the_reason_is_told() -> None:
@@ -105,7 +111,7 @@ def test_a_design_that_the_firmware_cannot_hold_is_lost_and_the_reason_is_told()
 
 def test_effort_grows_with_the_buttons_force() -> None:
     light, heavy = (
-        np.mean([press.effort_N_s or 0.0 for press in play(EASY, flat(force), STILL, 0)])
+        np.mean([press.effort_N_s or 0.0 for press in simulate_task(EASY, flat(force), STILL, 0)])
         for force in (30.0, 120.0)
     )
     assert heavy > 1.5 * light
@@ -119,7 +125,7 @@ def test_a_task_is_played_on_rigs_of_real_parts_too(rig: str) -> None:
 
 def test_an_unknown_rig_is_refused_with_the_names_there_are() -> None:
     with pytest.raises(InputError, match="ideal"):
-        play(EASY, BROWN, SimulatedUser(), 0, rig="dream")
+        simulate_task(EASY, BROWN, SimulatedUser(), 0, rig="dream")
 
 
 def test_a_shallow_key_is_tapped_faster_than_a_deep_one() -> None:
@@ -136,7 +142,7 @@ def test_a_shallow_key_is_tapped_faster_than_a_deep_one() -> None:
 
 
 def test_taps_follow_each_other_on_one_clock() -> None:
-    presses = play(RapidTapping(), BROWN, SimulatedUser(), 0)
+    presses = simulate_task(RapidTapping(), BROWN, SimulatedUser(), 0)
     keys = [key for press in presses for key in press.activations_s]
     assert len(keys) > 15
     assert (np.diff(keys) > 0.05).all()
@@ -154,12 +160,14 @@ def test_a_twitching_finger_triggers_a_light_key_more_often_than_a_heavy_one() -
 
 @pytest.mark.parametrize("task", [RapidTapping(), Accuracy()])
 def test_every_task_of_a_design_that_cannot_be_held_has_an_outcome(task: RapidTapping | Accuracy) -> None:
-    presses = play(task, flat(900.0), SimulatedUser(), 0)
+    presses = simulate_task(task, flat(900.0), SimulatedUser(), 0)
     assert len(presses) == task.rounds
     assert set(task.scores(presses)) == {one.name for one in task.objectives}
 
 
 def test_fatigue_and_practice_show_in_the_presses_made_before() -> None:
     tired = replace(SimulatedUser(), fatigue_ratio=0.5)
-    assert play(EASY, BROWN, tired, 0, presses_before=600) != play(EASY, BROWN, tired, 0)
-    assert play(EASY, BROWN, SimulatedUser(), 0, presses_before=600) == play(EASY, BROWN, SimulatedUser(), 0)
+    assert simulate_task(EASY, BROWN, tired, 0, presses_before=600) != simulate_task(EASY, BROWN, tired, 0)
+    assert simulate_task(EASY, BROWN, SimulatedUser(), 0, presses_before=600) == simulate_task(
+        EASY, BROWN, SimulatedUser(), 0
+    )

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import Constraint, DesignSpace, Parameter
+from fdvv.optimize.space import Constraint, DesignSpace, Parameter
 
 SPACE = DesignSpace(
     "two points",

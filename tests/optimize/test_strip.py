@@ -7,23 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.device import (
-    LibraryBoard,
-    LibraryStrip,
-    LinkedDevice,
-    ScriptedPerson,
-    StripResult,
-    StripStart,
-    StripTask,
-)
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import ScriptedPerson
+from fdvv.device.strip import LedPointingTask, StripResult, StripStart
+from fdvv.device.strip_library import LibraryStrip
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import load_builtin
-from fdvv.optimize import SimulatedUser, TaskPress, TemporalPointing, TrialState
-from fdvv.workflow import (
-    ObjectiveSetup,
-    OptimizeSession,
-    OptimizeSetup,
-    play,
+from fdvv.model.file import load_builtin
+from fdvv.optimize.people.simulate import simulate_task
+from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.problem import TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup
+from fdvv.optimize.run.strip import (
     play_on_strip,
     played_presser,
     press_of,
@@ -31,6 +27,7 @@ from fdvv.workflow import (
     strip_round,
     try_on_strip,
 )
+from fdvv.optimize.tasks import TaskPress, TemporalPointing
 
 TASKS = [TemporalPointing(level, quantised=False) for level in ("easy", "hard")]
 SHORT = replace(TASKS[1], rounds=3)
@@ -45,15 +42,15 @@ def line() -> LibraryStrip:
 
 
 @pytest.fixture
-def strip(line: LibraryStrip) -> StripTask:
-    return StripTask(line)
+def strip(line: LibraryStrip) -> LedPointingTask:
+    return LedPointingTask(line)
 
 
 @pytest.mark.parametrize("task", TASKS)
 def test_what_a_person_does_to_the_key_is_what_the_strip_tells(
-    strip: StripTask, line: LibraryStrip, task: TemporalPointing
+    strip: LedPointingTask, line: LibraryStrip, task: TemporalPointing
 ) -> None:
-    presses = play(task, BROWN, USER, 3)
+    presses = simulate_task(task, BROWN, USER, 3)
     told = play_on_strip(strip, task, 3, presser=played_presser(line, presses))
     for there, here in zip(told, presses, strict=True):
         assert there.target_s is not None
@@ -70,7 +67,7 @@ def test_a_round_shows_the_tasks_speed_length_and_zone() -> None:
 
 
 def test_the_same_seed_draws_the_same_delays_and_every_round_its_own(line: LibraryStrip) -> None:
-    strip, delays = StripTask(line), []
+    strip, delays = LedPointingTask(line), []
     for _ in range(2):
         heard: list[float] = []
         begun = line.now_s()
@@ -83,12 +80,12 @@ def test_the_same_seed_draws_the_same_delays_and_every_round_its_own(line: Libra
     assert len(set(delays[0])) > 1
 
 
-def test_a_round_without_a_press_is_a_miss(strip: StripTask) -> None:
+def test_a_round_without_a_press_is_a_miss(strip: LedPointingTask) -> None:
     assert all(press.activations_s == () for press in play_on_strip(strip, SHORT, 0))
 
 
 def test_each_round_is_told_as_it_ends_and_somebody_else_is_fed_meanwhile(
-    strip: StripTask, line: LibraryStrip
+    strip: LedPointingTask, line: LibraryStrip
 ) -> None:
     order: list[str] = []
     play_on_strip(
@@ -107,7 +104,7 @@ def test_each_round_is_told_as_it_ends_and_somebody_else_is_fed_meanwhile(
     ("changed", "reason"), [({"is_whole": False}, "went dark"), ({"late_s": 0.0034}, "3.4 ms late")]
 )
 def test_a_round_that_was_not_shown_as_it_should_does_not_count(
-    strip: StripTask, changed: dict[str, float], reason: str
+    strip: LedPointingTask, changed: dict[str, float], reason: str
 ) -> None:
     result = StripResult(1.0, 2.0, (2.1,), 1, 145, 0.0, True)
     assert press_of(strip, result) == TaskPress(2.0, (2.1,))
@@ -115,12 +112,14 @@ def test_a_round_that_was_not_shown_as_it_should_does_not_count(
         press_of(strip, replace(result, **changed))  # type: ignore[arg-type]
 
 
-def session_in(folder: Path) -> OptimizeSession:
+def session_in(folder: Path) -> Optimization:
     setup = OptimizeSetup(engine="sobol", budget=3, objectives=(ObjectiveSetup("asynchrony_ms"),))
-    return OptimizeSession.create(folder / "run", setup)
+    return Optimization.create(folder / "run", setup)
 
 
-def test_a_trial_is_rendered_played_and_scored(tmp_path: Path, strip: StripTask, line: LibraryStrip) -> None:
+def test_a_trial_is_rendered_played_and_scored(
+    tmp_path: Path, strip: LedPointingTask, line: LibraryStrip
+) -> None:
     device = LinkedDevice(LibraryBoard(), ScriptedPerson(3))
     with session_in(tmp_path) as session, device:
         (trial,) = session.ask()
@@ -133,7 +132,7 @@ def test_a_trial_is_rendered_played_and_scored(tmp_path: Path, strip: StripTask,
 
 
 def test_a_trial_on_a_strip_that_dies_is_abandoned_and_the_button_falls_to_zero_force(
-    tmp_path: Path, strip: StripTask
+    tmp_path: Path, strip: LedPointingTask
 ) -> None:
     device = LinkedDevice(LibraryBoard(), ScriptedPerson(3))
 
@@ -149,7 +148,7 @@ def test_a_trial_on_a_strip_that_dies_is_abandoned_and_the_button_falls_to_zero_
 
 
 def test_a_trial_on_a_device_in_fault_is_failed_or_abandoned_never_scored(
-    tmp_path: Path, strip: StripTask
+    tmp_path: Path, strip: LedPointingTask
 ) -> None:
     device = LinkedDevice(LibraryBoard(), ScriptedPerson(3))
     plant = ScriptedPerson(3, meddle=lambda tick, inputs: inputs._replace(supply_mV=1000))
@@ -165,14 +164,14 @@ def test_a_trial_on_a_device_in_fault_is_failed_or_abandoned_never_scored(
 
 
 def test_a_run_goes_on_where_it_was_stopped_until_its_budget_is_spent(
-    tmp_path: Path, strip: StripTask, line: LibraryStrip
+    tmp_path: Path, strip: LedPointingTask, line: LibraryStrip
 ) -> None:
     setup = OptimizeSetup(engine="sobol", budget=3, level="hard")
     presser = played_presser(line, LATE_80_ms)
     with LinkedDevice(LibraryBoard(), ScriptedPerson(3)) as device:
-        with OptimizeSession.create(tmp_path / "run", setup) as session:
+        with Optimization.create(tmp_path / "run", setup) as session:
             first = next(run_on_strip(session, device, strip, rounds=2, presser=presser))
-        with OptimizeSession.open(tmp_path / "run") as session:
+        with Optimization.open(tmp_path / "run") as session:
             rest = list(run_on_strip(session, device, strip, rounds=2, presser=presser))
             assert session.finished
             assert session.trials == (first, *rest)
@@ -181,20 +180,20 @@ def test_a_run_goes_on_where_it_was_stopped_until_its_budget_is_spent(
 
 
 def test_a_run_that_is_killed_in_a_round_asks_the_same_trial_again(
-    tmp_path: Path, strip: StripTask, line: LibraryStrip
+    tmp_path: Path, strip: LedPointingTask, line: LibraryStrip
 ) -> None:
     def killed(number: int, start: StripStart) -> None:
         raise KeyboardInterrupt
 
     with LinkedDevice(LibraryBoard(), ScriptedPerson(3)) as device:
         with (
-            OptimizeSession.create(tmp_path / "run", OptimizeSetup(level="easy", budget=2)) as session,
+            Optimization.create(tmp_path / "run", OptimizeSetup(level="easy", budget=2)) as session,
             pytest.raises(KeyboardInterrupt),
         ):
             next(run_on_strip(session, device, strip, rounds=2, presser=killed))
         assert not device.port.outputs.enable
         strip.stop()
-        with OptimizeSession.open(tmp_path / "run") as session:
+        with Optimization.open(tmp_path / "run") as session:
             open_trial = session.trials[0]
             presser = played_presser(line, LATE_80_ms)
             done = next(run_on_strip(session, device, strip, rounds=2, presser=presser))
@@ -202,9 +201,9 @@ def test_a_run_that_is_killed_in_a_round_asks_the_same_trial_again(
     assert done.state is TrialState.DONE
 
 
-def test_a_run_of_another_task_is_not_for_a_strip(tmp_path: Path, strip: StripTask) -> None:
+def test_a_run_of_another_task_is_not_for_a_strip(tmp_path: Path, strip: LedPointingTask) -> None:
     with (
-        OptimizeSession.create(tmp_path / "run", OptimizeSetup(task="rapid-tapping")) as session,
+        Optimization.create(tmp_path / "run", OptimizeSetup(task="rapid-tapping")) as session,
         LinkedDevice(LibraryBoard(), ScriptedPerson(3)) as device,
         pytest.raises(InputError, match="rapid-tapping, level None is not for a strip"),
     ):

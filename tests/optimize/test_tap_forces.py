@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import FitError
-from fdvv.workflow import force_spread_ratio, tap_peaks
+from fdvv.optimize.people.calibration import force_spread_ratio, tap_peaks
 
 
 @pytest.mark.shared

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.workflow import ClockSource, PlayedRounds, RoundTiming
+from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
 
 TIMING = RoundTiming(ClockSource.PAGE, 30.0, 17.0, 10.0, 10.0, 5e6, 0.6, 4.0, 16.7, "key")
 
 
-def kept(folder: Path, trial: int, times_s: tuple[float, ...]) -> PlayedRounds:
-    rounds = PlayedRounds(folder)
+def kept(folder: Path, trial: int, times_s: tuple[float, ...]) -> TaskRounds:
+    rounds = TaskRounds(folder)
     rounds.begin(trial)
     for at_s in times_s:
         rounds.add(trial, at_s, (at_s + 0.05,), TIMING)
@@ -25,7 +25,7 @@ def test_rounds_are_read_again_as_they_were(tmp_path: Path) -> None:
     before = rounds.counting(3)
     assert [one.number for one in before] == [1, 2]
     rounds.close()
-    again = PlayedRounds(tmp_path)
+    again = TaskRounds(tmp_path)
     assert again.counting(3) == before
     assert [one.press.activations_s for one in before] == [(1.05,), (2.05,)]
     again.close()
@@ -33,7 +33,7 @@ def test_rounds_are_read_again_as_they_were(tmp_path: Path) -> None:
 
 def test_a_trial_that_is_begun_again_counts_anew_and_keeps_what_was(tmp_path: Path) -> None:
     kept(tmp_path, 0, (1.0, 2.0, 3.0)).close()
-    rounds = PlayedRounds(tmp_path)
+    rounds = TaskRounds(tmp_path)
     assert rounds.begin(0) == 2
     assert rounds.counting(0) == ()
     rounds.add(0, 9.0, (), TIMING)
@@ -48,18 +48,18 @@ def test_a_round_that_was_cut_short_is_the_only_one_lost(tmp_path: Path, lost_by
     rounds.close()
     whole = rounds.path.read_bytes()
     rounds.path.write_bytes(whole[:-lost_bytes])
-    again = PlayedRounds(tmp_path)
+    again = TaskRounds(tmp_path)
     assert [one.target_s for one in again.counting(0)] == [1.0, 2.0]
     again.add(0, 3.0, (3.05,), TIMING)
     again.close()
-    assert [one.target_s for one in PlayedRounds(tmp_path).counting(0)] == [1.0, 2.0, 3.0]
+    assert [one.target_s for one in TaskRounds(tmp_path).counting(0)] == [1.0, 2.0, 3.0]
 
 
 def test_a_damaged_file_and_one_at_work_elsewhere_are_refused(tmp_path: Path) -> None:
     rounds = kept(tmp_path, 0, (1.0, 2.0))
     with pytest.raises(InputError, match="another fdvv works on it"):
-        PlayedRounds(tmp_path)
+        TaskRounds(tmp_path)
     rounds.close()
     rounds.path.write_text(rounds.path.read_text().replace("1.0", "1.5", 1))
     with pytest.raises(InputError, match="damaged"):
-        PlayedRounds(tmp_path)
+        TaskRounds(tmp_path)

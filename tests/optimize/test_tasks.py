@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.optimize import Accuracy, RapidTapping, Task, TaskPress
+from fdvv.optimize.tasks import Accuracy, RapidTapping, Task, TaskPress
 
 
 def test_even_taps_have_their_rate_and_no_spread() -> None:

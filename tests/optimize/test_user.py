@@ -10,15 +10,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.optimize import (
-    Cue,
+from fdvv.optimize.people.percept import Cue, TactileEvent, percept_of
+from fdvv.optimize.people.user import (
     SimulatedUser,
-    TactileEvent,
     UserSettings,
     aim_s,
     draw_user,
     draw_users,
-    percept_of,
     spread_factor,
     timing_spread_s,
 )

@@ -28,11 +28,14 @@ import ctypes, hashlib, sys
 import fdvv._native as native
 other = ctypes.CDLL(sys.argv[1])
 native.library = lambda: other
-import fdvv.model._fit as fit, fdvv.twin._kernel as kernel
+import fdvv.model.fit as fit, fdvv.twin.rig_kernel as kernel
 fit.library = kernel.library = native.library
 import numpy as np
-from fdvv.device import TwinDevice
-from fdvv.model import ForceSurface, MeasuredCurve, Stroke, fit_curve, load_builtin
+from fdvv.device.twin import TwinDevice
+from fdvv.model.surface import ForceSurface
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import fit_curve
+from fdvv import load_builtin
 rng = np.random.default_rng(1)
 found = hashlib.sha256()
 for count in (40, 400):

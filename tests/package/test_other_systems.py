@@ -56,8 +56,8 @@ print(len(names) > 300)
 WORKS = """
 from pathlib import Path
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.device import open_device
+from fdvv.eventlog import Journal, JournalKind, read_records
+from fdvv.device.open import open_device
 path, busy = Path("journal.jsonl"), InputError("journal", "file", "busy", "wait")
 first = Journal(path, busy)
 first.write({"a": "line\\n"})
@@ -66,13 +66,13 @@ try:
     print("two at once")
 except InputError:
     print("busy")
-print([record for record, _ in read_records(path, JournalKind(frozenset("a"), ""))])
+print([record for record, _ in read_records(path, JournalKind({"a": str}, ""))])
 first.close()
 Journal(path, busy).close()
 host = open_device("host")
 print(host.info().simulated)
 host.close()
-from fdvv.cli import main
+from fdvv.cli.main import main
 sys.argv = ["fdvv", *sys.argv[1:]]
 main()
 """

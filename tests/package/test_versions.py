@@ -1,24 +1,18 @@
-"""One version, a changelog that knows it, and public names that do not change unseen."""
+"""One version, and a changelog that knows it."""
 
 from __future__ import annotations
 
 import re
 import tomllib
-from types import ModuleType
 from typing import Any
 
 import pytest
-from tests.package.conftest import REPOSITORY, module_of
+from tests.package.conftest import REPOSITORY
 
 from fdvv import __version__
 
 CHANGELOG = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
 HEADS = re.findall(r"^## \[(.+?)\](?: - (\S+))?$", CHANGELOG, flags=re.MULTILINE)
-
-
-@pytest.fixture
-def names() -> ModuleType:
-    return module_of(REPOSITORY / "tools" / "make_public_names.py")
 
 
 @pytest.fixture
@@ -33,6 +27,13 @@ def test_the_version_stands_in_one_place_and_the_citation_follows_it(project: di
     assert re.findall(r"^version: (.+)$", citation, flags=re.MULTILINE) == [__version__]
 
 
+def test_the_extras_have_the_version_of_the_core() -> None:
+    extras = sorted((REPOSITORY / "extras").glob("*/src/*/__init__.py"))
+    assert len(extras) == 4
+    for module in extras:
+        assert f'__version__ = "{__version__}"' in module.read_text(encoding="utf-8"), module
+
+
 def test_the_changelog_has_a_section_of_this_version_and_dates_of_older_ones() -> None:
     versions = [version for version, _ in HEADS]
     assert versions[0] == "Unreleased" or versions[0] == __version__
@@ -42,21 +43,6 @@ def test_the_changelog_has_a_section_of_this_version_and_dates_of_older_ones() -
         assert version in ("Unreleased", __version__) or re.fullmatch(r"\d{4}-\d\d-\d\d", date)
     numbers = [tuple(map(int, version.split("."))) for version in versions if version != "Unreleased"]
     assert numbers == sorted(numbers, reverse=True)
-
-
-def test_the_public_names_are_those_of_the_code(names: ModuleType) -> None:
-    assert names.PAGE.read_text(encoding="utf-8") == names.reference(), (
-        "run python tools/make_public_names.py"
-    )
-
-
-def test_a_public_name_that_goes_or_changes_must_be_told(names: ModuleType) -> None:
-    old = "fdvv.a.f(x: int) -> int\nfdvv.a.g()\nfdvv.a.K{ONE, TWO}\n"
-    new = "fdvv.a.f(x: int, y: int = 0) -> int\nfdvv.a.K{ONE, TWO}\nfdvv.a.h()\n"
-    log = "# Changelog\n\n## [0.2.0] - 2027-01-01\n\n- {}\n\n## [0.1.0] - 2026-01-01\n\n- `fdvv.a.g` came\n"
-    assert names.unannounced(old, new, log.format("nothing")) == ["fdvv.a.f", "fdvv.a.g"]
-    assert names.unannounced(old, new, log.format("`fdvv.a.f` takes y, `fdvv.a.g` went")) == []
-    assert names.unannounced(old, old, log.format("nothing")) == []
 
 
 def test_the_wheels_of_every_system_are_configured(project: dict[str, Any]) -> None:

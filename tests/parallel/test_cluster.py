@@ -14,12 +14,13 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from tests.workflow.shelves import write_folder
 
 from fdvv.errors import InputError
-from fdvv.workflow import SweepPlan, build_library, open_executor, run_sweep
-from fdvv.workflow._library_build import BUTTONS
-from fdvv.workflow._sweep import RESULTS
+from fdvv.library.build import BUTTONS, build_library
+from fdvv.parallel.open import open_executor
+from fdvv.sweep.plan import SweepPlan
+from fdvv.sweep.sweep import RESULTS, run_sweep
+from tests.support.catalog_rows import write_folder
 
 HOW_TO = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "sweep-on-a-cluster.md"
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
@@ -76,7 +77,7 @@ def test_a_cluster_started_by_hand_finds_the_same_and_survives_a_lost_worker(
 ) -> None:
     address, workers = cluster
     ready(address, 2)
-    monkeypatch.setattr("fdvv.workflow._library_build.FILES", 2)
+    monkeypatch.setattr("fdvv.library.build.FILES", 2)
     source = write_folder(tmp_path / "switches", {f"{i}.csv": float(i) for i in range(6)})
     with open_executor(cluster=address) as executor:
         build_library([source], tmp_path / "there", executor)
@@ -87,7 +88,7 @@ def test_a_cluster_started_by_hand_finds_the_same_and_survives_a_lost_worker(
     plan = SweepPlan(
         format="fdvv-sweep", version=1, measure="press", factors={"repeat": 12}, settings={"presses": 1}
     )
-    monkeypatch.setattr("fdvv.workflow._sweep.CHUNK_s", 0.05)
+    monkeypatch.setattr("fdvv.sweep.sweep.CHUNK_s", 0.05)
 
     def kill(done: int, _whole: int) -> None:
         if done == 3:

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError, WorkerError
-from fdvv.testing import SeededSum, refuse_three
-from fdvv.workflow import Executor, chunks_of, open_executor
-from fdvv.workflow._dask_executor import started_workers
+from fdvv.parallel.executor import Executor, chunks_of
+from fdvv.parallel.open import open_executor, started_workers
+from tests.support.chunk_work import SeededSum, refuse_three
 
 SEEDS = range(12)
 
@@ -78,8 +78,8 @@ def test_an_error_in_a_chunk_names_it_and_keeps_its_trace(executor: Executor) ->
 INTERRUPTED = """
 import sys
 from pathlib import Path
-from fdvv.testing import wait_for_ever
-from fdvv.workflow import open_executor
+from tests.support.chunk_work import wait_for_ever
+from fdvv.parallel.open import open_executor
 if __name__ == "__main__":
     with open_executor(**{sys.argv[1]: 2}) as executor:
         list(executor.run(wait_for_ever, [Path(sys.argv[2])] * 4))
@@ -92,7 +92,11 @@ def test_ctrl_c_ends_every_process_quietly(tmp_path: Path, kind: str) -> None:
     script.write_text(INTERRUPTED)
     folder.mkdir()
     command = [sys.executable, str(script), kind, str(folder)]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+    # the script imports tests.support
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, start_new_session=True, env=environment
+    ) as process:
         assert process.stderr is not None
         working = pids(folder, 2)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal sends it: to every process that it runs
@@ -144,7 +148,7 @@ def test_a_cluster_without_workers_is_refused() -> None:
 
 
 def test_an_address_where_nobody_answers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fdvv.workflow._dask_executor.ANSWER_s", 0.5)
+    monkeypatch.setattr("fdvv.parallel.open.ANSWER_s", 0.5)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"

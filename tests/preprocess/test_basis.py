@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from fdvv.preprocess._basis import EvenBasis, rough
+from fdvv.preprocess.fuse import EvenBasis, rough
 
 
 @pytest.mark.parametrize("derivative", [0, 1, 2])

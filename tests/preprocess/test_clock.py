@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.preprocess import Edges, align_clocks
-from fdvv.preprocess._clock import _polygon
+from fdvv.preprocess.clock import _polygon, align_clocks
+from fdvv.preprocess.edges import Edges
 from fdvv.units import FloatArray
 
 EXPOSURE_s = 3e-4

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from tests.captures import capture, recorded
+from tests.support.captures import capture, recorded
 
-from fdvv.preprocess import ClockFit, edge_bounds
+from fdvv.preprocess.clock import ClockFit
+from fdvv.preprocess.takes import edge_bounds
 
 
 def test_every_edge_is_bounded_about_the_line_that_was_fitted() -> None:

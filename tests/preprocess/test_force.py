@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.preprocess import undo_filter, undo_play
+from fdvv.preprocess.fuse import undo_filter, undo_play
 from fdvv.units import FloatArray
 
 

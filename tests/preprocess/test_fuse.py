@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.preprocess import Fusion, Seen, fuse, table_curve, unknown_curve
+from fdvv.preprocess.fuse import Fusion, Seen, fuse, table_curve, unknown_curve
 from fdvv.units import FloatArray
 
 MOVING_g = 5.0

@@ -6,21 +6,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.captures import SHORT_STROKE, capture, recorded
+from tests.support.captures import SHORT_STROKE, capture, recorded
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke, find_bump
-from fdvv.preprocess import (
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.paper import (
     AS_PRINTED,
+    EVEN_WIDTH,
     Gaussian,
-    Judged,
     PaperRecipe,
-    RawPress,
     SigmaUnit,
-    Spans,
+    filtered,
     paper_average,
+    register,
 )
-from fdvv.preprocess._paper import EVEN_WIDTH, filtered, register
+from fdvv.preprocess.press import RawPress, Spans
+from fdvv.preprocess.reject import Judged
 from fdvv.units import FloatArray
 
 NO_FILTER = PaperRecipe(Gaussian(0.0, SigmaUnit.SAMPLES), Gaussian(0.0, SigmaUnit.SAMPLES))

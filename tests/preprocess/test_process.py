@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke, find_bump
-from fdvv.preprocess import Processed, Reason, Settings, process
-from fdvv.recording import Quantity, Recording, Stage
-from fdvv.testing import (
-    PERFECT_RIG,
-    PERFECT_SENSOR,
-    CapturedSession,
-    captured_session,
-    top_mm,
-)
-from fdvv.twin import PARTICIPANTS, Finger, Habit
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.process import Processed, Settings, process
+from fdvv.preprocess.reject import Reason
+from fdvv.recording.types import Quantity, Recording, Stage
+from fdvv.testing.captured import PERFECT_RIG, PERFECT_SENSOR, CapturedSession, captured_session, top_mm
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.finger import Finger, PressVariability
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +141,7 @@ def test_a_button_without_a_bump_gets_none() -> None:
 
 
 def test_a_finger_that_comes_from_above_has_no_rest_to_take_off() -> None:
-    finger = Finger(habit=Habit(lift_m=0.002))
+    finger = Finger(habit=PressVariability(lift_m=0.002))
     session = captured_session("mx-clear", 3, finger=finger, paces_mm_s=(50.0,))
 
     assert process(session.recording).zero_mm < 0.01

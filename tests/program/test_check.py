@@ -7,25 +7,14 @@ from dataclasses import replace
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import Mode, load_builtin
-from fdvv.program import (
-    Condition,
-    Limits,
-    Program,
-    Severity,
-    Signal,
-    State,
-    Surface,
-    Transition,
-    Velocity,
-    When,
-    button_program,
-    check_program,
-    flat,
-    line,
-    make,
-    require_accepted,
-)
+from fdvv.model.file import load_builtin
+from fdvv.model.vibration import Mode
+from fdvv.program.button import button_program
+from fdvv.program.check import Severity, check_program, require_accepted
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.library import make
+from fdvv.program.program import Program, Signal, State, Velocity
+from fdvv.program.surface import Limits, Surface, flat, line
 
 PUSH = flat("push", 40.0)
 

@@ -9,29 +9,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.program import program_strategies
-from tests.safety._checking import check_image
 
 from fdvv.errors import InputError
-from fdvv.model import ForceSurface, builtin_names, load_builtin
-from fdvv.program import (
-    Condition,
-    During,
-    Limits,
-    Program,
-    State,
-    Surface,
-    Transition,
-    When,
-    button_program,
-    compile_button,
-    compile_program,
-    describe,
-    flat,
-    load_shipped,
-    programs,
-)
-from fdvv.protocol import Refusal
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.program.button import button_program, compile_button
+from fdvv.program.compile import compile_program
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.describe import describe
+from fdvv.program.library import load_shipped, programs
+from fdvv.program.program import During, Program, State
+from fdvv.program.surface import Limits, Surface, flat
+from fdvv.protocol.tables import Refusal
+from tests.safety._checking import check_image
+from tests.support.program import program_strategies
 
 NAMES = [p.name for p in programs()]
 

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from fdvv.program import Surface, flat, line, raised, scaled
+from fdvv.program.surface import Surface, flat, line, raised, scaled
 
 GOLDEN = Path(__file__).resolve().parents[2] / "web" / "tests" / "programs" / "golden_surfaces.json"
 BASE = Surface(

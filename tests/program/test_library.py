@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import load_builtin
-from fdvv.program import Program, Recipe, check_program, load_shipped, make, programs, ranges
-
-from ._pressing import TICKS_PER_S, path, press
+from fdvv.model.file import load_builtin
+from fdvv.program.button import ranges
+from fdvv.program.check import check_program
+from fdvv.program.library import Recipe, load_shipped, make, programs
+from fdvv.program.program import Program
+from tests.support.program.scripted_press import TICKS_PER_S, path, press
 
 NAMES = [p.name for p in programs()]
 TICK_mm = 50 / TICKS_PER_S

@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import pytest
 
-from fdvv.device import TwinDevice
-from fdvv.program import compile_program, make
+from fdvv.device.twin import TwinDevice
+from fdvv.program.compile import compile_program
+from fdvv.program.library import make
 
 GOES = {
     "button": ["up", "down", "up"],

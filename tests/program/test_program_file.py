@@ -10,25 +10,15 @@ from typing import Any
 import jsonschema
 import pytest
 from hypothesis import given, settings
-from tests.program import program_strategies
-from tests.test_docs import tool
+from tools import make_programs, make_schema
 
 from fdvv.errors import InputError, ModelError
-from fdvv.program import (
-    Condition,
-    Program,
-    State,
-    Surface,
-    Transition,
-    When,
-    flat,
-    load_program,
-    load_shipped,
-    program_from_json,
-    program_to_json,
-    programs,
-    save_program,
-)
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.file import load_program, program_from_json, program_to_json, save_program, schema
+from fdvv.program.library import load_shipped, programs
+from fdvv.program.program import Program, State
+from fdvv.program.surface import Surface, flat
+from tests.support.program import program_strategies
 
 TEXT = program_to_json(load_shipped("rapid-trigger"))
 
@@ -49,16 +39,15 @@ def test_a_saved_program_is_loaded_as_it_was(tmp_path: Path) -> None:
 
 
 def test_the_shipped_files_are_those_of_the_code() -> None:
-    made = tool("make_programs").files()
-    assert {path.name for path in made} == {path.name for path in tool("make_programs").FOLDER.iterdir()}
+    made = make_programs.files()
+    assert {path.name for path in made} == {path.name for path in make_programs.FOLDER.iterdir()}
     for path, text in made.items():
         assert path.read_text() == text, "run python tools/make_programs.py"
 
 
 def test_the_published_schema_is_that_of_the_code_and_holds_for_what_is_shipped() -> None:
-    schemas = tool("make_schema")
-    published = schemas.PROGRAM_OUTPUT.read_text()
-    assert published == schemas.text(schemas.program_schema()), "run python tools/make_schema.py"
+    published = make_schema.PROGRAM_OUTPUT.read_text()
+    assert published == make_schema.text(schema()), "run python tools/make_schema.py"
     validator = jsonschema.Draft202012Validator(json.loads(published))
     for recipe in programs():
         validator.validate(json.loads(program_to_json(load_shipped(recipe.name))))

@@ -6,19 +6,24 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.model import Mode, Stroke, Vibration, load_builtin
-from fdvv.program import Waveform, button_program, compile_program, render
-from fdvv.protocol import head_of
-from fdvv.vibration import (
-    InverseSettings,
-    KnownExciter,
-    acceleration_m_s2,
-    board_counts,
-    correlation,
-    drive_for,
-    read_wav,
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.program.render_vibration import (
+    SynthesisMethod,
+    converter,
+    render_vibration,
+    slot_volts,
+    vibration_wav,
 )
-from fdvv.workflow import Way, converter, program_image, render_vibration, slot_volts, vibration_wav
+from fdvv.program.synth import Waveform, render
+from fdvv.protocol.messages import head_of
+from fdvv.rendering.tuning import program_image
+from fdvv.vibration.exciter import KnownExciter
+from fdvv.vibration.inverse import InverseSettings, acceleration_m_s2, correlation, drive_for
+from fdvv.vibration.wave import board_counts, read_wav
 
 EXCITER = KnownExciter(24.0, 670.0, 2.0, latency_s=0.0002)
 SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 4.0, 100.0),))
@@ -26,7 +31,7 @@ SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 4.0, 100.0),))
 
 def test_the_inverse_is_chosen_where_the_plain_waveform_rings() -> None:
     made = render_vibration(SNAP, EXCITER)
-    assert made.way is Way.INVERSE
+    assert made.way is SynthesisMethod.INVERSE
     assert made.slot.waveform is Waveform.SAMPLED
     assert made.likeness > 0.93
     assert 0.8 < made.strength_ratio < 1.1
@@ -36,7 +41,7 @@ def test_the_inverse_is_chosen_where_the_plain_waveform_rings() -> None:
 def test_the_plain_slot_is_kept_where_the_exciter_hardly_shapes_it() -> None:
     flat = KnownExciter(24.0, 20.0, 0.7)
     made = render_vibration(SNAP, flat)
-    assert made.way is Way.PLAIN
+    assert made.way is SynthesisMethod.PLAIN
     assert made.slot.waveform is Waveform.SINE
     assert made.lead_s == 0.0
     assert made.strength_ratio == pytest.approx(1.0, abs=0.1)

@@ -10,24 +10,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fdvv.core import Core, RecordArray, inputs_at
-from fdvv.program import (
-    Condition,
-    Limits,
-    Program,
-    State,
-    Transition,
-    When,
-    check_program,
-    compile_program,
-    flat,
-    line,
-    make,
-    programs,
-)
-from fdvv.protocol import Mode, Settings
-
-from ._random_programs import random_program
+from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.program.check import check_program
+from fdvv.program.compile import compile_program
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.library import make, programs
+from fdvv.program.program import Program, State
+from fdvv.program.surface import Limits, flat, line
+from fdvv.protocol.tables import Mode, Settings
+from tests.support.program.random_images import random_program
 
 LIMITS = Limits()
 TICK_s = 250e-6

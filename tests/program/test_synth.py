@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.program import RATE_HZ, SILENCE_counts, Slot, Waveform, render
-
-from .strategies import SLOTS, STRENGTHS
+from fdvv.program.synth import RATE_HZ, SILENCE_counts, Slot, Waveform, render
+from tests.support.program.slot_strategies import SLOTS, STRENGTHS
 
 STEADY = Slot(Waveform.SINE, frequency_Hz16=16 * 250, duration_samples=6400, amplitude_counts=1000)
 

@@ -10,10 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.program import SILENCE_counts, Slot, Waveform, render
-
-from ._core import Board, CSlot
-from .strategies import SLOTS, STRENGTHS
+from fdvv.program.synth import SILENCE_counts, Slot, Waveform, render
+from tests.support.program.slot_strategies import SLOTS, STRENGTHS
+from tests.support.program.synth_in_c import Board, CSlot
 
 CORE = Path(__file__).resolve().parents[2] / "firmware" / "core"
 SNAP = Slot(Waveform.SINE, 3824, 256, 1840, 50_461)

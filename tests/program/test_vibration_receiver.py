@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.program import Slot, Waveform, bank_messages, checksum, play_message, read_status, set_message
-
-from ._core import NOTHING, RIGHT, SLOT, STRENGTH, Board
-from .strategies import SLOTS
+from fdvv.program.synth import Slot, Waveform, bank_messages, checksum, play_message, read_status, set_message
+from tests.support.program.slot_strategies import SLOTS
+from tests.support.program.synth_in_c import NOTHING, RIGHT, SLOT, STRENGTH, Board
 
 SNAP = Slot(Waveform.SINE, 3824, 256, 1840, 50_461)
 BLIP = Slot(Waveform.SAMPLED, 65_535, 300, 2047, wave=tuple(range(-20, 20)))

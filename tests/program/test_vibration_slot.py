@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Vibration, load_builtin
-from fdvv.program import RATE_HZ, SILENCE_counts, Waveform, render, slot_of_vibration
+from fdvv.model.file import load_builtin
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.program.synth import RATE_HZ, SILENCE_counts, Waveform, render, slot_of_vibration
 
 SNAP = Mode(frequency_Hz=239.0, amplitude_m_s2=4.6, decay_1_s=130.7)
 

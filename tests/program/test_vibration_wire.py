@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import DeviceError, ModelError
-from fdvv.program import (
+from fdvv.program import synth as _synth
+from fdvv.program import synth as _vibration_wire
+from fdvv.program.synth import (
     BoardStatus,
     Slot,
     Waveform,
-    _synth,
-    _vibration_wire,
     bank_messages,
     checksum,
     load_messages,

@@ -11,14 +11,17 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.model import load_builtin, load_model
-from fdvv.workflow import Drafts, model_of
+from fdvv.model.file import load_builtin, load_model
+from fdvv.project.documents import DocumentStore
+from fdvv.project.patch import model_of
 
 EDITOR = """
 import itertools, sys
 from pathlib import Path
-from fdvv.workflow import Drafts, EditMade, RedoMade, UndoMade, patch_between
-drafts = Drafts(Path(sys.argv[1]))
+from fdvv.project.documents import DocumentStore
+from fdvv.project.history import EditMade, RedoMade, UndoMade
+from fdvv.project.patch import patch_between
+drafts = DocumentStore(Path(sys.argv[1]))
 start = drafts.open("a").revision
 print("ready", start, flush=True)
 for i in itertools.count(start):
@@ -40,12 +43,12 @@ for i in itertools.count(start):
 )
 def test_every_acknowledged_edit_survives_a_kill(tmp_path: Path, seed: int) -> None:
     project, rng = tmp_path / "project", random.Random(seed)
-    drafts = Drafts(project)
+    drafts = DocumentStore(project)
     drafts.create("a", load_builtin("mx-clear"))
     drafts.close()
     for _ in range(2):
         start, acknowledged = killed(project, rng.uniform(0.0, 0.25))
-        drafts = Drafts(project)
+        drafts = DocumentStore(project)
         state = drafts.open("a")
         newest = max(acknowledged, default=start)
         # at most the edit that was under way when the signal came is there beyond the last acknowledged one

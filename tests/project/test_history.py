@@ -1,4 +1,4 @@
-"""Patches of models, on the cases that the page is tested on."""
+"""The history of a button: a session of the page, replayed."""
 
 from __future__ import annotations
 
@@ -9,9 +9,39 @@ from typing import Any
 import msgspec
 import pytest
 
-from fdvv.errors import ModelError
-from fdvv.model import builtin_names, load_builtin
-from fdvv.workflow import Patch, apply_patch, inverse_patch, model_of, patch_between, record_of
+from fdvv.errors import InputError, ModelError
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.project.history import EditHistory, HistoryChange, RedoMade, UndoMade, UnpinMade
+from fdvv.project.patch import Patch, apply_patch, inverse_patch, model_of, patch_between, record_of
+
+SESSION = Path(__file__).resolve().parents[2] / "web" / "tests" / "golden" / "session.json"
+
+
+def test_a_session_of_the_page_leads_to_the_same_history() -> None:
+    session = json.loads(SESSION.read_text())
+    history = EditHistory(session["opening"], session["opening"])
+    kinds = set()
+    for change in session["changes"]:
+        kinds.add(change["type"])
+        history = history.after(msgspec.convert(change, HistoryChange))
+        model_of(history.record, "session")
+    left = session["left"]
+    assert kinds >= {"edit", "undo", "redo", "pin"}
+    assert any(change.get("joins") for change in session["changes"])
+    assert json.loads(msgspec.json.encode(history.steps)) == left["steps"]
+    assert (history.opening, history.done) == (left["opening"], left["done"])
+    assert json.loads(msgspec.json.encode(history.pins)) == left["pins"]
+    back = history.after(UndoMade("u", history.done))
+    assert back.record == history.opening
+    assert back.after(RedoMade("r", history.done)).record == history.record
+
+
+def test_steps_and_pins_that_are_not_there_are_refused() -> None:
+    history = EditHistory({"name": "a"}, {"name": "a"})
+    for change in (UndoMade("u", 1), RedoMade("r", 1), UnpinMade("p", 0)):
+        with pytest.raises(InputError, match="open the button again"):
+            history.after(change)
+
 
 GOLDEN = Path(__file__).resolve().parents[2] / "web" / "tests" / "golden"
 

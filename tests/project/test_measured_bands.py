@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.device import TwinDevice
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
-from fdvv.model import load_builtin
-from fdvv.workflow import ProbeResult, measured_button, probe, uncompensated
+from fdvv.model.file import load_builtin
+from fdvv.project.measured_bands import measured_button
+from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.probe import ProbeResult, probe
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +34,8 @@ def test_the_bands_are_the_quartiles_of_the_presses(tmp_path: Path, probed: Prob
     found = measured_button(tmp_path, "my-button")
     assert found is not None
     assert (found.device_name, found.presses, found.simulated) == (probed.device_name, 6, True)
-    assert len(found.bands) == 4
-    for band, curve in zip(found.bands, probed.curves, strict=True):
+    assert len(found.curves) == 4
+    for band, curve in zip(found.curves, probed.curves, strict=True):
         assert (band.stroke, band.velocity_mm_s) == (curve.stroke, curve.velocity_mm_s)
         expected = np.quantile(curve.rendered_cN, [0.25, 0.5, 0.75], axis=0)
         np.testing.assert_allclose([band.low_cN, band.median_cN, band.high_cN], expected)

@@ -9,18 +9,19 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.program import load_shipped, program_from_json, program_to_json, programs
-from fdvv.workflow import ProgramShelf
+from fdvv.program.file import program_from_json, program_to_json
+from fdvv.program.library import load_shipped, programs
+from fdvv.project.programs import ProgramCatalog
 
 BUTTON = program_to_json(load_shipped("button"))
 
 
 @pytest.fixture
-def shelf(tmp_path: Path) -> ProgramShelf:
-    return ProgramShelf(tmp_path)
+def shelf(tmp_path: Path) -> ProgramCatalog:
+    return ProgramCatalog(tmp_path)
 
 
-def test_a_new_project_lists_the_shipped_programs(shelf: ProgramShelf) -> None:
+def test_a_new_project_lists_the_shipped_programs(shelf: ProgramCatalog) -> None:
     entries = shelf.entries()
     assert [e.id for e in entries] == [f"shipped:{r.name}" for r in programs()]
     assert all(e.summary and e.states and not e.problem for e in entries)
@@ -28,7 +29,7 @@ def test_a_new_project_lists_the_shipped_programs(shelf: ProgramShelf) -> None:
 
 
 @pytest.mark.parametrize("recipe", programs(), ids=lambda r: r.name)
-def test_a_shipped_program_is_copied_with_all_it_does(shelf: ProgramShelf, recipe: object) -> None:
+def test_a_shipped_program_is_copied_with_all_it_does(shelf: ProgramCatalog, recipe: object) -> None:
     name = recipe.name  # type: ignore[attr-defined]
     kept = shelf.copy(f"shipped:{name}", "mine")
     shipped = load_shipped(name)
@@ -36,16 +37,16 @@ def test_a_shipped_program_is_copied_with_all_it_does(shelf: ProgramShelf, recip
     assert shelf.open("own:mine") == kept
 
 
-def test_a_saved_program_is_there_for_the_next_shelf(shelf: ProgramShelf, tmp_path: Path) -> None:
+def test_a_saved_program_is_there_for_the_next_shelf(shelf: ProgramCatalog, tmp_path: Path) -> None:
     first = shelf.save("own:one", BUTTON)
     changed = program_to_json(replace(load_shipped("button"), travel_mm=1.5))
     second = shelf.save("own:one", changed, first.revision)
     assert second.revision != first.revision
-    assert ProgramShelf(tmp_path).open("own:one") == second
+    assert ProgramCatalog(tmp_path).open("own:one") == second
     assert program_from_json(second.text).travel_mm == 1.5
 
 
-def test_who_opened_a_program_before_it_changed_does_not_overwrite_it(shelf: ProgramShelf) -> None:
+def test_who_opened_a_program_before_it_changed_does_not_overwrite_it(shelf: ProgramCatalog) -> None:
     first = shelf.save("own:one", BUTTON)
     changed = program_to_json(replace(load_shipped("button"), travel_mm=1.5))
     second = shelf.save("own:one", changed, first.revision)
@@ -57,7 +58,7 @@ def test_who_opened_a_program_before_it_changed_does_not_overwrite_it(shelf: Pro
     assert shelf.open("own:one") == second
 
 
-def test_of_many_savers_at_once_one_wins(shelf: ProgramShelf) -> None:
+def test_of_many_savers_at_once_one_wins(shelf: ProgramCatalog) -> None:
     first = shelf.save("own:one", BUTTON)
     texts = [program_to_json(replace(load_shipped("button"), travel_mm=1.0 + i / 10)) for i in range(8)]
 
@@ -92,7 +93,7 @@ def test_of_many_savers_at_once_one_wins(shelf: ProgramShelf) -> None:
         "a\n",
     ],
 )
-def test_a_name_that_could_leave_the_folder_is_refused(shelf: ProgramShelf, name: str) -> None:
+def test_a_name_that_could_leave_the_folder_is_refused(shelf: ProgramCatalog, name: str) -> None:
     with pytest.raises(InputError, match="no name for a file"):
         shelf.save(f"own:{name}", BUTTON)
     with pytest.raises(InputError, match="no such program"):
@@ -101,36 +102,36 @@ def test_a_name_that_could_leave_the_folder_is_refused(shelf: ProgramShelf, name
 
 
 @pytest.mark.parametrize("program_id", ["shipped:nothing", "own:nothing", "nothing", "", "builtin:mx-red"])
-def test_an_unknown_id_is_one_line(shelf: ProgramShelf, program_id: str) -> None:
+def test_an_unknown_id_is_one_line(shelf: ProgramCatalog, program_id: str) -> None:
     with pytest.raises(InputError):
         shelf.open(program_id)
 
 
-def test_names_that_differ_in_case_only_do_not_live_side_by_side(shelf: ProgramShelf) -> None:
+def test_names_that_differ_in_case_only_do_not_live_side_by_side(shelf: ProgramCatalog) -> None:
     shelf.save("own:One", BUTTON)
     with pytest.raises(InputError, match="there is a program 'One'"):
         shelf.save("own:one", BUTTON)
     assert shelf.free_name("ONE") == "ONE 2"
 
 
-def test_shipped_programs_stay_as_they_are(shelf: ProgramShelf) -> None:
+def test_shipped_programs_stay_as_they_are(shelf: ProgramCatalog) -> None:
     with pytest.raises(InputError, match="copy it first"):
         shelf.save("shipped:button", BUTTON)
     with pytest.raises(InputError, match="copy it first"):
         shelf.delete("shipped:button", "")
 
 
-def test_copies_without_a_name_find_one(shelf: ProgramShelf) -> None:
-    ids = [shelf.copy("shipped:button").id for _ in range(3)]
+def test_copies_without_a_name_find_one(shelf: ProgramCatalog) -> None:
+    ids = [shelf.copy("shipped:button").program for _ in range(3)]
     assert ids == ["own:mx-red", "own:mx-red 2", "own:mx-red 3"]
 
 
-def test_what_was_deleted_comes_back_under_a_free_name(shelf: ProgramShelf) -> None:
+def test_what_was_deleted_comes_back_under_a_free_name(shelf: ProgramCatalog) -> None:
     kept = shelf.save("own:one", BUTTON)
     thrown = shelf.delete("own:one", kept.revision)
     assert not [e for e in shelf.entries() if e.id.startswith("own:")]
     shelf.save("own:one", BUTTON)
-    assert shelf.restore(thrown).id == "own:one 2"
+    assert shelf.restore(thrown).program == "own:one 2"
     with pytest.raises(InputError, match="not in the trash"):
         shelf.restore(thrown)
     again = shelf.open("own:one")
@@ -139,7 +140,7 @@ def test_what_was_deleted_comes_back_under_a_free_name(shelf: ProgramShelf) -> N
         shelf.save("own:one", BUTTON, again.revision)
 
 
-def test_a_broken_file_is_listed_with_what_is_wrong(shelf: ProgramShelf) -> None:
+def test_a_broken_file_is_listed_with_what_is_wrong(shelf: ProgramCatalog) -> None:
     kept = shelf.save("own:good", BUTTON)
     (shelf.folder / "bad.fdvv-program.json").write_text(kept.text.replace('"travel_mm"', '"travel"'))
     (shelf.folder / ".half.fdvv-program.json").write_text("{")
@@ -149,7 +150,7 @@ def test_a_broken_file_is_listed_with_what_is_wrong(shelf: ProgramShelf) -> None
     assert own["own:good"].problem == ""
 
 
-def test_a_file_beyond_all_measure_is_refused(shelf: ProgramShelf) -> None:
+def test_a_file_beyond_all_measure_is_refused(shelf: ProgramCatalog) -> None:
     with pytest.raises(InputError, match="at most 2 MB"):
         shelf.save("own:large", BUTTON + " " * 2_000_000)
     assert not shelf.folder.exists()

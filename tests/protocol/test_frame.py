@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.protocol import FRAME_BYTES, Frame, FrameDecoder, crc16, decode, encode, stuff, unstuff
+from fdvv.protocol.frame import Frame, FrameDecoder, crc16, decode, encode, stuff, unstuff
+from fdvv.protocol.tables import FRAME_BYTES
 
 PAYLOADS = st.binary(max_size=FRAME_BYTES - 4)
 FRAMES = st.builds(Frame, st.integers(0, 255), st.integers(0, 255), PAYLOADS)

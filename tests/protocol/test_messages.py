@@ -11,22 +11,10 @@ import pytest
 
 from fdvv._native import library
 from fdvv.errors import ModelError
-from fdvv.protocol import (
-    REPLIES,
-    REPLY,
-    REQUESTS,
-    DataRequest,
-    Frame,
-    Message,
-    PingRequest,
-    Record,
-    TickRecord,
-    decode,
-    encode,
-    read_notice,
-    read_reply,
-    request_frame,
-)
+from fdvv.protocol.frame import Frame, decode, encode
+from fdvv.protocol.messages import REPLIES, REPLY, REQUESTS, read_notice, read_reply, request_frame
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import DataRequest, Message, PingRequest, TickRecord
 
 GOLDEN = json.loads((Path(__file__).parents[2] / "protocol" / "golden.json").read_text())
 NAMES = [f"{example['message']} {example['part']}" for example in GOLDEN]

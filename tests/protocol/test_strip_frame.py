@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 
 from fdvv._native import library
 from fdvv.errors import ModelError
-from fdvv.protocol import (
-    REPLY,
+from fdvv.protocol.frame import Frame, FrameDecoder, decode, encode
+from fdvv.protocol.messages import REPLY
+from fdvv.protocol.strip_tables import (
     STRIP_HASH,
     STRIP_REPLY_BYTES,
     STRIP_REQUEST_BYTES,
-    Frame,
-    FrameDecoder,
     StripBeginRequest,
     StripHelloRequest,
     StripMessage,
@@ -26,8 +25,6 @@ from fdvv.protocol import (
     StripReadRoundReply,
     StripRefusal,
     StripRefusedReply,
-    decode,
-    encode,
 )
 
 LARGEST_BYTES = 60

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from fdvv.recording import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
+from fdvv.recording.types import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
 NAME = st.text(st.characters(categories=["L", "N", "P"]), min_size=1, max_size=12)

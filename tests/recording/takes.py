@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.recording import Bench, Mark, Quantity, Recording, Stage, Stream, Take
+from fdvv.recording.types import Bench, Mark, Quantity, Recording, Stage, Stream, Take
 
 ABOUT = Recording("mx-clear", bench=Bench(force_filter_ms=1.0, tip_mass_g=2.5), licence="CC0", person="A")
 

@@ -8,19 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recording.takes import ABOUT, take
 
-from fdvv.recording import (
-    RECORDING_SUFFIX,
-    Bench,
-    Mend,
-    Recording,
-    RecordingLog,
-    Take,
-    check_recording,
-    save_recording,
-)
-from fdvv.testing import captured_session
+from fdvv.recording.check import check_recording
+from fdvv.recording.file import RECORDING_SUFFIX, Correction, save_recording
+from fdvv.recording.log import RecordingLog
+from fdvv.recording.types import Bench, Recording, Take
+from fdvv.testing.captured import captured_session
+from tests.recording.takes import ABOUT, take
 
 
 def saved(path: Path, *takes: Take, about: Recording = ABOUT) -> Path:
@@ -35,7 +29,7 @@ def whole(path: Path, takes: int = 3) -> Path:
 def test_a_whole_recording_tells_its_facts(tmp_path: Path) -> None:
     path = whole(tmp_path / "a")
     with RecordingLog(path, ABOUT) as log:
-        log.mend(Mend({"remark": "slipped"}, take=2))
+        log.mend(Correction({"remark": "slipped"}, take=2))
     found = check_recording(path)
     assert (found.kind, found.status, found.problems, found.notes) == ("a recording", 0, (), ())
     facts = found.facts

@@ -13,7 +13,9 @@ import jsonschema
 import numpy as np
 import pytest
 
-from fdvv.recording import load_recording, read_log, schema
+from fdvv.recording.file import load_recording
+from fdvv.recording.read import read_log
+from fdvv.recording.records import schema
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 

@@ -11,22 +11,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.recording.strategies import recordings, told
-from tests.recording.takes import ABOUT, TAKE, head, take
 
 from fdvv.errors import InputError, ModelError
-from fdvv.journal import line_of
-from fdvv.recording import (
-    RECORDING_SUFFIX,
-    Bench,
-    Mend,
-    Quantity,
-    Recording,
-    RecordingLog,
-    Stream,
-    load_recording,
-    save_recording,
-)
+from fdvv.eventlog import line_of
+from fdvv.recording.file import RECORDING_SUFFIX, Correction, load_recording, save_recording
+from fdvv.recording.log import RecordingLog
+from fdvv.recording.types import Bench, Quantity, Recording, Stream
+from tests.recording.strategies import recordings, told
+from tests.recording.takes import ABOUT, TAKE, head, take
 
 SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
 
@@ -153,9 +145,11 @@ def test_a_calibration_is_mended_without_touching_a_sample(tmp_path: Path) -> No
     path = written(tmp_path / "a")
     before = path.read_bytes()
     with RecordingLog(path, ABOUT) as log:
-        log.mend(Mend({"scale": 0.06, "zero": 11.0}, stream="force", why="weighed again"), made="2026-02-01")
-        log.mend(Mend({"remark": "slipped", "stage": "probe"}, take=2))
-        log.mend(Mend({"tip_mass_g": 3.0, "licence": "CC BY 4.0"}))
+        log.mend(
+            Correction({"scale": 0.06, "zero": 11.0}, stream="force", why="weighed again"), made="2026-02-01"
+        )
+        log.mend(Correction({"remark": "slipped", "stage": "probe"}, take=2))
+        log.mend(Correction({"tip_mass_g": 3.0, "licence": "CC BY 4.0"}))
         log.add(take(4))
         mended = log.recording
     found = load_recording(path)
@@ -189,7 +183,7 @@ def test_what_may_not_be_mended_is_refused_before_it_is_written(
     path = written(tmp_path / "a", 1)
     before = path.read_bytes()
     with RecordingLog(path, ABOUT) as log, pytest.raises((ModelError, ValueError)):
-        log.mend(Mend(values, number, stream))
+        log.mend(Correction(values, number, stream))
     assert path.read_bytes() == before
 
 

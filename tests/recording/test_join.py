@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recording.files import motive, serial
 
 from fdvv.errors import ModelError
-from fdvv.recording import Bench, Recording, Stage, Take, join, read_log
+from fdvv.recording.join import join
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Bench, Recording, Stage, Take
+from tests.recording.files import motive, serial
 
 
 @pytest.fixture

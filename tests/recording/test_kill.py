@@ -12,10 +12,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from fdvv.recording.file import load_recording
+from fdvv.recording.log import RecordingLog
+from fdvv.recording.types import Take
 from tests.recording.strategies import told
 from tests.recording.takes import ABOUT, take
-
-from fdvv.recording import RecordingLog, Take, load_recording
 
 LONGEST_s = 0.08
 """A child makes its first take after some 20 ms, and then one every few."""

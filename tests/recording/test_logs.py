@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recording.files import NAMES, TEXTS, counts, forcepeaks, table
 
 from fdvv.errors import InputError
-from fdvv.recording import Quantity, Recording, load_recording, log_formats, read_log, save_recording
+from fdvv.recording.file import load_recording, save_recording
+from fdvv.recording.read import log_formats, read_log
+from fdvv.recording.types import Quantity, Recording
 from fdvv.units import GRAM_FORCE_cN
+from tests.recording.files import NAMES, TEXTS, counts, forcepeaks, table
 
 
 def read(folder: Path, text: str, name: str = "log.txt", rate_Hz: float | None = None) -> Recording:

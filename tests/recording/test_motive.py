@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recording.files import motive
 
 from fdvv.errors import InputError
-from fdvv.recording import Recording, read_log
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Recording
+from tests.recording.files import motive
 
 
 def read(folder: Path, text: str | bytes) -> Recording:

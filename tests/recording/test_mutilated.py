@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.damage import DAMAGES, Damage
-from tests.recording.files import NAMES, TEXTS, wav
-from tests.recording.takes import TAKE, head
 
 from fdvv.errors import InputError
-from fdvv.journal import line_of
-from fdvv.recording import Recording, read_log
+from fdvv.eventlog import line_of
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Recording
+from tests.recording.files import NAMES, TEXTS, wav
+from tests.recording.takes import TAKE, head
+from tests.support.damage import DAMAGES, Damage
 
 EXAMPLES = int(os.environ.get("FDVV_EXAMPLES", "15"))
 SETTINGS = settings(

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.recording import Quantity, Recording, Stream, Take, select
+from fdvv.recording.join import select
+from fdvv.recording.types import Quantity, Recording, Stream, Take
 
 
 def export() -> Recording:

@@ -6,10 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recording.files import serial
 
 from fdvv.errors import InputError
-from fdvv.recording import Quantity, Recording, RecordingLog, SerialCapture, Stage, load_recording, read_log
+from fdvv.recording.file import load_recording
+from fdvv.recording.log import RecordingLog
+from fdvv.recording.read import read_log
+from fdvv.recording.serial import SerialCapture
+from fdvv.recording.types import Quantity, Recording, Stage
+from tests.recording.files import serial
 
 
 def read(folder: Path, text: str) -> Recording:

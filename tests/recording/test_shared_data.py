@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.recording import Quantity, Recording, load_recording, read_log, save_recording
+from fdvv.recording.file import load_recording, save_recording
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Quantity, Recording
 
 pytestmark = pytest.mark.shared
 

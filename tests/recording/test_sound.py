@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from tests.recording.files import wav
 
 from fdvv.errors import BuildError, InputError
-from fdvv.recording import Quantity, Recording, read_log
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Quantity, Recording
+from tests.recording.files import wav
 
 RNG = np.random.default_rng(1)
 

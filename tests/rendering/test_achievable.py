@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.compensate import load_memory, save_rig
+from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, load_builtin
-from fdvv.workflow import RigOnShelf, RigShelf, achievable, feasibility
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.feasibility import feasibility
+from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog, achievable
 
 
 @pytest.fixture(scope="module")
@@ -20,8 +23,8 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def light(project: Path) -> RigOnShelf:
-    return RigShelf(project).rig("shipped:light")
+def light(project: Path) -> AvailableRig:
+    return RigCatalog(project).rig("shipped:light")
 
 
 def raised(model: FDVVModel, by_cN: float) -> FDVVModel:
@@ -31,11 +34,11 @@ def raised(model: FDVVModel, by_cN: float) -> FDVVModel:
     return replace(model, curves=tuple(map(lifted, model.curves)))
 
 
-def test_a_shipped_rig_is_met_once_and_kept_in_the_project(project: Path, light: RigOnShelf) -> None:
+def test_a_shipped_rig_is_met_once_and_kept_in_the_project(project: Path, light: AvailableRig) -> None:
     kept = project / "rigs" / "light.simulated.rig.json"
-    assert load_memory(kept).known == light.known
+    assert load_learned_rig(kept).rig == light.known
     written = kept.stat().st_mtime_ns
-    again = RigShelf(project)
+    again = RigCatalog(project)
     assert again.rig("shipped:light").known == light.known
     assert kept.stat().st_mtime_ns == written
     assert {e.rig_id: e.known for e in again.entries()} == {
@@ -47,10 +50,10 @@ def test_a_shipped_rig_is_met_once_and_kept_in_the_project(project: Path, light:
 
 
 def test_a_file_of_a_person_is_on_the_shelf_and_not_called_simulated(
-    tmp_path: Path, light: RigOnShelf
+    tmp_path: Path, light: AvailableRig
 ) -> None:
     save_rig(light.known, tmp_path / "rigs" / "bench.rig.json")
-    shelf = RigShelf(tmp_path)
+    shelf = RigCatalog(tmp_path)
     assert [e.rig_id for e in shelf.entries()][-1] == "own:bench"
     found = shelf.rig("own:bench")
     assert found.known == light.known
@@ -60,11 +63,11 @@ def test_a_file_of_a_person_is_on_the_shelf_and_not_called_simulated(
 @pytest.mark.parametrize("rig_id", ["own:../rigs/light", "shipped:heavy", "", "own:light.simulated"])
 def test_an_unknown_rig_is_refused_with_those_there_are(project: Path, rig_id: str) -> None:
     with pytest.raises(InputError, match="choose one of shipped:default, shipped:paper, shipped:light"):
-        RigShelf(project).rig(rig_id)
+        RigCatalog(project).rig(rig_id)
 
 
 @pytest.mark.parametrize("speed_mm_s", [0.5, 50.0, 200.0])
-def test_the_curves_told_are_those_of_the_feasibility_report(light: RigOnShelf, speed_mm_s: float) -> None:
+def test_the_curves_told_are_those_of_the_feasibility_report(light: AvailableRig, speed_mm_s: float) -> None:
     model = load_builtin("mx-clear")
     told = achievable(model, light, [speed_mm_s])
     full = feasibility(model, light.known, light.settings, [speed_mm_s], info=light.info).curves
@@ -80,7 +83,7 @@ def test_the_curves_told_are_those_of_the_feasibility_report(light: RigOnShelf, 
         assert curve.expected_mean_cN == pytest.approx(of.expected.mean_cN, abs=0.05)
 
 
-def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: RigOnShelf) -> None:
+def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: AvailableRig) -> None:
     strong = raised(load_builtin("mx-clear"), 600.0)
     press = achievable(strong, light, [50.0])[0]
     cut = [r for r in press.limited if r.limit == "force"]
@@ -95,6 +98,8 @@ def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: RigO
     assert achievable(load_builtin("mx-clear"), light, [50.0])[0].limited == ()
 
 
-def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_told_once(light: RigOnShelf) -> None:
+def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_told_once(
+    light: AvailableRig,
+) -> None:
     told = achievable(load_builtin("mx-red"), light, [None, 50.0])
     assert [(c.stroke, c.velocity_mm_s) for c in told] == [(Stroke.PRESS, 50.0), (Stroke.RELEASE, 50.0)]

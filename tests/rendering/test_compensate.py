@@ -8,15 +8,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.compensate import Delays, GainSchedule, PaperLaw, PerCurve
-from fdvv.device import TwinDevice
+from fdvv.compensation.identification.balance import Delays
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.tables import GainSchedule
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow._actuation_file import load_actuation, save_actuation
-from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
-from fdvv.workflow._probe import probe
-from fdvv.workflow._session_events import PressDone
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.actuation_file import load_actuation, save_actuation
+from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.probe import probe
+from fdvv.rendering.session_run import PressDone
+from fdvv.testing.scripted import ScriptedDevice
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 100.0]

@@ -4,13 +4,18 @@ from dataclasses import replace
 
 import pytest
 
-from fdvv.device import HostBoard, LinkedDevice, ScriptedPerson, SimulatedPerson, TwinDevice
+from fdvv.device.boards import HostBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import ScriptedPerson
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import FitError, InputError
-from fdvv.protocol import Settings, head_of
-from fdvv.twin import Exciter, Finger, PositionSensor, Rig
-from fdvv.vibration import KnownExciter
-from fdvv.workflow import identify_exciter, prepare_exciter, with_lead
-from fdvv.workflow._exciter import tone_image
+from fdvv.protocol.messages import head_of
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.exciter import identify_exciter, prepare_exciter, tone_image, with_lead
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import PositionSensor, Rig
+from fdvv.twin.rig_moves import Exciter
+from fdvv.vibration.exciter import KnownExciter
 
 RIG = Rig(exciter=Exciter(latency_s=2e-4))
 RESONANCE_Hz, QUALITY, GAIN_m_s2_V = 669.3, 1.96, 19.6

@@ -8,26 +8,33 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensate import Following, KnownRig, Motion, NominalFinger, SampledLoop, stiffness_limit_N_m
-from fdvv.device import DeviceInfo, TwinDevice, open_device
+from fdvv.compensation.feasibility.limits import Motion
+from fdvv.compensation.feasibility.stability import NominalFinger, SampledLoop, stiffness_limit_N_m
+from fdvv.compensation.feasibility.verdict import Following
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.device.contract import DeviceInfo
+from fdvv.device.open import open_device
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, ForceSurface, Stroke, load_builtin, remove_curve
-from fdvv.testing import draw_fast_rig, rig_truth, swings_held
-from fdvv.twin import Finger, Rig, settings_of
-from fdvv.workflow import (
-    FeasibilityReport,
-    fd_only,
-    feasibility,
-    feasible_curves,
-    probe,
-    uncompensated,
-)
+from fdvv.model.curve import Stroke
+from fdvv.model.edit import remove_curve
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.feasibility import FeasibilityReport, feasibility, feasible_curves
+from fdvv.rendering.probe import fd_only, probe
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from tests.support.held import swings_held
+from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 SPEEDS = (50.0, 200.0)
 
 
 @pytest.fixture(scope="module")
-def drawn() -> tuple[Rig, Finger, KnownRig]:
+def drawn() -> tuple[Rig, Finger, RigModel]:
     rig, finger = draw_fast_rig(401, "voltage")
     return rig, finger, rig_truth(rig)
 
@@ -38,7 +45,7 @@ def model() -> FDVVModel:
 
 
 @pytest.fixture(scope="module")
-def report(drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel) -> FeasibilityReport:
+def report(drawn: tuple[Rig, Finger, RigModel], model: FDVVModel) -> FeasibilityReport:
     rig, _, known = drawn
     return feasibility(model, known, settings_of(rig), (200.0, 50.0))
 
@@ -81,7 +88,7 @@ def test_the_report_is_a_document_without_nan(report: FeasibilityReport) -> None
 
 
 def test_a_weak_coil_is_told_by_its_limit_and_a_strong_one_is_not(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
     weak = replace(settings_of(rig), force_limit_cN64=64 * 60)
@@ -92,7 +99,7 @@ def test_a_weak_coil_is_told_by_its_limit_and_a_strong_one_is_not(
 
 
 def test_a_button_without_a_release_is_judged_with_its_press_for_both(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
     single = fd_only(model)
@@ -104,7 +111,7 @@ def test_a_button_without_a_release_is_judged_with_its_press_for_both(
 
 
 def test_a_travel_beyond_the_device_is_refused_by_its_verdict(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
     short = DeviceInfo("short", False, 440.0, 3.0, 2.5e-4)
@@ -114,7 +121,7 @@ def test_a_travel_beyond_the_device_is_refused_by_its_verdict(
 
 
 def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
     lasts_s = model.travel_mm / 200.0
@@ -128,7 +135,7 @@ def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(
 
 
 def test_bad_speeds_and_a_model_without_a_press_are_refused(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
     with pytest.raises(InputError, match="speeds cannot be"):
@@ -137,7 +144,7 @@ def test_bad_speeds_and_a_model_without_a_press_are_refused(
         feasibility(replace(model, curves=model.of("release")), known, settings_of(rig), [50.0])
 
 
-def test_devices_with_the_firmware_in_them_tell_their_settings(drawn: tuple[Rig, Finger, KnownRig]) -> None:
+def test_devices_with_the_firmware_in_them_tell_their_settings(drawn: tuple[Rig, Finger, RigModel]) -> None:
     rig, finger, _ = drawn
     assert TwinDevice(rig, finger).settings() == settings_of(rig)
     host = open_device("host", rig, finger)
@@ -148,7 +155,7 @@ def test_devices_with_the_firmware_in_them_tell_their_settings(drawn: tuple[Rig,
 
 
 def test_what_presses_measured_stands_beside_what_was_computed(
-    drawn: tuple[Rig, Finger, KnownRig], model: FDVVModel
+    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, finger, known = drawn
     device = TwinDevice(rig, finger, 3)
@@ -171,7 +178,7 @@ def test_what_presses_measured_stands_beside_what_was_computed(
 def test_a_held_finger_is_quiet_well_below_the_onset_and_swings_well_above(seed: int) -> None:
     rig, finger = draw_fast_rig(seed, "voltage" if seed % 2 else "current")
     known, x = rig_truth(rig), 0.05 * np.arange(81.0)
-    onset = stiffness_limit_N_m(SampledLoop.of_known(known, 2.5e-4, 2.0, NominalFinger(), 60.0))
+    onset = stiffness_limit_N_m(SampledLoop.of_rig(known, 2.5e-4, 2.0, NominalFinger(), 60.0))
 
     def swings(ratio: float) -> bool:
         wanted = (60.0 + 0.1 * ratio * onset * (x - 2.0) + known.weight_cN) / known.gain_at(x)

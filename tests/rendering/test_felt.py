@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from fdvv.device import TwinDevice
-from fdvv.model import ForceSurface, Stroke, load_builtin
-from fdvv.workflow import FORCE_JND_ratio, PressDone, felt_press, intended_press, noticeable_cN, probe
+from fdvv.device.twin import TwinDevice
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.press_check import FORCE_JND_ratio, felt_press, intended_press, noticeable_cN
+from fdvv.rendering.probe import probe
+from fdvv.rendering.session_run import PressDone
 
 MODEL = load_builtin("mx-clear")
 

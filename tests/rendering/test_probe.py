@@ -5,12 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from fdvv.device import TwinDevice
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import ForceSurface, Press, Stroke, load_builtin
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow._probe import fd_only, probe
-from fdvv.workflow._session_events import PressDone
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.probe import fd_only, probe
+from fdvv.rendering.session_run import PressDone
+from fdvv.testing.scripted import ScriptedDevice
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 200.0]

@@ -10,15 +10,27 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.compensate import RigAware, RigMemory, Tuning, load_memory, save_rig
-from fdvv.device import Device, TwinDevice
+from fdvv.compensation.identification.rig_file import LearnedRig, load_learned_rig, save_rig
+from fdvv.compensation.method import Tuning
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import Device
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import FDVVModel, ForceSurface, Press, load_builtin
-from fdvv.protocol import Settings
-from fdvv.testing import ScriptedDevice, draw_fast_rig
-from fdvv.twin import Finger, Rig
-from fdvv.workflow import CompensationResult, Guide, Session, compensate, open_device, probe, uncompensated
-from fdvv.workflow._session_log import PRESSES, read_log
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.probe import probe
+from fdvv.rendering.session import Session
+from fdvv.rendering.session_log import PRESSES, read_log
+from fdvv.rendering.session_run import Guide
+from fdvv.rendering.tuning import open_device
+from fdvv.testing.scripted import ScriptedDevice
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
+from tests.support.rig_truth import draw_fast_rig
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 100.0, 150.0, 200.0]
@@ -46,9 +58,9 @@ class Learned:
     result: CompensationResult
 
     @property
-    def memory(self) -> RigMemory:
-        assert self.result.memory is not None
-        return self.result.memory
+    def memory(self) -> LearnedRig:
+        assert self.result.learned_rig is not None
+        return self.result.learned_rig
 
     def left_cN(self, model: FDVVModel, result: CompensationResult) -> float:
         return judged_cN(self.rig, self.finger, model, result.surface, result.outcome.tuning)
@@ -76,7 +88,10 @@ def test_an_edited_button_is_rendered_from_the_memory_without_a_press(learned: L
     points = [c.control_points_cN + 10.0 * np.hanning(c.control_points_cN.size) for c in MODEL.curves]
     curves = zip(MODEL.curves, points, strict=True)
     edited = replace(MODEL, curves=tuple(replace(c, control_points_cN=p) for c, p in curves))
-    method, device = RigAware(rounds=0, memory=learned.memory), TwinDevice(learned.rig, learned.finger, 2)
+    method, device = (
+        RigAware(rounds=0, learned_rig=learned.memory),
+        TwinDevice(learned.rig, learned.finger, 2),
+    )
     result = compensate(device, edited, SPEEDS, method)
     assert (result.presses, len(result.outcome.curves)) == (0, 8)
     assert all("expected" in c.sentence for c in result.outcome.curves)
@@ -87,16 +102,16 @@ def test_the_memory_of_a_file_gives_the_same_tables(learned: Learned, tmp_path: 
     save_rig(learned.memory, tmp_path / "a.rig.json")
     device = TwinDevice(learned.rig, learned.finger, 2)
     direct, filed = (
-        compensate(device, MODEL, SPEEDS, RigAware(rounds=0, memory=memory))
-        for memory in (learned.memory, load_memory(tmp_path / "a.rig.json"))
+        compensate(device, MODEL, SPEEDS, RigAware(rounds=0, learned_rig=memory))
+        for memory in (learned.memory, load_learned_rig(tmp_path / "a.rig.json"))
     )
     np.testing.assert_array_equal(direct.surface.press_cN, filed.surface.press_cN)
     assert direct.outcome.tuning == filed.outcome.tuning
 
 
-def notices_of(device: Device, memory: RigMemory, session: Session | None = None) -> list[str]:
+def notices_of(device: Device, memory: LearnedRig, session: Session | None = None) -> list[str]:
     told = list[str]()
-    method = RigAware(rounds=1, memory=memory)
+    method = RigAware(rounds=1, learned_rig=memory)
     compensate(device, MODEL, SPEEDS, method, session=session, guide=Guide(notice=told.append))
     return told
 
@@ -111,7 +126,7 @@ def test_a_rig_that_has_changed_is_told_once_after_its_first_press(learned: Lear
     session = Session(tmp_path / "s")
     told = notices_of(TwinDevice(worn, learned.finger, 31), learned.memory, session)
     assert len(told) == 1
-    assert told[0].startswith("warning: the rig is not as it was known: ")
+    assert told[0].startswith("warning: the rig has changed since its identification: ")
     assert "mass rose" in told[0] or "weight rose" in told[0]
     assert "\n" not in told[0]
     # a session that is only read again has nothing new to tell of the rig
@@ -184,10 +199,10 @@ def test_a_session_that_was_stopped_goes_on_to_the_result_of_one_that_was_not(
     np.testing.assert_array_equal(again.surface.press_cN, whole.surface.press_cN)
     np.testing.assert_array_equal(again.surface.release_cN, whole.surface.release_cN)
     assert again.outcome.tuning == whole.outcome.tuning
-    assert again.memory is not None
-    assert whole.memory is not None
-    assert again.memory.known == whole.memory.known
-    np.testing.assert_array_equal(again.memory.residual.press_cN, whole.memory.residual.press_cN)
+    assert again.learned_rig is not None
+    assert whole.learned_rig is not None
+    assert again.learned_rig.rig == whole.learned_rig.rig
+    np.testing.assert_array_equal(again.learned_rig.residual.press_cN, whole.learned_rig.residual.press_cN)
 
 
 def test_a_session_that_goes_on_does_not_tell_again_what_changed(learned: Learned, tmp_path: Path) -> None:
@@ -200,14 +215,14 @@ def test_a_session_that_goes_on_does_not_tell_again_what_changed(learned: Learne
 
 
 def test_a_session_with_another_memory_is_another_session(learned: Learned, tmp_path: Path) -> None:
-    def begin(memory: RigMemory) -> CompensationResult:
+    def begin(memory: LearnedRig) -> CompensationResult:
         device = TwinDevice(learned.rig, learned.finger, 2)
-        method = RigAware(rounds=0, memory=memory)
+        method = RigAware(rounds=0, learned_rig=memory)
         return compensate(device, MODEL, SPEEDS, method, session=Session(tmp_path / "s"))
 
     assert begin(learned.memory).receipt is not None
     with pytest.raises(InputError, match=r"settings\.memory\.known\.mass_g is"):
-        begin(replace(learned.memory, known=replace(learned.memory.known, mass_g=99.0)))
+        begin(replace(learned.memory, rig=replace(learned.memory.rig, mass_g=99.0)))
 
 
 def test_the_boards_own_program_learns_to_the_end(tmp_path: Path) -> None:
@@ -220,8 +235,8 @@ def test_the_boards_own_program_learns_to_the_end(tmp_path: Path) -> None:
     finally:
         device.close()  # type: ignore[attr-defined] # a board is one that closes
     assert (result.outcome.complete, result.outcome.presses) == (True, 6)
-    assert result.memory is not None
-    assert result.memory.known.presses == 4
+    assert result.learned_rig is not None
+    assert result.learned_rig.rig.presses == 4
     assert result.receipt is not None
     assert result.receipt.used == 6
     # the tuning is on the board
@@ -229,7 +244,7 @@ def test_the_boards_own_program_learns_to_the_end(tmp_path: Path) -> None:
 
 
 def kept_of(folder: Path) -> list[Any]:
-    from fdvv.workflow._session_log import PressLog
+    from fdvv.rendering.session_log import PressLog
 
     log = PressLog(folder)
     try:
@@ -243,10 +258,10 @@ def test_a_board_without_a_force_sensor_takes_a_memorys_tables_but_is_not_presse
 ) -> None:
     device = open_device("host")
     try:
-        result = compensate(device, MODEL, TWO, RigAware(rounds=0, memory=learned.memory))
+        result = compensate(device, MODEL, TWO, RigAware(rounds=0, learned_rig=learned.memory))
         assert result.presses == 0
         with pytest.raises(DeviceError, match="no force sensor"):
-            compensate(device, MODEL, TWO, RigAware(rounds=1, memory=learned.memory))
+            compensate(device, MODEL, TWO, RigAware(rounds=1, learned_rig=learned.memory))
     finally:
         device.close()  # type: ignore[attr-defined] # a board is one that closes
 

@@ -10,58 +10,31 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from fdvv.compensate import Acceptance, GainSchedule, PaperLaw, PerCurve
-from fdvv.device import (
-    DeviceInfo,
-    FaultReport,
-    Inputs,
-    LibraryBoard,
-    LinkedDevice,
-    Recorder,
-    ScriptedPerson,
-    SimulatedPerson,
-    TwinDevice,
-)
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.presses import AcceptanceLimits
+from fdvv.compensation.tables import GainSchedule
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.contract import DeviceInfo, FaultReport
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.recording import Recorder
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.protocol import Fault
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow._actuation_file import load_actuation, open_receipt, save_actuation
-from fdvv.workflow._compensate import CompensationResult, compensate
-from fdvv.workflow._probe import ProbeResult, probe
-from fdvv.workflow._receipt import RECEIPT
-from fdvv.workflow._session import Session
-from fdvv.workflow._session_events import Ask, Guide, PressDone
-from fdvv.workflow._session_log import PRESSES, read_log
-from fdvv.workflow._session_manifest import MANIFEST, plain
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Fault
+from fdvv.rendering.actuation_file import load_actuation, open_run_summary, save_actuation
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import ProbeResult, probe
+from fdvv.rendering.run_summary import RECEIPT
+from fdvv.rendering.session import MANIFEST, Session, plain
+from fdvv.rendering.session_log import PRESSES, read_log
+from fdvv.rendering.session_run import Guide, PressDone, PressRequest
+from fdvv.testing.scripted import ScriptedDevice
+from tests.support.sessions import LAW, MODEL, SPEEDS, Hand, learn
 
-MODEL = load_builtin("mx-clear")
-SPEEDS = [50.0, 100.0]
-LAW = PaperLaw.literal(rounds=1, presses_per_round=4, start="target", gain=GainSchedule.constant(0.4))
 SURFACE = ForceSurface.of_model(MODEL, SPEEDS)
-
-
-class Hand(ScriptedDevice):
-    """A person whose n-th press is changed, or ends in an error, as a script says."""
-
-    def __init__(self, script: dict[int, Any] | None = None, **settings: Any) -> None:
-        super().__init__(**settings)
-        self.script, self.presses, self.uploads, self.stops = script or {}, 0, 0, 0
-
-    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
-        self.uploads += 1
-        super().upload(surface, travel_mm, paced)
-
-    def press(self, velocity_mm_s: float) -> Press:
-        self.presses += 1
-        happens = self.script.get(self.presses)
-        if isinstance(happens, BaseException):
-            raise happens
-        press = super().press(velocity_mm_s)
-        return happens(press) if happens else press
-
-    def stop(self) -> None:
-        self.stops += 1
 
 
 def short(press: Press) -> Press:
@@ -71,10 +44,6 @@ def short(press: Press) -> Press:
 
 def hasty(press: Press) -> Press:
     return replace(press, t_s=press.t_s / 1.5)
-
-
-def learn(device: ScriptedDevice, folder: Path | None = None, **more: Any) -> CompensationResult:
-    return compensate(device, MODEL, SPEEDS, LAW, session=Session(folder), **more)
 
 
 def judged(device: ScriptedDevice, folder: Path | None = None, **more: Any) -> ProbeResult:
@@ -121,7 +90,7 @@ def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Pat
 
 @pytest.mark.parametrize("name", RUNS)
 def test_a_press_that_cannot_be_used_is_kept_told_and_asked_again(tmp_path: Path, name: str) -> None:
-    told, asked = list[PressDone](), list[Ask]()
+    told, asked = list[PressDone](), list[PressRequest]()
     device = Hand({2: short, 3: hasty})
     result = RUNS[name](device, tmp_path / "s", progress=told.append, guide=Guide(ask=asked.append))
     assert device.presses == 10
@@ -262,7 +231,7 @@ def test_a_probe_does_not_go_on_with_a_session_of_learning(tmp_path: Path) -> No
 def test_other_bounds_may_go_on_with_a_session_and_each_run_says_its_own(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         learn(Hand({3: KeyboardInterrupt()}), tmp_path / "s")
-    wide = Session(tmp_path / "s", acceptance=Acceptance(pace_ratio=0.6))
+    wide = Session(tmp_path / "s", acceptance=AcceptanceLimits(pace_ratio=0.6))
     result = compensate(Hand({1: hasty}), MODEL, SPEEDS, LAW, session=wide)
     assert result.skipped == ()
     assert result.receipt is not None
@@ -336,7 +305,7 @@ def test_the_first_run_has_the_seed_of_the_session_and_no_later_one_has_it_again
             continue
     assert seeds[0] == 5
     assert len(set(seeds)) == 3
-    receipt = open_receipt(tmp_path / "s")
+    receipt = open_run_summary(tmp_path / "s")
     assert receipt is not None
     assert [run.seed for run in receipt.runs] == seeds
 
@@ -377,10 +346,10 @@ class Stopping:
 def test_the_standing_counts_presses_and_errors_per_velocity() -> None:
     events: list[PressDone] = []
     result = learn(Hand(drag_cN_s_mm=0.1), progress=events.append)
-    rows = events[-1].standing()
+    rows = events[-1].progress()
     assert [(r.velocity_mm_s, r.made, r.wanted) for r in rows] == [(50.0, 4, 4), (100.0, 4, 4)]
     assert {c for row in rows for c in row.curves} == set(result.outcome.curves)
-    assert events[0].told.startswith("moved the press by up to")
+    assert events[0].message.startswith("moved the press by up to")
     assert events[0].achieved_mm_s == pytest.approx(50.0, rel=0.05)
 
 
@@ -388,7 +357,9 @@ def test_the_receipt_is_in_the_file_and_in_the_folder(tmp_path: Path) -> None:
     result = learn(Hand({2: short}), tmp_path / "s")
     save_actuation(result, tmp_path / "a.actuation.json")
     assert load_actuation(tmp_path / "a.actuation.json").receipt == result.receipt
-    assert open_receipt(tmp_path / "a.actuation.json") == result.receipt == open_receipt(tmp_path / "s")
+    assert (
+        open_run_summary(tmp_path / "a.actuation.json") == result.receipt == open_run_summary(tmp_path / "s")
+    )
     found = json.loads((tmp_path / "s" / RECEIPT).read_text())
     assert found["simulated"] is True
     assert found["used"] == 8
@@ -401,7 +372,7 @@ def test_the_receipt_is_in_the_file_and_in_the_folder(tmp_path: Path) -> None:
 def test_an_unfinished_session_has_a_receipt_of_how_far_it_is(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         learn(Hand({2: short, 5: KeyboardInterrupt()}), tmp_path / "s")
-    receipt = open_receipt(tmp_path / "s")
+    receipt = open_run_summary(tmp_path / "s")
     assert receipt is not None
     assert (receipt.used, len(receipt.not_used), receipt.curves) == (3, 1, [])
 
@@ -417,13 +388,13 @@ def test_a_file_of_version_1_is_read_and_has_no_receipt(tmp_path: Path) -> None:
     assert again.to_dict() == result.to_dict()
     assert again.receipt is None
     with pytest.raises(InputError, match="version 1"):
-        open_receipt(path)
+        open_run_summary(path)
 
 
 def test_a_folder_or_file_of_something_else_has_no_receipt(tmp_path: Path) -> None:
     (tmp_path / "x.csv").write_text("a,b\n")
-    assert open_receipt(tmp_path) is None
-    assert open_receipt(tmp_path / "x.csv") is None
+    assert open_run_summary(tmp_path) is None
+    assert open_run_summary(tmp_path / "x.csv") is None
 
 
 def test_a_real_board_without_a_force_sensor_is_neither_learned_from_nor_judged() -> None:
@@ -473,7 +444,7 @@ def test_a_recording_gives_what_the_device_gave_but_does_not_go_on(tmp_path: Pat
     session = Session(tmp_path / "s")
     again = compensate(session.open_device(f"replay:{path}"), MODEL, SPEEDS, LAW, session=session)
     np.testing.assert_array_equal(again.surface.press_cN, first.surface.press_cN)
-    with pytest.raises(InputError, match="would repeat presses that are kept"):
+    with pytest.raises(InputError, match="would repeat presses that are stored"):
         session.open_device(f"replay:{path}")
 
 
@@ -489,7 +460,7 @@ def test_a_damaged_receipt_is_refused_in_one_line(tmp_path: Path) -> None:
     learn(Hand(), tmp_path)
     (tmp_path / RECEIPT).write_text('{"format": "fdvv-receipt", "version": 1}')
     with pytest.raises(InputError, match=RECEIPT) as caught:
-        open_receipt(tmp_path)
+        open_run_summary(tmp_path)
     assert "run the session's command again" in str(caught.value)
 
 

@@ -11,13 +11,14 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow._session_file import Run
-from fdvv.workflow._session_log import PRESSES, Entry, Kept, PressLog, read_log
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.session_log import PRESSES, PressEntry, PressLog, PressRecord, SessionRun, read_log
+from fdvv.testing.scripted import ScriptedDevice
 
 SURFACE = ForceSurface.of_model(load_builtin("mx-clear"), [50.0, 100.0])
-RUN = Run("2026-01-01T10:00:00.000+00:00", 3, {"fdvv": "0"}, {"pace_ratio": 0.35, "patience": 10})
+RUN = SessionRun("2026-01-01T10:00:00.000+00:00", 3, {"fdvv": "0"}, {"pace_ratio": 0.35, "patience": 10})
 
 
 def press(seed: int = 0) -> Press:
@@ -26,8 +27,10 @@ def press(seed: int = 0) -> Press:
     return device.press(100.0)
 
 
-def kept(number: int, reason: str = "") -> Kept:
-    return Kept(Entry(number, 100.0, reason, 98.5, "2026-01-01T10:00:01.000+00:00"), SURFACE, press(number))
+def kept(number: int, reason: str = "") -> PressRecord:
+    return PressRecord(
+        PressEntry(number, 100.0, reason, 98.5, "2026-01-01T10:00:01.000+00:00"), SURFACE, press(number)
+    )
 
 
 def filled(folder: Path, presses: int = 3) -> PressLog:
@@ -85,7 +88,7 @@ def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) 
 
 def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_path: Path) -> None:
     log = PressLog(tmp_path)
-    log.add(Kept(kept(1, "over speed").entry, SURFACE, None))
+    log.add(PressRecord(kept(1, "over speed").entry, SURFACE, None))
     assert [k.press for k in log.kept()] == [None]
     log.close()
 

@@ -7,25 +7,26 @@ from typing import Any
 
 import pytest
 
-from fdvv.device import TwinDevice
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import FDVVModel, Mode, Press, Stroke, Vibration, load_builtin, load_model, save_model
-from fdvv.protocol import Settings
-from fdvv.testing import ScriptedDevice, plain_surface
-from fdvv.vibration import Comparing, KnownExciter, Preferred, Question, Rating, TemplateGrid
-from fdvv.workflow import (
-    Guide,
-    Session,
-    TuneResult,
-    TuneSetup,
-    TuneTold,
-    candidates_for,
-    open_receipt,
-    simulated_observer,
-    tune_vibration,
-    tuned_model,
-)
-from fdvv.workflow._answer_log import ANSWERS, AnswerLog
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin, load_model, save_model
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.actuation_file import open_run_summary
+from fdvv.rendering.session import Session
+from fdvv.rendering.session_log import ANSWERS, AnswerLog
+from fdvv.rendering.session_run import Guide
+from fdvv.rendering.tune_candidates import candidates_for, simulated_observer, tuned_model
+from fdvv.rendering.tune_vibration import AnswerEvent, TuneResult, TuneSetup, tune_vibration
+from fdvv.testing.conformance import plain_surface
+from fdvv.testing.scripted import ScriptedDevice
+from fdvv.vibration.exciter import KnownExciter
+from fdvv.vibration.templates import TemplateGrid
+from fdvv.vibration.tune import Preferred, Question, Rating
+from fdvv.vibration.tune_compare import Comparing
 
 MODEL = load_builtin("mx-clear")
 SPEEDS = [50.0, 100.0]
@@ -79,7 +80,7 @@ def tune(device: Any, answer: Any, folder: Path | None = None, **changed: Any) -
     about: dict[str, Any] = {"model": MODEL, "speeds": SPEEDS, "method": METHOD, "setup": SETUP, **changed}
     return tune_vibration(
         device, about["model"], about["speeds"], about["method"], answer, about["setup"], Session(folder, 0),
-        changed.get("guide"), changed.get("told", lambda _told: None),
+        changed.get("guide"), changed.get("answered", lambda _event: None),
     )  # fmt: skip
 
 
@@ -104,11 +105,11 @@ def test_the_best_of_each_velocity_is_in_the_model_which_tells_how_it_came_about
 def test_every_answer_is_told_with_what_all_so_far_say_once_it_is_on_file(tmp_path: Path) -> None:
     told: list[tuple[int, int, int]] = []
 
-    def look(now: TuneTold) -> None:
+    def look(now: AnswerEvent) -> None:
         on_file = len((tmp_path / ANSWERS).read_text().splitlines()) - 1
         told.append((now.given.number, on_file, sum(t.standing.answers for t in now.tuned)))
 
-    result = tune(Hand(), prefers(2, 1, 0), tmp_path, told=look)
+    result = tune(Hand(), prefers(2, 1, 0), tmp_path, answered=look)
     assert told == [(n, n, n) for n in range(1, result.answers + 1)]
 
 
@@ -198,7 +199,7 @@ def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Pat
     again = tune(device, prefers(0, 1), tmp_path / "s")
     assert device.presses == 0
     assert again.to_dict() == whole.to_dict()
-    receipt = open_receipt(tmp_path / "s")
+    receipt = open_run_summary(tmp_path / "s")
     assert receipt is not None
     assert (receipt.task, receipt.used) == ("tune", whole.answers)
 
@@ -206,7 +207,7 @@ def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Pat
 def test_an_unfinished_session_has_a_receipt_too(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         tune(Hand({3: KeyboardInterrupt()}), prefers(0), tmp_path / "s")
-    receipt = open_receipt(tmp_path / "s")
+    receipt = open_run_summary(tmp_path / "s")
     assert receipt is not None
     assert receipt.used == 1
 

@@ -10,16 +10,24 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.compensate import PaperLaw, Trial, Tuning
-from fdvv.device import LibraryBoard, LinkedDevice, SimulatedPerson, TwinDevice
+from fdvv.compensation.method import Trial, Tuning
+from fdvv.compensation.paper import PaperLaw
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import InputError
-from fdvv.model import ForceSurface, Press, load_builtin
-from fdvv.protocol import Settings
-from fdvv.testing import ScriptedDevice
-from fdvv.workflow import compensate, load_actuation, probe, save_actuation, settings_with
-from fdvv.workflow._session import Session
-from fdvv.workflow._session_log import PRESSES, PressLog
-from fdvv.workflow._session_run import prepare
+from fdvv.model.file import load_builtin
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.actuation_file import load_actuation, save_actuation
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import probe
+from fdvv.rendering.session import Session
+from fdvv.rendering.session_log import PRESSES, PressLog
+from fdvv.rendering.session_run import prepare
+from fdvv.rendering.tuning import settings_with
+from fdvv.testing.scripted import ScriptedDevice
 
 MODEL = load_builtin("mx-clear")
 SURFACE = ForceSurface.of_model(MODEL, [50.0, 100.0])

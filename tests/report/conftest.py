@@ -5,28 +5,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.model import CurveFit, FDVVModel, MeasuredCurve, Provenance, Stroke, fit_curve, load_builtin
-from fdvv.plot import (
-    DesignPanel,
-    ErrorHistory,
-    RenderedBand,
-    RenderedCurve,
-    ScoreBars,
-    TrainingScores,
-    figure_of,
-    figure_svg,
-    plot_comparison,
-    plot_convergence,
-    plot_designs,
-    plot_fit,
-    plot_model,
-    plot_rendering,
-    plot_scan,
-    plot_score_bars,
-    plot_surface,
-    plot_training,
-    plot_vibration,
-)
+from fdvv.button.figures import plot_fit, plot_scan
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.fit import CurveFit, fit_curve
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.optimize.run.report import DesignPanel, plot_designs
+from fdvv.rendering.figures import plot_convergence, plot_rendering
+from fdvv.report.model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
+from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
+from fdvv.report.svg import figure_of, figure_svg
 
 Draw = Callable[[FDVVModel, MeasuredCurve, list[CurveFit], bool], Any]
 _SCORES = {"uniform": {5: 40.0, 6: 20.0, 7: 30.0}, "adaptive": {5: 30.0, 6: 12.0, 7: 11.0}}

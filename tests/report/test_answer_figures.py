@@ -8,19 +8,19 @@ from matplotlib.container import ErrorbarContainer
 from numpy.testing import assert_allclose
 
 from fdvv.errors import ModelError
-from fdvv.plot import (
-    ChoiceRow,
+from fdvv.report.svg import figure_of
+from fdvv.stats.effect_size import Estimate
+from fdvv.stats.share import share, sign_test
+from fdvv.study.analysis.answer_figures import (
     ForestRow,
     RatingBars,
-    SpecificationCurve,
-    StaircaseTrack,
-    figure_of,
     plot_choices,
     plot_forest,
     plot_rating_bars,
-    plot_specifications,
-    plot_tracks,
 )
+from fdvv.study.analysis.figures import plot_specifications, plot_tracks
+from fdvv.study.analysis.multiverse import Multiverse, Specification
+from fdvv.study.analysis.records import ChoiceResult, ThresholdResult
 
 PROXY = "simulated participants: a proxy, no evidence"
 
@@ -36,10 +36,28 @@ def above(drawn: Any) -> str:
     return str(figure_of(drawn).get_suptitle())
 
 
-def curve(ways: int = 6) -> SpecificationCurve:
-    share = np.linspace(60, 80, ways)
-    choices = {"ties": ("split", "dropped") * (ways // 2), "test": ("t",) * ways}
-    return SpecificationCurve(share, share - 5, share + 5, share > 65, 2, choices)
+def multiverse(count: int = 6) -> Multiverse:
+    shares = np.linspace(0.6, 0.8, count).tolist()
+    ties = ("split", "dropped") * (count // 2)
+    return Multiverse(
+        tuple(
+            Specification("all", "choice", "person", ties[i], "t", s, s - 0.05, s + 0.05, 9, 0.65 - s, i == 2)
+            for i, s in enumerate(shares)
+        ),
+        0.0,
+    )
+
+
+def choice(
+    button: str, less: int, equal: int, more: int, names: tuple[str, str] = ("FD", "FDVV")
+) -> ChoiceResult:
+    n = less + equal + more
+    counts = (names[1], names[0], more, equal, less, 0)
+    return ChoiceResult(button, *counts, share(more, n), None, more / n, None, None, sign_test([]), None, ())
+
+
+def track(person: str, ratios: list[float], correct: list[float], threshold: float) -> ThresholdResult:
+    return ThresholdResult(person, "Red", np.array(ratios), np.array(correct), Estimate(threshold))
 
 
 def test_rating_bars_reach_the_means_from_the_low_end_of_the_scale() -> None:
@@ -61,8 +79,7 @@ def test_one_person_has_a_bar_and_no_spread() -> None:
 
 
 def test_choices_are_parts_of_a_whole_and_the_share_lies_where_its_bar_ends() -> None:
-    rows = [ChoiceRow("all", 20, 20, 60, 0.6, 0.5, 0.7), ChoiceRow("Red", 0, 0, 5, 1.0, 0.5, 1.0)]
-    ax = plot_choices(rows, "FD", "FDVV")
+    ax = plot_choices([choice("", 20, 20, 60), choice("Red", 0, 0, 5)])
     widths = np.array([bar.get_width() for bar in ax.patches]).reshape(3, 2)
     assert_allclose(widths.sum(axis=0), 1.0)
     assert_allclose(widths[0], [0.6, 1.0])
@@ -71,10 +88,10 @@ def test_choices_are_parts_of_a_whole_and_the_share_lies_where_its_bar_ends() ->
 
 
 def test_without_ties_nothing_is_called_equal() -> None:
-    ax = plot_choices([ChoiceRow("all", 4, 0, 6, 0.6, 0.3, 0.8)], "wrong", "right")
-    told = [text.get_text() for text in figure_of(ax).legends[0].get_texts()]
-    assert "equal" not in told
-    assert {"right", "wrong"} <= set(told)
+    ax = plot_choices([choice("", 4, 0, 6, ("wrong", "right"))])
+    texts = [text.get_text() for text in figure_of(ax).legends[0].get_texts()]
+    assert "equal" not in texts
+    assert {"right", "wrong"} <= set(texts)
 
 
 def test_a_bound_without_end_is_an_arrow_and_a_value_that_is_none_says_so() -> None:
@@ -89,29 +106,29 @@ def test_a_bound_without_end_is_an_arrow_and_a_value_that_is_none_says_so() -> N
 
 
 def test_staircases_have_a_panel_each_and_a_line_where_a_threshold_is() -> None:
-    ratios, correct = np.array([0.3, 0.3, 0.19]), np.array([1.0, 1.0, 0.0])
-    tracks = [StaircaseTrack("P1", ratios, correct, 0.2), StaircaseTrack("P2", ratios, correct, np.nan)]
+    ratios, correct = [0.3, 0.3, 0.19], [1.0, 1.0, 0.0]
+    tracks = [track("P1", ratios, correct, 0.2), track("P2", ratios, correct, np.nan)]
     axes = plot_tracks(tracks).ravel()
     dashed = [sum(line.get_linestyle() == "--" for line in ax.get_lines()) for ax in axes]
     assert dashed == [1, 0]
 
 
-def test_a_specification_curve_marks_the_registered_way_in_both_panels() -> None:
-    top, below = plot_specifications(curve(), "share (%)", "as registered", 50.0)
+def test_a_specification_curve_marks_the_registered_one_in_both_panels() -> None:
+    top, below = plot_specifications(multiverse(), "share (%)", "as registered")
     diamond = next(line for line in top.get_lines() if line.get_marker() == "D")
     assert_allclose([diamond.get_xdata()[0], diamond.get_ydata()[0]], [3, 68.0])
-    told = [label.get_text() for label in below.get_yticklabels()]
-    assert told == ["ties", "split", "dropped", "test", "t"]
+    labels = [label.get_text() for label in below.get_yticklabels()]
+    assert labels[:4] == ["left out", "all", "measure", "choice"]
+    assert labels[-5:] == ["ties", "split", "dropped", "test", "t"]
 
 
 def test_every_figure_of_simulated_answers_says_that_they_are_no_evidence() -> None:
-    ratios = np.array([0.3, 0.2])
     drawn = [
         plot_rating_bars(bars(), "realism", True),
-        plot_choices([ChoiceRow("all", 4, 1, 5, 0.5, 0.2, 0.8)], "FD", "FDVV", simulated=True),
+        plot_choices([choice("", 4, 1, 5)], True),
         plot_forest([ForestRow("P1", 1.0, 0.2, 2.0)], "d′", "distance", simulated=True),
-        plot_tracks([StaircaseTrack("P1", ratios, np.ones(2), 0.2)], True),
-        plot_specifications(curve(), "share (%)", "as registered", 50.0, True),
+        plot_tracks([track("P1", [0.3, 0.2], [1.0, 1.0], 0.2)], True),
+        plot_specifications(multiverse(), "share (%)", "as registered", True),
     ]
     assert [above(one) for one in drawn] == [PROXY] * 5
     assert above(plot_rating_bars(bars(), "realism")) == ""
@@ -120,10 +137,8 @@ def test_every_figure_of_simulated_answers_says_that_they_are_no_evidence() -> N
 def test_what_does_not_fit_together_is_refused() -> None:
     with pytest.raises(ModelError, match="as many marks"):
         bars(5, ("*",))
-    with pytest.raises(ModelError, match="at least one way"):
-        SpecificationCurve(np.ones(2), np.ones(2), np.ones(1), np.ones(2, bool), 0, {})
     with pytest.raises(ModelError, match="at least one row"):
-        plot_choices([], "FD", "FDVV")
+        plot_choices([])
     with pytest.raises(ModelError, match="at least one row"):
         plot_forest([], "d′", "distance")
     with pytest.raises(ModelError, match="at least one"):

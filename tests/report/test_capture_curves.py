@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.captures import SHORT_STROKE, recorded
 
+from fdvv.bench.figures import plot_averages, plot_registration, plot_velocities
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.plot import plot_averages, plot_paces, plot_registration
-from fdvv.preprocess import AS_PRINTED, PaperRecipe, Reason, paper_average
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.paper import AS_PRINTED, PaperRecipe, paper_average
+from fdvv.preprocess.reject import Reason
+from tests.support.captures import SHORT_STROKE, recorded
 
 
 def texts(figure: Any) -> str:
@@ -27,7 +28,7 @@ def line(ax: Any, label: str) -> Any:
 
 
 def test_every_press_stands_at_the_speed_it_had_and_those_left_out_with_their_reason() -> None:
-    (ax,) = plot_paces(recorded().processed).axes
+    (ax,) = plot_velocities(recorded().processed).axes
     used, left = line(ax, "used: 11"), line(ax, "did not reach the bottom: 1")
     speeds = [one.achieved_mm_s for one in recorded().processed.judged if one.reason is None]
     np.testing.assert_array_equal(used.get_ydata(), speeds)
@@ -40,7 +41,7 @@ def test_every_reason_has_a_look_of_its_own() -> None:
     judged = tuple(
         replace(one, reason=reason) for one, reason in zip(recorded().processed.judged, Reason, strict=False)
     )
-    (ax,) = plot_paces(replace(recorded().processed, judged=judged)).axes
+    (ax,) = plot_velocities(replace(recorded().processed, judged=judged)).axes
     looks = {
         (one.get_marker(), one.get_color()) for one in ax.get_lines() if one.get_marker() not in ("None", "o")
     }
@@ -95,7 +96,7 @@ def test_without_a_probe_none_is_named() -> None:
 @pytest.mark.parametrize("simulated", [False, True])
 def test_simulated_data_say_so(simulated: bool) -> None:
     for figure in (
-        plot_paces(recorded().processed, simulated),
+        plot_velocities(recorded().processed, simulated),
         plot_registration(recorded().processed, "press", 50.0, simulated=simulated),
         plot_averages(recorded().processed, simulated),
     ):

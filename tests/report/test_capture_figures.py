@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.captures import SHORT_STROKE, capture, recorded
 
+from fdvv.bench.figures import plot_clocks, plot_displacement, plot_force, plot_take
 from fdvv.errors import ModelError
-from fdvv.plot import figure_svg, plot_clocks, plot_displacement, plot_force, plot_take
-from fdvv.preprocess import ClockFit, edge_bounds
-from fdvv.recording import Quantity
+from fdvv.preprocess.clock import ClockFit
+from fdvv.preprocess.takes import edge_bounds
+from fdvv.recording.types import Quantity
+from fdvv.report.svg import figure_svg
+from tests.support.captures import SHORT_STROKE, capture, recorded
 
 FAST = 10
 """A take at 150 mm/s."""

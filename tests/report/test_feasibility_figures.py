@@ -5,8 +5,10 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.plot import FeasibleCurve, RenderedBand, figure_of, figure_svg, plot_feasibility
+from fdvv.model.curve import Stroke
+from fdvv.rendering.figures import plot_feasibility
+from fdvv.report.records import FeasibleCurve, RenderedBand
+from fdvv.report.svg import figure_of, figure_svg
 
 X_mm = np.linspace(0.0, 4.0, 81)
 CURVE = FeasibleCurve(

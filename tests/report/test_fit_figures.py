@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.errors import ModelError
-from fdvv.model import CurveFit, MeasuredCurve, fit_curve
-from fdvv.plot import plot_fit, plot_scan
+from fdvv.model.curve import MeasuredCurve
+from fdvv.model.fit import CurveFit, fit_curve
 
 
 def marked(ax: Any, marker: str) -> list[Any]:

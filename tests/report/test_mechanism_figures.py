@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.plot import DesignedStroke, DrawnLine, DrawnPart, plot_mechanism, plot_parts
+from fdvv.model.curve import Stroke
+from fdvv_switch.figures import DesignedStroke, DrawnLine, DrawnPart, plot_mechanism, plot_parts
 
 X_mm = np.linspace(0.0, 4.0, 41)
 PRESS = DesignedStroke(Stroke.PRESS, X_mm, 40 + X_mm, 41 + X_mm, 38 + X_mm, 44 + X_mm)

@@ -6,22 +6,18 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from numpy.testing import assert_allclose
-from tests.captures import recorded
 
 from fdvv.errors import ModelError
-from fdvv.model import (
-    FDVVModel,
-    ForceCurve,
-    Mode,
-    ModeSpread,
-    Stroke,
-    Vibration,
-    VibrationSpread,
-    landmarks,
-    load_builtin,
-)
-from fdvv.plot import _style as style
-from fdvv.plot import figure_of, plot_comparison, plot_model, plot_surface, plot_vibration
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import ModeSpread, VibrationSpread
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.report import style
+from fdvv.report.model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
+from fdvv.report.svg import figure_of
+from tests.support.captures import recorded
 
 
 def lines(ax: Any, *styles: str) -> list[Any]:

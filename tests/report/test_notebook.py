@@ -1,26 +1,27 @@
 """What notebooks show: well-formed, escaped, without script, and with the model's own numbers."""
 
+import importlib
 import re
+import sys
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import fdvv
 from fdvv.errors import ModelError
-from fdvv.model import (
-    ChartLine,
-    FDVVModel,
-    Press,
-    builtin_names,
-    chart_svg,
-    html_table,
-    landmarks,
-    load_builtin,
-)
-
-from .strategies import models
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.report.chart import ChartLine, chart_svg
+from fdvv.report.notebook import DRAWN_BY, table, to_html
+from tests.model.strategies import models
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -38,7 +39,7 @@ def _lines(drawing: ET.Element) -> list[ET.Element]:
 @pytest.mark.parametrize("name", builtin_names())
 def test_every_shipped_model_shows_all_its_curves(name: str) -> None:
     model = load_builtin(name)
-    html = model._repr_html_()
+    html = to_html(model)
     lines = _lines(_drawing(html))
     # each curve has a line, and the first and last of a stroke one more in the legend
     assert len(lines) >= len(model.curves) + 2
@@ -49,12 +50,12 @@ def test_every_shipped_model_shows_all_its_curves(name: str) -> None:
 @settings(max_examples=8, deadline=None)
 @given(model=models())
 def test_any_model_can_be_shown(model: FDVVModel) -> None:
-    ET.fromstring(model._repr_html_())
+    ET.fromstring(to_html(model))
 
 
 @pytest.mark.parametrize("name", ["<script>alert(1)</script>", '"><img src=x onerror=y>', "a & b", "\x01x"])
 def test_a_name_is_never_markup(name: str) -> None:
-    html = load_builtin("mx-red").renamed(name)._repr_html_()
+    html = to_html(load_builtin("mx-red").renamed(name))
     assert "<script" not in html
     assert "<img" not in html
     _drawing(html)
@@ -63,7 +64,7 @@ def test_a_name_is_never_markup(name: str) -> None:
 
 
 def test_words_and_axes_take_the_pages_colour_and_nothing_paints_a_ground() -> None:
-    html = load_builtin("mx-clear")._repr_html_()
+    html = to_html(load_builtin("mx-clear"))
     assert "currentColor" in html
     assert not re.search(r"background(-color)?:(?!none)", html)
     assert {e.get("fill") for e in _drawing(html).iter(f"{SVG}text")} <= {None, "currentColor"}
@@ -80,32 +81,46 @@ def _contrast(one: str, other: str) -> float:
 
 
 def test_lines_stand_out_on_light_and_on_dark_pages() -> None:
-    colours = {path.attrib["stroke"] for path in _lines(_drawing(load_builtin("mx-blue")._repr_html_()))}
+    colours = {path.attrib["stroke"] for path in _lines(_drawing(to_html(load_builtin("mx-blue"))))}
     assert len(colours) == 2
     for colour in colours:
         assert min(_contrast(colour, ground) for ground in ("#ffffff", "#111111")) >= 3
 
 
 def test_the_plain_text_of_a_model_is_one_line() -> None:
-    shown = load_builtin("mx-clear")._repr_mimebundle_()
-    assert shown["text/plain"] == "FDVVModel('mx-clear', 4 mm, 10 curves, 2 vibrations)"
-    assert shown["text/html"].startswith("<div")
+    model = load_builtin("mx-clear")
+    assert repr(model) == "FDVVModel('mx-clear', 4 mm, 10 curves, 2 vibrations)"
+
+
+def test_importing_fdvv_registers_the_drawings_with_ipython(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: dict[tuple[str, str], Callable[[Any], str]] = {}
+
+    class Formatter:
+        def for_type_by_name(self, module: str, name: str, draw: Callable[[Any], str]) -> None:
+            drawn[module, name] = draw
+
+    shell = SimpleNamespace(display_formatter=SimpleNamespace(formatters={"text/html": Formatter()}))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    importlib.reload(fdvv)
+    assert {(kind.__module__, kind.__name__) for kind in DRAWN_BY} == drawn.keys()
+    model = load_builtin("mx-red")
+    assert drawn["fdvv.model.model", "FDVVModel"](model) == to_html(model)
 
 
 def test_a_press_shows_both_strokes_and_time() -> None:
     t = np.linspace(0, 0.2, 3000)
     x = 2 * (1 - np.cos(2 * np.pi * t / 0.2))
     press = Press(t, x, 10 * x, 100.0, simulated=True)
-    html = press._repr_html_()
+    html = to_html(press)
     assert html.count("<svg") == 2
     assert "simulated" in html
-    assert press._repr_mimebundle_()["text/plain"] == "Press(3000 samples at 100 mm/s)"
+    assert repr(press) == "Press(3000 samples at 100 mm/s)"
     one_way = Press(t[:100], x[:100], x[:100], 100.0)
-    assert "release" not in one_way._repr_html_()
+    assert "release" not in to_html(one_way)
 
 
 def test_landmarks_are_a_table_with_units_and_dashes() -> None:
-    html = landmarks(load_builtin("mx-red"))._repr_html_()
+    html = to_html(landmarks(load_builtin("mx-red")))
     assert "cN/mm" in html
     assert "–" in html
     ET.fromstring(html)
@@ -148,4 +163,4 @@ def test_nothing_to_draw_is_refused() -> None:
 
 
 def test_cells_of_a_table_are_escaped() -> None:
-    assert "&lt;b&gt;" in html_table([["<b>", "1"]])
+    assert "&lt;b&gt;" in table([["<b>", "1"]])

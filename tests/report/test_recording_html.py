@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from fdvv.recording import Quantity, Recording, Stage, Stream, Take
-
-from .strategies import recordings
+from fdvv.recording.types import Quantity, Recording, Stage, Stream, Take
+from fdvv.report.notebook import to_html
+from tests.recording.strategies import recordings
 
 
 def test_a_press_is_drawn_before_a_rest() -> None:
@@ -19,7 +19,7 @@ def test_a_press_is_drawn_before_a_rest() -> None:
         Take(1, (stream("still"),), stage=Stage.REST),
         Take(2, (stream("pushed"),), stage=Stage.PRESS),
     )
-    html = Recording("<b>", (rest, press), simulated=True)._repr_html_()
+    html = to_html(Recording("<b>", (rest, press), simulated=True))
     assert "take 2: pushed" in html
     assert "&lt;b&gt;" in html
     assert "simulated" in html
@@ -28,7 +28,7 @@ def test_a_press_is_drawn_before_a_rest() -> None:
 
 def test_many_takes_are_counted_not_listed() -> None:
     takes = tuple(Take(n, ()) for n in range(1, 31))
-    html = Recording("r", takes)._repr_html_()
+    html = to_html(Recording("r", takes))
     assert "… 10 more" in html
     assert "<svg" not in html
 
@@ -37,8 +37,8 @@ def test_many_takes_are_counted_not_listed() -> None:
 @settings(max_examples=20, deadline=None)
 @given(recording=recordings())
 def test_any_recording_can_be_shown(recording: Recording) -> None:
-    shown = recording._repr_mimebundle_()
-    assert shown["text/plain"].startswith("Recording(")
-    assert shown["text/html"].count("<table") == 1
+    shown = to_html(recording)
+    assert repr(recording).startswith("Recording(")
+    assert shown.count("<table") == 1
     if recording.name.isprintable():
-        ET.fromstring(shown["text/html"].encode(errors="replace"))
+        ET.fromstring(shown.encode(errors="replace"))

@@ -6,17 +6,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.plot import (
-    ErrorHistory,
-    PAPER_ERROR_cN,
-    RenderedBand,
-    RenderedCurve,
-    figure_of,
-    figure_svg,
-    plot_convergence,
-    plot_rendering,
-)
+from fdvv.model.curve import Stroke
+from fdvv.rendering.figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
+from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.report.svg import figure_of, figure_svg
 
 
 def test_the_grid_has_velocities_down_and_strokes_across(rendered: list[RenderedCurve]) -> None:

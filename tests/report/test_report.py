@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel
-from fdvv.plot import Section, Table, figure_svg, plot_vibration, render_html, write_report
+from fdvv.model.model import FDVVModel
+from fdvv.report.model_figures import plot_vibration
+from fdvv.report.report import Section, Table, render_html, write_report
+from fdvv.report.svg import figure_svg
 
 VOID = {"meta", "link", "br", "img", "hr", "input"}
 HOSTILE = """<script>alert('x')</script>"><img src=x onerror=alert(1)> & {title} {0} </style>"""

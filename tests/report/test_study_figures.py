@@ -5,16 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel
-from fdvv.plot import (
-    DesignPanel,
-    ScoreBars,
-    TrainingScores,
-    figure_of,
-    plot_designs,
-    plot_score_bars,
-    plot_training,
-)
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.run.report import DesignPanel, plot_designs
+from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
+from fdvv.report.svg import figure_of
 from fdvv.units import FloatArray
 
 NAMES = ("optimal", "clear", "random")

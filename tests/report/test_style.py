@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from fdvv.model import FDVVModel
-from fdvv.plot import _style as style
-from fdvv.plot import figure_svg, plot_comparison
+from fdvv.model.model import FDVVModel
+from fdvv.report import style
+from fdvv.report.model_figures import plot_comparison
+from fdvv.report.svg import figure_svg
 
 UNITS = ("(mm)", "(cN)", "(mm/s)", "(s)", "(ms)", "(m/s²)", "(count)", "(no unit, lower is better)")
 
@@ -38,7 +39,9 @@ def test_the_same_data_gives_the_same_bytes(gallery: Any, name: str) -> None:
 
 def test_another_process_with_other_hashes_gives_the_same_bytes(gallery: Any) -> None:
     code = (
-        "import sys\nfrom fdvv.model import load_builtin\nfrom fdvv.plot import figure_svg, plot_vibration\n"
+        "import sys\nfrom fdvv import load_builtin\n"
+        "from fdvv.report.svg import figure_svg\n"
+        "from fdvv.report.model_figures import plot_vibration\n"
         "sys.stdout.buffer.write(figure_svg(plot_vibration(load_builtin('mx-clear'))).encode())"
     )
     other = subprocess.run(
@@ -112,8 +115,9 @@ def test_hostile_names_are_drawn_as_they_stand(gallery: Any, model: FDVVModel) -
 def test_without_matplotlib_the_error_tells_how_to_get_it() -> None:
     code = (
         "import sys\nsys.modules['matplotlib'] = None\n"
-        "from fdvv.errors import BuildError\nfrom fdvv.model import load_builtin\n"
-        "from fdvv.plot import Section, plot_model, render_html\n"
+        "from fdvv.errors import BuildError\nfrom fdvv import load_builtin\n"
+        "from fdvv.report.report import Section, render_html\n"
+        "from fdvv.report.model_figures import plot_model\n"
         "assert 'words' in render_html('t', 'words', [Section('s')])\n"
         "try:\n    plot_model(load_builtin('mx-clear'))\nexcept BuildError as error:\n    print(error)"
     )
@@ -123,6 +127,6 @@ def test_without_matplotlib_the_error_tells_how_to_get_it() -> None:
 
 
 def test_importing_the_room_does_not_import_matplotlib() -> None:
-    code = "import sys, fdvv.plot\nprint(any(m.split('.')[0] == 'matplotlib' for m in sys.modules))"
+    code = "import sys, fdvv.report.report\nprint(any(m.split('.')[0] == 'matplotlib' for m in sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel
-from fdvv.plot import figure_png, figure_svg, plot_model, plot_vibration
-from fdvv.plot._svg import prefix_ids
+from fdvv.model.model import FDVVModel
+from fdvv.report.model_figures import plot_model, plot_vibration
+from fdvv.report.svg import figure_png, figure_svg, prefix_ids
 
 SVG = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"

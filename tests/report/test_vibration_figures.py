@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fdvv.errors import ModelError
-from fdvv.plot import plot_heard
+from fdvv.rendering.figures import plot_heard
 
 T_s = np.arange(2000) / 10_000
 MODE = (239.0, 150.0, 2.0, 0.5)

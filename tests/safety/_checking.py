@@ -5,9 +5,8 @@ from __future__ import annotations
 import ctypes
 from typing import NamedTuple
 
+from fdvv.protocol.tables import Refusal, Settings
 from tests.safety._build import safety_library
-
-from fdvv.protocol import Refusal, Settings
 
 
 class Checked(NamedTuple):

@@ -7,12 +7,12 @@ import struct
 import zlib
 from dataclasses import dataclass, field
 
-from fdvv.protocol import (
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import (
     IMAGE_MAGIC,
     NONE,
     Condition,
     ImageHeader,
-    Record,
     Slot,
     State,
     Surface,

@@ -34,14 +34,14 @@ OTHER_OPERATOR = {
 }
 OPERATOR = re.compile(r"<<=|>>=|->|[-+|&<>=!]=|<<|>>|\+\+|--|&&|\|\||##|[-+*/<>&|!~]")
 CONSTANT = re.compile(r"(?<![\w.])(0x[0-9a-f]+|\d+)(?![\w.])")
-STATEMENT = re.compile(r"^ +(?! )((?!(?:static |const |u?int\d|findings )).+;)[ \\]*$", re.MULTILINE)
-TYPE = re.compile(r"(\w_t|fdvv_\w+|findings|word) $")
+STATEMENT = re.compile(r"^ +(?! )((?!(?:static |const |u?int\d|fault_inputs )).+;)[ \\]*$", re.MULTILINE)
+TYPE = re.compile(r"(\w_t|fdvv_\w+|fault_inputs|word) $")
 OTHER_WORD = {
     "ALWAYS": ("RENDERING",),
     "RENDERING": ("ALWAYS",),
-    "GONE": ("ANY", "NEVER"),
-    "ANY": ("GONE", "NEVER"),
-    "NEVER": ("GONE", "ANY"),
+    "INACTIVE": ("ANYTIME", "NEVER"),
+    "ANYTIME": ("INACTIVE", "NEVER"),
+    "NEVER": ("INACTIVE", "ANYTIME"),
     "STOP": ("WARN",),
     "WARN": ("STOP",),
 }

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from fdvv.core import Ask
-from fdvv.protocol import Evidence, Fault, Mode, Refusal, Settings
+from fdvv.firmware.core import CoreRequest
+from fdvv.protocol.tables import Evidence, Fault, Mode, Refusal, Settings
 
 WATCHDOG, BROWN_OUT, OUTPUT, VIBRATION = 1, 2, 4, 8
 BOUNDLESS = 2**31 - 1
@@ -187,13 +187,13 @@ RULES = (
 RULE_OF = {rule.fault: rule for rule in RULES}
 
 ALLOWED = {
-    (Mode.BOOT, Ask.BOOTED): Mode.IDLE,
-    (Mode.IDLE, Ask.TEST): Mode.SELFTEST,
-    (Mode.SELFTEST, Ask.TESTED): Mode.IDLE,
-    (Mode.IDLE, Ask.ARM): Mode.ARMED,
-    (Mode.ARMED, Ask.DISARM): Mode.IDLE,
-    (Mode.DERATED, Ask.DISARM): Mode.IDLE,
-    (Mode.FAULT, Ask.CLEAR): Mode.IDLE,
+    (Mode.BOOT, CoreRequest.BOOTED): Mode.IDLE,
+    (Mode.IDLE, CoreRequest.TEST): Mode.SELFTEST,
+    (Mode.SELFTEST, CoreRequest.TESTED): Mode.IDLE,
+    (Mode.IDLE, CoreRequest.ARM): Mode.ARMED,
+    (Mode.ARMED, CoreRequest.DISARM): Mode.IDLE,
+    (Mode.DERATED, CoreRequest.DISARM): Mode.IDLE,
+    (Mode.FAULT, CoreRequest.CLEAR): Mode.IDLE,
 }
 
 
@@ -248,20 +248,20 @@ class Supervisor:
 
     def ask(self, settings: Settings, ask: int, number: int) -> Refusal:
         """Change the mode or refuse."""
-        if ask >= len(Ask):
+        if ask >= len(CoreRequest):
             return Refusal.BAD_VALUE
         if self.mode > Mode.FAULT:
             self.found(Fault.INTERNAL, self.mode, Mode.FAULT)
-        if ask == Ask.DISARM and not self.rendering:
+        if ask == CoreRequest.DISARM and not self.rendering:
             return Refusal.NONE
-        if ask == Ask.CLEAR:
+        if ask == CoreRequest.CLEAR:
             return self._clear(number)
-        target = ALLOWED.get((Mode(self.mode), Ask(ask)))
+        target = ALLOWED.get((Mode(self.mode), CoreRequest(ask)))
         if target is None:
             return {Mode.FAULT: Refusal.FAULT_LATCHED, Mode.SELFTEST: Refusal.BUSY}.get(
                 Mode(self.mode), Refusal.WRONG_MODE
             )
-        if ask == Ask.ARM:
+        if ask == CoreRequest.ARM:
             self.equal_sums = 0
             if not self.usable(settings):
                 return Refusal.BAD_VALUE
@@ -275,7 +275,7 @@ class Supervisor:
         if rule.clear == "never" or (rule.clear == "gone" and self.fault in self.present):
             return Refusal.FAULT_LATCHED
         self.fault = Fault.NONE
-        self.mode = ALLOWED.get((Mode(self.mode), Ask.CLEAR), self.mode)
+        self.mode = ALLOWED.get((Mode(self.mode), CoreRequest.CLEAR), self.mode)
         return Refusal.NONE
 
     def host(self, time_us: int) -> None:

@@ -6,11 +6,10 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from fdvv.firmware.core import CoreRequest
+from fdvv.protocol.tables import Fault, Mode, Settings
 from tests.safety._oracle import BROWN_OUT, OUTPUT, VIBRATION, WATCHDOG, Inputs
 from tests.safety._script import Script
-
-from fdvv.core import Ask
-from fdvv.protocol import Fault, Mode, Settings
 
 SENSED = Settings(force_gain_q14=1000, stuck_ticks=20)
 """Settings with a keycap force sensor."""
@@ -53,12 +52,12 @@ def into(script: Script, mode: Mode, settings: Settings = SENSED) -> None:
     script.start(settings)
     script.host(0)
     if mode is not Mode.BOOT:
-        script.ask(settings, Ask.BOOTED)
+        script.ask(settings, CoreRequest.BOOTED)
     if mode is Mode.SELFTEST:
-        script.ask(settings, Ask.TEST)
+        script.ask(settings, CoreRequest.TEST)
     if mode in (Mode.ARMED, Mode.DERATED):
         script.tick(settings, Inputs())
-        script.ask(settings, Ask.ARM)
+        script.ask(settings, CoreRequest.ARM)
     if mode is Mode.DERATED:
         warm(script, settings, settings.derate_start_K)
     if mode is Mode.FAULT:
@@ -75,12 +74,12 @@ def warm(script: Script, settings: Settings, rise_K: int) -> None:
 def questions(script: Script) -> None:
     """Ask every question in every mode, with every number of a fault, then tick."""
     for mode in Mode:
-        for ask in range(len(Ask) + 2):
+        for ask in range(len(CoreRequest) + 2):
             for number in (0, 1, int(Fault.IMAGE_CORRUPT), len(Fault), 255):
                 into(script, mode)
                 script.ask(SENSED, ask, number)
                 script.tick(SENSED, Inputs(sum=2))
-                script.ask(SENSED, Ask.ARM)
+                script.ask(SENSED, CoreRequest.ARM)
                 script.limit(SENSED)
 
 
@@ -91,7 +90,7 @@ def bounds(script: Script) -> None:
             for value in (bound - 1, bound, bound + 1):
                 into(script, mode)
                 script.tick(SENSED, replace(disturb(Inputs(sum=1), value), commanded_cN64=-77, state=3))
-                script.ask(SENSED, Ask.CLEAR, fault)
+                script.ask(SENSED, CoreRequest.CLEAR, fault)
                 again(script, SENSED, fault, disturb(Inputs(sum=2), value))
         for fault, bit in REPORTED.items():
             into(script, mode)
@@ -104,9 +103,9 @@ def again(script: Script, settings: Settings, fault: Fault, inputs: Inputs) -> N
     calm = Inputs(sum=3, displacement_um16=inputs.displacement_um16, time_us=inputs.time_us)
     for number, tick in ((fault, inputs), (fault + 1, calm), (fault, calm), (fault, inputs)):
         script.tick(settings, replace(tick, sum=script.oracle.last_sum + 1))
-        script.ask(settings, Ask.CLEAR, number)
+        script.ask(settings, CoreRequest.CLEAR, number)
         script.limit(settings)
-        script.ask(settings, Ask.ARM)
+        script.ask(settings, CoreRequest.ARM)
         script.tick(settings, replace(tick, sum=script.oracle.last_sum + 1))
 
 
@@ -124,11 +123,11 @@ def several(script: Script) -> None:
             script.tick(SENSED, inputs)
             script.tick(SENSED, replace(both, sum=2))
             script.tick(SENSED, replace(more, sum=3))
-            script.ask(SENSED, Ask.CLEAR, fault)
+            script.ask(SENSED, CoreRequest.CLEAR, fault)
             script.tick(SENSED, replace(more, sum=4))
-            script.ask(SENSED, Ask.CLEAR, other)
+            script.ask(SENSED, CoreRequest.CLEAR, other)
             script.tick(SENSED, calm)
-            script.ask(SENSED, Ask.CLEAR, other)
+            script.ask(SENSED, CoreRequest.CLEAR, other)
 
 
 def elsewhere(script: Script) -> None:
@@ -139,19 +138,19 @@ def elsewhere(script: Script) -> None:
             script.tick(SENSED, Inputs(sum=4, commanded_cN64=5, state=6))
             script.found(number, -3, 2**31 - 1)
             script.limit(SENSED)
-            script.ask(SENSED, Ask.CLEAR, number)
-            script.ask(SENSED, Ask.CLEAR, Fault.INTERNAL)
+            script.ask(SENSED, CoreRequest.CLEAR, number)
+            script.ask(SENSED, CoreRequest.CLEAR, Fault.INTERNAL)
             script.found(number, 4, 5)
             script.tick(SENSED, Inputs(sum=5))
     for mode_number in (6, 7, 77, 255):
-        for ask in (None, *Ask):
+        for ask in (None, *CoreRequest):
             into(script, Mode.ARMED)
             script.poke_mode(mode_number)
             if ask is not None:
                 script.ask(SENSED, ask, Fault.INTERNAL)
             script.limit(SENSED)
             script.tick(SENSED, Inputs(sum=6))
-            script.ask(SENSED, Ask.CLEAR, Fault.INTERNAL)
+            script.ask(SENSED, CoreRequest.CLEAR, Fault.INTERNAL)
     into(script, Mode.IDLE)
     script.poke_faults(65533)
     for _ in range(4):
@@ -170,7 +169,7 @@ def stuck(script: Script) -> None:
     into(script, Mode.IDLE)
     for _ in range(30):
         script.check(SENSED, Inputs(sum=8))
-    script.ask(SENSED, Ask.ARM)
+    script.ask(SENSED, CoreRequest.ARM)
     for _ in range(SENSED.stuck_ticks + 1):
         script.tick(SENSED, Inputs(sum=8))
 
@@ -194,8 +193,8 @@ def jumps(script: Script) -> None:
         script.tick(patient, Inputs(sum=1, displacement_um16=second))
     script.start(SENSED)
     script.host(0)
-    script.ask(SENSED, Ask.BOOTED)
-    script.ask(SENSED, Ask.ARM)
+    script.ask(SENSED, CoreRequest.BOOTED)
+    script.ask(SENSED, CoreRequest.ARM)
     script.tick(SENSED, Inputs(sum=1, displacement_um16=100_000))
     script.mean(SENSED)
     script.tick(SENSED, Inputs(sum=2, displacement_um16=-100_000))
@@ -221,11 +220,11 @@ def host(script: Script) -> None:
         into(script, Mode.IDLE)
         for i, silence in enumerate(silences):
             script.tick(SENSED, Inputs(sum=i, time_us=silence))
-        script.ask(SENSED, Ask.ARM)
+        script.ask(SENSED, CoreRequest.ARM)
         script.tick(SENSED, Inputs(sum=5, time_us=silences[-1]))
     script.start(SENSED)
-    script.ask(SENSED, Ask.BOOTED)
-    script.ask(SENSED, Ask.ARM)
+    script.ask(SENSED, CoreRequest.BOOTED)
+    script.ask(SENSED, CoreRequest.ARM)
     script.tick(SENSED, Inputs(sum=1))
 
 
@@ -236,15 +235,15 @@ def settings_scenes(script: Script) -> None:
             into(script, mode)
             script.tick(SENSED, Inputs(sum=1))
             script.tick(other, Inputs(sum=2))
-            script.ask(other, Ask.CLEAR, Fault.SETTINGS_CORRUPT)
+            script.ask(other, CoreRequest.CLEAR, Fault.SETTINGS_CORRUPT)
             script.mean(other)
             script.tick(other, Inputs(sum=3))
-            script.ask(other, Ask.CLEAR, Fault.SETTINGS_CORRUPT)
+            script.ask(other, CoreRequest.CLEAR, Fault.SETTINGS_CORRUPT)
             script.tick(other, Inputs(sum=4))
     odd = replace(SENSED, window_end_um16=SENSED.window_start_um16)
     into(script, Mode.IDLE, odd)
-    script.ask(odd, Ask.ARM)
-    script.ask(SENSED, Ask.ARM)
+    script.ask(odd, CoreRequest.ARM)
+    script.ask(SENSED, CoreRequest.ARM)
 
 
 def heat(script: Script) -> None:
@@ -267,11 +266,11 @@ def heat(script: Script) -> None:
                 script.heat(settings, -32768, elapsed)
                 script.limit(settings)
             script.tick(settings, Inputs(sum=2))
-            script.ask(settings, Ask.CLEAR, Fault.OVER_HEAT)
+            script.ask(settings, CoreRequest.CLEAR, Fault.OVER_HEAT)
             for elapsed in (65_535, 65_535):
                 script.heat(settings, 0, elapsed)
             script.tick(settings, Inputs(sum=3))
-            script.ask(settings, Ask.CLEAR, Fault.OVER_HEAT)
+            script.ask(settings, CoreRequest.CLEAR, Fault.OVER_HEAT)
         script.armed(settings)
         for duty in range(-260, 260, 9):
             script.heat(settings, duty, 1)
@@ -306,7 +305,7 @@ def chance(script: Script, seed: int, ticks: int) -> None:
         if i % 250 == 0:
             settings, talking, holding = random_settings(rng), rng.random() < 0.7, rng.random() < 0.3
             script.start(settings)
-            script.ask(settings, Ask.BOOTED)
+            script.ask(settings, CoreRequest.BOOTED)
         elapsed = 1 if rng.random() < 0.99 else rng.randint(0, settings.late_ticks + 1)
         time_us = (time_us + elapsed * settings.tick_us) % 2**32
         if talking or rng.random() < 0.01:
@@ -377,11 +376,11 @@ def _random_inputs(rng: random.Random, settings: Settings, last_um16: int) -> In
 
 def _question(rng: random.Random, script: Script, settings: Settings) -> None:
     if script.oracle.mode == Mode.IDLE and rng.random() < 0.7:
-        script.ask(settings, Ask.ARM)
+        script.ask(settings, CoreRequest.ARM)
     elif rng.random() < 0.6:
-        script.ask(settings, Ask.CLEAR, script.oracle.fault)
+        script.ask(settings, CoreRequest.CLEAR, script.oracle.fault)
     elif rng.random() < 0.8:
-        script.ask(settings, rng.choice([*Ask]), rng.randint(0, len(Fault)))
+        script.ask(settings, rng.choice([*CoreRequest]), rng.randint(0, len(Fault)))
     else:
         script.found(rng.choice([Fault.IMAGE_CORRUPT, Fault.VIBRATION_BOARD]), rng.randint(-9, 9), 0)
 

@@ -6,11 +6,11 @@ import ctypes
 from typing import Any
 
 import numpy as np
+
+from fdvv.firmware.core import INPUTS, CoreRequest
+from fdvv.protocol.tables import Evidence, Settings
 from tests.safety._build import safety_library
 from tests.safety._oracle import Inputs, Supervisor
-
-from fdvv.core import INPUTS, Ask
-from fdvv.protocol import Evidence, Settings
 
 CALLS = {
     name: number
@@ -134,10 +134,10 @@ class Script:
     def armed(self, settings: Settings, inputs: Inputs | None = None) -> None:
         """Boot and arm with the host heard at the inputs' time."""
         self.start(settings)
-        self.ask(settings, Ask.BOOTED)
+        self.ask(settings, CoreRequest.BOOTED)
         self.tick(settings, inputs or Inputs())
         self.host((inputs or Inputs()).time_us)
-        self.ask(settings, Ask.ARM)
+        self.ask(settings, CoreRequest.ARM)
 
     def _keep(
         self,

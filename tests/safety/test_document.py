@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 
+from fdvv.protocol.tables import Fault, Mode
 from tests.safety._build import CORE, REPOSITORY
 from tests.safety._equivalents import EQUIVALENT
 from tests.safety._mutants import mutants
-
-from fdvv.protocol import Fault, Mode
 
 TEXT = (REPOSITORY / "docs" / "explanation" / "safety.md").read_text()
 SOURCE = (CORE / "supervisor.c").read_text()
@@ -31,11 +30,16 @@ def _plain(table: list[tuple[str, str]]) -> list[tuple[str, str]]:
     return [(mode, ", ".join(cell.strip() for cell in cells.split(","))) for mode, cells in table]
 
 
+def _documented(cell: str) -> str:
+    """Return the word of the document for a cell of the fault table."""
+    return {"EXTERNAL": "elsewhere", "INACTIVE": "gone", "ANYTIME": "any"}.get(cell, cell.lower())
+
+
 def test_the_faults_told_are_those_of_the_table() -> None:
     table = re.findall(r"X\((\w+), (\w+), (\w+), (\w+), (\w+),", SOURCE)
     numbers = {fault.name: str(fault.value) for fault in Fault}
     expected = [
-        [numbers[name], name.lower(), when.lower(), clear.lower(), effect.lower(), unit]
+        [numbers[name], name.lower(), _documented(when), _documented(clear), _documented(effect), unit]
         for name, when, clear, effect, unit in table
     ]
     assert rows_below("Faults") == expected

@@ -9,10 +9,11 @@ import zlib
 from dataclasses import replace
 
 import pytest
+
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import NONE, Condition, ImageHeader, Refusal, Settings
 from tests.safety._checking import check_image, fuzz
 from tests.safety._images import LIMIT_CN64, TABLES, Parts, random_parts, sealed
-
-from fdvv.protocol import NONE, Condition, ImageHeader, Record, Refusal, Settings
 
 
 def images(seed: int, count: int) -> list[bytes]:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from tests.safety._build import CORE, DRIVERS, LIBRARY, REPOSITORY, SANITISED, compile_c
 
 MEASURED = ("supervisor", "settings", "image_check", "crc32")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+
 from tests.safety import _scenes
 from tests.safety._build import CORE, compile_c
 from tests.safety._equivalents import EQUIVALENT

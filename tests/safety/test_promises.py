@@ -6,12 +6,12 @@ from functools import cache
 from itertools import pairwise
 
 import pytest
+
+from fdvv.firmware.core import CoreRequest
+from fdvv.protocol.tables import Fault, Mode, Refusal
 from tests.safety import _scenes
 from tests.safety._oracle import RULE_OF, VIBRATION, Inputs
 from tests.safety._script import CALLS, STEP, Script
-
-from fdvv.core import Ask
-from fdvv.protocol import Fault, Mode, Refusal
 
 RENDERING = (Mode.ARMED, Mode.DERATED)
 CALL, ARGUMENTS, GIVES, MODE, FAULT = (
@@ -37,20 +37,22 @@ def test_force_is_allowed_only_while_armed_or_derated() -> None:
 def test_no_question_leads_from_fault_to_force() -> None:
     steps = directed().steps
     after = {
-        (Ask(step[ARGUMENTS][0]), Mode(step[MODE]))
+        (CoreRequest(step[ARGUMENTS][0]), Mode(step[MODE]))
         for before, step in pairwise(steps)
-        if step[CALL] == CALLS["ask"] and before[MODE] == Mode.FAULT and step[ARGUMENTS][0] < len(Ask)
+        if step[CALL] == CALLS["ask"] and before[MODE] == Mode.FAULT and step[ARGUMENTS][0] < len(CoreRequest)
     }
-    assert {ask for ask, _ in after} == set(Ask)
+    assert {ask for ask, _ in after} == set(CoreRequest)
     assert {mode for _, mode in after} == {Mode.FAULT, Mode.IDLE}
-    assert {ask for ask, mode in after if mode is Mode.IDLE} == {Ask.CLEAR}
+    assert {ask for ask, mode in after if mode is Mode.IDLE} == {CoreRequest.CLEAR}
 
 
 def test_disarming_is_never_refused() -> None:
     refusals = {
         (Mode(before[MODE]), Refusal(step[GIVES]))
         for before, step in pairwise(directed().steps)
-        if step[CALL] == CALLS["ask"] and step[ARGUMENTS][0] == Ask.DISARM and before[MODE] <= Mode.FAULT
+        if step[CALL] == CALLS["ask"]
+        and step[ARGUMENTS][0] == CoreRequest.DISARM
+        and before[MODE] <= Mode.FAULT
     }
     assert refusals == {(mode, Refusal.NONE) for mode in Mode}
 

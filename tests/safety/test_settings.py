@@ -7,9 +7,9 @@ import random
 import struct
 
 import pytest
-from tests.safety._script import c_settings_check
 
-from fdvv.protocol import Settings
+from fdvv.protocol.tables import Settings
+from tests.safety._script import c_settings_check
 
 NAMES = [field.name for field in dataclasses.fields(Settings)]
 

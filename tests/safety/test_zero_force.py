@@ -7,17 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.safety._images import Parts
 
-from fdvv.core import Core, RecordArray, inputs_at
-from fdvv.protocol import (
-    NONE,
-    Fault,
-    Mode,
-    Settings,
-    State,
-    Surface,
-)
+from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.protocol.tables import NONE, Fault, Mode, Settings, State, Surface
+from tests.safety._images import Parts
 
 TICKS_US = (250, 500, 1000)
 ARMED_TICKS = 40

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.study import averaged_rounds, repeated_measures_anova, rounds_as_people
+from fdvv.stats.anova import repeated_measures_anova
+from fdvv.stats.effect_size import averaged_rounds, rounds_as_people
 from fdvv.units import FloatArray
 
 FACTORS = ("button", "level")
@@ -26,7 +27,7 @@ def some_scores(seed: int = 0, people: int = 10, shape: tuple[int, int] = (6, 2)
 
 def test_it_agrees_with_pingouin_on_every_column() -> None:
     table = repeated_measures_anova(GOLDEN["scores"], FACTORS)
-    told = GOLDEN["two_way"]
+    expected = GOLDEN["two_way"]
     for i, effect in enumerate(table.effects):
         ours = {
             "F": effect.F,
@@ -39,11 +40,11 @@ def test_it_agrees_with_pingouin_on_every_column() -> None:
             "ng2": effect.generalized_eta2,
         }
         for column, value in ours.items():
-            if told[column][i] is not None:
+            if expected[column][i] is not None:
                 # the file keeps ten decimals, and its p are as small as 1e-8
-                assert value == pytest.approx(told[column][i], rel=1e-6, abs=2e-10), column
+                assert value == pytest.approx(expected[column][i], rel=1e-6, abs=2e-10), column
         assert effect.partial_eta2 == pytest.approx(GOLDEN["partial_eta2"][i])
-        assert (effect.sphericity.W is None) == (told["W_spher"][i] is None)
+        assert (effect.sphericity.W is None) == (expected["W_spher"][i] is None)
 
 
 @pytest.mark.slow
@@ -89,7 +90,7 @@ def test_a_table_small_enough_to_do_by_hand() -> None:
 
 
 def test_sphericity_of_one_factor_agrees_with_pingouin() -> None:
-    from fdvv.study import sphericity
+    from fdvv.stats.anova import sphericity
 
     averaged = np.mean(GOLDEN["scores"], axis=2)
     contrasts = np.linalg.qr(np.eye(6) - 1 / 6)[0][:, :5]
@@ -102,7 +103,7 @@ def test_sphericity_of_one_factor_agrees_with_pingouin() -> None:
 
 @pytest.mark.slow
 def test_where_sphericity_holds_Mauchly_denies_it_as_rarely_as_it_says() -> None:
-    from fdvv.study import sphericity
+    from fdvv.stats.anova import sphericity
 
     random = np.random.default_rng(8)
     p = np.array([sphericity(random.normal(size=(10, 5))).p for _ in range(1500)], dtype=np.float64)
@@ -148,7 +149,7 @@ def test_a_missing_cell_is_one_clear_error() -> None:
 
 
 @pytest.mark.parametrize(
-    ("scores", "told"),
+    ("scores", "reason"),
     [
         (np.zeros((10, 6)), "need the axes person, button, level"),
         (np.zeros((2, 6, 2)), "at least 3 people"),
@@ -156,6 +157,6 @@ def test_a_missing_cell_is_one_clear_error() -> None:
         (np.zeros((9, 6, 2)) + np.arange(12).reshape(6, 2), "differs alike"),
     ],
 )
-def test_scores_that_cannot_be_tested_are_refused(scores: FloatArray, told: str) -> None:
-    with pytest.raises(ModelError, match=told):
+def test_scores_that_cannot_be_tested_are_refused(scores: FloatArray, reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
         repeated_measures_anova(scores, FACTORS)

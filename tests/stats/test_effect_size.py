@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.study import cohen_dz, reduction
+from fdvv.stats.effect_size import cohen_dz, reduction
 
 
 def test_dz_is_t_over_the_root_of_people() -> None:

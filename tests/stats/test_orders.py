@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.study import counterbalanced, williams_orders
+from fdvv.stats.orders import counterbalanced, williams_orders
 
 
 @given(st.integers(2, 12))

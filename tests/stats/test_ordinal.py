@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.study.golden import golden
 
 from fdvv.errors import ModelError
-from fdvv.study import ordinal_model
-from fdvv.study._ordinal_fit import gathered
-from fdvv.study._ordinal_likelihood import OrdinalPoint, log_likelihood
+from fdvv.stats.ordinal import ordinal_model
+from fdvv.stats.ordinal_fit import OrdinalPoint, gathered, log_likelihood
 from fdvv.units import FloatArray
+from tests.stats.golden import golden
 
 SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
 
@@ -19,7 +18,7 @@ SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
 def some_ratings(
     seed: int, people: int = 10, rounds: int = 6, effect: float = 0.8, sd: float = 0.7
 ) -> tuple[FloatArray, Any, FloatArray]:
-    """Give ratings, who gave them, and 0 or 1 for what was rated."""
+    """Return ratings, who gave them, and 0 or 1 for what was rated."""
     random = np.random.default_rng(seed)
     person = np.repeat(np.arange(people), 2 * rounds)
     x = np.tile(np.repeat([0.0, 1.0], rounds), people)
@@ -131,9 +130,9 @@ def test_the_slope_is_that_of_the_likelihood(size: int) -> None:
     point = a_point(random, size)
     flat = point.flat()
     _, slope = log_likelihood(data, point, 25)
-    for moved, told in zip(1e-5 * np.eye(flat.size), slope, strict=True):
+    for moved, expected in zip(1e-5 * np.eye(flat.size), slope, strict=True):
         up, down = (log_likelihood(data, point.moved(flat + way * moved), 25)[0] for way in (1, -1))
-        assert (up - down) / 2e-5 == pytest.approx(told, abs=1e-3)
+        assert (up - down) / 2e-5 == pytest.approx(expected, abs=1e-3)
 
 
 def test_where_people_do_not_differ_it_agrees_with_statsmodels() -> None:
@@ -186,7 +185,7 @@ def test_an_effect_that_all_answers_agree_on_is_called_unbounded() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ratings", "person", "predictors", "told"),
+    ("ratings", "person", "predictors", "reason"),
     [
         ([3, 3, 3, 3], "aabb", [0, 1, 0, 1], "2 categories and 2 people, got 1 and 2"),
         ([1, 2, 3, 4], "aaaa", [0, 1, 0, 1], "got 4 and 1"),
@@ -195,8 +194,8 @@ def test_an_effect_that_all_answers_agree_on_is_called_unbounded() -> None:
         ([1, 2, 3, 4], "aabb", [[1, 1], [0, 0], [1, 1], [0, 0]], "need as many different names"),
     ],
 )
-def test_ratings_without_a_model_are_refused(ratings: Any, person: str, predictors: Any, told: str) -> None:
-    with pytest.raises(ModelError, match=told):
+def test_ratings_without_a_model_are_refused(ratings: Any, person: str, predictors: Any, reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
         ordinal_model(ratings, list(person), predictors, ["x"])
 
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.study import bonferroni, holm, post_hoc
+from fdvv.stats.post_hoc import bonferroni, holm, post_hoc
 
 GOLDEN: Any = json.loads((Path(__file__).parent / "files" / "pingouin.json").read_text())
 BUTTONS = ("optimal", "clear", "brown", "black", "red", "random")
@@ -19,10 +19,10 @@ CHANCES = st.lists(st.floats(0, 1), min_size=1, max_size=15)
 
 def test_every_pair_agrees_with_pingouin() -> None:
     tests = post_hoc(np.mean(GOLDEN["scores"], axis=2), BUTTONS)
-    told = GOLDEN["pairs"]
-    assert [one.t for one in tests] == pytest.approx(told["T"], rel=1e-6)
+    expected = GOLDEN["pairs"]
+    assert [one.t for one in tests] == pytest.approx(expected["T"], rel=1e-6)
     for ours, theirs in (("p", "p_unc"), ("holm_p", "holm"), ("bonferroni_p", "bonferroni")):
-        assert [getattr(one, ours) for one in tests] == pytest.approx(told[theirs], rel=1e-5, abs=2e-9)
+        assert [getattr(one, ours) for one in tests] == pytest.approx(expected[theirs], rel=1e-5, abs=2e-9)
 
 
 def test_against_one_button_counts_only_its_pairs() -> None:

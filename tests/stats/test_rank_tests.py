@@ -1,3 +1,5 @@
+"""."""
+
 from __future__ import annotations
 
 import math
@@ -8,15 +10,90 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study.golden import EVERY, golden
 
 from fdvv.errors import ModelError
-from fdvv.study import sign_test, signed_rank, signed_ranks
-from fdvv.study._signed_rank import turnable_ranks
+from fdvv.stats.post_hoc import holm
+from fdvv.stats.rank_tests import friedman, ranked_pairs, signed_rank, signed_ranks, turnable_ranks
+from fdvv.stats.share import sign_test
 from fdvv.units import FloatArray
+from tests.stats.golden import EVERY, golden
+
+
+def test_it_agrees_with_R_on_200_studies_with_ties() -> None:
+    for one in golden("friedman"):
+        found = friedman(one["scores"])
+        assert found.chi2 == pytest.approx(one["chi2"], abs=1e-8)
+        assert found.p == pytest.approx(one["p"], abs=1e-8)
+
+
+def test_it_agrees_with_pingouin_on_200_studies() -> None:
+    for scores, F, p, W, chi2 in golden("friedman", "answers_pingouin"):
+        found = friedman(scores)
+        assert [found.W, found.chi2, found.F] == pytest.approx([W, chi2, F], abs=1e-9)
+        # pingouin takes 2 / people from both degrees of freedom, as Kendall and Babington Smith did
+        df, less = len(scores[0]) - 1, 2 / len(scores)
+        from scipy.stats import f
+
+        assert p == pytest.approx(f.sf(F, df - less, (len(scores) - 1) * (df - less)), abs=1e-9)
+
+
+def test_it_agrees_with_scipy() -> None:
+    from scipy.stats import friedmanchisquare
+
+    random = np.random.default_rng(1)
+    for _ in range(200):
+        scores = random.integers(0, 9, (int(random.integers(3, 20)), int(random.integers(3, 8))))
+        expected = friedmanchisquare(*scores.T)
+        assert friedman(scores).chi2 == pytest.approx(expected.statistic)
+        assert friedman(scores).p == pytest.approx(expected.pvalue)
+
+
+def test_people_who_agree_wholly_have_the_concordance_1() -> None:
+    found = friedman(np.tile([10.0, 20, 30], (6, 1)))
+    assert (found.W, found.F, found.F_p) == (1.0, math.inf, 0.0)
+    assert found.mean_ranks == (1.0, 2.0, 3.0)
+
+
+def test_pairs_are_signed_rank_tests_corrected_together() -> None:
+    scores = np.random.default_rng(2).integers(0, 101, (14, 4)).astype(float)
+    names = ["reference", "FDVV", "FD", "anchor"]
+    pairs = ranked_pairs(scores, names)
+    assert [(one.first, one.second) for one in pairs] == [
+        (a, b) for i, a in enumerate(names) for b in names[i + 1 :]
+    ]
+    assert pairs[1].test == signed_rank(scores[:, 0] - scores[:, 2])
+    assert tuple(one.holm_p for one in pairs) == holm([one.test.p_exact for one in pairs])
+
+
+def test_pairs_against_one_put_it_first_wherever_it_stands() -> None:
+    scores = np.random.default_rng(3).normal(size=(8, 3))
+    pairs = ranked_pairs(scores, ["a", "b", "c"], against="b")
+    assert [(one.first, one.second) for one in pairs] == [("b", "a"), ("b", "c")]
+    assert pairs[0].test.shift == -signed_rank(scores[:, 0] - scores[:, 1]).shift
+
+
+def test_a_missing_rating_leaves_its_person_out_of_its_pairs_alone() -> None:
+    scores = np.random.default_rng(4).normal(size=(8, 3))
+    scores[2, 1] = np.nan
+    pairs = ranked_pairs(scores, ["a", "b", "c"])
+    assert [one.test.n for one in pairs] == [7, 8, 7]
+
+
+@pytest.mark.parametrize(
+    ("call", "reason"),
+    [
+        (lambda: friedman([[1.0, 2.0], [1.0, math.nan], [2.0, 1.0]]), "missing"),
+        (lambda: friedman(np.ones((5, 3))), "alike"),
+        (lambda: ranked_pairs(np.ones((5, 3)), ["a", "b"]), "different names"),
+        (lambda: ranked_pairs(np.ones((5, 2)), ["a", "b"], against="c"), "no condition 'c'"),
+    ],
+)
+def test_what_cannot_be_tested_is_refused(call: Any, reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
+        call()
+
 
 SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
-
 
 ZEROS: Any = (("wilcoxon", "wilcox"), ("pratt", "pratt"))
 """What we call each way with zeros, and what SciPy calls it."""
@@ -25,7 +102,7 @@ SETS = pytest.mark.parametrize("sets", [15, pytest.param(200, marks=SLOW)])
 
 
 def some_differences(sets: int = 200, most: int = 11) -> list[FloatArray]:
-    """Give differences of every kind: many ties and zeros, few, none, and means of six ratings."""
+    """Return differences of every kind: many ties and zeros, few, none, and means of six ratings."""
     random = np.random.default_rng(7)
     kinds: list[Any] = [
         lambda n: random.integers(-3, 5, n).astype(float),
@@ -97,8 +174,8 @@ def test_the_exact_p_agrees_with_scipys_permutations() -> None:
 
     for x in some_differences(12, 8):
         for ours, theirs in ZEROS:
-            told = wilcoxon(x, zero_method=theirs, method=PermutationMethod(n_resamples=10**6))
-            assert signed_rank(x, ours).p_exact == pytest.approx(told.pvalue, abs=1e-12)
+            expected = wilcoxon(x, zero_method=theirs, method=PermutationMethod(n_resamples=10**6))
+            assert signed_rank(x, ours).p_exact == pytest.approx(expected.pvalue, abs=1e-12)
 
 
 @EVERY
@@ -119,8 +196,8 @@ def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_an
             (pratt.z, "z_pratt"),
             (pratt.p_exact, "exact_pratt"),
         ):
-            told = -abs(one[name]) if name.startswith("z") else one[name]
-            assert ours == pytest.approx(told, abs=2e-10), name
+            expected = -abs(one[name]) if name.startswith("z") else one[name]
+            assert ours == pytest.approx(expected, abs=2e-10), name
         if one["shift"] is not None:
             assert [found.shift, found.low, found.high] == pytest.approx([one["shift"], *one["interval"]])
 
@@ -148,7 +225,7 @@ def test_many_studies_at_once_are_each_what_one_is_alone() -> None:
 def test_studies_do_not_fit_in_one_chunk_and_agree_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     many = np.random.default_rng(5).integers(-9, 12, (50, 16)).astype(float)
     whole = signed_ranks(many).p_exact
-    monkeypatch.setattr("fdvv.study._signed_rank_exact.CHUNK_BYTES", 4000)
+    monkeypatch.setattr("fdvv.stats.rank_tests.CHUNK_BYTES", 4000)
     assert signed_ranks(many).p_exact.tolist() == pytest.approx(whole.tolist(), rel=1e-13)
 
 
@@ -195,12 +272,12 @@ def test_below_six_people_no_interval_of_95_percent_exists() -> None:
 
 
 @pytest.mark.parametrize(
-    ("x", "told"),
+    ("x", "reason"),
     [([], "at least one person"), ([math.nan], "at least one person"), ([math.inf], "infinite"),
      ([[1.0, 2.0]], "one difference a person")],
 )  # fmt: skip
-def test_what_cannot_be_tested_is_refused(x: Any, told: str) -> None:
-    with pytest.raises(ModelError, match=told):
+def test_differences_that_cannot_be_tested_are_refused(x: Any, reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
         signed_rank(x)
 
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study.golden import EVERY, golden
 
 from fdvv.errors import ModelError
-from fdvv.study import (
+from fdvv.stats.share import (
+    beta_binomial_fit,
     binomial_p,
     clopper_pearson,
     clustered_share,
@@ -19,7 +19,7 @@ from fdvv.study import (
     share_of_totals,
     wilson,
 )
-from fdvv.study._beta_binomial import beta_binomial_fit
+from tests.stats.golden import EVERY, golden
 
 SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
 
@@ -62,8 +62,8 @@ def test_both_intervals_and_the_exact_p_agree_with_scipy_on_200_counts(every: in
     k, n = (column[::every] for column in some_counts())
     for ours, scipys in ((wilson(k, n), "wilson"), (clopper_pearson(k, n), "exact")):
         for i in range(len(k)):
-            told = binomtest(int(k[i]), int(n[i])).proportion_ci(method=scipys)  # type: ignore[arg-type]
-            assert [ours[0][i], ours[1][i]] == pytest.approx([told.low, told.high], abs=1e-9)
+            expected = binomtest(int(k[i]), int(n[i])).proportion_ci(method=scipys)  # type: ignore[arg-type]
+            assert [ours[0][i], ours[1][i]] == pytest.approx([expected.low, expected.high], abs=1e-9)
     for chance in (0.5, 0.3):
         ps = [binomtest(int(a), int(b), chance).pvalue for a, b in zip(k, n, strict=True)]
         assert binomial_p(k, n, chance).tolist() == pytest.approx(ps, rel=1e-9)
@@ -71,9 +71,9 @@ def test_both_intervals_and_the_exact_p_agree_with_scipy_on_200_counts(every: in
 
 
 def test_people_as_people_agrees_with_survey_on_200_studies() -> None:
-    told = [one for one in golden("clustered") if one["share"] is not None]
-    assert len(told) == 200
-    for one in told:
+    expected = [one for one in golden("clustered") if one["share"] is not None]
+    assert len(expected) == 200
+    for one in expected:
         found = clustered_share(one["k"], one["n"])
         people = sum(n > 0 for n in one["n"])
         assert found.share == pytest.approx(one["share"])
@@ -120,8 +120,8 @@ def test_the_beta_binomial_interval_ends_where_scipys_likelihood_has_fallen() ->
 
 
 def test_likeness_agrees_with_the_intraclass_correlation_of_pingouin_on_200_studies() -> None:
-    for k, n, told in golden("icc", "answers_pingouin"):
-        assert intraclass_correlation(k, np.full(len(k), n)) == pytest.approx(max(told, 0.0), abs=1e-9)
+    for k, n, expected in golden("icc", "answers_pingouin"):
+        assert intraclass_correlation(k, np.full(len(k), n)) == pytest.approx(max(expected, 0.0), abs=1e-9)
 
 
 def test_where_everybody_always_says_the_same_people_alone_are_counted() -> None:
@@ -194,7 +194,7 @@ def test_intervals_over_people_hold_the_truth_about_as_often_as_they_say(spread:
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "reason"),
     [
         (lambda: share(5, 0), "at least 1 answer"),
         (lambda: share(6, 5), "0 to n successes"),
@@ -203,6 +203,6 @@ def test_intervals_over_people_hold_the_truth_about_as_often_as_they_say(spread:
         (lambda: clustered_share([3, 5], [4, 4]), "for each person"),
     ],
 )
-def test_counts_that_cannot_be_are_refused(call: Any, told: str) -> None:
-    with pytest.raises(ModelError, match=told):
+def test_counts_that_cannot_be_are_refused(call: Any, reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
         call()

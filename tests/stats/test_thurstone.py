@@ -5,20 +5,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.study.golden import golden
 
 from fdvv.errors import ModelError
-from fdvv.study import (
-    clustered_share,
+from fdvv.stats.share import clustered_share
+from fdvv.stats.thurstone import (
     d_prime_2afc,
     d_prime_abx,
     d_prime_duo_trio,
     d_prime_of_people,
+    d_prime_of_share,
     share_2afc,
     share_abx_independent,
     share_duo_trio,
 )
-from fdvv.study._thurstone import d_prime_of_share
+from tests.stats.golden import golden
 
 
 def test_all_three_functions_agree_with_psyphy_on_200_shares() -> None:
@@ -44,9 +44,9 @@ def test_the_interval_of_two_afc_is_that_of_the_share() -> None:
     from scipy.stats import binomtest, norm
 
     for correct, n in ((15, 20), (3, 20), (334, 432), (10, 20)):
-        told = binomtest(correct, n).proportion_ci()
+        interval = binomtest(correct, n).proportion_ci()
         found = d_prime_2afc(correct, n)
-        expected = [math.sqrt(2) * norm.ppf(one) for one in (correct / n, told.low, told.high)]
+        expected = [math.sqrt(2) * norm.ppf(one) for one in (correct / n, interval.low, interval.high)]
         assert [found.d, found.low, found.high] == pytest.approx(expected, abs=1e-8)
         assert found.p == pytest.approx(binomtest(correct, n).pvalue)
 
@@ -81,8 +81,8 @@ def test_the_exact_p_of_guessing_agrees_with_scipy() -> None:
     from scipy.stats import binomtest
 
     for correct in (0, 5, 10, 15, 20):
-        told = binomtest(correct, 20, alternative="greater").pvalue
-        assert d_prime_abx(correct, 20).p == pytest.approx(told)
+        expected = binomtest(correct, 20, alternative="greater").pvalue
+        assert d_prime_abx(correct, 20).p == pytest.approx(expected)
 
 
 def test_over_people_the_bounds_are_those_of_the_share_over_people() -> None:

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study.golden import EVERY, golden
 
 from fdvv.errors import ModelError
-from fdvv.study import d_prime_2afc, shares_2ac, two_ac, two_ac_people
-from fdvv.study._two_ac import _most_likely
+from fdvv.stats.thurstone import d_prime_2afc
+from fdvv.stats.two_ac import _most_likely, shares_2ac, two_ac, two_ac_people
+from tests.stats.golden import EVERY, golden
 
 
 @EVERY
@@ -106,7 +106,7 @@ def test_counts_that_cannot_be_are_refused(counts: Any) -> None:
 
 
 def compared_people(sets: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fdvv.study._two_ac_people.NODES", 7)
+    monkeypatch.setattr("fdvv.stats.two_ac.NODES", 7)
     for one in sets:
         found = two_ac_people(one["counts"])
         half = 1.959964 * one["error"]

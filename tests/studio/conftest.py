@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
-from fdvv.studio import Call, ChannelKind, Studio, create_app, door_of
-from fdvv.studio._parts import PartLoader, Parts
+from fdvv.studio.contract import Call, ChannelKind
+from fdvv.studio.parts import PartLoader, Parts
+from fdvv.studio.server import address_of, create_app
+from fdvv.studio.studio import Studio
 
 HOST, PORT, TOKEN = "127.0.0.1", 8377, "a-token-of-a-test"
 ORIGIN = f"http://{HOST}:{PORT}"
@@ -33,7 +35,7 @@ def own_studio(tmp_path: Path) -> Studio:
 @pytest.fixture
 def stranger(own_studio: Studio) -> Iterator[TestClient]:
     """Someone on this machine who does not have the token."""
-    app = create_app(own_studio, door_of(HOST, PORT, TOKEN))
+    app = create_app(own_studio, address_of(HOST, PORT, TOKEN))
     with TestClient(app, base_url=ORIGIN, follow_redirects=False) as client:
         yield client
 

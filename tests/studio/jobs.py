@@ -6,10 +6,10 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from fdvv.studio._jobs import Jobs
-from fdvv.studio._messages_events import JobEvent
-from fdvv.studio._messages_jobs import JobRow
-from fdvv.studio._messages_orders import CompensateOrder, TuneOrder
+from fdvv.studio.jobs.events import JobEvent
+from fdvv.studio.jobs.file import JobRow
+from fdvv.studio.jobs.jobs import Jobs
+from fdvv.studio.jobs.orders import CompensateOrder, TuneOrder
 
 DEVICES = ("twin", "host")
 PATIENCE_s = 40.0

@@ -27,7 +27,7 @@ class RunningStudio:
         more: tuple[str, ...] = (),
         first: str = "",
     ) -> None:
-        begin = ["-c", f"{first}\nfrom fdvv.cli import main\nmain()"] if first else ["-m", "fdvv"]
+        begin = ["-c", f"{first}\nfrom fdvv.cli.main import main\nmain()"] if first else ["-m", "fdvv"]
         command = [sys.executable, *begin, "studio", *map(str, sources)]
         self.project = project
         self.process = subprocess.Popen(

@@ -25,9 +25,11 @@ from typing import Any
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
-from fdvv.studio import Studio, load_parts, serve
-from fdvv.workflow import Study
-from fdvv.workflow._study_seal import Cost
+from fdvv.studio.parts import load_parts
+from fdvv.studio.server import serve
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.study import Study
+from fdvv.study.files.seal import Cost
 
 ROOT = Path(__file__).resolve().parents[2]
 HOST = "127.0.0.1"

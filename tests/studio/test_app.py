@@ -9,11 +9,13 @@ from importlib import resources
 import msgspec
 import pytest
 from starlette.testclient import TestClient
-from tests.studio.conftest import GivenParts
 
 from fdvv import __version__
 from fdvv.errors import InputError
-from fdvv.studio import Call, Studio, load_parts
+from fdvv.studio.contract import Call
+from fdvv.studio.parts import load_parts
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import GivenParts
 
 FILES = sorted(f.name for f in resources.files("fdvv.studio").joinpath("static").iterdir())
 
@@ -42,7 +44,7 @@ def _twice(_studio: Studio, ask: Question) -> Answer:
 def _own_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     parts = load_parts()
     calls = {**parts.calls, "test.twice": Call("test.twice", Question, Answer, _twice)}
-    monkeypatch.setattr("fdvv.studio._app.PartLoader", lambda: GivenParts(calls, parts.channels))
+    monkeypatch.setattr("fdvv.studio.server.PartLoader", lambda: GivenParts(calls, parts.channels))
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -8,22 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.studio.jobs import DEVICES, PATIENCE_s, learning
 
 from fdvv.errors import DeviceError, InputError
-from fdvv.studio import Studio
-from fdvv.studio import _device_part as part
-from fdvv.studio._jobs import Jobs
-from fdvv.studio._messages_device import (
-    DeviceAsk,
-    DeviceConnect,
-    DevicePress,
-    DeviceStanding,
-    DeviceUpload,
-    PressSeen,
-    ScopeTold,
-    WatchScope,
-)
+from fdvv.studio.api import device as part
+from fdvv.studio.api.device import DevicePress, ScopeFrame, WatchScope
+from fdvv.studio.contract import Empty
+from fdvv.studio.device_session import DeviceConnect, DeviceStatus, DeviceUpload, PressSeen
+from fdvv.studio.jobs.jobs import Jobs
+from fdvv.studio.studio import Studio
+from tests.studio.jobs import DEVICES, PATIENCE_s, learning
 
 CLEAR = DeviceUpload("builtin:mx-clear")
 
@@ -68,14 +61,14 @@ def page(studio: Studio) -> Iterator[Page]:
 def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> None:
     found = part.connect(studio, DeviceConnect("host"))
     assert (found.device, found.simulated, found.streams, found.fault) == ("host", True, True, "")
-    page.wait(ScopeTold)
+    page.wait(ScopeFrame)
     assert part.upload(studio, CLEAR).programmed == "mx-clear"
     part.press(studio, DevicePress(100.0))
-    deep = page.wait(ScopeTold, lambda told: max(told.displacement_high_mm) > 3.5)
+    deep = page.wait(ScopeFrame, lambda told: max(told.displacement_high_mm) > 3.5)
     assert deep.bin_s == 0.01
-    assert max(max(told.commanded_high_cN) for told in page.of(ScopeTold)) > 20
+    assert max(max(told.commanded_high_cN) for told in page.of(ScopeFrame)) > 20
     # the default rig has no force sensor
-    assert {force for told in page.of(ScopeTold) for force in told.force_high_cN} == {None}
+    assert {force for told in page.of(ScopeFrame) for force in told.force_high_cN} == {None}
     seen = page.wait(PressSeen)
     assert seen.simulated
     assert max(force for force in seen.felt_press_cN if force is not None) > 20
@@ -85,14 +78,14 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
 def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page: Page) -> None:
     part.connect(studio, DeviceConnect("host"))
     part.upload(studio, CLEAR)
-    assert part.arm(studio, DeviceAsk()).fault == ""
-    page.wait(DeviceStanding, lambda told: told.mode == "armed")
+    assert part.arm(studio, Empty()).fault == ""
+    page.wait(DeviceStatus, lambda told: told.mode == "armed")
     other = Page(studio)
     other.channel.close()
-    assert part.standing(studio, DeviceAsk()).mode == "armed"
+    assert part.status(studio, Empty()).mode == "armed"
     page.channel.close()
     again = Page(studio)
-    again.wait(DeviceStanding, lambda told: told.mode == "idle")
+    again.wait(DeviceStatus, lambda told: told.mode == "idle")
     again.channel.close()
 
 
@@ -100,19 +93,19 @@ def test_the_twin_shows_presses_without_firmware(studio: Studio, page: Page) -> 
     assert not part.connect(studio, DeviceConnect("twin")).streams
     part.upload(studio, CLEAR)
     part.press(studio, DevicePress(100.0))
-    told = page.wait(ScopeTold)
+    told = page.wait(ScopeFrame)
     assert max(told.displacement_high_mm) > 3.5
     assert None not in told.force_high_cN
-    assert part.selftest(studio, DeviceAsk()).note
+    assert part.selftest(studio, Empty()).note
     with pytest.raises(DeviceError, match="no firmware"):
-        part.arm(studio, DeviceAsk())
+        part.arm(studio, Empty())
 
 
 def test_facts_and_self_test_are_those_of_the_firmware(studio: Studio) -> None:
     part.connect(studio, DeviceConnect("host"))
-    facts = {fact.name: fact.value for fact in part.facts(studio, DeviceAsk()).facts}
+    facts = {fact.name: fact.value for fact in part.facts(studio, Empty()).facts}
     assert (facts["name"], facts["simulated"]) == ("host", "True")
-    verdicts = {found.part: found.verdict for found in part.selftest(studio, DeviceAsk()).parts}
+    verdicts = {found.part: found.verdict for found in part.selftest(studio, Empty()).parts}
     assert (verdicts["position_sensor"], verdicts["force_sensor"]) == ("passed", "absent")
 
 
@@ -122,7 +115,7 @@ def test_a_device_in_view_is_not_used_by_a_job_nor_the_other_way_round(studio: S
         studio.part(Jobs).start(learning(), DEVICES)
     with pytest.raises(InputError, match="disconnect it first"):
         part.connect(studio, DeviceConnect("host"))
-    assert part.disconnect(studio, DeviceAsk()).device == ""
+    assert part.disconnect(studio, Empty()).device == ""
     assert part.connect(studio, DeviceConnect("host")).device == "host"
 
 
@@ -138,5 +131,5 @@ def test_only_what_is_listed_is_connected(studio: Studio, ask: DeviceConnect, to
 def test_without_a_device_one_line_says_so(studio: Studio) -> None:
     for work in (part.stop, part.arm, part.facts, part.selftest):
         with pytest.raises(DeviceError, match="connect one first"):
-            work(studio, DeviceAsk())
-    assert part.standing(studio, DeviceAsk()) == DeviceStanding()
+            work(studio, Empty())
+    assert part.status(studio, Empty()) == DeviceStatus()

@@ -8,13 +8,13 @@ from typing import Any
 import msgspec
 import pytest
 from starlette.testclient import TestClient
-from tests.studio.conftest import LIVE
 
 from fdvv.errors import InputError
-from fdvv.model import load_builtin, load_model
-from fdvv.studio import Studio
-from fdvv.studio._documents import Documents
-from fdvv.workflow import patch_between, record_of
+from fdvv.model.file import load_builtin, load_model
+from fdvv.project.patch import patch_between, record_of
+from fdvv.studio.api.documents import Documents
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import LIVE
 
 CLEAR = load_builtin("mx-clear")
 
@@ -138,9 +138,9 @@ def test_a_second_studio_on_the_project_gets_one_line(client: TestClient, own_st
     copied(client)
     other = Studio(own_studio.project)
     with pytest.raises(InputError, match="another studio works on this project"):
-        other.part(Documents).drafts.open("mine")
+        other.part(Documents).store.open("mine")
     own_studio.close()
-    assert other.part(Documents).drafts.open("mine").revision == 0
+    assert other.part(Documents).store.open("mine").revision == 0
     other.close()
 
 

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from fdvv.device import TwinDevice
-from fdvv.model import load_builtin, model_from_json, model_to_json
-from fdvv.studio import Studio
-from fdvv.workflow import probe, uncompensated
+from fdvv.device.twin import TwinDevice
+from fdvv.model.file import load_builtin, model_from_json, model_to_json
+from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.probe import probe
+from fdvv.studio.studio import Studio
 
 MODEL = json.loads(model_to_json(load_builtin("mx-clear")))
 

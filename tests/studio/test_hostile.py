@@ -16,13 +16,13 @@ from pathlib import Path
 
 import httpx2
 import pytest
-from tests.studio.running import RunningStudio
-from tests.studio.values import any_value, question
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from fdvv.studio import load_parts
+from fdvv.studio.parts import load_parts
+from tests.studio.running import RunningStudio
+from tests.studio.values import any_value, question
 
 CALLS = sorted(load_parts().calls.values(), key=lambda c: c.name)
 CHANNELS = sorted(load_parts().channels.values(), key=lambda c: c.name)

@@ -6,18 +6,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.studio.jobs import DEVICES, learning, tuning
 
 from fdvv.errors import InputError
-from fdvv.model import model_from_json
-from fdvv.studio._job_order import inputs_of
-from fdvv.studio._job_results import PLACES, kept_file, kept_names
-from fdvv.studio._messages_orders import CaptureOrder, Order
-from fdvv.workflow import Shelf
+from fdvv.library.catalog import Catalog
+from fdvv.model.file import model_from_json
+from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names
+from fdvv.studio.jobs.inputs import inputs_of
+from fdvv.studio.jobs.orders import CaptureOrder, Order
+from tests.studio.jobs import DEVICES, learning, tuning
 
 
 def checked(order: Order, project: Path) -> Any:
-    return inputs_of(order, Shelf(project), project, DEVICES)
+    return inputs_of(order, Catalog(project), project, DEVICES)
 
 
 WRONG: list[tuple[Order, str]] = [
@@ -59,7 +59,7 @@ def test_an_order_that_cannot_be_done_is_refused_in_one_line(order: Order, told:
 
 
 def test_an_order_takes_copies_of_all_that_it_works_on(tmp_path: Path) -> None:
-    known = PLACES["rig"].file(tmp_path, "twin-paper")
+    known = RESULT_FOLDERS["rig"].file(tmp_path, "twin-paper")
     known.parent.mkdir()
     known.write_text("{}")
     found = checked(learning(rig="paper", known_rig="twin-paper"), tmp_path)
@@ -74,10 +74,10 @@ def test_a_bench_is_another_device_than_the_rig_of_the_same_name(tmp_path: Path)
 
 def test_what_is_kept_is_found_by_name_among_what_is_there(tmp_path: Path) -> None:
     for name in ("a", "b 2"):
-        file = PLACES["actuation"].file(tmp_path, name)
+        file = RESULT_FOLDERS["actuation"].file(tmp_path, name)
         file.parent.mkdir(exist_ok=True)
         file.write_text("{}")
-    assert kept_names(tmp_path, "actuation") == ("a", "b 2")
-    assert kept_file(tmp_path, "actuation", "b 2").is_file()
+    assert result_names(tmp_path, "actuation") == ("a", "b 2")
+    assert result_file(tmp_path, "actuation", "b 2").is_file()
     with pytest.raises(InputError, match="none of this name"):
-        kept_file(tmp_path, "actuation", "../actuations/a")
+        result_file(tmp_path, "actuation", "../actuations/a")

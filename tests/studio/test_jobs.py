@@ -11,19 +11,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
 
 from fdvv.errors import InputError
-from fdvv.model import load_model
-from fdvv.studio import Studio
-from fdvv.studio._job import BROKEN_OFF
-from fdvv.studio._job_file import JOB
-from fdvv.studio._job_process import PATIENCE_s as LETTING_GO_s
-from fdvv.studio._jobs import Jobs
-from fdvv.studio._messages_events import JobOutcome, PressTold, QuestionAnswered, QuestionAsked
-from fdvv.studio._messages_jobs import JobResult
-from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder
-from fdvv.workflow import load_actuation
+from fdvv.model.file import load_model
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.studio.jobs.events import JobOutcome, PressEvent, QuestionAnswered, QuestionAsked
+from fdvv.studio.jobs.file import JOB, JobResult
+from fdvv.studio.jobs.jobs import BROKEN_OFF, Jobs
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder
+from fdvv.studio.jobs.process import PATIENCE_s as LETTING_GO_s
+from fdvv.studio.studio import Studio
+from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
 
 
 @pytest.fixture
@@ -40,7 +38,7 @@ def jobs(studio: Studio) -> Jobs:
 
 
 def pressed(event: object) -> bool:
-    return isinstance(event, PressTold)
+    return isinstance(event, PressEvent)
 
 
 def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
@@ -51,7 +49,7 @@ def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: St
     told = begin(jobs, learning())
     row = told.over()
     assert (row.state, row.line, row.simulated) == ("done", "", True)
-    presses = [event for event in told.events if isinstance(event, PressTold)]
+    presses = [event for event in told.events if isinstance(event, PressEvent)]
     assert [p.stage for p in presses] == ["compensate"] * (len(presses) - 1) + ["probe"]
     assert [(p.done, p.total) for p in presses[:-1]] == [
         (i + 1, len(presses) - 1) for i in range(len(presses) - 1)
@@ -101,7 +99,7 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     jobs.resume("0001")
     row = told.over()
     assert (row.state, row.done) == ("done", PRESSES)
-    used = [event.done for event in told.events if isinstance(event, PressTold) and not event.skipped]
+    used = [event.done for event in told.events if isinstance(event, PressEvent) and not event.skipped]
     # no press is made twice; one that was on file when it stopped may not have been told
     assert used == sorted(set(used))
     assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
@@ -150,7 +148,7 @@ def test_questions_are_answered_once_each_and_the_best_becomes_a_button(studio: 
     row = told.over()
     assert (row.state, row.results) == ("done", (JobResult("button", "clear tuned"),))
     assert [e.answer for e in told.events if isinstance(e, QuestionAnswered)] == ["first", "first"]
-    assert studio.shelf.model("own:clear tuned").vibrations
+    assert studio.catalog.model("own:clear tuned").vibrations
 
 
 @pytest.mark.slow
@@ -173,12 +171,12 @@ def test_a_process_that_is_killed_costs_nothing_that_was_told(jobs: Jobs) -> Non
 SERVER = """
 import sys, time
 from pathlib import Path
-from fdvv.studio import Studio
-from fdvv.studio._jobs import Jobs
+from fdvv.studio.studio import Studio
+from fdvv.studio.jobs.jobs import Jobs
 from tests.studio.jobs import DEVICES, PATIENCE_s, PRESSES, Follower, learning, long_learning, tuning
 jobs = Studio(Path(sys.argv[1])).part(Jobs)
 told = Follower(jobs, jobs.start(long_learning(), DEVICES).job)
-told.wait(lambda event: type(event).__name__ == "PressTold")
+told.wait(lambda event: type(event).__name__ == "PressEvent")
 print(jobs.job("0001").start.pid, flush=True)
 time.sleep(60)
 """
@@ -213,7 +211,7 @@ def test_a_capture_becomes_a_button_of_the_persons_own(studio: Studio, jobs: Job
     order = CaptureOrder("my clear", paces_mm_s=(50.0, 100.0), presses=3)
     row = Follower(jobs, jobs.start(order, DEVICES).job).over()
     assert row.state == "done", row.line
-    model = studio.shelf.model("own:my clear")
+    model = studio.catalog.model("own:my clear")
     assert model.provenance.simulated
     assert {curve.velocity_mm_s for curve in model.curves} >= {50.0, 100.0}
     assert load_model(studio.project / "buttons" / "my clear.fdvv.json") == model

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 from starlette.testclient import TestClient
-from tests.studio.conftest import LIVE, ORIGIN, TOKEN
-from tests.workflow.conftest import write_cycle
 
-from fdvv.model import SUFFIX, builtin_names, load_builtin, save_model
-from fdvv.studio import Studio, create_app, door_of
-from fdvv.workflow import SHELF_NUMBERS
+from fdvv.library.row import NUMBERS as SHELF_NUMBERS
+from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_model
+from fdvv.studio.api.library_buttons import sampled_strokes
+from fdvv.studio.server import address_of, create_app
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import LIVE, ORIGIN, TOKEN
+from tests.support.buttons import write_cycle
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +33,8 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def client(tmp_path_factory: pytest.TempPathFactory, bench: Path) -> Iterator[TestClient]:
     """A studio whose index has read everything."""
     project = tmp_path_factory.mktemp("library") / "project"
-    save_model(load_builtin("mx-red"), project / "buttons" / f"mine{SUFFIX}")
-    app = create_app(Studio(project, (bench,)), door_of("127.0.0.1", 8377, TOKEN))
+    save_model(load_builtin("mx-red"), project / "buttons" / f"mine{MODEL_SUFFIX}")
+    app = create_app(Studio(project, (bench,)), address_of("127.0.0.1", 8377, TOKEN))
     with TestClient(app, base_url=ORIGIN, headers={"origin": ORIGIN}) as client:
         client.get("/", params={"token": TOKEN})
         with client.websocket_connect(LIVE, headers={"origin": ORIGIN}) as live:
@@ -161,3 +163,13 @@ def test_a_rescan_finds_what_came_and_went_and_the_page_is_told(client: TestClie
         (bench / "Later.csv").unlink()
         rescanned(before["rows"])
         assert ask(client, "search", text="later")["total"] == 0
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_samples_lie_on_the_curves(name: str) -> None:
+    model = load_builtin(name)
+    for sampled, curve in zip(sampled_strokes(model), model.curves, strict=True):
+        x = sampled.start_mm + sampled.step_mm * np.arange(len(sampled.force_cN))
+        np.testing.assert_allclose(sampled.force_cN, curve.force_cN(x), atol=6e-4)
+        assert x[-1] == pytest.approx(curve.end_mm)
+        assert sampled.step_mm <= 0.0101

@@ -9,10 +9,11 @@ import msgspec
 import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
-from tests.studio.conftest import LIVE, GivenParts
 
 from fdvv.errors import ModelError
-from fdvv.studio import ChannelKind, Studio, Tell
+from fdvv.studio.contract import ChannelKind, Tell
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import LIVE, GivenParts
 
 
 class Add(msgspec.Struct, frozen=True, tag="add", forbid_unknown_fields=True):
@@ -60,7 +61,7 @@ class Adder:
 def _adder(monkeypatch: pytest.MonkeyPatch) -> None:
     Adder.closed = threading.Event()
     kind = ChannelKind("adder", (Add, Flood), (Sum,), lambda _studio, tell: Adder(tell))
-    monkeypatch.setattr("fdvv.studio._app.PartLoader", lambda: GivenParts({}, {"adder": kind}))
+    monkeypatch.setattr("fdvv.studio.server.PartLoader", lambda: GivenParts({}, {"adder": kind}))
 
 
 def add(number: int) -> dict[str, Any]:

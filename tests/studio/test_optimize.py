@@ -10,15 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
-from tests.studio.conftest import LIVE
-from tests.workflow.test_device_key import KeyedRig
-from tests.workflow.test_others import grid
 
-from fdvv.model import load_builtin, model_from_json
-from fdvv.optimize import Objective, Problem, Score, TemporalPointing, TrialState, engine_of, paper_space
-from fdvv.studio import Studio, _play_device
-from fdvv.studio._optimizations import Optimizations
-from fdvv.workflow import ClockSource, OptimizeSession, PlayedRounds, read_grid
+from fdvv.model.file import load_builtin, model_from_json
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Objective, Problem, Score, TrialState
+from fdvv.optimize.run.begin import read_grid
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.task_rounds import ClockSource, TaskRounds
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.studio import play_trials
+from fdvv.studio.optimizations import Optimizations
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import LIVE
+from tests.support.grids import grid
+from tests.support.pressed_rig import KeyedRig
 
 CREATE = {
     "title": "mine",
@@ -190,12 +196,12 @@ def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
     assert -140 < first["late_ms"] < 0
     assert (first["finished"], second["finished"]) == (False, True)
     assert 0 <= first["transport_ms"] < 200
-    with OptimizeSession.open(own_studio.project / "optimize" / str(run)) as session:
+    with Optimization.open(own_studio.project / "optimize" / str(run)) as session:
         (trial,) = session.trials
         score = trial.scores["asynchrony_ms"]
     assert trial.state is TrialState.DONE
     assert score.value == pytest.approx(-(first["late_ms"] + second["late_ms"]) / 2)
-    rounds = PlayedRounds(own_studio.project / "optimize" / str(run))
+    rounds = TaskRounds(own_studio.project / "optimize" / str(run))
     counting = rounds.counting(0)
     rounds.close()
     assert [one.timing.display_ms for one in counting] == [30.0, 30.0]
@@ -224,7 +230,7 @@ def test_a_long_way_from_hand_to_simulation_moves_no_press(
 def table(monkeypatch: pytest.MonkeyPatch) -> Iterator[KeyedRig]:
     """Put a board on the table, on a real terminal line, that somebody presses now and then."""
     rig = KeyedRig(presses=50)
-    monkeypatch.setattr(_play_device, "devices", lambda: (((f"serial:{rig.path}", "a board"),), ""))
+    monkeypatch.setattr(play_trials, "available_devices", lambda: (((f"serial:{rig.path}", "a board"),), ""))
     rig.start()
     yield rig
     rig.end()
@@ -252,7 +258,7 @@ def test_a_press_on_a_device_is_told_by_its_own_clock(
         assert found["transport_ms"] is None
     assert [found["finished"] for found, _ in kept] == [False, True]
     assert not table.port.outputs.enable
-    rounds = PlayedRounds(own_studio.project / "optimize" / str(run))
+    rounds = TaskRounds(own_studio.project / "optimize" / str(run))
     timing = rounds.counting(0)[0].timing
     rounds.close()
     assert (timing.source, timing.hand, timing.input_ms) == (ClockSource.KEY, "button", 0.0)
@@ -428,7 +434,7 @@ def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], o
     many = {**CREATE, "also": ["lost_ratio"], "simulated": True, "engine": "nsga2"}
     run = ask("create", **many)["run"]
     scores = [(60.0, 0.2), (80.0, 0.0), (90.0, 0.3)]
-    with OptimizeSession.open(own_studio.project / "optimize" / str(run)) as session:
+    with Optimization.open(own_studio.project / "optimize" / str(run)) as session:
         for number, (late_ms, lost) in enumerate(scores):
             session.ask()
             session.show(number)

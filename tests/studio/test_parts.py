@@ -10,13 +10,13 @@ import types
 import msgspec
 import pytest
 
-from fdvv.studio import Call
-from fdvv.studio._parts import PartLoader
+from fdvv.studio.contract import Call
+from fdvv.studio.parts import PartLoader
 
 RACE = """
 import sys, threading
-from fdvv.studio import load_parts
-from fdvv.model import load_builtin
+from fdvv.studio.parts import load_parts
+from fdvv import load_builtin
 load_parts()
 sys.setswitchinterval(1e-6)
 names = ("mx-clear", "mx-red", "mx-blue", "rubber-dome")
@@ -45,7 +45,7 @@ def call(name: str) -> Call:
 @pytest.fixture
 def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, *calls in (("first", call("a.a")), ("second", call("b.b")), ("third", call("a.a"))):
-        module = types.ModuleType(f"fdvv.studio.{name}")
+        module = types.ModuleType(f"fdvv.studio.api.{name}")
         module.__dict__.update(CALLS=tuple(calls), CHANNELS=())
         monkeypatch.setitem(sys.modules, module.__name__, module)
 

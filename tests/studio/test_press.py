@@ -9,11 +9,12 @@ from typing import Any
 import msgspec
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
-from tests.studio.conftest import LIVE
 
-from fdvv.model import load_builtin, model_to_json, save_model
-from fdvv.program import load_shipped, program_to_json, save_program
-from fdvv.studio import Studio
+from fdvv.model.file import load_builtin, model_to_json, save_model
+from fdvv.program.file import program_to_json, save_program
+from fdvv.program.library import load_shipped
+from fdvv.studio.studio import Studio
+from tests.studio.conftest import LIVE
 
 
 class Page:

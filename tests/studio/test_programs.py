@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from fdvv.program import load_shipped, program_from_json, program_to_json, programs
-from fdvv.studio import Studio
+from fdvv.program.file import program_from_json, program_to_json
+from fdvv.program.library import load_shipped, programs
+from fdvv.studio.studio import Studio
 
 BUTTON = program_to_json(load_shipped("button"))
 CALLS = ("list", "open", "save", "keep", "copy", "delete", "restore", "check", "recipe", "ranges", "surface")

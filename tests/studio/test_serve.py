@@ -11,9 +11,9 @@ from pathlib import Path
 
 import httpx2
 import pytest
-from tests.studio.running import RunningStudio
 
-from fdvv.studio._serve import listen
+from fdvv.studio.server import bound_socket
+from tests.studio.running import RunningStudio
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_what_is_answered_is_sent_at_once() -> None:
             )
             writer.close()
 
-        taken = listen("127.0.0.1", 0)
+        taken = bound_socket("127.0.0.1", 0)
         async with await asyncio.start_server(met, sock=taken):
             with socket.create_connection(taken.getsockname()):
                 return int(await found)

@@ -11,14 +11,13 @@ from typing import Any
 
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
+
+from fdvv.studio.api.study import StudyResume, StudyScreen
+from fdvv.studio.studies import Studies
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.study import Study
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, names_in, plan_text
 from tests.studio.conftest import LIVE
-
-from fdvv.studio import Studio
-from fdvv.studio._messages_study import StudyResume
-from fdvv.studio._studies import Studies
-from fdvv.studio._study_screen import StudyScreen
-from fdvv.workflow import Study
 
 SAME = ("about", "card", "step", "ready", "felt", "broke", "paused", "stopped", "error")
 
@@ -197,10 +196,10 @@ def test_who_comes_back_while_a_lost_page_still_takes_them_up_waits_for_it(
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         card = screen.sit(ask("seat")["seat"])
-        with studies.place(NAME, card["person"]):
-            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 0.05)
+        with studies.exclusive(NAME, card["person"]):
+            monkeypatch.setattr("fdvv.studio.studies.PATIENCE_s", 0.05)
             assert "taken up elsewhere" in screen.resume(card)["error"]
-            monkeypatch.setattr("fdvv.studio._studies.PATIENCE_s", 10.0)
+            monkeypatch.setattr("fdvv.studio.studies.PATIENCE_s", 10.0)
             screen.say("resume", study=NAME, person=card["person"], code=card["code"])
             time.sleep(0.05)
         assert screen.hear("step")["task"]["number"] == 0
@@ -258,9 +257,9 @@ def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
     study: Study, ask: Callable[..., Any], client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from fdvv.errors import DeviceError
-    from fdvv.workflow import PersonStage
+    from fdvv.study.stimulus.twin import TwinRenderer
 
-    def fails(_self: PersonStage, _label: str) -> None:
+    def fails(_self: TwinRenderer, _label: str) -> None:
         raise DeviceError("the twin fell to zero force: a test")
 
     with client.websocket_connect(LIVE) as socket:
@@ -268,7 +267,7 @@ def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
         screen.sit(ask("seat")["seat"])
         screen.show()
         with monkeypatch.context() as broken:
-            broken.setattr(PersonStage, "show", fails)
+            broken.setattr(TwinRenderer, "show", fails)
             screen.say("go", label="A")
             told = screen.hear("broke")
         assert told == {"type": "broke"}

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+
+from fdvv.study.admin.study import Study
 from tests.browser.study_screens import plan_text
 from tests.studio.study_lives import GONE, HOST, PASSPHRASE, Hatchery, Killer, Taker, Words
-from tests.workflow.study_witness import Witness, check_labels
-
-from fdvv.workflow import Study
+from tests.support.study_witness import Witness, check_labels
 
 TEXT = plan_text(2, 2, reference=True, pages=True, switch_s=0.0, break_every_min=0.01, break_min=0.002)
 MOST_SAID = 40

@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.studio.jobs import learning, tuning
 
-from fdvv.model import load_builtin, save_model
-from fdvv.studio._job_file import JobFolder, JobRecord, utc_now
-from fdvv.studio._job_process import ended
-from fdvv.studio._job_results import publish
-from fdvv.studio._messages_events import CurveIntended, JobEvent, JobOutcome, PressTold
-from fdvv.studio._messages_orders import Order
-from fdvv.studio._work import Work
-from fdvv.workflow import measured_button
+from fdvv.model.file import load_builtin, save_model
+from fdvv.project.measured_bands import measured_button
+from fdvv.studio.jobs.events import CurveIntended, JobEvent, JobOutcome, PressEvent
+from fdvv.studio.jobs.file import JobFolder, JobRecord, publish, utc_now
+from fdvv.studio.jobs.orders import Order
+from fdvv.studio.jobs.process import ended
+from fdvv.studio.jobs.work import Work
+from tests.studio.jobs import learning, tuning
 
 
 def work_of(order: Order, path: Path, tell: Any) -> Work:
@@ -39,26 +38,26 @@ def test_what_was_measured_is_told_and_kept_as_the_editor_reads_it(tmp_path: Pat
     measured = json.loads(work.folder.result("measured").read_text())
     assert (measured["button"], measured["simulated"], measured["presses"]) == ("builtin:mx-clear", True, 2)
     outcome = next(e for e in told if isinstance(e, JobOutcome) and e.stage == "probe")
-    for band, standing in zip(found.bands, outcome.curves, strict=True):
+    for band, standing in zip(found.curves, outcome.curves, strict=True):
         assert standing.mean_error_cN == pytest.approx(band.mean_error_cN, abs=1e-3)
         rows = zip(band.low_cN, band.median_cN, band.high_cN, strict=True)
         assert all(a <= b <= c for a, b, c in rows)
     intended = next(e for e in told if isinstance(e, CurveIntended))
-    for press in (e for e in told if isinstance(e, PressTold)):
+    for press in (e for e in told if isinstance(e, PressEvent)):
         assert press.felt
         assert len(press.felt.press_cN) == len(press.felt.release_cN) == len(intended.displacement_mm)
 
 
 def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) -> None:
     def stop(event: JobEvent) -> None:
-        if isinstance(event, PressTold):
+        if isinstance(event, PressEvent):
             raise KeyboardInterrupt
 
     end = ended(work_of(learning(probe_presses=0), tmp_path, stop))
     assert (end.state, "kept" in end.line) == ("cancelled", True)
     told: list[JobEvent] = []
     assert ended(work_of(learning(probe_presses=0), tmp_path, told.append)).state == "done"
-    assert next(e.done for e in told if isinstance(e, PressTold)) == 2
+    assert next(e.done for e in told if isinstance(e, PressEvent)) == 2
 
 
 def test_one_mistake_is_one_line_without_a_path(tmp_path: Path) -> None:

@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import norm, wilcoxon
-from tests.study_answers import (
+
+from fdvv.errors import InputError
+from fdvv.io.documents import finite
+from fdvv.study.analysis.analyse import analyse
+from fdvv.study.analysis.code_book import write_answers
+from fdvv.study.analysis.export import analysis_dict
+from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.claim import claim_scores
+from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan_file import read_plan_text, template_text
+from tests.support.study_answers import (
     BROKEN,
     BUTTONS,
     EVERY_KIND,
@@ -23,11 +34,6 @@ from tests.study_answers import (
     timing,
     with_missing,
 )
-
-from fdvv.documents import finite
-from fdvv.errors import InputError
-from fdvv.study import Answers, StudyPlan, claim_scores, read_plan_text, template_text
-from fdvv.workflow import analyse, analysis_dict, read_answers, write_answers
 
 
 def plan() -> StudyPlan:
@@ -162,11 +168,11 @@ def test_ordered_categories_agree_with_the_lean_that_ratings_have() -> None:
 )
 def test_every_kind_and_whatever_is_broken_is_told_as_json(answers: Answers) -> None:
     document = analysis_dict(analyse(answers))
-    told = json.loads(json.dumps(finite(document), allow_nan=False))
-    assert {"tests", "preference", "multiverse", "screening", "claim"} <= set(told)
-    if told["preference"]:
-        assert told["preference"]["low"] <= told["preference"]["share"] <= told["preference"]["high"]
-    for test in told["tests"]:
+    parsed = json.loads(json.dumps(finite(document), allow_nan=False))
+    assert {"tests", "preference", "multiverse", "screening", "claim"} <= set(parsed)
+    if parsed["preference"]:
+        assert parsed["preference"]["low"] <= parsed["preference"]["share"] <= parsed["preference"]["high"]
+    for test in parsed["tests"]:
         assert {"button", "statistic", "z", "p_asymptotic", "p_exact", "effect"} <= set(test)
 
 

@@ -3,13 +3,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from tests.study_answers import mushra, realism
 
-from fdvv.study import Answers, Exclusion, is_answered, screen, unscreened
+from fdvv.study.plan.answers import Answers, is_answered, screen, unscreened
+from fdvv.study.plan.plan import Exclusion
+from tests.support.study_answers import mushra, realism
 
 
 def lacking(part: float) -> Answers:
-    """Give a study in which the first person lacks that part of the trials."""
+    """Return a study in which the first person lacks that part of the trials."""
     answers = realism(4, 6)
     rows = np.flatnonzero(answers.person == "P01")
     gone = rows[: round(part * rows.size)]

@@ -12,12 +12,11 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.workflow.studies import Killed, kill_at
 
 from fdvv.errors import InputError
-from fdvv.journal import line_of
-from fdvv.workflow import ChainedLog, read_chained
-from fdvv.workflow._study_chain import head_path, next_chain
+from fdvv.eventlog import line_of
+from fdvv.study.files.chained_log import ChainedLog, head_path, next_chain, read_chained
+from tests.support.studies import Killed, kill_at
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
@@ -72,7 +71,7 @@ LINES = st.lists(st.integers(0, 6), max_size=8)
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[bytes, Path]:
-    """Give a log of either kind; it is put right after every change."""
+    """Return a log of either kind; it is put right after every change."""
     return {key: written(tmp_path_factory.mktemp("log"), key) for key in (b"", KEY)}
 
 

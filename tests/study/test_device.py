@@ -11,51 +11,46 @@ from pathlib import Path
 import numpy as np
 import pytest
 from msgspec import structs
-from tests.device.test_pressed import SETTINGS, Rig
-from tests.workflow.conftest import line_model
 
-from fdvv.compensate import UNTUNED, Outcome, RigAware, Tuning
-from fdvv.device import (
-    HostBoard,
-    Inputs,
-    LibraryBoard,
-    LinkedDevice,
-    LockstepPort,
-    PressedDevice,
-    ScriptedPerson,
-    SerialPort,
-    SimulatedPerson,
-    TwinDevice,
-)
+from fdvv.compensation.method import UNTUNED, Outcome, Tuning
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.boards import HostBoard, LibraryBoard
+from fdvv.device.linked import LinkedDevice, LockstepPort
+from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.remote import PressedDevice
+from fdvv.device.serial import SerialPort
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import FDVVModel, ForceSurface, load_builtin
-from fdvv.program import Limits
-from fdvv.protocol import FrameDecoder, Message
-from fdvv.study import Exclusion, Stimulus
-from fdvv.twin import load_finger, load_rig
-from fdvv.workflow import (
-    CompensationResult,
-    DeviceStage,
-    compensate,
-    fd_only,
-    open_screen_stage,
-    rig_memory,
-    save_actuation,
-    trial_program,
-)
+from fdvv.live.press_subject import learned_rig
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.program.surface import Limits
+from fdvv.protocol.frame import FrameDecoder
+from fdvv.protocol.tables import Message
+from fdvv.rendering.actuation_file import save_actuation
+from fdvv.rendering.compensate import CompensationResult, compensate
+from fdvv.rendering.probe import fd_only
+from fdvv.study.plan.plan import Exclusion, Stimulus
+from fdvv.study.stimulus.device import DeviceRenderer
+from fdvv.study.stimulus.open import open_screen_renderer
+from fdvv.study.stimulus.program import trial_program
+from fdvv.twin.files import load_finger, load_rig
+from tests.support.buttons import line_model
+from tests.support.pressed_rig import SETTINGS, Rig
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")
 WEIGHTLESS = Limits(weight_cN=0.0)
 
 
-def scripted(meddle: Callable[[int, Inputs], Inputs] | None = None, **options: object) -> DeviceStage:
-    """Give a stage on a cap that follows a path and feels the command."""
+def scripted(meddle: Callable[[int, Inputs], Inputs] | None = None, **options: object) -> DeviceRenderer:
+    """Return a stage on a cap that follows a path and feels the command."""
     person = ScriptedPerson(meddle=meddle)
-    return DeviceStage(LinkedDevice(LibraryBoard(), person), Path(), limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
+    return DeviceRenderer(LinkedDevice(LibraryBoard(), person), Path(), limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
 
 
-def messages(stage: DeviceStage) -> list[tuple[float, Message, int]]:
+def messages(stage: DeviceRenderer) -> list[tuple[float, Message, int]]:
     """Log what goes to the device from now on: when on its clock, what, how long."""
     port, decoder = stage.device.client.port, FrameDecoder()
     log: list[tuple[float, Message, int]] = []
@@ -136,7 +131,7 @@ def test_a_wrong_actuation_is_seen_and_right_ones_are_not_suspected(tmp_path: Pa
     kept(tmp_path, "FD", fd_only(model))
     kept(tmp_path, "FDVV", model)
     kept(tmp_path, "wrong", line_model("wrong", 120.0, travel_mm=model.travel_mm))
-    stage = DeviceStage(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
+    stage = DeviceRenderer(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
     stage.prepare(
         {"A": with_actuation(FD, "FD"), "B": with_actuation(FDVV, "FDVV"), "C": with_actuation(FDVV, "wrong")}
     )
@@ -151,7 +146,7 @@ def test_a_force_ratio_multiplies_what_is_meant_and_leaves_what_compensation_add
     model = load_builtin("mx-clear")
     kept(tmp_path, "FDVV", model)
     plain = with_actuation(FDVV, "FDVV")
-    stage = DeviceStage(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
+    stage = DeviceRenderer(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
     stage.prepare({"A": plain, "B": structs.replace(plain, force_ratio=1.2)})
     for label in ("A", "B"):
         stage.show(label)
@@ -163,19 +158,19 @@ def test_a_force_ratio_multiplies_what_is_meant_and_leaves_what_compensation_add
 def test_actuations_under_different_tunings_are_refused_together(tmp_path: Path) -> None:
     model = load_builtin("mx-clear")
     kept(tmp_path, "FDVV", model, Tuning(bandwidth_Hz=60.0, lead_s=0.002))
-    stage = DeviceStage(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
+    stage = DeviceRenderer(LinkedDevice(LibraryBoard(), ScriptedPerson()), tmp_path)
     with pytest.raises(InputError, match="different tunings"):
         stage.prepare({"A": FD, "B": with_actuation(FDVV, "FDVV")})
 
 
 @pytest.mark.slow
 def test_labels_that_the_paper_s_rig_was_compensated_with_are_felt_as_intended(tmp_path: Path) -> None:
-    model, law = load_builtin("mx-clear"), RigAware(rounds=0, memory=rig_memory("paper"))
+    model, law = load_builtin("mx-clear"), RigAware(rounds=0, learned_rig=learned_rig("paper"))
     for name, one in (("FD", fd_only(model)), ("FDVV", model)):
         result = compensate(TwinDevice(load_rig("paper")), one, (50.0, 100.0, 150.0), law)
         save_actuation(result, tmp_path / f"{name}.actuation.json")
     person = SimulatedPerson(load_rig("paper"), load_finger("paper"), seed=3)
-    stage = DeviceStage(LinkedDevice(LibraryBoard(), person), tmp_path, presses=3)
+    stage = DeviceRenderer(LinkedDevice(LibraryBoard(), person), tmp_path, presses=3)
     stage.prepare({"A": with_actuation(FD, "FD"), "B": with_actuation(FDVV, "FDVV")})
     for label in ("A", "B"):
         stage.show(label)
@@ -226,7 +221,7 @@ def test_a_stage_goes_on_with_a_device_that_had_fallen_into_a_fault() -> None:
     with pytest.raises(DeviceError):
         stage.show("A")
     device = stage.device
-    again = DeviceStage(device, Path(), limits=WEIGHTLESS, presses=0)
+    again = DeviceRenderer(device, Path(), limits=WEIGHTLESS, presses=0)
     again.prepare({"A": FD})
     again.show("A")
     assert again.rendered()[0].faults == ()
@@ -234,12 +229,12 @@ def test_a_stage_goes_on_with_a_device_that_had_fallen_into_a_fault() -> None:
 
 def test_the_twin_that_presses_at_once_is_no_device_for_this() -> None:
     with pytest.raises(InputError, match="side by side"):
-        DeviceStage(TwinDevice(), Path())
+        DeviceRenderer(TwinDevice(), Path())
 
 
 def test_the_program_of_a_board_that_is_killed_ends_the_stage_in_one_line() -> None:
     board = HostBoard()
-    stage = DeviceStage(LinkedDevice(board, ScriptedPerson()), Path(), limits=WEIGHTLESS)
+    stage = DeviceRenderer(LinkedDevice(board, ScriptedPerson()), Path(), limits=WEIGHTLESS)
     stage.prepare({"A": FD, "B": FDVV})
     stage.show("A")
     os.kill(board.pid, signal.SIGKILL)
@@ -253,7 +248,7 @@ def test_the_program_of_a_board_that_is_killed_ends_the_stage_in_one_line() -> N
 def test_a_screen_is_given_the_twin_or_a_device_and_leads_only_the_twin() -> None:
     lines: list[str] = []
     for spec, person in (("twin", True), ("host", False)):
-        stage = open_screen_stage(spec, Path(), lambda _frame: None, lines.append, 0.0)
+        stage = open_screen_renderer(spec, Path(), lambda _frame: None, lines.append, 0.0)
         stage.prepare({"A": FD})
         stage.show("A")
         stage.lead(1.0)
@@ -263,7 +258,7 @@ def test_a_screen_is_given_the_twin_or_a_device_and_leads_only_the_twin() -> Non
         assert stage.problem == ""
         stage.close()
     with pytest.raises(InputError, match="names no device"):
-        open_screen_stage("nothing", Path(), lambda _frame: None, lines.append, 0.0)
+        open_screen_renderer("nothing", Path(), lambda _frame: None, lines.append, 0.0)
     assert not lines
 
 
@@ -297,10 +292,10 @@ def until(found: Callable[[], object]) -> None:
         time.sleep(0.01)
 
 
-def on_line(rig: Rig, **options: object) -> DeviceStage:
+def on_line(rig: Rig, **options: object) -> DeviceRenderer:
     device = PressedDevice(SerialPort(rig.path))
     device.configure(SETTINGS)
-    return DeviceStage(device, Path(), switch_s=0.1, limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
+    return DeviceRenderer(device, Path(), switch_s=0.1, limits=WEIGHTLESS, **options)  # type: ignore[arg-type]
 
 
 def test_a_person_s_presses_on_a_line_count_for_the_label_the_device_renders(line: StudyRig) -> None:

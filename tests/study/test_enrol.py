@@ -7,7 +7,10 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import (
+
+from fdvv.errors import InputError
+from fdvv.study.admin.study import Study
+from tests.support.studies import (
     CHEAP,
     PASSPHRASE,
     Killed,
@@ -19,9 +22,6 @@ from tests.workflow.studies import (
     small_study,
 )
 
-from fdvv.errors import InputError
-from fdvv.workflow import Study
-
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 AGE = 87.5
@@ -30,7 +30,7 @@ TRACES = (b"87.5", b"Oulu")
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder of a study with two people, the first of an age that nothing else says."""
+    """Return the folder of a study with two people, the first of an age that nothing else says."""
     with in_haste():
         study = small_study(tmp_path_factory.mktemp("begun"))
         for age, place in ((AGE, "Oulu"), (40.0, "Tampere")):

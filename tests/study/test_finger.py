@@ -1,4 +1,4 @@
-"""Labels under a simulated finger: what was rendered is told, and what failed is seen in it."""
+"""Labels under a simulated finger: what was rendered is recorded, and what failed is seen in it."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import DeviceError, InputError
-from fdvv.protocol import Fault
-from fdvv.study import Stimulus
-from fdvv.workflow import SimulatedFingerStage
+from fdvv.protocol.tables import Fault
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.stimulus.finger import SimulatedFingerRenderer
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")
 
 
-def prepared(**labels: Stimulus) -> SimulatedFingerStage:
-    stage = SimulatedFingerStage(Path(), presses=2)
+def prepared(**labels: Stimulus) -> SimulatedFingerRenderer:
+    stage = SimulatedFingerRenderer(Path(), presses=2)
     stage.prepare(labels)
     return stage
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
 
 from fdvv.errors import InputError
-from fdvv.workflow import Study
+from fdvv.study.admin.study import Study
+from tests.support.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
@@ -19,7 +19,7 @@ CODES: dict[str, str] = {}
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder of a study with one person who is done and one who is not; it is not changed."""
+    """Return the folder of a study with one person who is done and one who is not; it is not changed."""
     with in_haste():
         study = small_study(tmp_path_factory.mktemp("done"))
         for trials in (None, 2):
@@ -125,13 +125,13 @@ def test_a_frozen_file_in_the_place_of_another_is_noticed(study: Study, tmp_path
 
 def test_a_record_that_no_study_writes_is_told_of(study: Study) -> None:
     """The study's log has no marks: a line can be added to it with this program's own log."""
-    from fdvv.workflow import ChainedLog
+    from fdvv.study.files.chained_log import ChainedLog
 
     with ChainedLog(study.folder / "study.jsonl") as log:
         log.write({"enrolled": {"person": 3}})
-        told = f"record {len(log.records)} is none of a study"
-    assert study.verify() == (f"study.jsonl: {told}",)
-    with pytest.raises(InputError, match=told):
+        reason = f"record {len(log.records)} is none of a study"
+    assert study.verify() == (f"study.jsonl: {reason}",)
+    with pytest.raises(InputError, match=reason):
         study.enrol(cost=CHEAP)
 
 
@@ -168,8 +168,7 @@ def test_who_wrote_down_the_end_of_the_record_notices_that_an_act_was_taken_out(
 
 def test_lines_that_were_forged_without_the_code_are_noticed_with_the_keepers_key(study: Study) -> None:
     """The forger is this program's own log, with another key: everything but the marks is right."""
-    from fdvv.workflow import ChainedLog
-    from fdvv.workflow._study_chain import read_chained
+    from fdvv.study.files.chained_log import ChainedLog, read_chained
 
     path = study.folder / "people" / "P02" / "session.jsonl"
     found = read_chained(path)

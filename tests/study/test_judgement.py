@@ -10,17 +10,11 @@ import pytest
 from scipy.special import ndtr
 
 from fdvv.errors import ModelError
-from fdvv.study import (
-    ItemEffect,
-    ProxySettings,
-    SimulatedPeople,
-    StudyKind,
-    draw_people,
-    proxy_trials,
-    shares_2ac,
-)
-from fdvv.study._participant_proxy import NOISE_JND
-from fdvv.study._proxy_judgement import EQUAL_INDEX
+from fdvv.stats.two_ac import shares_2ac
+from fdvv.study.plan.plan import StudyKind
+from fdvv.study.simulation.judgement import EQUAL_INDEX, proxy_trials
+from fdvv.study.simulation.people import NOISE_JND, ProxySettings, SimulatedPeople, draw_people
+from fdvv.study.simulation.power import ItemEffect
 
 ALIKE = ProxySettings(
     weber_spread_ratio=0, threshold_spread_dB=0, criterion_spread_ratio=0, lapse_ratio=0, taste_ratio=0
@@ -35,7 +29,7 @@ def one_person(settings: ProxySettings = ALIKE, seed: int = 0) -> SimulatedPeopl
 def shares(
     kind: StudyKind, difference_JND: float, settings: ProxySettings = ALIKE, ties: bool = True
 ) -> np.ndarray:
-    """Give the shares of first, equal and second of one person in many trials."""
+    """Return the shares of first, equal and second of one person in many trials."""
     between = np.full((1, TRIALS), difference_JND)
     distances = np.stack([np.zeros_like(between), between], axis=-1)
     random = np.random.default_rng(1)

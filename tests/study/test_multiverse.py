@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest, ttest_1samp, wilcoxon
-from tests.study_answers import all_ties, realism, right_or_wrong
 
-from fdvv.study import Claim, claim_values, means_by, multiverse, screen
+from fdvv.study.analysis.multiverse import multiverse
+from fdvv.study.plan.answers import means_by, screen
+from fdvv.study.plan.claim import claim_values
+from fdvv.study.plan.plan import Claim
+from tests.support.study_answers import all_ties, realism, right_or_wrong
 
 CLAIM = Claim(more="FDVV", less="FD")
 

@@ -5,7 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.workflow.study_people import (
+
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.study.admin.operator_view import operator_view
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.trial import TrialAnswer
+from fdvv.study.session.participant import Participant
+from tests.support.study_people import (
     CONSENT,
     PASSPHRASE,
     PLAN,
@@ -16,15 +22,11 @@ from tests.workflow.study_people import (
     frozen_study,
 )
 
-from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv.study import TrialAnswer
-from fdvv.workflow import Participant, Study, operator_view
-
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
 class Clock:
-    """Wall time that passes when it is told to."""
+    """Wall time that passes only on request."""
 
     def __init__(self) -> None:
         self.now_s = 1000.0
@@ -52,13 +54,13 @@ def test_who_comes_back_with_the_code_goes_on_with_the_same_trial(tmp_path: Path
     first, later = StillStage(), StillStage()
     one, code = enrolled(study, first)
     do_all(one, 2)
-    one.shown(2)
+    one.show_trial(2)
     one.close()
     with Participant.resume(study, "P01", code.lower().replace("-", " "), later) as again:
         assert (again.step().number, again.step().again) == (2, True)
         with pytest.raises(ModelError, match="not shown"):
             again.answer(2, TrialAnswer("A"))
-        again.shown(2)
+        again.show_trial(2)
         assert later.labels == first.labels
         do_all(again)
     assert study.verify(passphrase=PASSPHRASE) == ()
@@ -71,16 +73,16 @@ def test_the_keeper_can_go_on_for_who_lost_the_card(tmp_path: Path) -> None:
     one.close()
     with pytest.raises(InputError, match="code"):
         Participant.resume(study, "P01", "0000-0000-0000", StillStage())
-    with Participant.resume(study, "P01", study.keeper(PASSPHRASE), StillStage()) as again:
+    with Participant.resume(study, "P01", study.key_holder(PASSPHRASE), StillStage()) as again:
         assert again.step().number == 2
     assert again.state.resumptions == 1
 
 
 def test_of_a_trial_the_first_answer_stands(tmp_path: Path) -> None:
     one, _ = enrolled(frozen_study(tmp_path / "study"), StillStage())
-    one.shown(0)
-    one.shown(0)
-    good = answer_of(one.state.began.trials[0])
+    one.show_trial(0)
+    one.show_trial(0)
+    good = answer_of(one.state.started.trials[0])
     after = one.answer(0, good)
     assert one.answer(0, TrialAnswer("B")) == after
     assert one.state.answers[0].answer.choice == good.choice
@@ -90,11 +92,11 @@ def test_of_a_trial_the_first_answer_stands(tmp_path: Path) -> None:
 
 def test_a_wrong_answer_is_refused_and_the_trial_stays(tmp_path: Path) -> None:
     one, _ = enrolled(frozen_study(tmp_path / "study"), StillStage())
-    one.shown(0)
+    one.show_trial(0)
     with pytest.raises(InputError, match="offered"):
         one.answer(0, TrialAnswer("C"))
     with pytest.raises(ModelError):
-        one.shown(1)
+        one.show_trial(1)
     assert one.step().number == 0
     assert not one.state.answers
     one.close()
@@ -103,11 +105,11 @@ def test_a_wrong_answer_is_refused_and_the_trial_stays(tmp_path: Path) -> None:
 def test_what_the_answer_does_not_tell_is_filled_in(tmp_path: Path) -> None:
     clock = Clock()
     one, _ = enrolled(frozen_study(tmp_path / "study"), StillStage(), clock=clock)
-    one.shown(0)
+    one.show_trial(0)
     for label in ("A", "B", "A"):
         clock.now_s += 1.5
         one.go_to(label)
-    one.answer(0, answer_of(one.state.began.trials[0]))
+    one.answer(0, answer_of(one.state.started.trials[0]))
     kept = one.state.answers[0].answer
     assert kept.switches == ((1.5, "A"), (3.0, "B"), (4.5, "A"))
     assert kept.presses == {"A": 2, "B": 2}
@@ -119,15 +121,15 @@ def test_a_break_is_kept_across_a_crash(tmp_path: Path) -> None:
     clock = Clock()
     study = frozen_study(tmp_path / "study", break_every_min=1.0, break_min=2.0)
     one, code = enrolled(study, StillStage(), clock=clock)
-    one.shown(0)
+    one.show_trial(0)
     clock.now_s += 61.0
-    one.answer(0, answer_of(one.state.began.trials[0]))
+    one.answer(0, answer_of(one.state.started.trials[0]))
     one._log.close()  # as a process that is killed does
     one._sealed.close()
     clock.now_s += 50.0
     again = Participant.resume(study, "P01", code, StillStage(), clock=clock)
     assert (again.step().kind, again.step().left_s) == ("break", 70.0)
-    for skipping in (again.end_break, lambda: again.shown(1)):
+    for skipping in (again.end_break, lambda: again.show_trial(1)):
         with pytest.raises(ModelError):
             skipping()
     clock.now_s += 70.0
@@ -164,7 +166,7 @@ def test_who_withdraws_is_gone_and_their_data_too_if_they_wish(tmp_path: Path, d
 def test_somebody_is_enrolled_in_their_language_and_simulated_people_are_marked(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "study")
     one, code = Participant.enrol(study, "de", StillStage(), simulated=True)
-    assert (one.person, one.language, one.state.began.simulated) == ("P01", "de", True)
+    assert (one.person, one.language, one.state.started.simulated) == ("P01", "de", True)
     assert len(code) == 14
     one.close()
     with pytest.raises(InputError, match="language"):
@@ -190,16 +192,16 @@ def test_a_device_that_goes_away_costs_the_trial_and_not_the_answer(tmp_path: Pa
     lost = 0
     while (step := one.step()).kind != "done":
         try:
-            one.shown(step.number)
+            one.show_trial(step.number)
             for label in step.labels:
                 one.go_to(label)
-            one.answer(step.number, answer_of(one.state.began.trials[step.number]))
+            one.answer(step.number, answer_of(one.state.started.trials[step.number]))
         except DeviceError as error:
             lost += "FD" not in str(error)
             # an answer that was given stands, though the device could not tell of it
             assert one.step().again == (at < 3)
             assert one.step().number == step.number
-            one.take_stage(StillStage())
+            one.reconnect(StillStage())
     # prepare, A, B, what was rendered: the last is asked for when the answer is given already
     assert lost == 1
     assert len(one.state.answers) == 5
@@ -213,16 +215,16 @@ def test_a_trial_that_brings_the_device_down_again_and_again_is_given_up(tmp_pat
     one, _ = enrolled(study, StillStage())
     for _ in range(3):
         uses = iter([False, False, True])
-        one.take_stage(StillStage(lambda uses=uses: next(uses)))  # type: ignore[misc]
+        one.reconnect(StillStage(lambda uses=uses: next(uses)))  # type: ignore[misc]
         assert one.step().number == 0
-        one.shown(0)
+        one.show_trial(0)
         one.go_to("A")
         with pytest.raises(DeviceError):
             one.go_to("B")
         # without a device nothing is noted, however often it is tried
         with pytest.raises(DeviceError):
-            one.shown(one.step().number)
-    one.take_stage(StillStage())
+            one.show_trial(one.step().number)
+    one.reconnect(StillStage())
     assert one.step().number == 1
     do_all(one)
     assert sorted(one.state.answers) == [1, 2, 3, 4]
@@ -234,11 +236,11 @@ def test_a_trial_that_brings_the_device_down_again_and_again_is_given_up(tmp_pat
 def test_another_stage_in_the_middle_of_a_trial_shows_it_again(tmp_path: Path) -> None:
     first, second = StillStage(), StillStage()
     one, _ = enrolled(frozen_study(tmp_path / "study"), first)
-    one.shown(0)
-    one.take_stage(second)
+    one.show_trial(0)
+    one.reconnect(second)
     assert first.closed
     assert one.step().again
-    one.shown(0)
+    one.show_trial(0)
     assert second.labels == first.labels
     one.close()
 
@@ -256,23 +258,23 @@ def test_a_staircase_comes_nearer_with_right_answers_and_ends_by_its_rule(tmp_pa
     def keep(labels: dict[str, object]) -> None:
         ratios.append(max(one.force_ratio for one in labels.values()) - 1.0)  # type: ignore[attr-defined]
 
-    stage = StillStage(told=keep)  # type: ignore[arg-type]
+    stage = StillStage(on_prepare=keep)  # type: ignore[arg-type]
     one, code = enrolled(study, stage)
     for count, right in enumerate([True, True, False, True, False]):
         number = one.step().number
         assert number == count
-        one.shown(number)
+        one.show_trial(number)
         # what is right is known to the stage alone
         (stronger,) = (label for label, what in stage.labels.items() if what.name == "FDVV")
         other = "B" if stronger == "A" else "A"
         one.answer(number, TrialAnswer(stronger if right else other))
         if count == 1:
             one.close()
-            one = Participant.resume(study, "P01", code, stage := StillStage(told=keep))  # type: ignore[arg-type]
+            one = Participant.resume(study, "P01", code, stage := StillStage(on_prepare=keep))  # type: ignore[arg-type]
     assert ratios == pytest.approx([0.4, 0.2, 0.1, 0.2, 0.1])
     # three turns: the other trials of this staircase are not met
     assert one.step().number == 12
-    assert one.step().item != one.state.began.trials[0].item
+    assert one.step().item != one.state.started.trials[0].item
     one.close()
 
 

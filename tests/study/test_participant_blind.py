@@ -11,22 +11,17 @@ from typing import Any
 
 import msgspec
 import pytest
-from tests.workflow.studies import in_haste
-from tests.workflow.study_people import (
-    PASSPHRASE,
-    PLAN,
-    StillStage,
-    answer_of,
-    do_all,
-    enrolled,
-    frozen_study,
-)
 
 from fdvv.errors import DeviceError, InputError
-from fdvv.study import StudyTrial
-from fdvv.workflow import Participant, SimulatedFingerStage, Study, operator_view
-from fdvv.workflow._study_people import Schedule, open_with_code
-from fdvv.workflow._study_seal import Keeper, unlock_with_code
+from fdvv.study.admin.operator_view import operator_view
+from fdvv.study.admin.study import Study
+from fdvv.study.files.people import Schedule, open_schedule
+from fdvv.study.files.seal import KeyHolder, unlock_with_code
+from fdvv.study.plan.trial import StudyTrial
+from fdvv.study.session.participant import Participant
+from fdvv.study.stimulus.finger import SimulatedFingerRenderer
+from tests.support.studies import in_haste
+from tests.support.study_people import PASSPHRASE, PLAN, StillStage, answer_of, do_all, enrolled, frozen_study
 
 ONE, OTHER = "plain-curve-at-all-speeds", "curves-that-follow-the-velocity-of-a-press"
 """Names of stimuli so long that no random bytes hold them, and of different length."""
@@ -54,7 +49,7 @@ class Running:
 
     Attributes
     ----------
-    codes, schedules : of the people; an operator has neither. said : what errors told.
+    codes, schedules : of the people; an operator has neither. said : what errors said.
     """
 
     def __init__(self, folder: Path, people: int = PEOPLE) -> None:
@@ -72,23 +67,23 @@ class Running:
         one, code = enrolled(self.study, stage, clock=Clock())
         self.codes[one.person] = code
         path = self.study.person_folder(one.person) / "schedule.json"
-        self.schedules[one.person] = open_with_code(path, code)
+        self.schedules[one.person] = open_schedule(path, code)
         self.sessions.append(one)
         self.said[one.person] = []
         while one.step().number < 4:
             self._trial(one)
-        one.shown(4)
+        one.show_trial(4)
 
     def _trial(self, one: Participant) -> None:
         step = one.step()
         try:
-            one.shown(step.number)
+            one.show_trial(step.number)
             for label in ("A", "B"):
                 one.go_to(label)
-            one.answer(step.number, answer_of(one.state.began.trials[step.number]))
+            one.answer(step.number, answer_of(one.state.started.trials[step.number]))
         except DeviceError as error:
             self.said[one.person].append(f"{error!r} {error.__cause__!r}")
-            one.take_stage(StillStage())
+            one.reconnect(StillStage())
 
     def close(self) -> None:
         for one in self.sessions:
@@ -106,7 +101,7 @@ def everything(study: Study) -> dict[Path, bytes]:
 
 
 def strings_in(value: Any) -> list[str]:
-    """Give every string in a JSON value, keys too."""
+    """Return every string in a JSON value, keys too."""
     if isinstance(value, dict):
         return [text for pair in value.items() for one in pair for text in strings_in(one)]
     if isinstance(value, list):
@@ -115,7 +110,7 @@ def strings_in(value: Any) -> list[str]:
 
 
 def opened(data: bytes, depth: int = 3) -> list[bytes]:
-    """Give bytes, and what they hold in base 64 or hexadecimal, however deep."""
+    """Return bytes, and what they hold in base 64 or hexadecimal, however deep."""
     found = [data]
     for text in BOX.findall(data.decode("latin-1")) if depth else ():
         for decode in (base64.b64decode, bytes.fromhex):
@@ -217,7 +212,7 @@ def test_nothing_that_the_operator_has_opens_a_schedule(running: Running) -> Non
     keeper_text = (study.folder / "keeper.json").read_text()
     for word in [study.fingerprint, mine.key, study.seal.text, *running.codes.values()]:
         with pytest.raises(InputError, match="does not open it"):
-            Keeper.open(keeper_text, word)
+            KeyHolder.open(keeper_text, word)
 
 
 def words_in(line: bytes) -> list[str]:
@@ -237,7 +232,7 @@ def test_keys_that_the_operator_can_make_open_no_box(running: Running) -> None:
     for key in keys:
         for box in boxes:
             with pytest.raises(InputError):
-                Keeper(key).unlock(box)
+                KeyHolder(key).unlock(box)
 
 
 def test_nobody_goes_on_with_somebody_elses_session_on_their_own_code(running: Running) -> None:
@@ -250,15 +245,15 @@ def test_a_session_says_nothing_on_the_way(
 ) -> None:
     with caplog.at_level(logging.DEBUG):
         Running(tmp_path / "study", people=1).close()
-    told = capfd.readouterr()
-    assert (told.out, told.err, caplog.text) == ("", "", "")
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err, caplog.text) == ("", "", "")
 
 
 def test_a_refused_answer_tells_nothing_of_what_the_labels_hide(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "study", text=NAMED)
     one, _ = enrolled(study, StillStage())
-    one.shown(0)
-    bad = msgspec.structs.replace(answer_of(one.state.began.trials[0]), choice=ONE)
+    one.show_trial(0)
+    bad = msgspec.structs.replace(answer_of(one.state.started.trials[0]), choice=ONE)
     with pytest.raises(InputError) as caught:
         one.answer(0, bad)
     assert OTHER not in str(caught.value)
@@ -272,7 +267,7 @@ def test_the_same_holds_with_renderings_that_are_pressed_on_the_twin(tmp_path: P
     seen: dict[str, list[Any]] = {}
     drawn: set[str] = set()
     while len(drawn) < 2:
-        one, code = enrolled(study, SimulatedFingerStage(study.folder), clock=Clock())
+        one, code = enrolled(study, SimulatedFingerRenderer(study.folder), clock=Clock())
         drawn.add(json.dumps(assignments(study.schedule(one.person, code).trials)))
         do_all(one)
         one.close()

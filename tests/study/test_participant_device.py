@@ -8,19 +8,22 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-from tests.workflow.study_people import PASSPHRASE, PLAN, answer_of, enrolled, frozen_study
 
-from fdvv.device import HostBoard, LinkedDevice, SimulatedPerson
+from fdvv.device.boards import HostBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import DeviceError
-from fdvv.study import Stimulus
-from fdvv.workflow import DeviceStage, Participant
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.session.participant import Participant
+from fdvv.study.stimulus.device import DeviceRenderer
+from tests.support.study_people import PASSPHRASE, PLAN, answer_of, enrolled, frozen_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 ONE_BUTTON = PLAN[: PLAN.rindex("[[items]]")] + PLAN[PLAN.index("[[ratings]]") :]
 
 
-class KilledStage(DeviceStage):
+class KilledStage(DeviceRenderer):
     """A device whose process is killed at some moment, in the middle of whatever it does then.
 
     Attributes
@@ -61,17 +64,17 @@ def run_with_kills(folder: Path, kills: int, seed: int, rounds: int) -> Particip
     while (step := one.step()).kind != "done":
         assert step.number not in [number for number, _ in answered]
         try:
-            one.shown(step.number)
+            one.show_trial(step.number)
             assert labels.setdefault(step.number, now.prepared[-1]) == now.prepared[-1]
             for label in step.labels:
                 one.go_to(label)
-            answer = answer_of(one.state.began.trials[step.number], one.state.attempts[step.number])
+            answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
             one.answer(step.number, answer)
             answered.append((step.number, answer.choice))
         except DeviceError:
-            one.take_stage(now := stage())
+            one.reconnect(now := stage())
     assert [(number, event.answer.choice) for number, event in one.state.answers.items()] == answered
-    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.began.trials)
+    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.started.trials)
     one.close()
     assert study.verify(passphrase=PASSPHRASE) == ()
     found = study.unseal(PASSPHRASE, "a test", "to see whether all is there")

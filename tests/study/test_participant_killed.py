@@ -13,7 +13,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-from tests.workflow.study_people import (
+
+from fdvv.errors import DeviceError
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.plan.session import ENDS, Step
+from fdvv.study.plan.trial import TrialAnswer
+from fdvv.study.session.participant import Participant
+from tests.support.study_people import (
     CHEAP,
     CONSENT,
     PASSPHRASE,
@@ -24,14 +31,10 @@ from tests.workflow.study_people import (
     enrolled,
     frozen_study,
 )
-from tests.workflow.study_witness import Witness, check_labels
-
-from fdvv.errors import DeviceError
-from fdvv.study import ENDS, Step, Stimulus, TrialAnswer
-from fdvv.workflow import Participant, Study
+from tests.support.study_witness import Witness, check_labels
 
 HATCHERY = """
-from tests.workflow.test_participant_killed import hatch
+from tests.study.test_participant_killed import hatch
 hatch()
 """
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,14 +89,14 @@ def live(study: Study, person: str, code: str, into: int) -> None:
     def say(*words: object) -> None:
         os.write(into, (" ".join(map(str, words)) + "\n").encode())
 
-    def told(labels: Mapping[str, Stimulus]) -> None:
+    def on_prepare(labels: Mapping[str, Stimulus]) -> None:
         say("prepared", one.person, one.state.open, *(f"{k}={v.name}" for k, v in labels.items()))
 
     while True:
         if not code:
             person, code = study.enrol(cost=CHEAP)
             say("enrolled", person, code)
-        one = Participant.resume(study, person, code, StillStage(told=told), clock=quick_clock)
+        one = Participant.resume(study, person, code, StillStage(on_prepare=on_prepare), clock=quick_clock)
         while (step := one.step()).kind not in ENDS:
             say("met", person, *met(step))
             if step.left_s:
@@ -143,8 +146,8 @@ def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
     rng, witness, hatchery = random.Random(seed), Witness(study), Hatchery()
     for _ in range(kills):
         moment = (rng.randint(0, 20), rng.uniform(0.0, 0.03))
-        told = hatchery.killed(folder, witness.person, witness.code, *moment)
-        for words in told:
+        messages = hatchery.killed(folder, witness.person, witness.code, *moment)
+        for words in messages:
             witness.hear(words)
         if witness.person:
             witness.check()
@@ -186,23 +189,23 @@ def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Pa
     labels: dict[int, dict[str, Stimulus]] = {}
     answered: list[tuple[int, TrialAnswer]] = []
 
-    def told(found: Mapping[str, Stimulus]) -> None:
+    def on_prepare(found: Mapping[str, Stimulus]) -> None:
         number = one.step().number
         assert labels.setdefault(number, dict(found)) == dict(found)
         assert number not in [done for done, _ in answered]
 
-    one, _ = enrolled(study, StillStage(dies, told))
+    one, _ = enrolled(study, StillStage(dies, on_prepare))
     while (step := one.step()).kind != "done":
         try:
-            one.shown(step.number)
+            one.show_trial(step.number)
             for label in step.labels:
                 one.go_to(label)
-            answer = answer_of(one.state.began.trials[step.number], one.state.attempts[step.number])
+            answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
             one.answer(step.number, answer)
             answered.append((step.number, answer))
         except DeviceError:
-            one.take_stage(StillStage(dies, told))
-    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.began.trials)
+            one.reconnect(StillStage(dies, on_prepare))
+    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.started.trials)
     kept = [(number, event.answer.choice) for number, event in one.state.answers.items()]
     assert kept == [(number, answer.choice) for number, answer in answered]
     one.close()

@@ -6,10 +6,11 @@ import contextlib
 from pathlib import Path
 
 import pytest
-from tests.workflow.studies import CHEAP, Killed, in_haste, kill_at, small_study
 
 from fdvv.errors import InputError
-from fdvv.workflow import EVERYBODY, Study
+from fdvv.study.admin.study import Study
+from fdvv.study.files.people import EVERYBODY
+from tests.support.studies import CHEAP, Killed, in_haste, kill_at, small_study
 
 
 @pytest.fixture

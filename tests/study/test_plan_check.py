@@ -7,19 +7,9 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from fdvv.study import (
-    Claim,
-    Item,
-    Page,
-    Question,
-    Rating,
-    Staircase,
-    Stimulus,
-    StudyPlan,
-    plan_problems,
-    read_plan_text,
-    template_text,
-)
+from fdvv.study.plan.plan import Claim, Item, Page, Question, Rating, Staircase, Stimulus, StudyPlan
+from fdvv.study.plan.plan_check import plan_problems
+from fdvv.study.plan.plan_file import read_plan_text, template_text
 
 FD, FDVV = (Stimulus(name=n, button="mx-clear", rendered=n) for n in ("FD", "FDVV"))
 BOTH = (FD, FDVV)
@@ -54,7 +44,7 @@ def test_the_plan_that_is_changed_below_has_no_problem() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reason"),
     [
         ({"items": ()}, "items: there is none"),
         ({"name": " study"}, "without spaces at its ends"),
@@ -113,28 +103,28 @@ def test_the_plan_that_is_changed_below_has_no_problem() -> None:
     ],
 )  # fmt: skip
 def test_a_plan_that_cannot_be_run_or_analysed_is_told_with_its_place(
-    change: dict[str, Any], told: str
+    change: dict[str, Any], reason: str
 ) -> None:
     problems = plan_problems(replace(PLAN, **change))
-    assert any(told in problem for problem in problems), problems
+    assert any(reason in problem for problem in problems), problems
     assert all(": " in problem and "\n" not in problem for problem in problems)
 
 
 def test_staircases_compare_a_rendering_with_itself_and_claim_nothing() -> None:
     plan = read_plan_text(template_text("staircase"), "staircase")
     claim = Claim(more="comparison", less="standard")
-    assert any("decides nothing" in told for told in plan_problems(replace(plan, claim=claim)))
+    assert any("decides nothing" in problem for problem in plan_problems(replace(plan, claim=claim)))
     short = replace(Staircase(), reversals=3, dropped=2)
-    assert any("at least 2" in told for told in plan_problems(replace(plan, staircase=short)))
+    assert any("at least 2" in problem for problem in plan_problems(replace(plan, staircase=short)))
     stronger = tuple(replace(s, force_ratio=1.1) for s in plan.items[0].stimuli)
-    told = plan_problems(replace(plan, items=(replace(plan.items[0], stimuli=stronger),)))
-    assert any("same rendering" in one for one in told)
+    problems = plan_problems(replace(plan, items=(replace(plan.items[0], stimuli=stronger),)))
+    assert any("same rendering" in one for one in problems)
 
 
 def test_mushra_is_not_claimed_by_a_choice() -> None:
     plan = read_plan_text(template_text("mushra"), "mushra")
-    told = plan_problems(replace(plan, claim=Claim(more="reference", less="FD")))
-    assert any("measure 'choice' is not asked (asked is closeness)" in one for one in told)
+    problems = plan_problems(replace(plan, claim=Claim(more="reference", less="FD")))
+    assert any("measure 'choice' is not asked (asked is closeness)" in one for one in problems)
 
 
 def test_own_words_do_for_a_language_that_fdvv_does_not_know() -> None:

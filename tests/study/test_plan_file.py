@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.study import check_plan, plan_problems, read_plan_text, template_names, template_text
+from fdvv.model.file import load_model
+from fdvv.study.plan.plan_check import plan_problems
+from fdvv.study.plan.plan_file import (
+    check_plan,
+    read_plan_text,
+    template_buttons,
+    template_names,
+    template_text,
+    write_template,
+)
 
 SMALL = """
 name = "small"
@@ -69,11 +80,11 @@ def test_a_mistake_is_one_line_that_names_its_place(change: tuple[str, str], pla
     assert change[0] in SMALL
     with pytest.raises(InputError) as refused:
         read_plan_text(SMALL.replace(*change), "small.toml")
-    told = str(refused.value)
-    assert told.startswith("small.toml: ")
-    assert "\n" not in told
+    message = str(refused.value)
+    assert message.startswith("small.toml: ")
+    assert "\n" not in message
     assert place in refused.value.place
-    assert said in told
+    assert said in message
 
 
 def test_a_mark_of_byte_order_is_no_mistake() -> None:
@@ -92,8 +103,8 @@ def test_all_problems_are_told_in_the_line_of_a_refusal() -> None:
 @settings(max_examples=30)
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused_in_one_line(text: str) -> None:
-    told = [refusal(tried) for tried in (text, SMALL + text)]
-    assert all("\n" not in line for line in told)
+    message = [refusal(tried) for tried in (text, SMALL + text)]
+    assert all("\n" not in line for line in message)
 
 
 def refusal(text: str) -> str:
@@ -109,3 +120,47 @@ def test_a_file_without_end_is_refused() -> None:
         read_plan_text("#" * 1_000_001, "long")
     with pytest.raises(InputError):
         read_plan_text("a = " + "[" * 20_000, "deep")
+
+
+@pytest.mark.parametrize("name", template_names())
+def test_a_shipped_study_is_written_with_all_files_it_names(name: str, tmp_path: Path) -> None:
+    path = write_template(name, tmp_path / "study")
+    assert path.read_text() == template_text(name)
+    for button in template_buttons(name):
+        model = load_model(path.parent / button)
+        assert model.provenance.simulated
+        assert "simulated" in model.provenance.source
+        assert model.provenance.licence
+        assert len(model.curves) == 10
+
+
+def test_nothing_is_written_over(tmp_path: Path) -> None:
+    path = write_template("realism", tmp_path)
+    with pytest.raises(InputError, match="is there already"):
+        write_template("abx", tmp_path)
+    path.unlink()
+    with pytest.raises(InputError, match="is there already"):
+        write_template("realism", tmp_path)
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    ("asked", "called"),
+    [
+        ("pilot", "pilot"),
+        ('a "b" \\ c', 'a "b" \\ c'),
+        ("x" * 80, "x" * 60),
+        ("\n", "abx"),
+        ("δοκιμή", "δοκιμή"),
+    ],
+)
+def test_it_is_called_as_its_maker_says(asked: str, called: str, tmp_path: Path) -> None:
+    path = write_template("abx", tmp_path, asked)
+    plan = read_plan_text(path.read_text(), path)
+    assert plan.name == called
+    assert [item.name for item in plan.items] == ["MX Clear", "Rubber dome"]
+
+
+def test_unknown_names_are_refused_with_those_there_are() -> None:
+    with pytest.raises(InputError, match="use one of: 2ac, 2afc, abx"):
+        template_text("taste")

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from fdvv.study import (
+from fdvv.study.plan.plan import (
     Claim,
     Exclusion,
     Item,
@@ -18,9 +18,9 @@ from fdvv.study import (
     Staircase,
     Stimulus,
     StudyPlan,
-    template_names,
-    word_languages,
 )
+from fdvv.study.plan.plan_file import template_names
+from fdvv.study.plan.plan_words import word_languages
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "study-file.md"
 PARTS: dict[str, type[msgspec.Struct]] = {
@@ -37,7 +37,7 @@ PARTS: dict[str, type[msgspec.Struct]] = {
 
 
 def rows_of(heading: str) -> dict[str, tuple[str, str]]:
-    """Give default and meaning of each field in the table below a heading."""
+    """Return default and meaning of each field in the table below a heading."""
     section = re.split(r"^## ", PAGE.read_text(), flags=re.MULTILINE)
     (text,) = [part for part in section if part.startswith(f"{heading}\n")]
     rows = re.findall(r"^\| `(\w+)` \| (.*?) \| ?(.*?) \|$", text.replace("| | ", "|  | "), re.MULTILINE)
@@ -59,11 +59,11 @@ def written(field: msgspec.structs.FieldInfo) -> str:
 
 @pytest.mark.parametrize("heading", PARTS)
 def test_every_field_has_its_meaning_and_its_true_default_on_the_page(heading: str) -> None:
-    told = rows_of(heading)
+    rows = rows_of(heading)
     fields = msgspec.structs.fields(PARTS[heading])
-    assert list(told) == [field.name for field in fields]
+    assert list(rows) == [field.name for field in fields]
     for field in fields:
-        default, meaning = told[field.name]
+        default, meaning = rows[field.name]
         assert default == written(field), field.name
         assert len(meaning) > 8, field.name
 

@@ -5,16 +5,8 @@ from __future__ import annotations
 import pytest
 from msgspec.structs import replace
 
-from fdvv.study import (
-    asks_choice,
-    equal_text,
-    offers_equal,
-    question_text,
-    read_plan_text,
-    template_names,
-    template_text,
-    word_languages,
-)
+from fdvv.study.plan.plan_file import read_plan_text, template_names, template_text
+from fdvv.study.plan.plan_words import asks_choice, equal_text, offers_equal, question_text, word_languages
 
 
 @pytest.mark.parametrize("kind", template_names())

@@ -6,20 +6,18 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.study import (
-    Answers,
-    Claim,
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.claim import claim_p, claim_scores
+from fdvv.study.plan.plan import Claim, StudyKind
+from fdvv.study.simulation.people import draw_people
+from fdvv.study.simulation.power import (
     ItemEffect,
     PowerDesign,
     PowerTable,
-    StudyKind,
-    claim_p,
-    claim_scores,
-    draw_people,
+    _answered,
     power_table,
     simulate_scores,
 )
-from fdvv.study._power_scores import _answered
 
 
 def design(difference_JND: float, kind: StudyKind = "realism", points: int | None = None) -> PowerDesign:

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.study_answers import realism
 
 from fdvv.errors import InputError
-from fdvv.study import EQUAL, Answers
-from fdvv.workflow import ColumnMap, read_answers, write_answers
+from fdvv.study.analysis.code_book import write_answers
+from fdvv.study.analysis.columns import ColumnMap
+from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.trial import EQUAL
+from tests.support.study_answers import realism
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=("C", "Z")), min_size=1, max_size=8)
 
@@ -23,7 +26,7 @@ def is_word(name: str) -> bool:
 
 @st.composite
 def answered(draw: st.DrawFn) -> Answers:
-    """Give answers with names of any kind, ties and gaps."""
+    """Return answers with names of any kind, ties and gaps."""
     stimuli = tuple(draw(st.lists(NAMES.filter(is_word), min_size=2, max_size=3, unique=True)))
     people = draw(st.lists(NAMES, min_size=1, max_size=3, unique=True))
     items = draw(st.lists(NAMES, min_size=1, max_size=2, unique=True))

@@ -10,9 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import Stroke, load_builtin, save_model
-from fdvv.study import Stimulus
-from fdvv.workflow import EvenSwitch, fd_only, stimulus_model
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin, save_model
+from fdvv.rendering.probe import fd_only
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.stimulus.renderer import ConstantTimeSwitch, stimulus_model
 
 
 def test_a_stimulus_is_its_button_and_fd_is_one_curve_per_stroke_without_vibration(tmp_path: Path) -> None:
@@ -73,7 +75,7 @@ class Clock:
 @given(st.floats(0.0, 0.59))
 def test_a_change_takes_the_same_time_however_long_its_work(work_s: float) -> None:
     clock = Clock()
-    switch = EvenSwitch(0.6, clock, clock.sleep)
+    switch = ConstantTimeSwitch(0.6, clock, clock.sleep)
 
     def work() -> None:
         clock.now_s += work_s
@@ -85,7 +87,7 @@ def test_a_change_takes_the_same_time_however_long_its_work(work_s: float) -> No
 
 def test_work_that_takes_longer_takes_the_next_whole_multiple_and_is_counted() -> None:
     clock = Clock()
-    switch = EvenSwitch(0.6, clock, clock.sleep)
+    switch = ConstantTimeSwitch(0.6, clock, clock.sleep)
 
     def work() -> None:
         clock.now_s += 0.7
@@ -102,7 +104,7 @@ def test_an_error_takes_as_long_as_a_change() -> None:
         raise DeviceError("gone")
 
     with pytest.raises(DeviceError):
-        EvenSwitch(0.6, clock, clock.sleep).make(work)
+        ConstantTimeSwitch(0.6, clock, clock.sleep).make(work)
     assert clock.now_s == pytest.approx(0.6)
 
 

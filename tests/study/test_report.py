@@ -5,39 +5,41 @@ from dataclasses import replace
 from html import unescape
 
 import pytest
-from tests.study_answers import BROKEN, EVERY_KIND, all_ties, paper_like, realism, timing
 
-from fdvv.study import read_plan_text, template_text
-from fdvv.workflow import analyse, study_html, study_summary
-from fdvv.workflow._study_more_sentences import multiverse_sentences, timing_sentences
-from fdvv.workflow._study_sentences import (
+from fdvv.study.analysis.analyse import analyse
+from fdvv.study.analysis.report import study_html, study_summary
+from fdvv.study.analysis.sentences import (
     button_sentence,
     choice_sentence,
     claim_sentence,
+    multiverse_sentences,
     ratings_sentence,
     scale_sentence,
+    timing_sentences,
 )
-from fdvv.workflow._study_words import exact_p, fixed, listing, many, percent, short_p, span
+from fdvv.study.analysis.words import exact_p, fixed, listing, many, percent, short_p, span
+from fdvv.study.plan.plan_file import read_plan_text, template_text
+from tests.support.study_answers import BROKEN, EVERY_KIND, all_ties, paper_like, realism, timing
 
 PROXY = "simulated participants: a proxy, no evidence"
 
 
 def plain(text: str) -> str:
-    """Give text with ordinary spaces and minus signs, as a person would search it."""
+    """Return text with ordinary spaces and minus signs, as a person would search it."""
     return text.replace("\N{NO-BREAK SPACE}", " ").replace("\N{MINUS SIGN}", "-")
 
 
 def words_of(html: str) -> str:
-    """Give what a page says: no markup, no figures."""
+    """Return what a page says: no markup, no figures."""
     text = re.sub(r"<svg.*?</svg>|<style.*?</style>|<[^>]+>", " ", html, flags=re.DOTALL)
     return plain(" ".join(unescape(text).split()))
 
 
 def test_the_papers_numbers_are_printed_as_the_paper_prints_them_with_the_exact_p_beside() -> None:
     found = analyse(paper_like(), title="Realism")
-    told = [plain(button_sentence(one)) for one in found.tests]
-    assert len(told) == 6
-    assert all("Z = -3.06, p = .002, exact p = .0005, r = 1.00; 12 people" in one for one in told)
+    texts = [plain(button_sentence(one)) for one in found.tests]
+    assert len(texts) == 6
+    assert all("Z = -3.06, p = .002, exact p = .0005, r = 1.00; 12 people" in one for one in texts)
     chosen = plain(study_summary(found))
     assert "Of 432 answers, 334 (77.31 %; 95 % interval" in chosen
     assert "people counted as people) chose FDVV, 98 chose FD." in chosen

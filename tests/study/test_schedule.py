@@ -10,19 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.study import (
-    Item,
-    Rating,
-    Staircase,
-    Stimulus,
-    StudyKind,
-    StudyPlan,
-    StudyTrial,
-    draw_schedule,
-    item_orders,
-    public_trial,
-    williams_orders,
-)
+from fdvv.stats.orders import williams_orders
+from fdvv.study.plan.plan import Item, Rating, Staircase, Stimulus, StudyKind, StudyPlan
+from fdvv.study.plan.schedule import draw_schedule, item_orders
+from fdvv.study.plan.trial import StudyTrial
 
 
 def plan_of(
@@ -194,7 +185,7 @@ def test_many_stimuli_are_permuted_anew_in_every_trial() -> None:
 
 
 def guessed(rounds: int, share: float) -> list[float]:
-    """Tell which part of assignments the best guess hits beforehand, by trial; answers are so often right."""
+    """Return the part of assignments that the best guess hits beforehand, by trial."""
     sequences = [s for s in product((0, 1), repeat=rounds) if 2 * sum(s) == rounds]
     hit = []
     for trial in range(rounds):
@@ -221,15 +212,6 @@ def test_what_earlier_answers_tell_of_a_label_is_what_the_docstring_says(
     assert round(hit[-1], 2) == last
     assert draw_schedule.__doc__
     assert all(f"{round(100 * value)} " in draw_schedule.__doc__ for value in (mean, last) if value < 1)
-
-
-@pytest.mark.parametrize("kind", ["realism", "abx", "2afc", "staircase", "mushra"])
-def test_a_public_trial_is_the_same_whatever_is_hidden(kind: StudyKind) -> None:
-    plan = plan_of(2, 4, kind, 4 if kind == "mushra" else 2, practice=2)
-    one, other = ([public_trial(t) for t in s] for s in (schedules(plan, 1, 1)[0], schedules(plan, 1, 2)[0]))
-    assert repr(one) == repr(other)
-    told = repr(one)
-    assert "FD" not in told
 
 
 def test_a_staircase_has_a_block_of_trials_for_every_item_and_round() -> None:

@@ -7,19 +7,26 @@ import re
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.workflow.studies import CHEAP, PASSPHRASE
 
 from fdvv.errors import InputError
-from fdvv.workflow import Keeper, Seal, lock_with_code, new_code, new_keeper, unlock_with_code
-from fdvv.workflow._study_seal import ALPHABET
+from fdvv.study.files.seal import (
+    ALPHABET,
+    KeyHolder,
+    SealingKey,
+    lock_with_code,
+    new_code,
+    new_key_holder,
+    unlock_with_code,
+)
+from tests.support.studies import CHEAP, PASSPHRASE
 
-SEAL, KEEPER = new_keeper(PASSPHRASE, CHEAP)
+SEAL, KEEPER = new_key_holder(PASSPHRASE, CHEAP)
 
 
 @settings(max_examples=20)
 @given(st.binary(max_size=3000))
 def test_what_is_sealed_is_read_by_its_keeper(data: bytes) -> None:
-    assert Keeper.open(KEEPER, PASSPHRASE).unlock(Seal.of(SEAL.text).lock(data)) == data
+    assert KeyHolder.open(KEEPER, PASSPHRASE).unlock(SealingKey.of(SEAL.text).lock(data)) == data
 
 
 @settings(max_examples=20)
@@ -44,13 +51,13 @@ def test_the_same_is_never_sealed_to_the_same() -> None:
 @pytest.mark.parametrize("wrong", ["four words of no sensE", "", "four words of no sense "])
 def test_a_wrong_passphrase_is_told_in_one_line(wrong: str) -> None:
     with pytest.raises(InputError, match="passphrase: does not open it") as caught:
-        Keeper.open(KEEPER, wrong)
+        KeyHolder.open(KEEPER, wrong)
     assert "\n" not in str(caught.value)
 
 
 def test_a_passphrase_is_the_same_however_its_accents_are_typed() -> None:
-    seal, text = new_keeper("vier Wörter ohne Sinn", CHEAP)
-    assert Keeper.open(text, "vier Wo\u0308rter ohne Sinn").unlock(seal.lock(b"x")) == b"x"
+    seal, text = new_key_holder("vier Wörter ohne Sinn", CHEAP)
+    assert KeyHolder.open(text, "vier Wo\u0308rter ohne Sinn").unlock(seal.lock(b"x")) == b"x"
 
 
 def test_a_wrong_code_is_told_in_one_line() -> None:
@@ -80,9 +87,9 @@ def test_codes_are_drawn_from_all_of_sixty_bits() -> None:
 
 
 def test_another_studys_keeper_reads_nothing() -> None:
-    _, other = new_keeper(PASSPHRASE, CHEAP)
+    _, other = new_key_holder(PASSPHRASE, CHEAP)
     with pytest.raises(InputError, match="is of another study, or was changed"):
-        Keeper.open(other, PASSPHRASE).unlock(SEAL.lock(b"FD"))
+        KeyHolder.open(other, PASSPHRASE).unlock(SEAL.lock(b"FD"))
 
 
 @settings(max_examples=20)
@@ -91,18 +98,18 @@ def test_a_changed_box_is_noticed(place: int, by: int) -> None:
     box = bytearray(SEAL.lock(b"FD", 64).encode())
     box[place % len(box)] ^= by
     with pytest.raises(InputError):
-        Keeper.open(KEEPER, PASSPHRASE).unlock(box.decode("latin-1"))
+        KeyHolder.open(KEEPER, PASSPHRASE).unlock(box.decode("latin-1"))
 
 
 def test_a_short_passphrase_is_refused() -> None:
     with pytest.raises(InputError, match="has 11 characters, 12 are needed"):
-        new_keeper("elevenchars", CHEAP)
+        new_key_holder("elevenchars", CHEAP)
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "not JSON", '{"format": "fdvv-keeper", "version": 2}'])
 def test_a_file_that_is_no_keepers_is_told_in_one_line(text: str) -> None:
     with pytest.raises(InputError) as caught:
-        Keeper.open(text, PASSPHRASE)
+        KeyHolder.open(text, PASSPHRASE)
     assert "\n" not in str(caught.value)
 
 
@@ -115,10 +122,10 @@ def test_a_file_that_asks_for_all_memory_is_refused() -> None:
     record = msgspec.json.decode(KEEPER)
     record["locked"] = base64.b64encode(msgspec.json.encode(locked)).decode()
     with pytest.raises(InputError, match="was changed"):
-        Keeper.open(msgspec.json.encode(record), PASSPHRASE)
+        KeyHolder.open(msgspec.json.encode(record), PASSPHRASE)
 
 
 @pytest.mark.parametrize("text", ["", "AAAA", "not base 64"])
 def test_what_is_no_seal_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="is none"):
-        Seal.of(text)
+        SealingKey.of(text)

@@ -10,40 +10,30 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
-from fdvv.study import (
-    EQUAL,
-    Answered,
-    Began,
+from fdvv.study.plan.events import (
     BreakEnded,
     Event,
-    Interrupted,
-    Item,
-    Left,
-    Page,
     PageAnswered,
-    Question,
-    Rating,
-    Resumed,
-    SessionState,
-    Settled,
-    Shown,
-    Skipped,
-    Step,
-    Stimulus,
-    StudyPlan,
-    StudyTrial,
-    TrialAnswer,
+    ParticipantWithdrew,
+    SessionClosed,
+    SessionResumed,
+    SessionStarted,
+    StaircaseConverged,
+    TrialAnswered,
     TrialFace,
-    Withdrawn,
+    TrialInterrupted,
+    TrialShown,
+    TrialSkipped,
     check_answer,
     checked_page,
     choices_of,
     event_of,
     face_of,
-    next_step,
     record_of,
-    state_of,
 )
+from fdvv.study.plan.plan import Item, Page, Question, Rating, Stimulus, StudyPlan
+from fdvv.study.plan.session import SessionState, Step, next_step, state_of
+from fdvv.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
 
 STIMULI = (
     Stimulus(name="FD", button="mx-clear", rendered="FD"),
@@ -74,7 +64,7 @@ def faces(count: int = 4, practice: int = 1) -> tuple[TrialFace, ...]:
 
 
 def begun(plan: StudyPlan, trials: tuple[TrialFace, ...] | None = None) -> SessionState:
-    return state_of(plan, [Began(0.0, "P01", "en", faces() if trials is None else trials)])
+    return state_of(plan, [SessionStarted(0.0, "P01", "en", faces() if trials is None else trials)])
 
 
 def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[Step], SessionState]:
@@ -89,9 +79,9 @@ def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[St
             state = state.after(PageAnswered(now_s, step.page))
         else:
             attempt = state.attempts.get(step.number, 0) + 1
-            state = state.after(Shown(now_s, step.number, attempt))
+            state = state.after(TrialShown(now_s, step.number, attempt))
             now_s += work_s
-            state = state.after(Answered(now_s, step.number, attempt, TrialAnswer("A")))
+            state = state.after(TrialAnswered(now_s, step.number, attempt, TrialAnswer("A")))
     return met, state
 
 
@@ -137,22 +127,25 @@ def test_a_plan_may_have_no_breaks(off: str) -> None:
 
 def resting() -> SessionState:
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
-    state = begun(plan).after(Shown(0.0, 0, 1))
-    return state.after(Answered(60.0, 0, 1, TrialAnswer("A")))
+    state = begun(plan).after(TrialShown(0.0, 0, 1))
+    return state.after(TrialAnswered(60.0, 0, 1, TrialAnswer("A")))
 
 
 def test_a_break_cannot_be_skipped() -> None:
     state = resting()
-    for skipping in (BreakEnded(179.0), Shown(100.0, 1, 1)):
+    for skipping in (BreakEnded(179.0), TrialShown(100.0, 1, 1)):
         with pytest.raises(ModelError):
             state.after(skipping)
     assert next_step(state.after(BreakEnded(180.0)), 180.0).number == 1
 
 
 def test_a_break_goes_on_while_nobody_runs_the_session() -> None:
-    state = resting().after(Resumed(100.0, "code"))
+    state = resting().after(SessionResumed(100.0, "code"))
     assert next_step(state, 100.0).left_s == 80.0
-    assert next_step(state.after(Left(101.0)).after(Resumed(1000.0, "code")), 1000.0).left_s == 0.0
+    assert (
+        next_step(state.after(SessionClosed(101.0)).after(SessionResumed(1000.0, "code")), 1000.0).left_s
+        == 0.0
+    )
     # a clock that was set back by a day does not make it last a day
     assert next_step(state, -86_400.0).left_s == 120.0
 
@@ -160,34 +153,34 @@ def test_a_break_goes_on_while_nobody_runs_the_session() -> None:
 def worked(*events: Event) -> SessionState:
     """Work 50 s, let something happen, and work until 10 s after."""
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
-    state = begun(plan).after(Shown(0.0, 0, 1)).after(Answered(50.0, 0, 1, TrialAnswer("A")))
+    state = begun(plan).after(TrialShown(0.0, 0, 1)).after(TrialAnswered(50.0, 0, 1, TrialAnswer("A")))
     for event in events:
         state = state.after(event)
     last_s = events[-1].at_s
-    state = state.after(Shown(last_s, 1, 1))
-    return state.after(Answered(last_s + 10.0, 1, 1, TrialAnswer("A")))
+    state = state.after(TrialShown(last_s, 1, 1))
+    return state.after(TrialAnswered(last_s + 10.0, 1, 1, TrialAnswer("A")))
 
 
 def test_time_away_is_no_work_where_the_session_was_closed_and_a_break_where_it_was_long() -> None:
-    assert worked(Left(50.0), Resumed(100.0, "code")).break_since_s == 110.0
-    assert worked(Left(50.0), Resumed(99.0, "code")).work_since_s == 49.0
-    assert worked(Left(50.0), Resumed(170.0, "code")).break_since_s is None
+    assert worked(SessionClosed(50.0), SessionResumed(100.0, "code")).break_since_s == 110.0
+    assert worked(SessionClosed(50.0), SessionResumed(99.0, "code")).work_since_s == 49.0
+    assert worked(SessionClosed(50.0), SessionResumed(170.0, "code")).break_since_s is None
 
 
 def test_time_after_a_crash_counts_as_work_for_nobody_knows_better() -> None:
-    assert worked(Resumed(170.0, "code")).break_since_s == 180.0
+    assert worked(SessionResumed(170.0, "code")).break_since_s == 180.0
 
 
 def test_a_trial_that_was_shown_and_not_answered_is_met_again() -> None:
-    state = begun(plan_of(pages=())).after(Shown(1.0, 0, 1))
+    state = begun(plan_of(pages=())).after(TrialShown(1.0, 0, 1))
     assert not next_step(state, 1.0).again
-    for back in (Resumed(2.0, "keeper"), Interrupted(2.0, 0)):
+    for back in (SessionResumed(2.0, "keeper"), TrialInterrupted(2.0, 0)):
         after = state.after(back)
         step = next_step(after, 2.0)
         assert (step.number, step.again) == (0, True)
         with pytest.raises(ModelError):
-            after.after(Answered(3.0, 0, 1, TrialAnswer("A")))
-        again = after.after(Shown(3.0, 0, 2)).after(Answered(4.0, 0, 2, TrialAnswer("A")))
+            after.after(TrialAnswered(3.0, 0, 1, TrialAnswer("A")))
+        again = after.after(TrialShown(3.0, 0, 2)).after(TrialAnswered(4.0, 0, 2, TrialAnswer("A")))
         assert next_step(again, 4.0).number == 1
 
 
@@ -195,11 +188,11 @@ def test_a_trial_is_given_up_only_after_the_device_went_away_in_it_three_times()
     state = begun(plan_of(pages=()))
     for attempt in (1, 2, 3):
         with pytest.raises(ModelError, match="given up"):
-            state.after(Skipped(1.0, 0))
-        state = state.after(Shown(1.0, 0, attempt)).after(Interrupted(1.0, 0, felt=True))
-    after = state.after(Skipped(1.0, 0))
+            state.after(TrialSkipped(1.0, 0))
+        state = state.after(TrialShown(1.0, 0, attempt)).after(TrialInterrupted(1.0, 0, felt=True))
+    after = state.after(TrialSkipped(1.0, 0))
     assert (next_step(after, 1.0).number, next_step(after, 1.0).answered) == (1, 1)
-    assert next_step(state.after(Interrupted(1.0, 0)), 1.0).number == 0
+    assert next_step(state.after(TrialInterrupted(1.0, 0)), 1.0).number == 0
 
 
 @settings(deadline=None, max_examples=50)
@@ -212,20 +205,20 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
         step = next_step(state, now_s)
         events: list[Event] = []
         if what == "crash":
-            events = [Resumed(now_s, "code")]
+            events = [SessionResumed(now_s, "code")]
         elif what == "leave":
-            events = [Left(now_s), Resumed(now_s + 1.0, "code")]
+            events = [SessionClosed(now_s), SessionResumed(now_s + 1.0, "code")]
         elif step.kind == "page":
             events = [PageAnswered(now_s, step.page)]
         elif step.kind == "break":
             events = [] if step.left_s else [BreakEnded(now_s)]
         elif step.kind in ("practice", "trial") and state.open is None:
-            events = [Shown(now_s, step.number, state.attempts.get(step.number, 0) + 1)]
+            events = [TrialShown(now_s, step.number, state.attempts.get(step.number, 0) + 1)]
         elif what == "lost" and state.open is not None:
-            events = [Interrupted(now_s, state.open)]
+            events = [TrialInterrupted(now_s, state.open)]
         elif state.open is not None:
             order.append(state.open)
-            events = [Answered(now_s, state.open, state.attempts[state.open], TrialAnswer("A"))]
+            events = [TrialAnswered(now_s, state.open, state.attempts[state.open], TrialAnswer("A"))]
         for event in events:
             # what is read back from the journal is what was written
             state = state.after(event_of(json.loads(json.dumps(record_of(event)))))
@@ -237,13 +230,13 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
 @pytest.mark.parametrize(
     "event",
     [
-        Began(1.0, "P01", "en", faces()),
+        SessionStarted(1.0, "P01", "en", faces()),
         PageAnswered(1.0, "you"),
         PageAnswered(1.0, "end"),
-        Shown(1.0, 0, 1),
-        Answered(1.0, 0, 1, TrialAnswer("A")),
+        TrialShown(1.0, 0, 1),
+        TrialAnswered(1.0, 0, 1, TrialAnswer("A")),
         BreakEnded(1.0),
-        Interrupted(1.0, 3),
+        TrialInterrupted(1.0, 3),
     ],
 )
 def test_what_cannot_come_now_is_refused(event: Event) -> None:
@@ -253,26 +246,28 @@ def test_what_cannot_come_now_is_refused(event: Event) -> None:
 
 def test_a_session_begins_with_its_trials() -> None:
     with pytest.raises(ModelError):
-        state_of(plan_of(), [Left(1.0)])
+        state_of(plan_of(), [SessionClosed(1.0)])
 
 
 def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
     trials = tuple(TrialFace(i, "Clear", i // 3, ("A", "B")) for i in range(6))
     plan = plan_of(kind="staircase", pages=(), break_every_min=1.0, break_min=1.0)
-    state = begun(plan, trials).after(Shown(0.0, 0, 1)).after(Answered(90.0, 0, 1, TrialAnswer("A")))
+    state = (
+        begun(plan, trials).after(TrialShown(0.0, 0, 1)).after(TrialAnswered(90.0, 0, 1, TrialAnswer("A")))
+    )
     assert next_step(state, 90.0).kind == "break"
-    state = state.after(Settled(90.0, "Clear", 0))
+    state = state.after(StaircaseConverged(90.0, "Clear", 0))
     assert next_step(state, 150.0).kind == "break"
     assert next_step(state.after(BreakEnded(150.0)), 150.0).number == 3
     assert next_step(state.after(BreakEnded(150.0)), 150.0).of == 0
     # with nothing left to do there is nothing to rest for
-    assert next_step(state.after(Settled(90.0, "Clear", 1)), 90.0).kind == "done"
+    assert next_step(state.after(StaircaseConverged(90.0, "Clear", 1)), 90.0).kind == "done"
 
 
 def test_who_does_not_consent_is_out_and_so_is_who_withdraws() -> None:
     state = begun(plan_of())
     declined = state.after(PageAnswered(1.0, "consent", agreed=False))
-    withdrawn = state.after(Withdrawn(1.0))
+    withdrawn = state.after(ParticipantWithdrew(1.0))
     assert next_step(declined, 1.0).kind == "declined"
     assert next_step(withdrawn, 1.0).kind == "withdrawn"
     for over in (declined, withdrawn):

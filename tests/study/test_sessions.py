@@ -9,12 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from msgspec import structs
-from tests.workflow.study_people import CHEAP, CONSENT, PASSPHRASE, frozen_study
 
 from fdvv.errors import InputError, ModelError
-from fdvv.study import Claim, ProxySettings, claim_p, claim_scores
-from fdvv.workflow import Study, _study_people, analyse, simulate_study
-from fdvv.workflow._study_seal import lock_with_code
+from fdvv.study.admin.study import Study
+from fdvv.study.analysis.analyse import analyse
+from fdvv.study.files import people as _study_people
+from fdvv.study.files.seal import lock_with_code
+from fdvv.study.plan.claim import claim_p, claim_scores
+from fdvv.study.plan.plan import Claim
+from fdvv.study.simulation.people import ProxySettings
+from fdvv.study.simulation.sessions import simulate_study
+from tests.support.study_people import CHEAP, CONSENT, PASSPHRASE, frozen_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
@@ -62,10 +67,10 @@ def test_the_finger_really_presses_what_is_rendered(tmp_path: Path) -> None:
     rows = (study.folder / "unsealed" / "rendered.csv").read_text().splitlines()
     heads = rows[0].split(",")
     for row in rows[1:]:
-        told = dict(zip(heads, row.split(","), strict=True))
-        assert int(told["presses"]) >= 1
-        assert 0 <= float(told["largest_error_cN"]) < 10
-        assert all(50 < float(one) < 250 for one in told["velocities_mm_s"].split())
+        cells = dict(zip(heads, row.split(","), strict=True))
+        assert int(cells["presses"]) >= 1
+        assert 0 <= float(cells["largest_error_cN"]) < 10
+        assert all(50 < float(one) < 250 for one in cells["velocities_mm_s"].split())
 
 
 def test_those_who_are_done_count_and_the_same_command_adds_the_rest(tmp_path: Path) -> None:
@@ -107,7 +112,7 @@ def test_a_study_of_people_takes_no_simulated_ones(tmp_path: Path) -> None:
 
 
 def test_a_study_that_is_not_frozen_is_refused(tmp_path: Path) -> None:
-    from fdvv.study import template_text
+    from fdvv.study.plan.plan_file import template_text
 
     text = template_text("abx")
     study = Study.declare_text(tmp_path / "s", text, tmp_path)

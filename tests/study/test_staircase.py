@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.study import Staircase, next_ratio, target_share, threshold, threshold_interval, track
+from fdvv.study.plan.plan import Staircase
+from fdvv.study.plan.staircase import next_ratio, staircase_state, target_share, threshold, threshold_interval
 
 
 def run(staircase: Staircase, answers: str) -> list[tuple[float, bool]]:
@@ -28,7 +29,7 @@ def test_two_correct_answers_make_it_harder_and_a_wrong_one_easier_by_the_step_o
     shown = [ratio for ratio, _ in run(staircase, "ccccwccw")]
     # down by 2 twice; the first turn at 0.08, and steps are 1.25 from there on
     assert np.allclose(shown, [0.32, 0.32, 0.16, 0.16, 0.08, 0.1, 0.1, 0.08])
-    assert np.allclose(track(staircase, run(staircase, "ccccwccw")).turns, [0.08, 0.1, 0.08])
+    assert np.allclose(staircase_state(staircase, run(staircase, "ccccwccw")).turns, [0.08, 0.1, 0.08])
 
 
 def test_it_ends_at_its_turns_or_at_its_trials() -> None:
@@ -59,7 +60,7 @@ def test_its_interval_holds_the_threshold_of_nearly_all_simulated_listeners() ->
 def test_a_threshold_is_the_geometric_mean_of_the_turns_that_count() -> None:
     staircase = Staircase(start_ratio=0.4, steps_ratio=(2.0,), down=2, reversals=8, dropped=2)
     history = run(staircase, "cccccw" + "ccw" * 10)
-    turns = track(staircase, history).turns
+    turns = staircase_state(staircase, history).turns
     assert len(turns) == 8
     found = threshold(staircase, history)
     assert found.value == pytest.approx(math.exp(np.mean(np.log(turns[2:]))))
@@ -71,7 +72,7 @@ def test_a_threshold_is_the_geometric_mean_of_the_turns_that_count() -> None:
 def test_of_an_odd_number_of_turns_one_more_is_dropped_and_without_any_there_is_no_value() -> None:
     staircase = Staircase(start_ratio=0.4, steps_ratio=(2.0,), down=1, reversals=5, dropped=0)
     history = run(staircase, "c" + "wc" * 5)
-    turns = track(staircase, history).turns
+    turns = staircase_state(staircase, history).turns
     assert len(turns) == 5
     assert threshold(staircase, history).value == pytest.approx(math.exp(np.mean(np.log(turns[1:]))))
     assert threshold(staircase, history).low is None
@@ -85,7 +86,7 @@ def test_what_comes_next_follows_from_what_was_shown_and_never_leaves_its_range(
     staircase = Staircase(down=down, reversals=reversals, dropped=0)
     history = run(staircase, answers)
     assert all(0 < ratio <= 1 for ratio, _ in history)
-    assert len(track(staircase, history).turns) <= reversals
+    assert len(staircase_state(staircase, history).turns) <= reversals
     # a crash and a new beginning change nothing
     assert run(staircase, "".join("cw"[not right] for _, right in history)) == history
 

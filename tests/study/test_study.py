@@ -7,7 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.workflow.studies import (
+
+from fdvv.errors import InputError
+from fdvv.io.files import write_atomic
+from fdvv.model.file import load_builtin, model_to_json, save_model
+from fdvv.study.admin.review import review_study
+from fdvv.study.admin.study import Study
+from fdvv.study.files.people import Schedule, lock_schedule, room_bytes
+from fdvv.study.files.seal import KeyHolder, new_key_holder
+from fdvv.study.stimulus.renderer import stimulus_model
+from tests.support.studies import (
     CHEAP,
     PASSPHRASE,
     Killed,
@@ -18,18 +27,12 @@ from tests.workflow.studies import (
     small_study,
 )
 
-from fdvv.errors import InputError
-from fdvv.files import write_atomic
-from fdvv.model import load_builtin, model_to_json, save_model
-from fdvv.workflow import Keeper, Schedule, Study, look_at_study, new_keeper, stimulus_model
-from fdvv.workflow._study_people import lock_schedule, room_bytes
-
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
 @pytest.fixture(scope="module")
 def frozen(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    """Give a frozen study; tests enrol in it."""
+    """Return a frozen study; tests enrol in it."""
     with in_haste():
         return small_study(tmp_path_factory.mktemp("frozen"))
 
@@ -47,7 +50,7 @@ def test_a_declared_study_holds_its_plan_and_every_file_that_it_names(tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "told"),
+    ("before", "after", "reason"),
     [
         ("own.fdvv.json", "none.fdvv.json", "no such file beside the plan"),
         ("own.fdvv.json", "../own.fdvv.json", "outside the folder"),
@@ -56,11 +59,11 @@ def test_a_declared_study_holds_its_plan_and_every_file_that_it_names(tmp_path: 
     ],
 )
 def test_a_plan_that_cannot_be_declared_leaves_no_study(
-    tmp_path: Path, before: str, after: str, told: str
+    tmp_path: Path, before: str, after: str, reason: str
 ) -> None:
     path = plan_file(tmp_path / "desk")
     path.write_text(path.read_text().replace(before, after))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=reason):
         Study.declare(tmp_path / "study", path)
     with pytest.raises(InputError, match="holds no study"):
         Study.open(tmp_path / "study")
@@ -131,7 +134,7 @@ def written_beside(folder: Path) -> Path:
 
 def test_a_button_beside_the_plan_is_frozen_and_from_then_on_the_copy_is_played(tmp_path: Path) -> None:
     folder = written_beside(tmp_path / "study")
-    assert look_at_study(folder).problems == ()
+    assert review_study(folder).problems == ()
     study = Study.open(folder)
     study.freeze(PASSPHRASE, CHEAP)
     assert (folder / "buttons" / "own.fdvv.json").read_bytes() == (folder / "own.fdvv.json").read_bytes()
@@ -140,7 +143,7 @@ def test_a_button_beside_the_plan_is_frozen_and_from_then_on_the_copy_is_played(
     save_model(load_builtin("mx-red"), folder / "own.fdvv.json")
     assert stimulus_model(stimulus, folder) == before
     assert study.verify() == ()
-    (note,) = look_at_study(folder).notes
+    (note,) = review_study(folder).notes
     assert "own.fdvv.json beside the study differs" in note
     save_model(load_builtin("mx-red"), folder / "buttons" / "own.fdvv.json")
     assert study.verify() == ("buttons/own.fdvv.json: was changed since the study was frozen",)
@@ -195,8 +198,8 @@ def test_a_person_gets_a_name_a_place_and_a_code(frozen: Study) -> None:
     schedule = frozen.schedule(person, code.lower().replace("-", " "))
     assert [trial.number for trial in schedule.trials] == list(range(5))
     assert [trial.practice for trial in schedule.trials] == [True, *[False] * 4]
-    keeper = frozen.keeper(PASSPHRASE)
-    assert frozen.schedule_by_keeper(person, keeper) == schedule
+    keeper = frozen.key_holder(PASSPHRASE)
+    assert frozen.schedule(person, keeper) == schedule
     with frozen.session_log(schedule) as log:
         assert log.about["consent"] == "on paper"
 
@@ -266,14 +269,15 @@ def test_locked_schedules_are_as_long_whatever_was_drawn(frozen: Study) -> None:
 
 @pytest.mark.parametrize("kind", ["realism", "abx", "2afc", "mushra"])
 def test_the_room_of_a_schedule_does_not_depend_on_what_was_drawn(kind: str, tmp_path: Path) -> None:
-    from fdvv.study import draw_schedule, read_plan_text
+    from fdvv.study.plan.plan_file import read_plan_text
+    from fdvv.study.plan.schedule import draw_schedule
 
     text = plan_file(tmp_path, kind, 7).read_text().replace('"FDVV"', '"a much longer näme"')
     plan = read_plan_text(text.replace('rendered = "a much longer näme"', 'rendered = "FDVV"'), "plan")
     drawn = [draw_schedule(plan, 0, np.random.default_rng(seed)) for seed in range(40)]
     schedules = [Schedule("0" * 64, "P01", "0" * 64, trials) for trials in drawn]
     assert len({room_bytes(schedule) for schedule in schedules}) == 1
-    seal, _ = new_keeper(PASSPHRASE, CHEAP)
+    seal, _ = new_key_holder(PASSPHRASE, CHEAP)
     assert len({len(lock_schedule(one, seal, "0" * 12, CHEAP)) for one in schedules[:6]}) == 1
 
 
@@ -285,17 +289,17 @@ def test_a_keepers_file_may_lie_elsewhere(tmp_path: Path) -> None:
     (study.folder / "keeper.json").unlink()
     assert study.verify(study.fingerprint) == ()
     with pytest.raises(InputError, match="No such file"):
-        study.keeper(PASSPHRASE)
-    keeper = study.keeper(PASSPHRASE, moved)
-    assert study.schedule_by_keeper(person, keeper) == study.schedule(person, code)
+        study.key_holder(PASSPHRASE)
+    keeper = study.key_holder(PASSPHRASE, moved)
+    assert study.schedule(person, keeper) == study.schedule(person, code)
 
 
 def test_the_keepers_file_of_another_study_is_refused(tmp_path: Path, frozen: Study) -> None:
-    _, text = new_keeper(PASSPHRASE, CHEAP)
+    _, text = new_key_holder(PASSPHRASE, CHEAP)
     write_atomic(tmp_path / "other.json", text)
     with pytest.raises(InputError, match="of another study"):
-        frozen.keeper(PASSPHRASE, tmp_path / "other.json")
-    assert isinstance(frozen.keeper(PASSPHRASE), Keeper)
+        frozen.key_holder(PASSPHRASE, tmp_path / "other.json")
+    assert isinstance(frozen.key_holder(PASSPHRASE), KeyHolder)
 
 
 def test_a_study_without_its_plan_is_none(tmp_path: Path) -> None:
@@ -307,7 +311,7 @@ def test_a_study_without_its_plan_is_none(tmp_path: Path) -> None:
 def test_a_built_in_button_that_another_version_ships_is_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from fdvv.workflow import _study_files
+    from fdvv.study.files import layout as _study_files
 
     study = small_study(tmp_path)
     assert study.frozen is not None

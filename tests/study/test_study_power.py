@@ -8,21 +8,17 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.study import (
-    ProxySettings,
-    Senses,
-    Stimulus,
-    StudyPlan,
-    felt_difference,
-    felt_features,
-    write_template,
-)
-from fdvv.workflow import open_plan, power_design, reference_of, stimulus_model, study_power
+from fdvv.study.plan.plan import Stimulus, StudyPlan
+from fdvv.study.plan.plan_file import write_template
+from fdvv.study.simulation.people import ProxySettings
+from fdvv.study.simulation.perception import Senses, haptic_features, perceived_difference
+from fdvv.study.simulation.study_power import open_plan, power_design, reference_of, study_power
+from fdvv.study.stimulus.renderer import stimulus_model
 
 
 @pytest.fixture
 def study(tmp_path: Path) -> Path:
-    """Give the shipped study as a file."""
+    """Return the shipped study as a file."""
     return write_template("realism", tmp_path)
 
 
@@ -32,13 +28,13 @@ def kind(tmp_path: Path, name: str) -> tuple[StudyPlan, Path]:
 
 def test_the_papers_study_is_planned_from_its_file_and_says_that_it_is_simulated(study: Path) -> None:
     found = study_power(study, [6, 12], studies=100)
-    told = json.loads(json.dumps(found.to_dict()))
-    assert told["simulated"] is True
-    assert [row["people"] for row in told["rows"]] == [6, 12]
-    assert told["items"][0]["item"] == "MX Clear"
-    for one in told["items"]:
+    parsed = json.loads(json.dumps(found.to_dict()))
+    assert parsed["simulated"] is True
+    assert [row["people"] for row in parsed["rows"]] == [6, 12]
+    assert parsed["items"][0]["item"] == "MX Clear"
+    for one in parsed["items"]:
         assert one["for"] + one["equal"] + one["against"] == pytest.approx(1)
-    power = told["rows"][1]["power"]
+    power = parsed["rows"][1]["power"]
     assert power["low"] <= power["value"] <= power["high"]
 
 
@@ -49,10 +45,10 @@ def test_a_folder_is_read_as_its_file(study: Path) -> None:
 def test_what_is_compared_is_what_would_be_rendered(study: Path) -> None:
     plan, folder = open_plan(study)
     effect = power_design(plan, folder).effects[1]
-    fd, fdvv = (felt_features(stimulus_model(one, folder)) for one in plan.items[1].stimuli)
-    assert effect.between == felt_difference(fdvv, fd)
+    fd, fdvv = (haptic_features(stimulus_model(one, folder)) for one in plan.items[1].stimuli)
+    assert effect.between == perceived_difference(fdvv, fd)
     assert effect.more.total_JND == 0  # X is taken to be the button as its whole model has it
-    assert effect.less == felt_difference(fd, fdvv)
+    assert effect.less == perceived_difference(fd, fdvv)
 
 
 def test_duller_senses_find_smaller_differences(study: Path) -> None:

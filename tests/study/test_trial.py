@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.study import Rendered
-from fdvv.workflow._sealed_trial import SEALED_BYTES, lost_trial, sealed_bytes
-from fdvv.workflow._study_people import SealedTrial
+from fdvv.study.files.people import SealedTrial
+from fdvv.study.plan.trial import Rendered
+from fdvv.study.session.trial import SEALED_BYTES, lost_trial, sealed_bytes
 
 ODD = (None, float("nan"), float("inf"), 1e9, 0.0, 1.0 / 3.0)
 NAMES = ("FD", "x" * 60, "\u00fc" * 60, "\x01" * 60, "\U0001f600" * 60)

@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError, InputError
-from fdvv.protocol import Fault
-from fdvv.study import Stimulus
-from fdvv.workflow import LivePress, PersonFrame, PersonStage, model_subject, stimulus_model
-from fdvv.workflow._study_stage_person import within_reach
+from fdvv.live.press import LivePress
+from fdvv.live.press_subject import model_subject
+from fdvv.protocol.tables import Fault
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.stimulus.renderer import stimulus_model
+from fdvv.study.stimulus.twin import PersonFrame, TwinRenderer, within_reach
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")
@@ -57,14 +59,14 @@ def screen() -> Screen:
 
 
 @pytest.fixture
-def stage(screen: Screen) -> Iterator[PersonStage]:
-    made = PersonStage(Path(), screen.show, screen.failed, switch_s=0.05, silent_s=60.0)
+def stage(screen: Screen) -> Iterator[TwinRenderer]:
+    made = TwinRenderer(Path(), screen.show, screen.failed, switch_s=0.05, silent_s=60.0)
     made.prepare({"B": FD, "A": FDVV})
     yield made
     made.close()
 
 
-def press(stage: PersonStage, screen: Screen) -> None:
+def press(stage: TwinRenderer, screen: Screen) -> None:
     """Press to the bottom and let go, once."""
     before = screen.pressed
     stage.down()
@@ -74,7 +76,7 @@ def press(stage: PersonStage, screen: Screen) -> None:
 
 
 def test_the_hand_presses_the_label_that_is_shown_and_each_press_is_judged(
-    stage: PersonStage, screen: Screen
+    stage: TwinRenderer, screen: Screen
 ) -> None:
     for label in ("A", "B"):
         stage.show(label)
@@ -89,12 +91,12 @@ def test_the_hand_presses_the_label_that_is_shown_and_each_press_is_judged(
 
 
 def test_a_screen_is_told_of_travel_key_and_sound_and_of_nothing_else(
-    stage: PersonStage, screen: Screen
+    stage: TwinRenderer, screen: Screen
 ) -> None:
     stage.show("A")
     press(stage, screen)
-    told = {"label", "t_s", "displacement_mm", "key", "clicks", "pressed", "sequence", "dropped_s"}
-    assert {field.name for field in fields(PersonFrame)} == told
+    names = {"label", "t_s", "displacement_mm", "key", "clicks", "pressed", "sequence", "dropped_s"}
+    assert {field.name for field in fields(PersonFrame)} == names
     t = np.concatenate([frame.t_s for frame in screen.frames])
     assert (np.diff(t) > 0).all()
     assert max(frame.key for frame in screen.frames) == 1
@@ -105,7 +107,7 @@ def test_a_screen_is_told_of_travel_key_and_sound_and_of_nothing_else(
 def test_what_is_known_before_a_press_is_the_same_whichever_label_hides_what() -> None:
     known = []
     for labels in ({"A": FD, "B": FDVV}, {"A": FDVV, "B": FD}):
-        stage = PersonStage(Path(), lambda _frame: None)
+        stage = TwinRenderer(Path(), lambda _frame: None)
         stage.prepare(labels)
         known.append((stage.travel_mm, stage.sounds, stage.label, stage.problem))
         stage.close()
@@ -125,7 +127,7 @@ def test_while_labels_change_the_hand_moves_nothing_and_the_screen_shows_nothing
         shown.append(len(screen.frames))
 
     shown: list[int] = []
-    stage = PersonStage(Path(), screen.show, switch_s=0.1, sleep=sleep, silent_s=60.0)
+    stage = TwinRenderer(Path(), screen.show, switch_s=0.1, sleep=sleep, silent_s=60.0)
     stage.prepare({"A": FD, "B": FDVV})
     stage.show("A")
     press(stage, screen)
@@ -140,7 +142,7 @@ def test_while_labels_change_the_hand_moves_nothing_and_the_screen_shows_nothing
 
 @pytest.mark.parametrize("fault", [Fault.POSITION_STUCK, Fault.VIBRATION_BOARD])
 def test_a_fault_ends_force_and_stage_in_one_line_and_is_kept(
-    stage: PersonStage, screen: Screen, fault: Fault
+    stage: TwinRenderer, screen: Screen, fault: Fault
 ) -> None:
     stage.show("A")
     stage.down()
@@ -176,7 +178,7 @@ def test_no_hand_however_wild_makes_the_rig_fail(button: str) -> None:
     assert press.fault().fault is Fault.NONE
 
 
-def test_a_page_that_came_back_is_shown_what_goes_on(stage: PersonStage, screen: Screen) -> None:
+def test_a_page_that_came_back_is_shown_what_goes_on(stage: TwinRenderer, screen: Screen) -> None:
     stage.show("A")
     screen.wait_for(lambda: screen.frames)
     other = Screen()
@@ -186,7 +188,7 @@ def test_a_page_that_came_back_is_shown_what_goes_on(stage: PersonStage, screen:
     press(stage, other)
 
 
-def test_a_label_that_is_none_is_refused_and_a_closed_stage_shows_nothing(stage: PersonStage) -> None:
+def test_a_label_that_is_none_is_refused_and_a_closed_stage_shows_nothing(stage: TwinRenderer) -> None:
     with pytest.raises(InputError, match="none of this trial"):
         stage.show("C")
     stage.close()

@@ -8,7 +8,14 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from tests.workflow.studies import (
+
+from fdvv.errors import InputError
+from fdvv.study.admin.study import Study
+from fdvv.study.analysis.unseal import exclude_people, trial_reason
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.plan import Exclusion
+from fdvv.study.plan.trial import EQUAL, Rendered, StudyTrial, TrialAnswer
+from tests.support.studies import (
     CHEAP,
     PASSPHRASE,
     Killed,
@@ -21,11 +28,6 @@ from tests.workflow.studies import (
     small_study,
 )
 
-from fdvv.errors import InputError
-from fdvv.study import EQUAL, Answers, Exclusion, Rendered, StudyTrial, TrialAnswer
-from fdvv.workflow import Study
-from fdvv.workflow._study_exclude import exclude_people, trial_reason
-
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
@@ -36,7 +38,7 @@ def table(study: Study, name: str) -> list[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def unsealed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Answers]:
-    """Give a study with one person who prefers FDVV and is done, and one who stopped early."""
+    """Return a study with one person who prefers FDVV and is done, and one who stopped early."""
     with in_haste():
         study = small_study(tmp_path_factory.mktemp("unsealed"))
         for name, trials in (("FDVV", None), ("FD", 3)):
@@ -69,9 +71,9 @@ def test_what_was_not_answered_is_missing_and_not_left_out(unsealed: tuple[Study
 
 def test_it_is_on_record_who_did_it_why_and_when(unsealed: tuple[Study, Answers]) -> None:
     study, _ = unsealed
-    (told,) = [record["unsealed"] for record in study.history() if "unsealed" in record]
-    assert (told["who"], told["why"], told["problems"]) == ("The keeper", "all are done", [])
-    assert told["when"].startswith("20")
+    (record,) = [one["unsealed"] for one in study.history() if "unsealed" in one]
+    assert (record["who"], record["why"], record["problems"]) == ("The keeper", "all are done", [])
+    assert record["when"].startswith("20")
 
 
 def test_of_trials_that_are_still_to_come_nothing_is_told(unsealed: tuple[Study, Answers]) -> None:
@@ -112,7 +114,7 @@ def test_nobody_begins_a_study_that_was_unsealed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "who", "why", "told"),
+    ("words", "who", "why", "reason"),
     [
         ("four words of no sensE", "me", "why", "passphrase: does not open it"),
         (PASSPHRASE, "", "why", "who: whole: is empty"),
@@ -120,11 +122,11 @@ def test_nobody_begins_a_study_that_was_unsealed(tmp_path: Path) -> None:
     ],
 )
 def test_a_refused_unsealing_leaves_no_trace(
-    tmp_path: Path, words: str, who: str, why: str, told: str
+    tmp_path: Path, words: str, who: str, why: str, reason: str
 ) -> None:
     study = small_study(tmp_path)
     before = {path: path.read_bytes() for path in all_files(study.folder)}
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=reason) as caught:
         study.unseal(words, who, why)
     assert "\n" not in str(caught.value)
     assert {path: path.read_bytes() for path in all_files(study.folder)} == before
@@ -159,8 +161,8 @@ def test_a_changed_study_is_unsealed_only_despite_it_and_that_is_on_record(tmp_p
     answers = study.unseal(PASSPHRASE, "me", "done", despite=True)
     assert answers.counts[answers.person == "P01"].all()
     assert not answers.counts[answers.person == "P02"].any()
-    (told,) = [record["unsealed"] for record in study.history() if "unsealed" in record]
-    assert told["problems"][0].startswith("people/P02/session.jsonl")
+    (record,) = [one["unsealed"] for one in study.history() if "unsealed" in one]
+    assert record["problems"][0].startswith("people/P02/session.jsonl")
 
 
 def test_abx_answers_are_right_or_wrong(tmp_path: Path) -> None:
@@ -192,7 +194,7 @@ WORSE = msgspec.structs.replace(SOUND, error_cN=(20.0, 20.2))
 
 
 @pytest.mark.parametrize(
-    ("rendered", "told"),
+    ("rendered", "reason"),
     [
         ((SOUND,), ""),
         ((), "no record of what was rendered"),
@@ -202,10 +204,10 @@ WORSE = msgspec.structs.replace(SOUND, error_cN=(20.0, 20.2))
         ((msgspec.structs.replace(SOUND, faults=("overheated",)), SOUND), "device fault: overheated"),
     ],
 )  # fmt: skip
-def test_a_trial_counts_by_what_was_rendered_in_it(rendered: tuple[Rendered, ...], told: str) -> None:
+def test_a_trial_counts_by_what_was_rendered_in_it(rendered: tuple[Rendered, ...], reason: str) -> None:
     found = trial_reason(Exclusion(), rendered)
-    assert told in found
-    assert bool(told) == bool(found)
+    assert reason in found
+    assert bool(reason) == bool(found)
 
 
 def test_a_fault_counts_where_the_rule_says_so() -> None:
@@ -253,12 +255,12 @@ def test_who_gives_one_label_too_often_is_out_but_not_who_finds_all_equal(
 
 
 def test_the_claim_says_which_of_two_a_preference_counts_for(tmp_path: Path) -> None:
-    from fdvv.workflow._study_rows import stimuli_in_order
+    from fdvv.study.analysis.unseal import stimuli_in_order
 
     study = small_study(tmp_path)
     plan = study.plan
     assert stimuli_in_order(plan) == ("FD", "FDVV")
-    from fdvv.study import Claim
+    from fdvv.study.plan.plan import Claim
 
     turned = msgspec.structs.replace(plan, claim=Claim(more="FD", less="FDVV"))
     assert stimuli_in_order(turned) == ("FDVV", "FD")

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from fdvv.model import FDVVModel, ForceCurve, Stroke
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 CONTACT_mm, STOP_mm = 0.3, 4.3
@@ -59,9 +59,3 @@ def line_model(name: str, force_cN: float, slope_cN_mm: float = 5.0, travel_mm: 
         ForceCurve(Stroke.RELEASE, None, 1, np.array(knots), ends - 2),
     )
     return FDVVModel(name, travel_mm, curves)
-
-
-@pytest.fixture
-def hasty_disk(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have nobody wait until something is on the disk: for small files that is most of the time."""
-    monkeypatch.setattr("os.fsync", lambda _file: None)

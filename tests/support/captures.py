@@ -7,9 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.recording import Quantity, Recording, Stage, Take
-from fdvv.twin import PARTICIPANTS, CaptureBench, CaptureRig, Finger, ForceSensor, load_button
-from fdvv.workflow import RecordedModel, model_of_recording
+from fdvv.bench.model import RecordedModel, model_of_recording
+from fdvv.recording.types import Quantity, Recording, Stage, Take
+from fdvv.twin.capture.bench import CaptureBench
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import ForceSensor
 
 PLAN: tuple[tuple[Stage, float | None, int], ...] = (
     (Stage.REST, None, 1),

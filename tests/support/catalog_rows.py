@@ -6,11 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from tests.workflow.conftest import write_cycle
 
-from fdvv.model import FDVVModel, ForceCurve, Stroke
+from fdvv.library.figures import row_of_model
+from fdvv.library.row import ButtonRow, Origin
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
-from fdvv.workflow import Origin, ShelfRow, row_of_model
+from tests.support.buttons import write_cycle
 
 TRAVEL_mm = 4.0
 
@@ -54,7 +56,7 @@ def dome(x: FloatArray) -> FloatArray:
     return np.interp(x, [0, 1.2, 2.6, 4.0], [0, 60, 33, 90])
 
 
-def row(model: FDVVModel, button_id: str = "own:button", collection: str = "") -> ShelfRow:
+def row(model: FDVVModel, button_id: str = "own:button", collection: str = "") -> ButtonRow:
     """Give the row of a model."""
     return row_of_model(model, button_id, Origin(button_id.partition(":")[0]), collection)
 

@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.core import Core, inputs_at
-from fdvv.protocol import Settings
-from fdvv.testing._loop import AWAY
-from fdvv.twin import Coil, Exciter, Mover, Rig, RigPlant
+from fdvv.firmware.core import Core, inputs_at
+from fdvv.protocol.tables import Settings
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Coil, Exciter, Mover
+from tests.support.loop import AWAY
 
 
 def coil_error_ratio() -> float:

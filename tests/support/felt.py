@@ -6,10 +6,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.core import Core
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.protocol import Settings, Slot, Stroke, Vibration, Waveform
-from fdvv.twin import Exciter, Finger, Rig, RigPlant, Trace, image_of, plan, settings_of, solve_pace
+from fdvv.firmware.core import Core
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings, Slot, Stroke, Vibration, Waveform
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.pace import solve_pace
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Exciter
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import Trace
 from fdvv.units import FloatArray, m_from_mm
 
 SNAP_AT_mm, SNAP_Hz, SNAP_DURATION_s, DECAY_ratio = 2.0, 239.0, 0.016, 0.2

@@ -6,8 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.model import ForceSurface
-from fdvv.twin import Finger, Rig, plan, silence, simulate
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.noise import silence
+from fdvv.twin.rig import Rig
+from fdvv.twin.simulate import simulate
 
 NUDGE_s = 0.02
 """The finger comes so quickly that the cap arrives with a swing."""

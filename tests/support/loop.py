@@ -7,24 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.core import Core
-from fdvv.model import ForceSurface
-from fdvv.twin import (
-    Coil,
-    Controller,
-    Exciter,
-    Finger,
-    Habit,
-    Mover,
-    PositionSensor,
-    Rig,
-    RigPlant,
-    image_of,
-    settings_of,
-)
+from fdvv.firmware.core import Core
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger, PressVariability
+from fdvv.twin.image import image_of
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Controller, PositionSensor, Rig
+from fdvv.twin.rig_moves import Coil, Exciter, Mover
+from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray
 
-AWAY = Finger(habit=Habit(lift_m=0.02).still())
+AWAY = Finger(habit=PressVariability(lift_m=0.02).still())
 """A finger that does not touch the cap."""
 MIDDLE_mm = 1.0
 

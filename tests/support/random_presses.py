@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.core import RecordArray, inputs_at
-from fdvv.protocol import Settings
+from fdvv.firmware.core import RecordArray, inputs_at
+from fdvv.protocol.tables import Settings
 
 Generator = np.random.Generator
 

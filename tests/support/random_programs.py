@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.protocol import (
+from fdvv.protocol.tables import (
     IMAGE_BYTES,
     IMAGE_MAGIC,
     NONE,
@@ -23,7 +23,7 @@ from fdvv.protocol import (
     Transition,
     Vibration,
 )
-from fdvv.testing._random_presses import Generator, integer, sometimes
+from tests.support.random_presses import Generator, integer, sometimes
 
 
 def random_slot(rng: Generator, slots: int) -> int:

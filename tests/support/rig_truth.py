@@ -7,8 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.compensate import KnownRig
-from fdvv.twin import Finger, Rig, Trace, draw_finger, draw_rig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
+from fdvv.twin.trace import Trace
 
 ROOM_mm = 0.05
 """To the stops, in what is judged."""
@@ -29,7 +32,7 @@ def draw_fast_rig(seed: int, drive: str) -> tuple[Rig, Finger]:
     ), finger
 
 
-def rig_truth(rig: Rig) -> KnownRig:
+def rig_truth(rig: Rig) -> RigModel:
     """Give the rig's effective numbers, as its finger's sensor would tell them."""
     coil, mover, position = rig.coil, rig.mover, rig.position_sensor
     sensor, loop = 1 + rig.force_sensor.gain_error_ratio, 1 + rig.controller.gain_error_ratio
@@ -39,7 +42,7 @@ def rig_truth(rig: Rig) -> KnownRig:
     emf = sensor * coil.force_constant_N_A**2 / ohm / scale**2 if voltage else 0.0
     lag_s = coil.inductance_H / ohm if voltage else coil.current_loop_s
     reads = position.reads
-    return KnownRig(
+    return RigModel(
         gain=(scale * (1 - bend * best**2), scale * 2 * bend * best, -scale * bend),
         delay_s=rig.controller.compute_s + 0.5 * rig.controller.tick_s + lag_s,
         electric_lag_s=lag_s,
@@ -53,7 +56,7 @@ def rig_truth(rig: Rig) -> KnownRig:
     )
 
 
-def missed_cN(known: KnownRig, rig: Rig, traces: Sequence[Trace], travel_mm: float) -> float:
+def missed_cN(known: RigModel, rig: Rig, traces: Sequence[Trace], travel_mm: float) -> float:
     """Give the rms error of the force that a known rig predicts at the true motion, between the stops."""
     found = []
     for t in traces:

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.study import Answered, PageAnswered, Rendered, Shown, StudyTrial, TrialAnswer
-from fdvv.workflow import Cost, Study
-from fdvv.workflow._participant_log import open_session
-from fdvv.workflow._study_people import SealedTrial
+from fdvv.study.admin.study import Study
+from fdvv.study.files.people import SealedTrial
+from fdvv.study.files.seal import Cost
+from fdvv.study.plan.events import PageAnswered, TrialAnswered, TrialShown
+from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
+from fdvv.study.session.log import open_session
 
 PASSPHRASE = "four words of no sense"
 CHEAP = Cost(1, 8192)
@@ -69,7 +71,7 @@ Render = Callable[[StudyTrial], tuple[Rendered, ...]]
 
 def plan_file(folder: Path, kind: str = "realism", rounds: int = 2, more: str = "") -> Path:
     """Write a plan of two items, one of them a file beside it."""
-    from fdvv.model import load_builtin, save_model
+    from fdvv.model.file import load_builtin, save_model
 
     folder.mkdir(parents=True, exist_ok=True)
     save_model(load_builtin("rubber-dome"), folder / "own.fdvv.json")
@@ -86,7 +88,7 @@ def small_study(folder: Path, kind: str = "realism", rounds: int = 2, more: str 
 
 
 def chosen(name: str, ratings: dict[str, float] | None = None) -> Judge:
-    """Give who always chooses the label that hides a stimulus, and rates by stimulus."""
+    """Return who always chooses the label that hides a stimulus, and rates by stimulus."""
     points = ratings or {"FD": 3.0, "FDVV": 5.0}
 
     def judge(trial: StudyTrial) -> TrialAnswer:
@@ -101,7 +103,7 @@ def chosen(name: str, ratings: dict[str, float] | None = None) -> Judge:
 
 
 def felt(trial: StudyTrial, error_cN: float = 2.0) -> tuple[Rendered, ...]:
-    """Give what a sound device tells."""
+    """Return what a sound device tells."""
     return tuple(
         Rendered(label, stimulus, 2, (error_cN, error_cN / 2), (101.0, 99.0), 2)
         for label, stimulus in trial.labels.items()
@@ -122,9 +124,9 @@ def answered(
     opened.log.add(PageAnswered(1.0, "consent"))
     opened.log.add(PageAnswered(2.0, "about", {"age": age}))
     for trial in opened.schedule.trials[:trials]:
-        opened.log.add(Shown(10.0 * trial.number, trial.number, 1))
+        opened.log.add(TrialShown(10.0 * trial.number, trial.number, 1))
         opened.sealed.add(SealedTrial(trial.number, trial.ratio, render(trial)))
-        opened.log.add(Answered(10.0 * trial.number + 5.0, trial.number, 1, judge(trial)))
+        opened.log.add(TrialAnswered(10.0 * trial.number + 5.0, trial.number, 1, judge(trial)))
     opened.log.close()
     opened.sealed.close()
     if trials is None:

@@ -6,7 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.study import EQUAL, Answers, Staircase, next_ratio
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.plan import Staircase
+from fdvv.study.plan.staircase import next_ratio
+from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
 
 BUTTONS = ("Clear", "Brown", "Black", "Red", "HP keyboard", "MacBook Pro keyboard")
@@ -42,7 +45,7 @@ def answers_of(
 def realism(
     people: int = 12, rounds: int = 2, buttons: tuple[str, ...] = BUTTONS, lean: float = 1.0, seed: int = 1
 ) -> Answers:
-    """Give choices with ties and ratings from 1 to 7; lean : how far FDVV is felt above FD."""
+    """Return choices with ties and ratings from 1 to 7; lean : how far FDVV is felt above FD."""
     random = np.random.default_rng(seed)
     rows = rows_of(people, buttons, rounds)
     felt = lean + random.normal(0, 1, len(rows))
@@ -53,7 +56,7 @@ def realism(
 
 
 def paper_like() -> Answers:
-    """Give 12 people of 36 trials who all rate FDVV higher for every button, and choose it 334 times."""
+    """Return 12 people of 36 trials who all rate FDVV higher for every button, and choose it 334 times."""
     rows = rows_of(12, BUTTONS, 6)
     choice = np.full(ASKED, "FD", "<U8")
     choice[np.random.default_rng(0).permutation(ASKED)[:CHOSEN]] = "FDVV"
@@ -97,7 +100,7 @@ def mushra(people: int = 9, buttons: tuple[str, ...] = ("Clear", "Red")) -> Answ
 
 
 def staircase(people: int = 4, threshold: float = 0.08) -> Answers:
-    """Give staircases of people who are right below the threshold by chance and above it always."""
+    """Return staircases of people who are right below the threshold by chance and above it always."""
     random = np.random.default_rng(5)
     rows, ratios, correct = [], [], []
     for person in range(people):

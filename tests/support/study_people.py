@@ -7,9 +7,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from fdvv.errors import DeviceError
-from fdvv.study import Rendered, Step, Stimulus, TrialAnswer, TrialFace, rated_labels
-from fdvv.workflow import Participant, Study, StudyStage
-from fdvv.workflow._study_seal import Cost
+from fdvv.study.admin.study import Study
+from fdvv.study.files.seal import Cost
+from fdvv.study.plan.events import TrialFace, rated_labels
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.plan.session import Step
+from fdvv.study.plan.trial import Rendered, TrialAnswer
+from fdvv.study.session.participant import Participant
+from fdvv.study.stimulus.renderer import StimulusRenderer
 
 PASSPHRASE = "correct horse battery staple"
 CHEAP = Cost(1, 8192)
@@ -74,16 +79,17 @@ def frozen_study(folder: Path, *, text: str = PLAN, **changes: object) -> Study:
     return study
 
 
-def enrolled(study: Study, stage: StudyStage, **about: Callable[[], float]) -> tuple[Participant, str]:
+def enrolled(study: Study, stage: StimulusRenderer, **about: Callable[[], float]) -> tuple[Participant, str]:
     """Enrol somebody, their code stretched cheaply."""
     person, code = study.enrol(cost=CHEAP)
     return Participant.resume(study, person, code, stage, **about), code
 
 
 class StillStage:
-    """Renders nothing, and tells so many presses of every label.
+    """Renders nothing, and reports so many presses of every label.
 
-    dies : tells, each time it is used, whether the device goes away now. told : is told what is prepared.
+    dies : says, each time it is used, whether the device goes away now.
+    on_prepare : called with what is prepared.
     """
 
     simulated, person = True, False
@@ -91,9 +97,9 @@ class StillStage:
     def __init__(
         self,
         dies: Callable[[], bool] = lambda: False,
-        told: Callable[[Mapping[str, Stimulus]], None] = lambda _labels: None,
+        on_prepare: Callable[[Mapping[str, Stimulus]], None] = lambda _labels: None,
     ) -> None:
-        self._dies, self._told = dies, told
+        self._dies, self._prepared_call = dies, on_prepare
         self.labels: Mapping[str, Stimulus] = {}
         self.shows: list[str] = []
         self.closed = False
@@ -101,7 +107,7 @@ class StillStage:
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
         self._live("the image of FD cannot be stored")
         self.labels = labels
-        self._told(labels)
+        self._prepared_call(labels)
 
     def show(self, label: str) -> None:
         self._live(f"{self.labels[label].name} fell into a fault")
@@ -131,7 +137,7 @@ class StillStage:
 
 
 def answer_of(trial: TrialFace, attempt: int = 1) -> TrialAnswer:
-    """Give an answer that depends on trial and attempt only."""
+    """Return an answer that depends on trial and attempt only."""
     drawn = random.Random(f"{trial.number} {attempt}")
     ratings = {label: float(drawn.randint(1, 7)) for label in rated_labels(trial)}
     return TrialAnswer(drawn.choice(["A", "B", "equal"]), {"realism": ratings})
@@ -144,7 +150,7 @@ def do_step(one: Participant, step: Step) -> None:
     elif step.kind == "break":
         one.end_break()
     else:
-        one.shown(step.number)
+        one.show_trial(step.number)
         for label in step.labels:
             one.go_to(label)
         assert one.trial is not None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from fdvv.workflow import Study, read_session
-from fdvv.workflow._study_verify import study_problems
+from fdvv.study.admin.study import Study
+from fdvv.study.files.folder import study_problems
+from fdvv.study.session.log import read_session
 
 
 class Witness:
@@ -36,7 +37,7 @@ class Witness:
     def check(self, under_way: int = 1) -> None:
         """See that everything acknowledged is kept as it was.
 
-        under_way : answers that may be kept though nobody was told so: one of every life since the last look.
+        under_way : answers that may be kept unacknowledged: one of every life since the last look.
         """
         unheard = sum(self._unheard(person) for person in self.people)
         assert unheard <= under_way
@@ -56,11 +57,11 @@ class Witness:
 
 def check_labels(study: Study, witness: Witness, passphrase: str) -> None:
     """See that what was prepared in any life is what was drawn, and that the answers are unsealed by it."""
-    keeper = study.keeper(passphrase)
+    keeper = study.key_holder(passphrase)
     drawn = {
         (one.name, str(trial.number)): trial
         for one in study.people()
-        for trial in study.schedule_by_keeper(one.name, keeper).trials
+        for trial in study.schedule(one.name, keeper).trials
     }
     for key, labels in witness.labels.items():
         assert labels == [f"{label}={name}" for label, name in sorted(drawn[key].labels.items())]

@@ -17,30 +17,22 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.workflow.executors import Here
 
-from fdvv.device import TwinDevice
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import BuildError, InputError
-from fdvv.model import load_builtin
-from fdvv.testing import DeadlyCells
-from fdvv.twin import Finger, load_rig
-from fdvv.workflow import (
-    SWEEP_MEASURES,
-    SweepPlan,
-    compensate,
-    open_executor,
-    preview_sweep,
-    probe,
-    read_sweep_plan,
-    run_sweep,
-    sweep_schema,
-    sweep_summary,
-)
-from fdvv.workflow._population_plan import seed_of
-from fdvv.workflow._sweep import RESULTS
-from fdvv.workflow._sweep_columns import FIRST, LAST
-from fdvv.workflow._sweep_measure import JUDGE, LEARN
-from fdvv.workflow._sweep_work import sweep_work
+from fdvv.model.file import load_builtin
+from fdvv.optimize.population.plan import seed_of
+from fdvv.parallel.open import open_executor
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import probe
+from fdvv.sweep.measure import JUDGE, LEARN
+from fdvv.sweep.measure import MEASURES as SWEEP_MEASURES
+from fdvv.sweep.plan import FIRST, LAST, SweepPlan, read_sweep_plan, sweep_schema, sweep_work
+from fdvv.sweep.sweep import RESULTS, preview_sweep, run_sweep, sweep_summary
+from fdvv.twin.files import load_rig
+from fdvv.twin.finger import Finger
+from tests.support.deadly_work import DeadlyCells
+from tests.support.executors import Here
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "sweep-files.md"
 PRESS = SweepPlan(
@@ -111,7 +103,7 @@ def test_a_cell_learns_and_is_judged_as_by_hand(tmp_path: Path) -> None:
     plan = plan_with(measure="probe", factors={"rig": ["ideal"]}, settings=settings)
     (row,) = run_sweep(plan, tmp_path / "run", Here()).table().to_pylist()
     rig, model, seed = load_rig("ideal"), load_builtin("mx-clear"), seed_of(5, 0)
-    from fdvv.compensate import RigAware
+    from fdvv.compensation.rig_aware import RigAware
 
     learned = compensate(TwinDevice(rig, Finger(), seed_of(seed, LEARN)), model, [100], RigAware(1))
     judge = TwinDevice(rig, Finger(), seed_of(seed, JUDGE))
@@ -131,7 +123,7 @@ def test_the_lighter_rig_is_told_to_come_closer_and_an_impossible_one_why_not(tm
     assert [row["state"] for row in rows] == ["done", "failed", "done", "failed"]
     assert rows[2]["expected_error_cN"] < 0.5 * rows[0]["expected_error_cN"]
     assert rows[2]["verdict"] in ("can follow", "follows in part")
-    assert all("beyond what its firmware can be told" in row["reason"] for row in rows[1::2])
+    assert all("the firmware cannot hold" in row["reason"] for row in rows[1::2])
 
 
 def test_a_failed_cell_is_a_row_with_its_reason_and_costs_no_other(tmp_path: Path) -> None:
@@ -147,7 +139,7 @@ def test_a_failed_cell_is_a_row_with_its_reason_and_costs_no_other(tmp_path: Pat
 def test_a_sweep_that_is_stopped_goes_on_and_ends_the_same(
     pressed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._sweep.CHUNK_s", 0.1)  # two cells a chunk
+    monkeypatch.setattr("fdvv.sweep.sweep.CHUNK_s", 0.1)  # two cells a chunk
     told: list[int] = []
 
     def stop(done: int, _whole: int) -> None:
@@ -177,7 +169,7 @@ def test_another_plan_in_the_same_folder_is_refused(pressed: Path, tmp_path: Pat
 
 
 def test_files_of_a_plan_that_changed_are_noticed(tmp_path: Path) -> None:
-    from fdvv.twin import finger_to_toml
+    from fdvv.twin.files import finger_to_toml
 
     plan = plan_with(factors={"finger": ["mine.toml"]})
     path = tmp_path / "mine.toml"
@@ -310,7 +302,7 @@ def test_without_the_extra_one_line_says_what_to_install(
 def test_whoever_works_on_it_the_rows_are_the_same_to_the_bit(
     pressed: Path, tmp_path: Path, options: dict[str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._sweep.CHUNK_s", 0.1)
+    monkeypatch.setattr("fdvv.sweep.sweep.CHUNK_s", 0.1)
     with open_executor(options.get("processes"), options.get("workers")) as executor:
         run_sweep(PRESS, tmp_path / "run", executor)
     assert (tmp_path / "run" / RESULTS).read_bytes() == (pressed / RESULTS).read_bytes()
@@ -321,7 +313,7 @@ def test_whoever_works_on_it_the_rows_are_the_same_to_the_bit(
 def test_a_cell_that_ends_its_process_is_a_failed_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.workflow._process_executor.TRIES", 1)
+    monkeypatch.setattr("fdvv.parallel.executor.TRIES", 1)
     work = DeadlyCells(sweep_work(PRESS, Path()), fatal=3)
     with open_executor(processes=2) as executor:
         result = run_sweep(PRESS, tmp_path / "run", executor, work=work)
@@ -333,8 +325,9 @@ def test_a_cell_that_ends_its_process_is_a_failed_row(
 RUN = """
 import sys
 from pathlib import Path
-import fdvv.workflow._sweep as sweep
-from fdvv.workflow import open_executor, read_sweep_plan
+import fdvv.sweep.sweep as sweep
+from fdvv.parallel.open import open_executor
+from fdvv.sweep.plan import read_sweep_plan
 if __name__ == "__main__":
     plan, folder = map(Path, sys.argv[1:])
     sweep.CHUNK_s = 0.05

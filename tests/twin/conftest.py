@@ -1,16 +1,22 @@
 from __future__ import annotations
 
+import ctypes
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fdvv.model import ForceSurface
-from fdvv.twin import Exciter, Finger, Gesture, Noise, Rig, Trace, image_of, plan, settings_of
-from fdvv.twin._flatten import grid_of, plant_of
-from fdvv.twin._kernel import Grid, Plant, run
-from fdvv.twin._noise import count_ticks
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import Noise, count_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_kernel import Grid, grid_of, plant_of, run
+from fdvv.twin.rig_moves import Exciter
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import Trace
 from fdvv.units import FloatArray
 
 
@@ -42,7 +48,7 @@ class Bench:
 
     surface: ForceSurface
     gesture: Gesture
-    plant: Plant
+    plant: ctypes.Structure
     grid: Grid
 
     @classmethod
@@ -53,7 +59,10 @@ class Bench:
         plant = plant_of(BARE, Finger())
         # the pulse is always that of 4 mm: the stop's place is calibrated into the servo
         zero_us = 1600.0 - travel_m / plant.servo_m_us
-        plant = replace(plant, **{"servo_zero_us": zero_us, **changes})
+        for name, value in {"servo_zero_us": zero_us, **changes}.items():
+            part = plant.finger if hasattr(plant.finger, name) else plant
+            assert hasattr(part, name)
+            setattr(part, name, value)
         return cls(surface, gesture, plant, replace(grid_of(BARE), audit=1))
 
     def run(self) -> Trace:

@@ -9,27 +9,19 @@ import pytest
 from scipy.signal import lfilter
 
 from fdvv.errors import ModelError
-from fdvv.twin import (
-    ButtonPhysics,
+from fdvv.twin.button import ButtonPhysics, Curve, Housing, Leaf
+from fdvv.twin.draw import draw_button, draw_finger
+from fdvv.twin.files import button_names, load_button
+from fdvv.twin.finger import Finger, Impedance
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.pace import mean_speed_mm_s, solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import (
     ButtonTrace,
-    Curve,
-    Finger,
-    ForceSensor,
-    Gesture,
-    Housing,
-    Impedance,
-    Leaf,
-    button_names,
-    draw_button,
     draw_button_noise,
-    draw_finger,
-    load_button,
-    mean_speed_mm_s,
     no_button_noise,
-    plan,
     probe_button,
     simulate_button,
-    solve_button_pace,
 )
 from fdvv.units import FloatArray
 

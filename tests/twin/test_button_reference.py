@@ -5,21 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.twin import (
-    Finger,
-    ForceSensor,
-    PressPlan,
-    button_names,
-    draw_button,
-    draw_button_noise,
-    draw_finger,
-    load_button,
-    plan,
-    reference_button,
-    simulate_batch,
-    simulate_button,
-)
+from fdvv.twin.draw import draw_button, draw_finger
+from fdvv.twin.files import button_names, load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import PressPlan, draw_button_noise, simulate_batch, simulate_button
 from fdvv.units import FloatArray
+from tests.support.reference.button import reference_button
 
 
 def rms(values: FloatArray) -> float:

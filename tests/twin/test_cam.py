@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.errors import ModelError
-from fdvv.twin import ButtonPhysics, Curve, button_of_model, identify, load_button, probe_button
+from fdvv.button.fit import fit_file
+from fdvv.errors import InputError, ModelError
+from fdvv.twin.button import BuiltCam, ButtonPhysics, Curve, button_of_model
+from fdvv.twin.cam import identify
+from fdvv.twin.files import button_to_toml, load_button
+from fdvv.twin.simulate_button import probe_button
 from fdvv.units import FloatArray
-from fdvv.workflow import fit_file
 
 CLOSE_m, FREE_m, TRAVEL_m = 0.0018, 0.0022, 0.004
 
@@ -99,3 +102,61 @@ def test_units_that_no_shipped_button_was_made_from_are_given_back_too(
     for got_cN, force_N in ((probed.press_cN, button.press_N), (probed.release_cN, button.release_N)):
         wrong_cN = (got_cN - 100 * np.interp(probed.displacement_mm, at_mm, force_N))[inside]
         assert np.sqrt(np.mean(wrong_cN**2)) < 1.0
+
+
+def built(name: str = "mx-brown") -> ButtonPhysics:
+    """Take what the twin identifies in a button's curves as what it is built of."""
+    button = load_button(name)
+    found = identify(button)
+    x = button.curve.step_m * np.arange(button.press_N.size)
+    elastic, height, rail, ratio = (
+        np.interp(x, found.x_m, column)
+        for column in (found.elastic_N, found.height_m, found.rail_N, found.friction_ratio)
+    )
+    return replace(button, cam=BuiltCam(elastic, height, rail, ratio, found.preload_N))
+
+
+def test_parts_that_were_identified_and_are_given_back_press_alike() -> None:
+    wanted, got = (probe_button(button) for button in (load_button("mx-brown"), built()))
+    inside = wanted.displacement_mm > 0.1
+    for stroke in ("press_cN", "release_cN"):
+        error = (getattr(got, stroke) - getattr(wanted, stroke))[inside]
+        assert float(np.sqrt(np.mean(error**2))) < 0.2
+
+
+def test_curves_tell_nothing_where_the_cam_is_given() -> None:
+    button = built()
+    other = replace(button, press_N=2.0 * button.press_N, release_N=2.0 * button.release_N)
+    np.testing.assert_array_equal(probe_button(button).press_cN, probe_button(other).press_cN)
+
+
+def test_a_file_keeps_what_was_built(tmp_path: Path) -> None:
+    path = tmp_path / "button.toml"
+    path.write_text(button_to_toml(built()))
+    again = load_button(path)
+    assert again.cam is not None
+    np.testing.assert_allclose(probe_button(again).press_cN, probe_button(built()).press_cN, atol=0.05)
+
+
+def test_a_cam_that_is_not_whole_is_refused_with_its_place(tmp_path: Path) -> None:
+    text = button_to_toml(built())
+    path = tmp_path / "button.toml"
+    for wrong, said in (
+        (text.replace("rail_N = [", "rails_N = ["), r"\[cam\]"),
+        (text.replace("\npreload_N = ", "\npreload_N = 'x' #"), "preload_N"),
+        (text.replace("\npreload_N = ", "\npreload_N = -"), "above 0"),
+    ):
+        path.write_text(wrong)
+        with pytest.raises(InputError, match=said):
+            load_button(path)
+
+
+def test_a_dome_has_no_cam_and_columns_must_fit() -> None:
+    button = built()
+    assert button.cam is not None
+    with pytest.raises(ModelError, match="for a leaf"):
+        replace(load_button("hp-pr1101u"), cam=button.cam)
+    with pytest.raises(ModelError, match="equally long"):
+        replace(button.cam, height_m=button.cam.height_m[:-1])
+    with pytest.raises(ModelError, match="finite"):
+        replace(button.cam, height_m=button.cam.height_m * np.nan)

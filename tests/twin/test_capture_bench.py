@@ -10,20 +10,14 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.recording import Quantity, Stage, Stream, Take
-from fdvv.twin import (
-    PARTICIPANTS,
-    WILD,
-    CaptureBench,
-    CaptureRig,
-    Finger,
-    ForceSensor,
-    Participant,
-    SimulatedTake,
-    bench_facts,
-    load_button,
-    mean_speed_mm_s,
-)
+from fdvv.recording.types import Quantity, Stage, Stream, Take
+from fdvv.twin.capture.bench import CaptureBench, SimulatedTake, bench_facts
+from fdvv.twin.capture.participant import PARTICIPANTS, WILD, Participant
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.pace import mean_speed_mm_s
+from fdvv.twin.rig import ForceSensor
 from fdvv.units import FloatArray
 
 NOTHING_WRONG: dict[str, Any] = {

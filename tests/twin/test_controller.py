@@ -9,9 +9,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.twin import Controller, Finger, Impedance, Rig, draw_noise, plan, silence, simulate
-from fdvv.twin._flatten import grid_of
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger, Impedance
+from fdvv.twin.gesture import plan
+from fdvv.twin.noise import draw_noise, silence
+from fdvv.twin.rig import Controller, Rig
+from fdvv.twin.rig_kernel import grid_of
+from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
 
 from .conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of

@@ -11,8 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.twin import Coil, Finger, Rig, draw_finger, draw_rig
-from fdvv.twin._quantity import about
+from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.quantity import about
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Coil
 
 
 @pytest.mark.parametrize("draw", [draw_rig, draw_finger])

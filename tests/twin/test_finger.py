@@ -7,9 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.device import TwinDevice
-from fdvv.model import ForceSurface, Press
-from fdvv.twin import Coil, Mover, Rig, mean_speed_mm_s, stage_finger
+from fdvv.device.twin import TwinDevice
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import stage_finger
+from fdvv.twin.pace import mean_speed_mm_s
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Coil, Mover
 
 TRAVEL_mm = 1.5
 """Short, since a press at 0.5 mm/s takes its time."""

@@ -8,20 +8,13 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.twin import (
-    Finger,
-    Gesture,
-    Rig,
-    draw_noise,
-    mean_speed_mm_s,
-    plan,
-    silence,
-    simulate,
-    solve_pace,
-    vary,
-)
-from fdvv.twin._noise import Effort
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan, vary
+from fdvv.twin.noise import Effort, draw_noise, silence
+from fdvv.twin.pace import mean_speed_mm_s, solve_pace
+from fdvv.twin.rig import Rig
+from fdvv.twin.simulate import simulate
 
 
 def test_a_person_without_variation_presses_as_planned() -> None:

@@ -8,9 +8,19 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.protocol import IMAGE_BYTES, NONE, ImageHeader, Slot, State, Stroke, Surface, Vibration, Waveform
-from fdvv.twin import image_of
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import (
+    IMAGE_BYTES,
+    NONE,
+    ImageHeader,
+    Slot,
+    State,
+    Stroke,
+    Surface,
+    Vibration,
+    Waveform,
+)
+from fdvv.twin.image import image_of
 from fdvv.units import FloatArray
 
 

@@ -8,28 +8,23 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.protocol import Mode
-from fdvv.twin import (
-    Finger,
-    LedRig,
-    LedTicks,
-    LIFTED_m,
-    Rig,
-    draw_ticks,
-    image_of,
-    load_rig,
-    plan,
-    silence,
-    simulate,
-)
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Mode
+from fdvv.twin.files import load_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.interactive import InteractiveRig, InteractiveTicks, LIFTED_m
+from fdvv.twin.noise import draw_ticks, silence
+from fdvv.twin.rig import Rig
+from fdvv.twin.simulate import simulate
 from fdvv.units import mm_from_m
 
 LIFTED_mm = float(mm_from_m(LIFTED_m))
 
 
-def led(surface: ForceSurface, rig: Rig | None = None, seed: int | None = None) -> LedRig:
-    return LedRig(image_of(surface, 4.0).image, rig, seed=seed)
+def led(surface: ForceSurface, rig: Rig | None = None, seed: int | None = None) -> InteractiveRig:
+    return InteractiveRig(image_of(surface, 4.0).image, rig, seed=seed)
 
 
 def minimum_jerk(way: float, span_s: float, t_s: float) -> tuple[float, float]:
@@ -81,7 +76,7 @@ def test_led_along_a_gesture_the_press_is_that_of_the_gesture(tactile: ForceSurf
             down, speed = way - up, -back
         live.lead(down - LIFTED_mm, speed, near_1_s=1000.0)
         pieces.append(live.advance(1))
-    ticks = LedTicks.joined(pieces)
+    ticks = InteractiveTicks.joined(pieces)
     assert ticks.displacement_mm == pytest.approx(whole.displacement_mm[whole.tick], abs=0.05)
     off = np.abs(ticks.force_cN - whole.force_cN[whole.tick])
     assert off.mean() < 1.0
@@ -113,7 +108,7 @@ def test_the_speed_of_the_finger_does_not_jump_when_the_hand_does(tactile: Force
     for goal in (-1.8, -0.3, -1.5, -0.2):
         rig.lead(goal)
         steps.append(rig.advance(8))
-    speed = np.diff(LedTicks.joined(steps).finger_mm)
+    speed = np.diff(InteractiveTicks.joined(steps).finger_mm)
     assert np.abs(np.diff(speed)).max() < 0.03  # mm per tick and tick; a jump of the goal is 1.5 mm
 
 
@@ -128,8 +123,8 @@ def test_the_same_leads_give_the_same_press_however_time_is_cut(tactile: ForceSu
                 rig.lead(4.0 if done == 0 else -1.0)
             pieces.append(rig.advance(count))
             done += count
-        found.append(LedTicks.joined(pieces))
-    for column in fields(LedTicks):
+        found.append(InteractiveTicks.joined(pieces))
+    for column in fields(InteractiveTicks):
         assert np.array_equal(*(getattr(ticks, column.name) for ticks in found)), column.name
 
 
@@ -153,7 +148,7 @@ def test_a_copy_goes_on_as_the_original_would_and_leaves_it_alone(tactile: Force
     rig.lead(1.0)
     alone.lead(1.0)
     both = [one.advance(300) for one in (rig.copy(), alone)]
-    for field in fields(LedTicks):
+    for field in fields(InteractiveTicks):
         assert np.array_equal(*(getattr(one, field.name) for one in both)), field.name
     assert rig.time_s == 0.0
 
@@ -174,7 +169,7 @@ def test_a_pressed_finger_goes_where_the_same_gesture_takes_it_in_a_press_of_its
     """Oracle: simulate(), whose finger starts where the gesture does."""
     finger = Finger(habit=replace(Finger().habit, lift_m=LIFTED_m))
     gesture = plan(finger, 0.004, 0.08)
-    rig = LedRig(image_of(tactile, 4.0).image, finger=finger, seed=None)
+    rig = InteractiveRig(image_of(tactile, 4.0).image, finger=finger, seed=None)
     rig.announce(50.0)
     rig.press(gesture)
     ticks = rig.advance(150)

@@ -1,61 +1,60 @@
-"""The mirror of the compiled structures."""
+"""The structures of the compiled simulations, as Python reads them from the headers."""
 
 from __future__ import annotations
 
 import ctypes
-import dataclasses
 import re
 from pathlib import Path
 
 import pytest
 
 import fdvv._native
-from fdvv.core import OUTPUTS
-from fdvv.twin._kernel import (
-    COLUMNS,
-    TICK_COLUMNS,
-    GestureTimes,
-    Grid,
-    GridCounts,
-    Model,
-    NoiseArrays,
-    Plant,
-    _Plan,
-    doors,
-)
+from fdvv._native import library
+from fdvv._native.structures import fill, structure
+from fdvv.errors import BuildError
+from fdvv.twin.button_kernel import BUTTON_COLUMNS, CELL_COLUMNS
+from fdvv.twin.rig_kernel import RIG_COLUMNS, TICK_COLUMNS
 
 FOLDER = Path(fdvv._native.__file__).parent
-TEXT = "".join((FOLDER / name).read_text() for name in ("fdvv.h", "rig.h", "twin.h"))
+TEXT = "".join((FOLDER / name).read_text() for name in ("rig.h", "button.h", "twin.h"))
 
 
-def fields_in_header(struct: str) -> list[str]:
-    """Name the numbers of a structure, those of structures inside it in their place."""
-    body = TEXT[: TEXT.index(f"}} {struct};")].rpartition("typedef struct {")[2]
-    names: list[str] = []
-    for kind, name in re.findall(r"(double|int64_t|fdvv_\w+) \*?(\w+);", body):
-        names += fields_in_header(kind) if kind.startswith("fdvv_") else [name]
-    return names
+@pytest.mark.parametrize(
+    ("function", "names"),
+    [
+        ("fdvv_rig_sizes", ("fdvv_rig_model", "fdvv_rig_grid", None)),
+        ("fdvv_twin_sizes", ("fdvv_twin_press_plan", "fdvv_twin_noise", None)),
+        ("fdvv_button_sizes", ("fdvv_button_model", "fdvv_button_grid")),
+    ],
+)
+def test_a_structure_has_the_size_the_compiler_gave_it(function: str, names: tuple[str | None, ...]) -> None:
+    sizes = [ctypes.c_int64() for _ in names]
+    getattr(library(), function)(*(ctypes.byref(size) for size in sizes))
+    for size, name in zip(sizes, names, strict=True):
+        assert name is None or size.value == ctypes.sizeof(structure(name))
 
 
-def test_every_structure_has_the_fields_of_the_header_in_order() -> None:
-    assert fields_in_header("fdvv_rig_model") == [field.name for field in dataclasses.fields(Plant)]
-    assert fields_in_header("fdvv_rig_grid") == [field.name for field in dataclasses.fields(Grid)]
-    assert fields_in_header("fdvv_gesture") == list(GestureTimes.NAMES)
-    plan = [field[0] for field in _Plan._fields_][1:]
-    assert fields_in_header("fdvv_twin_press_plan") == [*GestureTimes.NAMES, *plan]
-    assert fields_in_header("fdvv_twin_noise") == [field[0] for field in NoiseArrays._fields_]
+def test_a_structure_is_filled_by_the_names_of_all_its_fields() -> None:
+    times = dict.fromkeys(("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s"), 0.5)
+    assert fill("fdvv_gesture", times).dwell_s == 0.5
+    with pytest.raises(TypeError, match=r"fdvv_gesture: wrong or missing fields \['dwel_s', 'dwell_s'\]"):
+        fill("fdvv_gesture", {**{name: 0.0 for name in times if name != "dwell_s"}, "dwel_s": 0.0})
 
 
-def test_every_structure_has_the_size_the_compiler_gave_it() -> None:
-    sizes = [ctypes.c_int64() for _ in range(6)]
-    doors().fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes[:3]))
-    doors().fdvv_twin_sizes(*(ctypes.byref(size) for size in sizes[3:]))
-    ours = [ctypes.sizeof(part) for part in (Model, GridCounts, _Plan, NoiseArrays)] + [OUTPUTS.itemsize]
-    assert [size.value for size in sizes[:2] + sizes[3:]] == ours
+def test_a_structure_of_other_types_is_refused() -> None:
+    with pytest.raises(BuildError, match="fdvv_rig: 'double y"):
+        structure("fdvv_rig")
 
 
-@pytest.mark.parametrize(("last", "count"), [("FDVV_RIG_COLUMNS", COLUMNS), ("FDVV_RIG_TOLD", TICK_COLUMNS)])
+@pytest.mark.parametrize(
+    ("last", "count"), [("FDVV_RIG_COLUMNS", RIG_COLUMNS), ("FDVV_RIG_TOLD", TICK_COLUMNS)]
+)
 def test_a_row_has_as_many_columns_as_the_header_names(last: str, count: int) -> None:
     names = re.search(r"enum \{([^}]*)\b" + last + r"\b", TEXT)
     assert names is not None
     assert len(re.findall(r"FDVV_\w+", names[1].rpartition("enum {")[2])) == count
+
+
+def test_columns_and_cells_of_the_button_are_as_many_as_the_header_says() -> None:
+    assert f"#define FDVV_BUTTON_COLUMNS {BUTTON_COLUMNS}\n" in TEXT
+    assert f"#define FDVV_BUTTON_CELL {CELL_COLUMNS}\n" in TEXT

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.model import ForceSurface
-from fdvv.twin import Finger, Gesture, plan
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan
 
 from .conftest import FRICTIONLESS, LOOSE_PULP, PERFECT_POSITION, STIFF_SUPPLY, Bench, flat, surface_of
 
@@ -65,8 +66,8 @@ def test_a_finger_in_the_air_rings_as_a_damped_oscillator() -> None:
     bench = Bench.of(flat(40.0), gesture, **LOOSE_PULP)
     trace, m = bench.run(), bench.plant
     t = trace.t_s - 0.01 - step_s / 2
-    decay = gesture.damping_N_s_m / (2 * m.finger_mass_kg)
-    omega = np.sqrt(gesture.stiffness_N_m / m.finger_mass_kg - decay**2)
+    decay = gesture.damping_N_s_m / (2 * m.finger.finger_mass_kg)
+    omega = np.sqrt(gesture.stiffness_N_m / m.finger.finger_mass_kg - decay**2)
     # damping acts on the referent's velocity too: a step response with one zero
     swing = np.cos(omega * t) - decay / omega * np.sin(omega * t)
     expected_mm = -18.0 - 2.0 * np.exp(-decay * t) * swing

@@ -7,11 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.core import Core
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.twin import Finger, Rig, RigPlant, image_of, plan, settings_of, silence, simulate
-from fdvv.twin._noise import settle_ticks
+from fdvv.firmware.core import Core
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import settle_ticks, silence
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv.twin.simulate import simulate
 
 
 def test_a_board_that_runs_the_core_beside_the_plant_gives_the_same_press_to_the_bit(

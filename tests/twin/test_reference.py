@@ -8,21 +8,16 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from fdvv.model import ForceSurface
-from fdvv.twin import (
-    Coil,
-    Controller,
-    Finger,
-    Habit,
-    Mover,
-    Rig,
-    draw_noise,
-    reference_simulate,
-    simulate,
-    solve_pace,
-    vary,
-)
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger, PressVariability
+from fdvv.twin.gesture import vary
+from fdvv.twin.noise import draw_noise
+from fdvv.twin.pace import solve_pace
+from fdvv.twin.rig import Controller, Rig
+from fdvv.twin.rig_moves import Coil, Mover
+from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
+from tests.support.reference.reference import reference_simulate
 
 
 def compare(
@@ -61,7 +56,7 @@ def test_a_press_agrees_with_the_reference_within_a_tenth_of_a_centinewton(
 @pytest.mark.slow
 def test_a_current_driven_press_that_hits_the_cap_agrees_too(tactile: ForceSurface) -> None:
     rig = Rig(coil=Coil(drive="current"), controller=Controller(averaging="sliding", average_ticks=5))
-    compare(rig, Finger(habit=Habit(lift_m=0.001)), tactile, 150.0, "DOP853")
+    compare(rig, Finger(habit=PressVariability(lift_m=0.001)), tactile, 150.0, "DOP853")
 
 
 @pytest.mark.slow
@@ -75,7 +70,7 @@ def test_a_press_agrees_with_an_implicit_solver(tactile: ForceSurface, speed: fl
 def test_halving_the_step_changes_a_press_by_less_than_a_thousandth_of_a_centinewton(
     tactile: ForceSurface,
 ) -> None:
-    rig, finger = Rig(), Finger(habit=replace(Habit(), lift_m=0.0).still())
+    rig, finger = Rig(), Finger(habit=replace(PressVariability(), lift_m=0.0).still())
     random = np.random.default_rng(0)
     gesture = vary(finger, 0.004, 0.08, 0.1, random)
     noise = draw_noise(rig, finger, gesture, random)

@@ -8,8 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from fdvv.model import ForceSurface
-from fdvv.twin import Finger, Rig, RigPress, draw_noise, image_of, in_threads, plan, simulate_rig_batch
+from fdvv.model.surface import ForceSurface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import draw_noise
+from fdvv.twin.rig import Rig
+from fdvv.twin.simulate import RigPress, in_threads, simulate_rig_batch
 
 
 def presses(surface: ForceSurface, count: int) -> Iterator[RigPress]:

@@ -5,27 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.model import ForceSurface, load_builtin
-from fdvv.protocol import NONE
-from fdvv.testing import (
+from fdvv.model.file import load_builtin
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import NONE
+from fdvv.twin.image import image_of
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_moves import Coil, Exciter, Mover
+from fdvv.twin.settings import settings_of
+from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
+from tests.support.felt import SNAP_AT_mm, SNAP_Hz, felt, press_with, snap, ways
+from tests.support.loop import (
     AWAY,
     LinearLoop,
-    SNAP_AT_mm,
-    SNAP_Hz,
     bare_loop,
-    coil_error_ratio,
     cycles,
-    felt,
     grainy_loop,
-    mean_response,
     onset_N_m,
-    press_with,
     quantisation_limit_N_m,
-    ripple_N,
-    snap,
-    ways,
 )
-from fdvv.twin import Coil, Exciter, Mover, Rig, RigPlant, image_of, settings_of
 
 
 def test_a_released_coil_gains_speed_as_its_closed_form_says() -> None:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fdvv.errors import FitError, ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration import cramer_rao, duration_s, fit_damped, fit_decaying_sinusoid, fit_modes
+from fdvv.vibration.damped import cramer_rao, duration_s, fit_damped, fit_decaying_sinusoid
+from fdvv.vibration.modes import fit_modes
 
 RATE_Hz = 10_000.0
 T_s = np.arange(300) / RATE_Hz

@@ -10,7 +10,8 @@ import pytest
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration import KeyEvents, NotFound, key_events
+from fdvv.vibration.events import KeyEvents, key_events
+from fdvv.vibration.snap import NotFound
 
 RATE_Hz = 44_100.0
 

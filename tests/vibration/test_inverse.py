@@ -8,9 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Stroke, Vibration
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration import InverseSettings, KnownExciter, acceleration_m_s2, correlation, drive_for
+from fdvv.vibration.exciter import KnownExciter
+from fdvv.vibration.inverse import InverseSettings, acceleration_m_s2, correlation, drive_for
 
 EXCITER = KnownExciter(24.0, 670.0, 2.0)
 SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 3.0, 100.0),))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration import correlation, delay_samples, spectral_similarity, spqi, st_sim
+from fdvv.vibration.inverse import correlation, delay_samples, spectral_similarity, spqi, st_sim
 
 T_s = np.arange(1024) / 8000
 SNAP = np.sin(2 * np.pi * 239 * T_s) * np.exp(-100 * T_s)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fdvv.units import FloatArray
-from fdvv.vibration import DampedFit, DampedMode
-from fdvv.vibration._count import drives, most_likely, overlapped, sound
+from fdvv.vibration.damped import DampedFit, DampedMode
+from fdvv.vibration.modes import drives, most_likely, overlapped, sound
 
 PERIOD_s, NOISE = 1e-4, 0.03
 

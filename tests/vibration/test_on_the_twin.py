@@ -5,19 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.model import Stroke
-from fdvv.twin import (
-    ButtonTrace,
-    Finger,
-    ForceSensor,
-    draw_button_noise,
-    load_button,
-    simulate_button,
-    solve_button_pace,
-    vary,
-)
+from fdvv.model.curve import Stroke
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.pace import solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace, draw_button_noise, simulate_button
 from fdvv.units import cN_from_N, mm_from_m
-from fdvv.vibration import HeardPress, MeasuredVibration, NotFound, SnapEnergy, measure_vibration, snap_energy
+from fdvv.vibration.pool import MeasuredVibration, SnapEnergy, measure_vibration, snap_energy
+from fdvv.vibration.snap import HeardPress, NotFound
 
 NOISE_m_s2 = 0.03
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fdvv.units import FloatArray
-from fdvv.vibration._projection import Records, polynomial, shapes
+from fdvv.vibration.projection import Records, polynomial, shapes
 
 THETA = np.array([239.0, 893.0, 150.0, 330.0])
 

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, ModeSpread, Stroke, Vibration, VibrationSpread
+from fdvv.model.curve import Stroke
+from fdvv.model.spread import ModeSpread, VibrationSpread
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration import Template, TemplateGrid, paper_templates, templates_around
+from fdvv.vibration.templates import Template, TemplateGrid, paper_templates, templates_around
 
 SNAP = Vibration(Stroke.PRESS, 100.0, 2.0, 0.02, (Mode(300.0, 4.0, 50.0), Mode(700.0, 1.0, 90.0)))
 

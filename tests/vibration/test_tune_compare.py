@@ -10,8 +10,8 @@ from scipy.optimize import minimize
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration import Comparing, ComparingState, Job, Preferred, SimulatedObserver
-from fdvv.vibration._tune_compare import PRIOR, posterior, wins
+from fdvv.vibration.tune import Job, Preferred, SimulatedObserver
+from fdvv.vibration.tune_compare import PRIOR, Comparing, ComparingState, posterior, wins
 
 JOB = Job((5,))
 
@@ -88,7 +88,7 @@ def test_an_observer_who_always_prefers_one_is_understood_in_fewer_answers_than_
     state = run(method, JOB, SimulatedObserver([[0, 0, 0, 9, 0]], noise=0.1))
     (found,) = method.best(state)
     assert found.best == 3
-    assert found.told_apart
+    assert found.distinct
     assert found.answers < 40
 
 
@@ -98,7 +98,7 @@ def test_an_observer_who_sees_no_difference_gets_no_claim_and_the_measured_one()
     while method.ask(state) is not None:
         state = method.tell(state, Preferred.NEITHER)
     (found,) = method.best(state)
-    assert not found.told_apart
+    assert not found.distinct
     assert found.best == 0
     assert found.answers == 15
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.vibration import Job, Preferred, Rating, RatingState, SimulatedObserver
+from fdvv.vibration.tune import Job, Preferred, Rating, RatingState, SimulatedObserver
 
 JOB = Job((4, 3))
 
@@ -66,21 +66,21 @@ def test_a_template_that_is_always_best_is_kept_and_told_apart() -> None:
     while (asked := method.ask(state)) is not None:
         state = method.tell(state, 7 if asked.templates == (2,) else 3)
     (found,) = method.best(state)
-    assert (found.best, found.alike, found.told_apart, found.answers) == (2, (2,), True, 12)
+    assert (found.best, found.alike, found.distinct, found.answers) == (2, (2,), True, 12)
     assert found.scores == (3.0, 3.0, 7.0, 3.0)
 
 
 def test_equal_ratings_show_no_difference_and_the_measured_one_is_kept() -> None:
     found = Rating(3).best(answered(Rating(3), Job((4,)), [4] * 12))[0]
-    assert not found.told_apart
+    assert not found.distinct
     assert found.best == 0
     assert found.alike == (0, 1, 2, 3)
 
 
 def test_before_enough_answers_nothing_is_claimed() -> None:
     first, second = Rating(2).best(answered(Rating(2), JOB, [7]))
-    assert not first.told_apart
-    assert not second.told_apart
+    assert not first.distinct
+    assert not second.distinct
     assert (first.best, second.best) == (0, 0)
 
 
@@ -91,7 +91,7 @@ def test_random_answers_seldom_claim_a_difference() -> None:
     for trial in range(200):
         method = Rating(4, trial)
         state = answered(method, Job((4,)), random.integers(1, 8, 16).tolist())
-        claims += method.best(state)[0].told_apart
+        claims += method.best(state)[0].distinct
     assert claims / 200 < 0.15
 
 

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from tests.program.strategies import SLOTS
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import Mode, Stroke, Vibration
-from fdvv.program import RATE_HZ, Slot, render
-from fdvv.vibration import board_counts, board_wav, read_wav, to_wav, vibration_samples
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.program.synth import RATE_HZ, Slot, render
+from fdvv.vibration.wave import board_counts, board_wav, read_wav, to_wav, vibration_samples
+from tests.support.program.slot_strategies import SLOTS
 
 SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 4.6, 100.0),))
 

@@ -1,11 +1,11 @@
-/* Finger and a real button: what button.c offers to Python; SI units, x positive downward. */
+/* Simulation of a finger pressing a real button; SI units, x positive downward. */
 #ifndef FDVV_BUTTON_H
 #define FDVV_BUTTON_H
 
 #include "fdvv.h"
 
-/* What does not change during a press. Forces of the button act between its slider and its housing, which
- * moves on two plate modes. A loss is 1.5 times Hunt and Crossley's alpha. */
+/* Constant parameters. Forces of the button act between its slider and its housing, which moves with two modes of the
+ * plate. A loss is 1.5 times alpha of Hunt and Crossley. */
 typedef struct {
     fdvv_finger finger;
     fdvv_gesture gesture;
@@ -15,9 +15,9 @@ typedef struct {
     double sensor_rc_s;
     double slider_mass_kg;
     double viscous_N_s_m;
-    double bristle_m;             /* sliding friction, or the dome's arm, is whole after this way */
-    double relax_1_s;             /* and dies away at rest, 0: never */
-    double law_ratio;             /* force grows by this times log(1 + speed / law_speed) */
+    double bristle_m;             /* displacement after which sliding friction (or the dome's arm) is fully developed */
+    double relax_1_s;             /* its relaxation rate at rest; 0: none */
+    double law_ratio;             /* force increases by this times log(1 + speed / law_speed) */
     double law_speed_m_s;
     double law_s_m;               /* and by this times speed */
     double travel_m;
@@ -27,7 +27,7 @@ typedef struct {
     double top_loss_s_m;
     double leaf_mass_kg;          /* 0: a dome, without leaf and cam */
     double leaf_stiffness_N_m;
-    double leaf_preload_N;        /* of the leaf where it just touches the fixed contact, leaf at 0 */
+    double leaf_preload_N;        /* of the leaf at 0, where it just touches the fixed contact */
     double leaf_damping_N_s_m;
     double cam_stiffness_N_m;     /* leaf on cam */
     double cam_loss_s_m;
@@ -35,23 +35,23 @@ typedef struct {
     double fixed_loss_s_m;
     double close_m;               /* a dome's circuit closes here */
     double open_m;                /* and opens here */
-    double plate_1_kg[2];         /* 1 / modal mass, 0: held */
+    double plate_1_kg[2];         /* 1 / modal mass; 0: fixed */
     double plate_rad_s[2];
     double plate_damping_1_s[2];  /* twice damping ratio times angular frequency */
-    double snap_ratio;            /* of the leaf's blow on the fixed contact that drives the plate */
+    double snap_ratio;            /* fraction of the leaf's force on the fixed contact that drives the plate */
     double table_start_m;
     double table_step_m;
     double step_s;
 } fdvv_button_model;
 
-/* How a press is cut into steps and rows. */
+/* Discretization of a press. */
 typedef struct {
     int64_t settle_ticks;    /* run before the record starts */
     int64_t ticks;           /* recorded */
-    int64_t steps_per_tick;  /* of the muscle's noise */
+    int64_t steps_per_tick;  /* of the motor noise */
     int64_t steps_per_row;   /* divides steps_per_tick */
     int64_t cells;           /* of the table */
-    int64_t audit;           /* 1: account for energy */
+    int64_t audit;           /* 1: compute the energy balance */
 } fdvv_button_grid;
 
 #define FDVV_BUTTON_COLUMNS 13
@@ -62,26 +62,26 @@ typedef struct {
  * table (cells, FDVV_BUTTON_CELL), u running from 0 to 1 over a cell: four coefficients in u of the elastic
  * force N (spring or dome), four of the cam's height m, two of the rail's friction N (or the dome's arm), two
  * of the cam's friction coefficient, and the energy J of the elastic force at the cell's start.
- * effort_ratio (settle_ticks + ticks + 1,) modulates the finger's own force, detour_m (as many) is added to
- * where the gesture leads the referent; both linear between ticks.
+ * effort_ratio (settle_ticks + ticks + 1,) modulates the muscle's force, offset_m (of the same shape) is added to the
+ * referent; both are linear between ticks.
  * rows (FDVV_BUTTON_COLUMNS, ticks * steps_per_tick / steps_per_row), written: time s, slider m, m/s, m/s2,
  * contact force N, filtered force N, finger m, leaf m, force of the fixed contact N, plate m, plate m/s,
  * closed 0/1, energy unaccounted for J (0 without audit).
  * switching (2,), written: when the circuit first closed and when it last opened, NaN if it never did.
- * Returns 0, or 1 if a count is out of its bounds (nothing is written then).
+ * Returns 0, or 1 if the grid is invalid (nothing is written then).
  */
 int fdvv_button_press(const fdvv_button_model *model, const fdvv_button_grid *grid, const double *table,
-                      const double *effort_ratio, const double *detour_m, double *rows, double *switching);
+                      const double *effort_ratio, const double *offset_m, double *rows, double *switching);
 
-/* Lead the slider of a button whose housing is held, as a force tester does: down by way_m and a tenth of a
- * millimetre, and back, at speed_m_s. rows (2 * count, 2), written: displacement m and force N (the tester
- * cannot pull), press then release, each stroke at count equidistant displacements, its ends included.
- * Returns 0, or 1 if a count, the way or the speed is out of its bounds.
+/* Move the slider of a button with a fixed housing, as a force tester does: down by stroke_m plus 0.1 mm, and back, at
+ * speed_m_s. rows (2 * count, 2), written: displacement m and force N (not negative: the tester cannot pull), press
+ * then release, each at count equidistant displacements including the ends.
+ * Returns 0, or 1 if an argument is out of range.
  */
-int fdvv_button_probe(const fdvv_button_model *model, int64_t cells, const double *table, double way_m,
+int fdvv_button_probe(const fdvv_button_model *model, int64_t cells, const double *table, double stroke_m,
                       double speed_m_s, int64_t count, double *rows);
 
-/* Tell the sizes of the two structures in bytes, for Python to compare with its own. */
+/* Sizes of the structures in bytes, for Python to compare with its own. */
 void fdvv_button_sizes(int64_t *model_bytes, int64_t *grid_bytes);
 
 #endif

@@ -1,12 +1,12 @@
-/* The firmware's core for Python: how large it is, many ticks in one call, what the supervisor knows. */
+/* The firmware's core for Python: sizes, many ticks in one call, and the state of the supervisor. */
 #include "arithmetic.h"
 #include "core.h"
 
 #include <stddef.h>
 
-/* Sizes and offsets that the Python side must agree with. */
+/* Sizes and offsets, for Python to compare with its own. */
 void fdvv_bridge_layout(int64_t layout[18]) {
-    const int64_t found[18] = {
+    const int64_t values[18] = {
         sizeof(fdvv_core), sizeof(fdvv_inputs), sizeof(fdvv_outputs),
         offsetof(fdvv_inputs, time_us), offsetof(fdvv_inputs, sum), offsetof(fdvv_inputs, lowest),
         offsetof(fdvv_inputs, highest), offsetof(fdvv_inputs, elapsed_ticks), offsetof(fdvv_inputs, supply_mV),
@@ -15,10 +15,10 @@ void fdvv_bridge_layout(int64_t layout[18]) {
         offsetof(fdvv_outputs, stop_us), offsetof(fdvv_outputs, key), offsetof(fdvv_outputs, mode),
         offsetof(fdvv_outputs, record),
     };
-    for (int i = 0; i < 18; i++) layout[i] = found[i];
+    for (int i = 0; i < 18; i++) layout[i] = values[i];
 }
 
-/* Check a whole image as the link does piece by piece; detail is the offset where it failed. */
+/* Check a whole image; detail is the offset of what is invalid. */
 uint8_t fdvv_bridge_check_image(const fdvv_core *core, const uint8_t *image, uint16_t size_bytes, uint32_t crc32,
                                 uint16_t *detail) {
     fdvv_image_check check;
@@ -48,7 +48,7 @@ uint8_t fdvv_bridge_latched(const fdvv_core *core) { return core->supervisor.fau
 
 const fdvv_evidence *fdvv_bridge_evidence(const fdvv_core *core) { return &core->supervisor.evidence; }
 
-/* Run count ticks; if host_heard, the host is heard right before each. */
+/* Run count ticks; if host_heard, a message of the host arrives before each of them. */
 void fdvv_bridge_run(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs, int64_t count,
                      int32_t host_heard) {
     for (int64_t i = 0; i < count; i++) {
@@ -57,7 +57,7 @@ void fdvv_bridge_run(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *o
     }
 }
 
-/* Inline in the core, to be called from outside. */
-int32_t fdvv_bridge_part_q15(uint32_t way, uint32_t whole) { return fdvv_part_q15(way, whole); }
+/* Functions that are inline in the core. */
+int32_t fdvv_bridge_part_q15(uint32_t part, uint32_t whole) { return fdvv_fraction_q15(part, whole); }
 
-uint64_t fdvv_bridge_wide_product(uint32_t one, uint32_t other) { return fdvv_wide_product(one, other); }
+uint64_t fdvv_bridge_wide_product(uint32_t x, uint32_t y) { return fdvv_wide_product(x, y); }

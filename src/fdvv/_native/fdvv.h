@@ -1,20 +1,27 @@
-/* What the compiled library offers to Python. All arrays are C-contiguous doubles owned by the caller. */
+/* Functions of the compiled library for Python. All arrays are C-contiguous doubles owned by the caller. */
 #ifndef FDVV_H
 #define FDVV_H
 
 #include <stdint.h>
 
-/* -- spline_fit.c: least-squares B-splines with knots that are free to move -- */
+/* -- spline.c -- */
 
-/* n samples (x rising strictly, y, weights w), m coefficients of a degree (1 to 3); no two knots closer than
- * spacing; the search ends after that many exchanges of knots. Fills t (m + degree + 1 clamped knots) and
- * c (m). Returns the weighted sum of squared errors, or -1 if memory or the sizes do not allow a fit. */
+/* Evaluate a spline of degree k (0 to 5) with n coefficients c on the clamped knots t (n + k + 1), or its derivative of
+ * order nu (0 to k), at count places x within the knots. Writes y (count). Returns 0, or -1 for invalid sizes. */
+int fdvv_spline_evaluate(long n, int k, const double *t, const double *c, int nu, long count, const double *x,
+                         double *y);
+
+/* -- spline_fit.c: free-knot least-squares B-splines -- */
+
+/* Fit m coefficients of a degree (1 to 3) to n samples (x strictly increasing, y, weights w). Knots are at least
+ * spacing apart; the search tries at most `exchanges` exchanges of knots. Writes t (m + degree + 1 clamped knots) and
+ * c (m). Returns the weighted sum of squared errors, or -1 if there is not enough memory or the sizes are invalid. */
 double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m,
                               double spacing, int exchanges, double *t, double *c);
 
-/* -- twins: finger and gesture, shared; SI units, x positive downward -- */
+/* -- finger and gesture, shared by the simulations; SI units, x positive downward -- */
 
-/* The finger that presses: one mass on a spring and a damper, pulp with two relaxing arms. */
+/* The finger: a mass driven by a spring and a damper (the muscle), and a pulp with two Maxwell elements. */
 typedef struct {
     double finger_mass_kg;
     double finger_stiffness_N_m;
@@ -30,7 +37,7 @@ typedef struct {
     double strap_m;
 } fdvv_finger;
 
-/* Where its referent goes: minimum jerk down, dwell, minimum jerk back. */
+/* Motion of the referent (equilibrium position): minimum jerk down, dwell, minimum jerk back. */
 typedef struct {
     double start_m;
     double end_m;

@@ -1,53 +1,53 @@
-/* Time for an emulated SAMD21: what each block of Thumb code costs, and a bus of registers behind it.
+/* Timing of an emulated SAMD21: the cycles of each block of Thumb code, and its peripheral registers.
  *
- * An instruction-set emulator calls fdvv_m0_block before each block of code, fdvv_m0_read and fdvv_m0_write for
- * each access to a register. Costs are those of the Cortex-M0+ (technical reference manual r0p1, table 3-1, with
- * the single-cycle multiplier) plus the flash's one wait state: on each miss of a cache of eight lines of eight
- * bytes, or, pessimistically, on each fetched word. Wait states of other data kept in flash, and of a bus that the
- * DMA or USB holds, are not modelled. */
+ * An instruction-set emulator calls fdvv_m0_block before each block of code, and fdvv_m0_read and fdvv_m0_write for
+ * each access to a register. Cycle counts are those of the Cortex-M0+ (technical reference manual r0p1, table 3-1, with the
+ * single-cycle multiplier), plus one wait state of the flash for each miss of a cache with eight lines of eight bytes,
+ * or, pessimistically, for each fetched word. Wait states of other data in flash, and of a bus occupied by DMA or USB,
+ * are not modelled. */
 #include <stdint.h>
 #include <string.h>
 
 enum { LINES = 8, LINE_SHIFT = 3, BLOCK_LINES = 24 };
-enum { SLOW, CACHED, NO_WAIT }; /* flash: a wait on each fetched word, on each miss of the cache, never */
+enum { SLOW, CACHED, NO_WAIT }; /* flash wait states: for each fetched word, for each cache miss, none */
 enum { CALL_WRITE = 1, CALL_READ = 2, WRITE_ONE_CLEARS = 4, COUNTER = 8, POLLED = 16 };
 
 typedef struct {
-    uint16_t size;          /* bytes; 0: not looked at yet */
-    uint16_t cycles;        /* without waiting */
-    uint16_t fetches;       /* words fetched, literals included */
-    uint8_t is_conditional; /* ends in a branch that costs one more if taken */
+    uint16_t size;          /* bytes; 0: not decoded yet */
+    uint16_t cycles;        /* without wait states */
+    uint16_t fetches;       /* words fetched, including literals */
+    uint8_t is_conditional; /* ends with a branch that takes one more cycle if taken */
     uint8_t lines;
-    uint16_t line[BLOCK_LINES]; /* of flash, in the order they are needed */
+    uint16_t line[BLOCK_LINES]; /* of flash, in order of use */
 } fdvv_m0_code;
 
 typedef struct {
     uint64_t cycles;
-    uint64_t next_event;          /* event() is called when cycles reach it; it must move it on */
+    uint64_t next_event;          /* event() is called when cycles reach this; it must increase it */
     void (*event)(void);
     uint64_t (*read)(uint32_t address, uint32_t size);
     void (*write)(uint32_t address, uint32_t size, uint32_t value);
     const uint8_t *flash;         /* from address 0 */
     fdvv_m0_code *code;           /* one per halfword of flash */
     uint64_t counter_start;       /* of the register marked COUNTER: counts cycles since, modulo its period */
-    uint64_t counter_period;      /* 0: it stands still */
+    uint64_t counter_period;      /* 0: the counter is stopped */
     uint64_t polled_at;           /* last read of the register marked POLLED */
-    uint64_t longest_pass;        /* longest time between two reads of it; the user clears it */
+    uint64_t longest_pass;        /* longest time between two reads of it; reset by the user */
     uint64_t shortest_pass;
     uint64_t passes;
     uint64_t touches;             /* of the cache */
-    uint64_t line_used[LINES];    /* touches when it was needed last */
+    uint64_t line_used[LINES];    /* value of touches at the last use */
     uint32_t line[LINES];         /* 1 + line of flash; 0: empty */
     uint32_t flash_bytes;
-    uint32_t bus_wait;            /* cycles that an access to a register waits */
-    uint32_t waited;              /* of the block that runs */
+    uint32_t bus_wait;            /* wait states of an access to a register */
+    uint32_t waited;              /* wait states of the current block */
     uint32_t start;               /* address of the last block */
-    uint32_t after;               /* address behind it */
-    uint32_t is_stopped;          /* before that block ran: it will be announced again */
+    uint32_t after;               /* address after it */
+    uint32_t is_stopped;          /* before that block ran: fdvv_m0_block will be called for it again */
     uint32_t is_conditional;
     uint32_t is_cached;           /* SLOW, CACHED or NO_WAIT */
-    uint32_t unclocked;           /* address of an access to a peripheral whose bus clock is off; 0: none */
-    uint32_t clocks;              /* a bit per kilobyte of the window that has `gated` set */
+    uint32_t unclocked;           /* address of the first access to a peripheral without bus clock; 0: none */
+    uint32_t clocks;              /* bus clocks: a bit per kilobyte of the window with `gated` set */
 } fdvv_m0;
 
 typedef struct {
@@ -91,11 +91,11 @@ static void need_line(fdvv_m0_code *code, uint32_t address)
     if (code->lines < BLOCK_LINES) {
         code->line[code->lines++] = (uint16_t)(address >> LINE_SHIFT);
     } else {
-        code->cycles++; /* more than the list holds: taken as a miss */
+        code->cycles++; /* the list is full: count a miss */
     }
 }
 
-static void look_at(const fdvv_m0 *m0, fdvv_m0_code *code, uint32_t address, uint32_t size)
+static void decode(const fdvv_m0 *m0, fdvv_m0_code *code, uint32_t address, uint32_t size)
 {
     memset(code, 0, sizeof *code);
     code->size = (uint16_t)size;
@@ -124,7 +124,7 @@ static void look_at(const fdvv_m0 *m0, fdvv_m0_code *code, uint32_t address, uin
     }
 }
 
-/* A line that is not there costs the wait state; the one unused longest goes for it. */
+/* A miss costs one wait state and replaces the least recently used line. */
 static void touch(fdvv_m0 *m0, uint32_t line)
 {
     uint32_t oldest = 0;
@@ -141,7 +141,7 @@ static void touch(fdvv_m0 *m0, uint32_t line)
     m0->cycles++;
 }
 
-static void spend(fdvv_m0 *m0, uint32_t address, uint32_t size)
+static void add_cycles(fdvv_m0 *m0, uint32_t address, uint32_t size)
 {
     if (address + size > m0->flash_bytes) { /* code in RAM: none in this firmware */
         m0->cycles += size / 2;
@@ -149,7 +149,7 @@ static void spend(fdvv_m0 *m0, uint32_t address, uint32_t size)
         return;
     }
     fdvv_m0_code *code = &m0->code[address >> 1];
-    if (code->size != size) look_at(m0, code, address, size);
+    if (code->size != size) decode(m0, code, address, size);
     m0->cycles += code->cycles;
     m0->is_conditional = code->is_conditional;
     if (m0->is_cached == CACHED) {
@@ -169,7 +169,7 @@ void fdvv_m0_block(void *emulator, uint64_t address, uint32_t size, fdvv_m0 *m0)
     m0->is_stopped = 0;
     m0->cycles += m0->waited + (m0->is_conditional && (uint32_t)address != m0->after);
     m0->waited = 0;
-    spend(m0, (uint32_t)address, size);
+    add_cycles(m0, (uint32_t)address, size);
     m0->start = (uint32_t)address;
     m0->after = (uint32_t)address + size;
     while (m0->cycles >= m0->next_event) m0->event();

@@ -1,6 +1,6 @@
-/* Equations of motion of the rig and one step of their solution; docs/explanation/twin.md tells them.
+/* Equations of motion of the rig (see docs/explanation/twin.md) and one step of their integration.
  *
- * Third-order Adams-Bashforth, started by two Runge-Kutta steps, so that one evaluation per step is enough. */
+ * Third-order Adams-Bashforth, started with two Runge-Kutta steps, so that one evaluation per step is enough. */
 #ifndef FDVV_RIG_MOTION_H
 #define FDVV_RIG_MOTION_H
 
@@ -20,79 +20,81 @@ static inline double clamp(double value, double low, double high) {
     return value > high ? high : value;
 }
 
-static inline double touching(const fdvv_rig *r, const double *y) {
+static inline double cap_contact_force(const fdvv_rig *r, const double *y) {
     const fdvv_rig_model *m = &r->model;
     return contact(m->contact_stiffness_N_m, m->contact_loss_s_m, y[XT] - y[XC], y[VT] - y[VC]);
 }
 
-/* Where a finger that is led is drawn to at t, and how fast that changes: a line and what is left of the way to it. */
-static inline void led(const fdvv_rig *r, double t, double *q, double *q_1_s) {
-    double since = t - r->led_s, left = exp(-r->near_1_s * since), rush = r->gap_1_s + r->near_1_s * r->gap;
-    *q = r->goal + r->goal_1_s * since + (r->gap + rush * since) * left;
-    *q_1_s = r->goal_1_s + (r->gap_1_s - r->near_1_s * rush * since) * left;
+/* Referent (or force) of a driven finger at t and its rate: the target line plus the decaying error. */
+static inline void driven_referent(const fdvv_rig *r, double t, double *q, double *q_1_s) {
+    double since = t - r->target_s, decay = exp(-r->tracking_1_s * since);
+    double slope = r->error_1_s + r->tracking_1_s * r->error;
+    *q = r->target + r->target_1_s * since + (r->error + slope * since) * decay;
+    *q_1_s = r->target_1_s + (r->error_1_s - r->tracking_1_s * slope * since) * decay;
 }
 
-/* What the muscle pulls a finger at x, v with. */
-static inline double pulling(const fdvv_rig *r, double t, double x, double v) {
+/* Force of the muscle on a finger at x, v. */
+static inline double muscle_force(const fdvv_rig *r, double t, double x, double v) {
     double q, q_1_s;
-    if (r->led == FDVV_RIG_LED_NOT) return muscle(&r->finger, &r->gesture, t, x, v);
-    led(r, t, &q, &q_1_s);
-    if (r->led == FDVV_RIG_LED_PUSH) return q - r->finger.finger_damping_N_s_m * v;
+    if (r->drive_mode == FDVV_RIG_GESTURE) return muscle(&r->finger, &r->gesture, t, x, v);
+    driven_referent(r, t, &q, &q_1_s);
+    if (r->drive_mode == FDVV_RIG_TARGET_FORCE) return q - r->finger.finger_damping_N_s_m * v;
     return r->finger.finger_stiffness_N_m * (q - x) + r->finger.finger_damping_N_s_m * (q_1_s - v);
 }
 
-/* Stretch of the bristle once the cap has gone on to x: it follows until it slips. */
-static inline double stretched(const fdvv_rig *r, double x) {
+/* Deflection of the bristle when the cap has moved to x: it follows until it slips. */
+static inline double bristle_deflection(const fdvv_rig *r, double x) {
     return clamp(r->slip_m + (x - r->slip_at_m), -r->model.presliding_m, r->model.presliding_m);
 }
 
 static inline double volts_of(const fdvv_rig *r, double henry, double kt, double amps, double v) {
     const fdvv_rig_model *m = &r->model;
     if (m->current_loop_s <= 0.0) return r->drive;
-    double wanted = (r->ohm + m->reluctance_H_m * v) * amps - kt * v + henry * (r->drive - amps) / m->current_loop_s;
-    return clamp(wanted, -m->supply_V, m->supply_V);
+    double required = (r->ohm + m->reluctance_H_m * v) * amps - kt * v + henry * (r->drive - amps) / m->current_loop_s;
+    return clamp(required, -m->supply_V, m->supply_V);
 }
 
 static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, double *dy, int magnet, int audit) {
     const fdvv_rig_model *m = &r->model;
     double effort = 1.0 + r->effort + r->effort_per_s * (t - r->tick_s);
-    double pull = effort * pulling(r, t, y[XF], y[VF]);
-    double squeeze_rate = y[VF] - y[VT], arms = y[H1] + y[H2], growth;
-    double pulp = squeeze(&r->finger, y[XF] - y[XT], squeeze_rate, arms, &growth);
+    double pull = effort * muscle_force(r, t, y[XF], y[VF]);
+    double compression_rate = y[VF] - y[VT], arms = y[H1] + y[H2], growth;
+    double pulp = pulp_force(&r->finger, y[XF] - y[XT], compression_rate, arms, &growth);
     double v = y[VC], amps = y[AMPS];
 
-    double touch = touching(r, y), deep = y[XC] - r->stop_m;
+    double contact_force = cap_contact_force(r, y), deep = y[XC] - r->stop_m;
     double stop = contact(m->stop_stiffness_N_m, m->stop_loss_s_m, deep, v);
     double top = contact(m->top_stiffness_N_m, m->top_loss_s_m, -y[XC], -v);
-    double bristle = stretched(r, y[XC]);
-    double rub = r->bristle_N_m * bristle + m->viscous_N_s_m * v;
+    double bristle = bristle_deflection(r, y[XC]);
+    double friction = r->bristle_N_m * bristle + m->viscous_N_s_m * v;
     double off = y[XC] - m->droop_centre_m;
     double kt = m->force_constant_N_A * (1.0 - m->droop_1_m2 * off * off);
     double henry = m->inductance_H + m->reluctance_H_m * off;
     double volts = volts_of(r, henry, kt, amps, v), coil = kt * amps - 0.5 * m->reluctance_H_m * amps * amps;
-    double shake = 0.0;
+    double exciter_force = 0.0;
 
     if (magnet) {
         double damped = m->magnet_damping_N_s_m * (y[VM] - v);
-        shake = m->magnet_stiffness_N_m * y[XM] + damped - m->magnet_motor_N_A * r->magnet_A;
+        exciter_force = m->magnet_stiffness_N_m * y[XM] + damped - m->magnet_motor_N_A * r->magnet_A;
         dy[XM] = y[VM] - v;
-        dy[VM] = -shake * r->magnet_1_kg;
+        dy[VM] = -exciter_force * r->magnet_1_kg;
     }
     dy[XF] = y[VF];
     dy[VF] = (pull - pulp) * r->finger_1_kg;
     dy[H1] = r->finger.pulp_fast_ratio * growth - y[H1] * r->fast_rate;
     dy[H2] = r->finger.pulp_slow_ratio * growth - y[H2] * r->slow_rate;
     dy[XT] = y[VT];
-    dy[VT] = (pulp - touch) * r->sensor_1_kg;
+    dy[VT] = (pulp - contact_force) * r->sensor_1_kg;
     dy[XC] = v;
-    dy[VC] = (touch - coil - rub - stop + top + shake + m->mover_mass_kg * m->gravity_m_s2) * r->frame_1_kg;
+    dy[VC] = (contact_force - coil - friction - stop + top + exciter_force + m->mover_mass_kg * m->gravity_m_s2) *
+             r->frame_1_kg;
     dy[AMPS] = r->enable ? (volts - (r->ohm + m->reluctance_H_m * v) * amps + kt * v) / henry : 0.0;
     dy[LVDT] = m->lvdt_rate * (y[XC] - y[LVDT]);
     dy[SENSED] = m->sensor_rate * (pulp - y[SENSED]);
     if (!audit) return;
     dy[WORK] = pull * y[VF] + (r->enable ? volts * amps : 0.0);
-    dy[LOSS] = (r->enable ? r->ohm * amps * amps : 0.0) + m->viscous_N_s_m * v * v + arms * squeeze_rate +
-               (touch - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
+    dy[LOSS] = (r->enable ? r->ohm * amps * amps : 0.0) + m->viscous_N_s_m * v * v + arms * compression_rate +
+               (contact_force - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
                (stop - elastic(m->stop_stiffness_N_m, deep)) * v - (top - elastic(m->top_stiffness_N_m, -y[XC])) * v;
     if (!magnet) return;
     dy[WORK] += m->magnet_motor_N_A * r->magnet_A * (y[VM] - v);
@@ -103,16 +105,16 @@ static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, do
 static inline double stored(const fdvv_rig *r, const double *y) {
     const fdvv_rig_model *m = &r->model;
     const fdvv_finger *f = &r->finger;
-    double squeezed = y[XF] - y[XT], henry = m->inductance_H + m->reluctance_H_m * (y[XC] - m->droop_centre_m);
+    double compression = y[XF] - y[XT], henry = m->inductance_H + m->reluctance_H_m * (y[XC] - m->droop_centre_m);
     double depth = fmax(y[XT] - y[XC], 0.0), deep = fmax(y[XC] - r->stop_m, 0.0), high = fmax(-y[XC], 0.0);
-    double bristle = stretched(r, y[XC]);
+    double bristle = bristle_deflection(r, y[XC]);
     double moving = f->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
                     m->frame_mass_kg * y[VC] * y[VC] + m->magnet_kg * y[VM] * y[VM] + henry * y[AMPS] * y[AMPS];
     double springs = m->contact_stiffness_N_m * depth * depth + m->stop_stiffness_N_m * deep * deep +
                      m->top_stiffness_N_m * high * high + r->bristle_N_m * bristle * bristle +
                      m->magnet_stiffness_N_m * y[XM] * y[XM];
-    return 0.5 * (moving + springs) + f->pulp_relaxed_ratio * swollen(f, squeezed) -
-           f->strap_N * (squeezed + f->strap_m) - m->mover_mass_kg * m->gravity_m_s2 * y[XC];
+    return 0.5 * (moving + springs) + f->pulp_relaxed_ratio * pulp_energy(f, compression) -
+           f->strap_N * (compression + f->strap_m) - m->mover_mass_kg * m->gravity_m_s2 * y[XC];
 }
 
 static inline int used_states(int magnet, int audit) { return audit ? FDVV_RIG_STATES : magnet ? WORK : XM; }
@@ -132,13 +134,13 @@ static ALWAYS_INLINE void runge_kutta(fdvv_rig *r, double t, const double *now, 
     for (int j = 0; j < states; j++) r->y[j] += h / 6.0 * sum[j];
 }
 
-/* Advance one step; give the rates at its start. */
+/* Advance one step; now receives the rates at its start. */
 static ALWAYS_INLINE void advance(fdvv_rig *r, double t, double *now, int magnet, int audit) {
     double h = r->model.step_s / 12.0;
     rates(r, t, r->y, now, magnet, audit);
-    if (r->fresh < 2) {
+    if (r->past_steps < 2) {
         runge_kutta(r, t, now, magnet, audit);
-        r->fresh++;
+        r->past_steps++;
         memcpy(r->past[1], r->past[0], sizeof r->past[0]);
         memcpy(r->past[0], now, sizeof r->past[0]);
     } else {
@@ -149,9 +151,9 @@ static ALWAYS_INLINE void advance(fdvv_rig *r, double t, double *now, int magnet
             r->past[0][j] = now[j];
         }
     }
-    double stretch = stretched(r, r->y[XC]);
-    if (audit) r->y[LOSS] += r->model.coulomb_N * fabs(r->y[XC] - r->slip_at_m - (stretch - r->slip_m));
-    r->slip_m = stretch;
+    double deflection = bristle_deflection(r, r->y[XC]);
+    if (audit) r->y[LOSS] += r->model.coulomb_N * fabs(r->y[XC] - r->slip_at_m - (deflection - r->slip_m));
+    r->slip_m = deflection;
     r->slip_at_m = r->y[XC];
 }
 

@@ -1,13 +1,13 @@
-/* Least-squares B-splines whose knots move to where the curve needs them.
+/* Free-knot least-squares B-splines.
  *
  * The error depends on the knots alone once the coefficients are eliminated (variable projection, Golub &
- * Pereyra 1973). Start: many knots, the least needed taken out one by one (Lyche & Morken 1987). Then each
- * knot walks along the axis, and knots are exchanged: one is taken out where it is missed least and set in
- * where it helps most. Everything is deterministic.
+ * Pereyra 1973). The fit starts with many knots and removes the least important ones one by one (Lyche & Morken 1987).
+ * Then a pattern search moves each knot, and knots are exchanged: one is removed where that increases the error least
+ * and inserted where it decreases the error most. Everything is deterministic.
  *
- * Cost: a knot that moves changes two intervals only. Each interval keeps the moments sum(w u^k)
- * and sum(w y u^k) of its samples in its own coordinate u in [-1, 1], so that the normal equations are rebuilt
- * from 15 intervals rather than from hundreds of samples. */
+ * Cost: moving a knot changes only two intervals. The moments sum(w u^k) and sum(w y u^k) of the samples in an
+ * interval, in its own coordinate u in [-1, 1], are cached, so that the normal equations are assembled from 15 intervals rather
+ * than from hundreds of samples. */
 #include "fdvv.h"
 
 #include <float.h>
@@ -17,7 +17,7 @@
 
 enum { MAX_DEGREE = 3, MAX_COEFFICIENTS = 64, ORDER = MAX_DEGREE + 1, MAX_KNOTS = MAX_COEFFICIENTS + ORDER };
 
-typedef struct { /* samples of one interval of knots, in its own coordinate */
+typedef struct { /* moments of the samples in one knot interval */
     double from, to;
     double power[2 * MAX_DEGREE + 1]; /* sum of w u^k */
     double weighted[ORDER];           /* sum of w y u^k */
@@ -27,7 +27,7 @@ typedef struct {
     int n, degree;
     const double *x, *y, *w;
     double y_mean, y_squares, spacing;
-    Moments kept[MAX_KNOTS];         /* of the last knots seen, by interval */
+    Moments cache[MAX_KNOTS];        /* by interval, for the last knots used */
     double band[MAX_COEFFICIENTS][ORDER], right[MAX_COEFFICIENTS];
 } Problem;
 
@@ -57,7 +57,7 @@ static void gather(const Problem *p, double from, double to, int last, Moments *
     }
 }
 
-/* Coefficients in u of the degree + 1 basis functions that live on interval s (de Boor's recurrence). */
+/* Coefficients in u of the degree + 1 basis functions that are non-zero on interval s (de Boor's recurrence). */
 static void local_basis(const double *t, int s, int degree, double basis[ORDER][ORDER]) {
     double middle = 0.5 * (t[s] + t[s + 1]), half = 0.5 * (t[s + 1] - t[s]);
     memset(basis, 0, sizeof(double) * ORDER * ORDER);
@@ -97,7 +97,7 @@ static void assemble(Problem *p, int m, const double *t) {
     memset(p->right, 0, sizeof p->right[0] * (size_t)m);
     for (int s = p->degree; s < m; s++) {
         if (t[s + 1] <= t[s]) continue;
-        Moments *moments = &p->kept[s];
+        Moments *moments = &p->cache[s];
         if (moments->from != t[s] || moments->to != t[s + 1]) gather(p, t[s], t[s + 1], s == m - 1, moments);
         double basis[ORDER][ORDER];
         local_basis(t, s, p->degree, basis);
@@ -105,12 +105,12 @@ static void assemble(Problem *p, int m, const double *t) {
     }
 }
 
-/* Solve the banded normal equations (Cholesky); give the squared error, and the coefficients if asked. */
+/* Solve the banded normal equations (Cholesky). Returns the squared error; writes the coefficients unless c is NULL. */
 static double solve(Problem *p, int m, double *c) {
     double explained = 0.0, z[MAX_COEFFICIENTS];
     for (int i = 0; i < m; i++) {
         double *row = p->band[i];
-        row[0] += 1e-10; /* a basis function without samples: hold it, do not divide by zero */
+        row[0] += 1e-10; /* regularization for basis functions without samples */
         for (int k = p->degree; k >= 0; k--) {
             int j = i - k;
             if (j < 0) continue;
@@ -150,7 +150,7 @@ static void insert_knot(double *t, int count, int at, double value) {
     t[at] = value;
 }
 
-/* One step of one knot in one direction; keep it if it helps. */
+/* Move one knot in one direction if that decreases the error. Returns whether it did. */
 static int try_move(Problem *p, int m, double *t, int at, double to, double *best) {
     double low = t[at - 1] + p->spacing, high = t[at + 1] - p->spacing, was = t[at];
     if (to < low) to = low;
@@ -166,8 +166,8 @@ static int try_move(Problem *p, int m, double *t, int at, double to, double *bes
     return 0;
 }
 
-/* Let every knot walk, with its own step that grows while it helps and shrinks when it does not. */
-static double walk(Problem *p, int m, double *t, int rounds) {
+/* Pattern search: every knot has its own step, which grows after a success and shrinks after a failure. */
+static double optimize_knots(Problem *p, int m, double *t, int rounds) {
     int inner = m - p->degree - 1;
     double step[MAX_KNOTS], best = error_of(p, m, t), length = t[m] - t[0];
     for (int j = 0; j < inner; j++) step[j] = length / 60.0;
@@ -186,8 +186,8 @@ static double walk(Problem *p, int m, double *t, int rounds) {
     return best;
 }
 
-/* Rank the inner knots by how much the error grows without them; give the index of the one at rank. */
-static int least_missed(Problem *p, int m, const double *t, int rank) {
+/* Rank the inner knots by the error without them, and return the index of the one at this rank. */
+static int least_important(Problem *p, int m, const double *t, int rank) {
     double error[MAX_KNOTS], trial[MAX_KNOTS + ORDER];
     int count = m + p->degree + 1, chosen = p->degree + 1;
     for (int j = p->degree + 1; j < m; j++) {
@@ -204,7 +204,7 @@ static int least_missed(Problem *p, int m, const double *t, int rank) {
     return chosen;
 }
 
-/* Set a knot where it helps most, of three places in every interval; 0 if there is no room. */
+/* Insert a knot where it decreases the error most, of three positions per interval. Returns 0 if there is no room. */
 static int insert_best(Problem *p, int m, double *t) {
     double best = DBL_MAX, value = 0.0, trial[MAX_KNOTS + ORDER];
     int count = m + p->degree, at = 0; /* knots of m - 1 coefficients */
@@ -222,7 +222,7 @@ static int insert_best(Problem *p, int m, double *t) {
     return at > 0;
 }
 
-/* Many knots, half by length and half by rise, so that steps get their share. */
+/* Many knots, distributed half by x and half by the absolute change of y, so that steps get enough of them. */
 static void dense_knots(const Problem *p, int m, double *t) {
     int inner = m - p->degree - 1, at = 0;
     double rise = 0.0, length = p->x[p->n - 1] - p->x[0], sum = 0.0, previous = p->x[0];
@@ -246,7 +246,7 @@ static int prepare(Problem *p, int n, const double *x, const double *y, const do
     if (degree < 1 || degree > MAX_DEGREE || m <= degree || m > MAX_COEFFICIENTS || n < m) return 0;
     memset(p, 0, sizeof *p);
     p->n = n, p->x = x, p->y = y, p->w = w, p->degree = degree, p->spacing = spacing;
-    for (int s = 0; s < MAX_KNOTS; s++) p->kept[s].from = NAN;
+    for (int s = 0; s < MAX_KNOTS; s++) p->cache[s].from = NAN;
     for (int i = 0; i < n; i++) p->y_mean += y[i] / n;
     for (int i = 0; i < n; i++) p->y_squares += w[i] * (y[i] - p->y_mean) * (y[i] - p->y_mean);
     return 1;
@@ -273,21 +273,21 @@ double fdvv_spline_free_knots(int n, const double *x, const double *y, const dou
     if (many < m) many = m;
     dense_knots(p, many, trial);
     for (; many > m; many--) {
-        remove_knot(trial, many + degree + 1, least_missed(p, many, trial, 0));
-        if (many - m < 10) walk(p, many - 1, trial, 1);
+        remove_knot(trial, many + degree + 1, least_important(p, many, trial, 0));
+        if (many - m < 10) optimize_knots(p, many - 1, trial, 1);
     }
-    double best = walk(p, m, trial, 25);
+    double best = optimize_knots(p, m, trial, 25);
     memcpy(best_t, trial, sizeof trial);
     for (int k = 0, rank = 0; k < exchanges && rank < m - degree - 1; k++) {
         memcpy(trial, best_t, sizeof trial);
-        remove_knot(trial, m + degree + 1, least_missed(p, m, trial, rank));
-        double error = insert_best(p, m, trial) ? walk(p, m, trial, 15) : DBL_MAX;
+        remove_knot(trial, m + degree + 1, least_important(p, m, trial, rank));
+        double error = insert_best(p, m, trial) ? optimize_knots(p, m, trial, 15) : DBL_MAX;
         if (error < best * (1.0 - 1e-4)) {
             best = error, rank = 0;
             memcpy(best_t, trial, sizeof trial);
         } else rank++;
     }
-    walk(p, m, best_t, 40);
+    optimize_knots(p, m, best_t, 40);
     memcpy(t, best_t, sizeof *t * (size_t)(m + degree + 1));
     best = squared_error(p, m, t, c);
     free(p);

@@ -1,4 +1,4 @@
-/* The LED strip's board for Python: the firmware's core without pins. */
+/* The LED strip's board for Python: the firmware without hardware. */
 #include "strip.h"
 
 #include <stdlib.h>
@@ -13,20 +13,21 @@ fdvv_strip *fdvv_strip_bridge_new(void) {
 
 void fdvv_strip_bridge_free(fdvv_strip *strip) { free(strip); }
 
-/* Let time pass; gives the pixel where the bullet is, FDVV_STRIP_NOWHERE without one. */
+/* Advance to a time. Returns the pixel of the bullet, or FDVV_STRIP_NOWHERE. */
 uint8_t fdvv_strip_bridge_run(fdvv_strip *strip, uint32_t now_us) {
     fdvv_strip_tick(strip, now_us);
     if (fdvv_strip_frame(strip, now_us)) fdvv_strip_sent(strip);
     return strip->picture.bullet;
 }
 
-/* Hand bytes over and take the replies; `told` has room for 70 bytes for each received. Gives how many. */
+/* Process received bytes and write the replies; `replies` has room for 70 bytes per received byte. Returns the number
+ * of bytes written. */
 uint32_t fdvv_strip_bridge_receive(fdvv_strip *strip, const uint8_t *bytes, uint32_t count, uint32_t now_us, uint8_t key,
-                                   uint8_t *told) {
-    uint32_t found = 0;
+                                   uint8_t *replies) {
+    uint32_t written = 0;
     for (uint32_t i = 0; i < count; i++) {
         fdvv_strip_receive(strip, bytes[i], now_us, key);
-        while (fdvv_strip_transmit(strip, told + found)) found++;
+        while (fdvv_strip_transmit(strip, replies + written)) written++;
     }
-    return found;
+    return written;
 }

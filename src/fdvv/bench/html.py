@@ -5,28 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv import __version__
-from fdvv.model import Stroke, landmark_errors, landmarks
-from fdvv.plot import (
-    Section,
-    Table,
-    figure_svg,
+from fdvv.bench.figures import (
     plot_averages,
     plot_clocks,
     plot_displacement,
     plot_force,
-    plot_model,
-    plot_paces,
     plot_registration,
     plot_take,
-    plot_vibration,
-    render_html,
+    plot_velocities,
 )
-from fdvv.preprocess import Judged
-from fdvv.recording import UNITS
-from fdvv.workflow._capture_model import RecordedModel
-from fdvv.workflow._capture_report import capture_report
-from fdvv.workflow._capture_words import used_and_left_out
-from fdvv.workflow._spread_report import vibration_spread
+from fdvv.bench.model import RecordedModel, capture_report, used_and_left_out
+from fdvv.button.compare import vibration_spread
+from fdvv.model.curve import Stroke
+from fdvv.model.landmarks import landmark_errors, landmarks
+from fdvv.preprocess.reject import Judged
+from fdvv.recording.types import UNITS
+from fdvv.report.model_figures import plot_model, plot_vibration
+from fdvv.report.report import Section, Table, render_html
+from fdvv.report.svg import figure_svg
 
 FORCES = ("peak_cN", "valley_cN", "bottom_out_cN", "release_peak_cN", "release_valley_cN")
 
@@ -48,16 +44,16 @@ def capture_html(recorded: RecordedModel) -> str:
     simulated = "the takes come from the twin; no hardware was used" if model.provenance.simulated else None
     footer = f"fdvv {__version__}; {'; '.join(model.provenance.assumptions)}."
     summary = f"{model.provenance.source}: {used_and_left_out(recorded.processed)}."
-    told = [section for section in sections if section is not None]
-    return render_html(f"{model.name}: from recording to model", summary, told, footer, simulated)
+    present = [section for section in sections if section is not None]
+    return render_html(f"{model.name}: from recording to model", summary, present, footer, simulated)
 
 
 def _example(recorded: RecordedModel, fastest: bool) -> Judged:
-    """Choose the press of the fastest or slowest pace whose speed is in the middle of those used."""
+    """Choose the press of median speed among those used at the fastest or slowest velocity."""
     used = [one for one in recorded.processed.judged if one.reason is None]
-    paces = [one.press.velocity_mm_s or 0.0 for one in used]
-    pace = max(paces) if fastest else min(paces)
-    group = [one for one, its in zip(used, paces, strict=True) if its == pace]
+    velocities = [one.press.velocity_mm_s or 0.0 for one in used]
+    asked_mm_s = max(velocities) if fastest else min(velocities)
+    group = [one for one, its in zip(used, velocities, strict=True) if its == asked_mm_s]
     return sorted(group, key=lambda one: one.achieved_mm_s)[len(group) // 2]
 
 
@@ -140,7 +136,9 @@ def _presses(recorded: RecordedModel) -> Section:
     )
     columns = ("press", "asked (mm/s)", "achieved (mm/s)", "deepest (mm)", "why it is left out")
     table = Table(columns, rows, "Presses that were left out.")
-    figure = figure_svg(plot_paces(recorded.processed, recorded.recording.simulated), "Speeds of all presses")
+    figure = figure_svg(
+        plot_velocities(recorded.processed, recorded.recording.simulated), "Speeds of all presses"
+    )
     return Section(
         "Presses", (used_and_left_out(recorded.processed) + ".",), (figure,), (table,) if rows else ()
     )
@@ -148,14 +146,14 @@ def _presses(recorded: RecordedModel) -> Section:
 
 def _registration(recorded: RecordedModel) -> Section:
     processed, simulated = recorded.processed, recorded.recording.simulated
-    pace = _example(recorded, fastest=True).press.velocity_mm_s
+    asked_mm_s = _example(recorded, fastest=True).press.velocity_mm_s
     figures = tuple(
         figure_svg(
-            plot_registration(processed, curve.stroke, pace, simulated=simulated),
+            plot_registration(processed, curve.stroke, asked_mm_s, simulated=simulated),
             f"Samples, mean and spread of the {curve.stroke}",
         )
         for curve in processed.curves
-        if curve.velocity_mm_s == pace
+        if curve.velocity_mm_s == asked_mm_s
     )
     text = (
         "Every sample of every press counts at the place where it was taken. The dashed line is what the "
@@ -189,19 +187,22 @@ def _curves(recorded: RecordedModel) -> Section:
 
 
 def _vibration(recorded: RecordedModel) -> Section:
-    """Tell the vibrations of the model with their spreads, and where and why there is none."""
     rows = tuple(
         (
             str(v.stroke),
             "–" if v.velocity_mm_s is None else f"{v.velocity_mm_s:g}",
-            _with(told["onset_mm"], told["onset_spread_mm"], 3),
-            _with(told["frequency_Hz"], told["frequency_spread_Hz"], 0),
-            _with(1e3 * told["duration_s"], told["duration_spread_s"] and 1e3 * told["duration_spread_s"], 1),
-            _with(told["amplitude_m_s2"], told["amplitude_spread_m_s2"], 2),
-            "–" if told["presses"] is None else str(told["presses"]),
+            _with(spread["onset_mm"], spread["onset_spread_mm"], 3),
+            _with(spread["frequency_Hz"], spread["frequency_spread_Hz"], 0),
+            _with(
+                1e3 * spread["duration_s"],
+                spread["duration_spread_s"] and 1e3 * spread["duration_spread_s"],
+                1,
+            ),
+            _with(spread["amplitude_m_s2"], spread["amplitude_spread_m_s2"], 2),
+            "–" if spread["presses"] is None else str(spread["presses"]),
         )
         for v in recorded.model.vibrations
-        for told in (vibration_spread(v),)
+        for spread in (vibration_spread(v),)
     )
     columns = (
         "stroke", "asked (mm/s)", "onset (mm)", "frequency (Hz)", "duration (ms)", "amplitude (m/s²)",
@@ -212,7 +213,7 @@ def _vibration(recorded: RecordedModel) -> Section:
     )
     figures = (plot_vibration(recorded.model),) if recorded.model.vibrations else ()
     svgs = tuple(figure_svg(figure, "Vibrations of the model") for figure in figures)
-    text = tuple(f"{told[0].upper()}{told[1:]}." for told in recorded.heard.warnings)
+    text = tuple(f"{warning[0].upper()}{warning[1:]}." for warning in recorded.vibration.warnings)
     return Section("Vibration", text, svgs, (table,) if rows else ())
 
 
@@ -241,7 +242,6 @@ def _model(recorded: RecordedModel) -> Section:
 
 
 def _landmarks(recorded: RecordedModel) -> Table:
-    """Tell the forces of the bump at every speed, with standard errors where presses tell them."""
     rows = []
     for velocity in recorded.model.velocities_mm_s(Stroke.PRESS):
         marks = landmarks(recorded.model, velocity).to_dict()

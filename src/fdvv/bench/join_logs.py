@@ -7,7 +7,9 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 from fdvv.errors import InputError, ModelError
-from fdvv.recording import Bench, Recording, join, read_log, select
+from fdvv.recording.join import join, select
+from fdvv.recording.read import read_log
+from fdvv.recording.types import Bench, Recording
 
 
 def join_logs(

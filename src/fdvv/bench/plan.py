@@ -1,4 +1,4 @@
-"""What a capture takes: the steps, which of them are done, and what is missing."""
+"""The steps of a guided capture, and the cues that lead a person through one take."""
 
 from __future__ import annotations
 
@@ -9,16 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.recording import Stage
-from fdvv.workflow._capture_cue import PROBE_mm_s, cue_length_s
+from fdvv.recording.types import Stage
 
 BETWEEN_s = 1.2
-"""A person takes this long to read what became of a press and to be ready again."""
+"""Time for a person to read the result of a press and to be ready again."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """One thing to be recorded."""
+    """One take to be recorded."""
 
     stage: Stage
     velocity_mm_s: float | None = None
@@ -30,13 +29,13 @@ class CapturePlan:
 
     Attributes
     ----------
-    paces_mm_s : in the order in which they are asked.
-    presses : of each pace.
+    paces_mm_s : mean velocities, in the order in which they are recorded.
+    presses : at each velocity.
     probe : lead the cap slowly down and back first.
-    shuffled : ask in blocks that hold each pace once, in an order drawn from seed, instead of pace by pace.
-    repeats : so often a bad press is asked for again before the session goes on without it.
-    pace_ratio : part by which a press may miss its pace.
-    travel_mm : of the button, for the cue and to tell incomplete presses; None: as the probe tells.
+    shuffled : in blocks that hold each velocity once, in an order drawn from seed, not one after another.
+    repeats : how often a bad press is repeated before the session continues without it.
+    pace_ratio : largest relative error of a press's velocity.
+    travel_mm : of the button, for the cue and to detect incomplete presses; None: as the probe measures.
     """
 
     paces_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
@@ -61,7 +60,7 @@ class CapturePlan:
             raise ModelError(f"travel_mm must be above 0, got {self.travel_mm}")
 
     def steps(self) -> tuple[Step, ...]:
-        """Give all steps in the order in which they are asked."""
+        """Return all steps in the order in which they are recorded."""
         first = [Step(Stage.REST), *([Step(Stage.PROBE, PROBE_mm_s)] if self.probe else [])]
         if not self.shuffled:
             return (*first, *(Step(Stage.PRESS, v) for v in self.paces_mm_s for _ in range(self.presses)))
@@ -70,7 +69,7 @@ class CapturePlan:
         return (*first, *(Step(Stage.PRESS, self.paces_mm_s[i]) for block in blocks for i in block))
 
     def duration_s(self, travel_mm: float, repeated: int = 0) -> float:
-        """Tell how long the whole takes a person; repeated : presses made again, at the slowest pace."""
+        """Estimate how long the capture takes, with ``repeated`` presses again at the slowest velocity."""
         again = [Step(Stage.PRESS, min(self.paces_mm_s))] * repeated
         return sum(
             cue_length_s(s.stage, s.velocity_mm_s, travel_mm) + BETWEEN_s for s in (*self.steps(), *again)
@@ -79,7 +78,7 @@ class CapturePlan:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of the takes of one step: how many were made, and the last was good or is done without."""
+    """The takes of one step: how many were made, and whether the last was good or the repeats are used up."""
 
     step: Step
     tries: int = 0
@@ -87,7 +86,7 @@ class Outcome:
 
 
 def settle(outcomes: Sequence[Outcome], step: Step, ok: bool, repeats: int) -> tuple[Outcome, ...]:
-    """Count a take for the first step of its kind that is open; one beyond the plan changes nothing."""
+    """Count a take for the first open step of its kind; a take beyond the plan changes nothing."""
     found = list(outcomes)
     for i, outcome in enumerate(found):
         if outcome.step == step and not outcome.settled:
@@ -95,3 +94,41 @@ def settle(outcomes: Sequence[Outcome], step: Step, ok: bool, repeats: int) -> t
             found[i] = Outcome(step, tries, ok or tries > repeats)
             break
     return tuple(found)
+
+
+COUNT_IN_s = 1.5
+"""Before every press and probe."""
+
+
+DWELL_s = 0.05
+"""At the bottom, between down and up."""
+
+
+REST_s = 1.0
+"""Length of a take of the untouched bench."""
+
+
+PROBE_mm_s = 0.5
+"""Of the slow probe: the speed of force testers."""
+
+
+def stroke_s(velocity_mm_s: float, travel_mm: float) -> float:
+    return travel_mm / velocity_mm_s
+
+
+def cue_length_s(stage: Stage, velocity_mm_s: float | None, travel_mm: float) -> float:
+    """Return the time from the start of a take's cue to its end."""
+    if velocity_mm_s is None:
+        return COUNT_IN_s + REST_s
+    return COUNT_IN_s + 2 * stroke_s(velocity_mm_s, travel_mm) + DWELL_s
+
+
+def cue_events(velocity_mm_s: float | None, travel_mm: float) -> tuple[tuple[str, float], ...]:
+    """Return the moments of the beeps, as fdvv.device.bench.Cue takes them."""
+    if velocity_mm_s is None:
+        return ()
+    return (CONTACT, COUNT_IN_s), (BOTTOM, COUNT_IN_s + stroke_s(velocity_mm_s, travel_mm))
+
+
+CONTACT, BOTTOM = "cue contact", "cue bottom"
+"""The moments of the beeps."""

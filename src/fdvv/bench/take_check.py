@@ -1,4 +1,4 @@
-"""A quick look at a take that was just made: was it what was asked for?"""
+"""A quick check of a take that was just made against the plan."""
 
 from __future__ import annotations
 
@@ -7,39 +7,47 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.recording import Quantity, Stage, Take
+from fdvv.bench.plan import CapturePlan
+from fdvv.recording.types import Quantity, Stage, Take
 from fdvv.units import FloatArray
-from fdvv.workflow._capture_plan import CapturePlan
 
 START_mm = 0.1
 """Where a stroke's speed begins to count."""
+
 SHORT_mm = 0.15
 """A press that stays so far from the bottom is incomplete."""
+
 STILL_mm, STILL_cN = 0.5, 15.0
 """A bench at rest moves and pulls less."""
+
 KNOCKED_mm = 0.2
 """Markers that come back to rest by so much differently from each other were knocked."""
+
 GAP_s = 0.015
 """Longest time in a stroke without displacement."""
+
 FELT_mm = 0.5
 """Less is no press."""
+
 FELT_cN = 25.0
 """More than a finger that rests on the cap; a press goes beyond."""
+
 FEWEST, REST_PART = 16, 8
 """Fewest frames that show anything; the first part of a take shows the cap at rest."""
+
 HALT_s, HALT_mm = 0.03, 0.2
 """A stroke halts where this way takes so long, or six times what its mean speed needs."""
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """What a quick look found.
+class TakeCheck:
+    """Whether a take can be used.
 
     Attributes
     ----------
     ok : the take can be used.
     achieved_mm_s : mean speed of the stroke down; NaN if there is none.
-    travel_mm : how far the cap went; NaN if that cannot be told.
+    travel_mm : how far the cap went; NaN if it is unknown.
     reason : why it cannot be used and what to do; empty if it can.
     """
 
@@ -49,111 +57,111 @@ class Verdict:
     reason: str = ""
 
 
-def quick_look(take: Take, plan: CapturePlan) -> Verdict:
-    """Judge a take by its own clock and the plan; plan.travel_mm is what is known so far, None if nothing."""
+def quick_look(take: Take, plan: CapturePlan) -> TakeCheck:
+    """Check a take by its own clock and the plan, whose travel_mm is None while it is unknown."""
     if take.stage is Stage.REST:
         return _rest(take)
     if take.stage is Stage.PROBE:
         return _probe(take, plan)
     found = _displacement(take)
-    if isinstance(found, Verdict):
+    if isinstance(found, TakeCheck):
         return found if take.of(Quantity.MARKER) or take.of(Quantity.DISPLACEMENT) else _felt(take, found)
     return _press(take.velocity_mm_s, *found, plan)
 
 
-def _felt(take: Take, unseen: Verdict) -> Verdict:
-    """Judge by the force alone, where cameras record for themselves and are joined later."""
+def _felt(take: Take, unseen: TakeCheck) -> TakeCheck:
+    """Check by the force alone, where cameras record on their own and are joined later."""
     if not take.of(Quantity.FORCE):
         return unseen
     force_cN = take.of(Quantity.FORCE)[0].values
     pressed = force_cN > np.median(force_cN[: force_cN.size // REST_PART]) + FELT_cN
     if not pressed.any():
-        return Verdict(False, reason="no press was felt; press when the bar goes down")
-    return Verdict(True)
+        return TakeCheck(False, reason="no press was felt; press when the bar goes down")
+    return TakeCheck(True)
 
 
-def _rest(take: Take) -> Verdict:
+def _rest(take: Take) -> TakeCheck:
     forces = [float(np.ptp(stream.values)) for stream in take.of(Quantity.FORCE)]
     found = _displacement(take)
-    moved_mm = 0.0 if isinstance(found, Verdict) else float(np.ptp(found[1]))
+    moved_mm = 0.0 if isinstance(found, TakeCheck) else float(np.ptp(found[1]))
     if max(forces, default=0.0) > STILL_cN or moved_mm > STILL_mm:
-        return Verdict(False, reason="something touched the bench; take the finger off and wait")
-    return Verdict(True)
+        return TakeCheck(False, reason="something touched the bench; take the finger off and wait")
+    return TakeCheck(True)
 
 
-def _probe(take: Take, plan: CapturePlan) -> Verdict:
-    ways, forces = take.of(Quantity.DISPLACEMENT), take.of(Quantity.FORCE)
-    if not ways or not forces:
+def _probe(take: Take, plan: CapturePlan) -> TakeCheck:
+    displacements, forces = take.of(Quantity.DISPLACEMENT), take.of(Quantity.FORCE)
+    if not displacements or not forces:
         return _seen(_displacement(take), plan)
-    way, force = ways[0], forces[0]
-    turn = int(np.argmax(way.values))
-    felt = np.interp(way.t_s, force.t_s, force.values)
+    displacement, force = displacements[0], forces[0]
+    turn = int(np.argmax(displacement.values))
+    felt = np.interp(displacement.t_s, force.t_s, force.values)
     loaded = np.flatnonzero(felt[: turn + 1] > felt[:10].mean() + 3.0)
     if not loaded.size:
-        return Verdict(False, reason="the probe felt no force; lead it down until the stop")
-    return _deep(float(way.values[turn] - way.values[loaded[0]]), plan)
+        return TakeCheck(False, reason="the probe felt no force; lead it down until the stop")
+    return _deep(float(displacement.values[turn] - displacement.values[loaded[0]]), plan)
 
 
-def _seen(found: tuple[FloatArray, FloatArray] | Verdict, plan: CapturePlan) -> Verdict:
-    return found if isinstance(found, Verdict) else _deep(float(found[1].max()), plan)
+def _seen(found: tuple[FloatArray, FloatArray] | TakeCheck, plan: CapturePlan) -> TakeCheck:
+    return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), plan)
 
 
-def _deep(travel_mm: float, plan: CapturePlan) -> Verdict:
+def _deep(travel_mm: float, plan: CapturePlan) -> TakeCheck:
     wanted_mm = plan.travel_mm or FELT_mm
     if travel_mm < wanted_mm - SHORT_mm:
-        return Verdict(False, travel_mm=travel_mm, reason=_short(travel_mm, wanted_mm))
-    return Verdict(True, travel_mm=travel_mm)
+        return TakeCheck(False, travel_mm=travel_mm, reason=_short(travel_mm, wanted_mm))
+    return TakeCheck(True, travel_mm=travel_mm)
 
 
 def _short(depth_mm: float, wanted_mm: float) -> str:
     return f"stopped at {depth_mm:.1f} of {wanted_mm:.1f} mm; press down to the stop"
 
 
-def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | Verdict:
-    """Give times and how far the cap went from where it rested, (n,) each, or why that cannot be told.
+def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
+    """Return times and the cap's distance from its rest, (n,) each, or why it cannot be determined.
 
     From a displacement stream; else from the markers, along the line on which they moved farthest.
     """
-    ways, markers = take.of(Quantity.DISPLACEMENT), take.of(Quantity.MARKER)
-    if ways:
-        t_s, values = ways[0].t_s, ways[0].values
+    displacements, markers = take.of(Quantity.DISPLACEMENT), take.of(Quantity.MARKER)
+    if displacements:
+        t_s, values = displacements[0].t_s, displacements[0].values
         known = np.isfinite(values)
         t_s, down = t_s[known], values[known]
     elif markers:
-        places = np.stack([np.reshape(m.values, (m.t_s.size, -1)) for m in markers])
-        seen = np.isfinite(places).all(axis=(0, 2))
-        t_s, places = markers[0].t_s[seen], places[:, seen]
-        if seen.sum() >= FEWEST and _knocked_mm(places) > KNOCKED_mm:
-            return Verdict(False, reason="a marker moved on the cap; fix it and press again")
-        down = _along(places.mean(axis=0))
+        positions = np.stack([np.reshape(m.values, (m.t_s.size, -1)) for m in markers])
+        seen = np.isfinite(positions).all(axis=(0, 2))
+        t_s, positions = markers[0].t_s[seen], positions[:, seen]
+        if seen.sum() >= FEWEST and _knocked_mm(positions) > KNOCKED_mm:
+            return TakeCheck(False, reason="a marker moved on the cap; fix it and press again")
+        down = _along(positions.mean(axis=0))
     else:
-        return Verdict(False, reason="nothing shows where the cap is; check cameras and cables")
+        return TakeCheck(False, reason="nothing shows where the cap is; check cameras and cables")
     if down.size < FEWEST:
-        return Verdict(False, reason="the cap was hardly ever seen; check markers and cameras")
+        return TakeCheck(False, reason="the cap was hardly ever seen; check markers and cameras")
     return t_s, down - np.median(down[: down.size // REST_PART])
 
 
-def _knocked_mm(places_mm: FloatArray) -> float:
-    """Tell by how much markers (2, n, axes) rest differently from each other at the end."""
-    apart = places_mm[0] - places_mm[-1]
+def _knocked_mm(positions_mm: FloatArray) -> float:
+    """Return how much the rest positions of markers (2, n, axes) relative to each other changed."""
+    apart = positions_mm[0] - positions_mm[-1]
     few = len(apart) // REST_PART
     return float(np.linalg.norm(np.median(apart[-few:], axis=0) - np.median(apart[:few], axis=0)))
 
 
-def _along(place_mm: FloatArray) -> FloatArray:
-    """Project places (n, axes) on the line from where they rest to the farthest."""
-    if len(place_mm) < FEWEST:
-        return np.zeros(len(place_mm))
-    off = place_mm - np.median(place_mm[: len(place_mm) // REST_PART], axis=0)
+def _along(position_mm: FloatArray) -> FloatArray:
+    """Project positions (n, axes) on the line from rest to the farthest."""
+    if len(position_mm) < FEWEST:
+        return np.zeros(len(position_mm))
+    off = position_mm - np.median(position_mm[: len(position_mm) // REST_PART], axis=0)
     far = off[int(np.argmax(np.linalg.norm(off, axis=1)))]
     return np.asarray(off @ (far / max(float(np.linalg.norm(far)), 1e-9)))
 
 
-def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan) -> Verdict:
+def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan) -> TakeCheck:
     smooth = np.median(np.stack([down_mm[:-2], down_mm[1:-1], down_mm[2:]]), axis=0)
     depth_mm = float(smooth.max())
     if depth_mm < FELT_mm:
-        return Verdict(False, travel_mm=depth_mm, reason="no press was seen; press when the bar goes down")
+        return TakeCheck(False, travel_mm=depth_mm, reason="no press was seen; press when the bar goes down")
     deep = _deep(depth_mm, plan)
     if not deep.ok:
         return deep
@@ -164,12 +172,13 @@ def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan:
     done_s = _crossing_s(t_s, down_mm, end - 1, level_mm)
     achieved = (level_mm - START_mm) / max(done_s - begun_s, 1e-4)
     stroke = slice(max(start - 1, 0), end + 1)
-    reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved) or _pace(achieved, asked_mm_s, plan)
-    return Verdict(not reason, achieved, depth_mm, reason)
+    reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved) or _off_velocity(
+        achieved, asked_mm_s, plan
+    )
+    return TakeCheck(not reason, achieved, depth_mm, reason)
 
 
 def _fault(t_s: FloatArray, stroke_mm: FloatArray, smooth_mm: FloatArray, achieved_mm_s: float) -> str:
-    """Say what is wrong with a stroke that reached the bottom, empty if nothing."""
     down = smooth_mm > 0.5 * smooth_mm.max()
     if np.sum(np.diff(down.astype(int)) == 1) > 1:
         return "pressed twice; press once and let go"
@@ -183,7 +192,7 @@ def _fault(t_s: FloatArray, stroke_mm: FloatArray, smooth_mm: FloatArray, achiev
     return ""
 
 
-def _pace(achieved_mm_s: float, asked_mm_s: float | None, plan: CapturePlan) -> str:
+def _off_velocity(achieved_mm_s: float, asked_mm_s: float | None, plan: CapturePlan) -> str:
     if asked_mm_s is None or abs(achieved_mm_s / asked_mm_s - 1) <= plan.pace_ratio:
         return ""
     way, remedy = ("slow", "faster") if achieved_mm_s < asked_mm_s else ("fast", "slower")
@@ -191,7 +200,6 @@ def _pace(achieved_mm_s: float, asked_mm_s: float | None, plan: CapturePlan) -> 
 
 
 def _crossing_s(t_s: FloatArray, x_mm: FloatArray, i: int, level_mm: float) -> float:
-    """Give when a level is crossed between rows i and i + 1."""
     i = max(i, 0)
     rise_mm = x_mm[i + 1] - x_mm[i]
     part = (level_mm - x_mm[i]) / rise_mm if rise_mm else 0.0

@@ -8,7 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.model import FDVVModel, LandmarkError, Landmarks, Stroke, landmark_errors, landmarks
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.landmarks import LandmarkError, Landmarks, landmark_errors, landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import ModeSpread
+from fdvv.model.vibration import Vibration
 
 STEP_mm = 0.01
 
@@ -42,7 +46,7 @@ class Comparison:
     Attributes
     ----------
     names, landmarks : of each button.
-    errors : standard errors of its landmarks, by name, where presses tell them.
+    errors : standard errors of its landmarks, by name, where presses were measured.
     differences : of the others against the first.
     """
 
@@ -52,7 +56,7 @@ class Comparison:
     differences: tuple[Difference, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv compare --json``."""
+        """Return the report of ``fdvv compare --json``."""
         buttons = [
             {
                 "name": name,
@@ -111,3 +115,46 @@ def _difference(
         from_mm=low,
         to_mm=high,
     )
+
+
+def spread_reports(model: FDVVModel) -> dict[str, Any]:
+    """Return the spreads of a model: of its curves, its points and its vibrations."""
+    points = {name: getattr(model, f"{name}_spread") for name in ("travel", "actuation", "reset")}
+    return {
+        "curves": [curve_spread(curve) for curve in model.curves],
+        "points": {name: vars(spread) for name, spread in points.items() if spread},
+        "vibrations": [vibration_spread(v) for v in model.vibrations],
+    }
+
+
+def curve_spread(curve: ForceCurve) -> dict[str, Any]:
+    """Return the figures of a curve's spread between presses; null where it was not measured."""
+    spread = curve.spread
+    return {
+        "stroke": str(curve.stroke),
+        "velocity_mm_s": curve.velocity_mm_s,
+        "achieved_mm_s": spread.achieved_mm_s if spread else None,
+        "achieved_spread_mm_s": spread.achieved_spread_mm_s if spread else None,
+        "presses": spread.presses if spread else None,
+        "median_spread_cN": float(np.median(spread.spread_cN)) if spread else None,
+        "largest_spread_cN": float(spread.spread_cN.max()) if spread else None,
+    }
+
+
+def vibration_spread(vibration: Vibration) -> dict[str, Any]:
+    """Return a vibration's principal mode and its spread between presses; null where not measured."""
+    spread, first = vibration.spread, vibration.modes[0]
+    mode = spread.modes[0] if spread and spread.modes else ModeSpread()
+    return {
+        "stroke": str(vibration.stroke),
+        "velocity_mm_s": vibration.velocity_mm_s,
+        "onset_mm": vibration.onset_mm,
+        "onset_spread_mm": spread.onset_mm if spread else None,
+        "duration_s": vibration.duration_s,
+        "duration_spread_s": spread.duration_s if spread else None,
+        "frequency_Hz": first.frequency_Hz,
+        "frequency_spread_Hz": mode.frequency_Hz,
+        "amplitude_m_s2": first.amplitude_m_s2,
+        "amplitude_spread_m_s2": mode.amplitude_m_s2,
+        "presses": spread.presses if spread else None,
+    }

@@ -1,4 +1,4 @@
-"""Write a button, a vibration of it or a recording in another program's format, and tell what is lost."""
+"""Write a button, a vibration of it or a recording in another program's format, and report what is lost."""
 
 from __future__ import annotations
 
@@ -8,35 +8,29 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
+from fdvv.button.open import open_button
 from fdvv.errors import InputError
-from fdvv.exchange import (
-    Exported,
-    Follow,
-    ahap,
-    bluepylons_csv,
-    curves_csv,
-    haata_csv,
-    hjif,
-    meta_haptic,
-    mjcf,
-    mode_of,
-    read_ahap,
-    read_hjif,
-    read_meta_haptic,
-    recording_csv,
-    smartknob,
-    switch_tester_json,
-)
-from fdvv.model import FDVVModel, Stroke, Vibration
-from fdvv.recording import RECORDING_SUFFIX, load_recording
-from fdvv.vibration import LISTEN_Hz, correlation, spectral_similarity, spqi, st_sim, vibration_samples
-from fdvv.workflow._open import open_model
-from fdvv.workflow._vibration_slots import vibration_wav
+from fdvv.formats.exchange.ahap import ahap, read_ahap
+from fdvv.formats.exchange.curves import bluepylons_csv, curves_csv, haata_csv, switch_tester_json
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.frames import recording_csv
+from fdvv.formats.exchange.hjif import hjif, read_hjif
+from fdvv.formats.exchange.meta_haptic import meta_haptic, read_meta_haptic
+from fdvv.formats.exchange.mjcf import Follow, mjcf
+from fdvv.formats.exchange.pulse import mode_of
+from fdvv.formats.exchange.smartknob import smartknob
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Vibration
+from fdvv.program.render_vibration import vibration_wav
+from fdvv.recording.file import RECORDING_SUFFIX, load_recording
+from fdvv.vibration.inverse import correlation, spectral_similarity, spqi, st_sim
+from fdvv.vibration.wave import LISTEN_Hz, vibration_samples
 
 
 @dataclass(frozen=True)
 class ExportSettings:
-    """What an export may be told; each format takes what concerns it.
+    """Settings of an export; each format uses those that concern it.
 
     Attributes
     ----------
@@ -94,7 +88,7 @@ _BUTTONS: dict[str, Callable[[FDVVModel, ExportSettings], Exported]] = {
 
 
 def export_format(name: str | None, output: Path | str, of: str = "button") -> ExportFormat:
-    """Find a format by its name, or by the file's ending if that tells one. Raises InputError."""
+    """Find a format by its name, or else by the file's suffix. Raises InputError."""
     known = {f.name: f for f in EXPORT_FORMATS}
     if name is not None:
         if name not in known:
@@ -113,7 +107,6 @@ def export_format(name: str | None, output: Path | str, of: str = "button") -> E
 
 
 def is_recording(spec: str) -> bool:
-    """Tell whether an argument names a recording's file."""
     return spec.endswith(RECORDING_SUFFIX) and Path(spec).is_file()
 
 
@@ -122,7 +115,7 @@ def export_button(
 ) -> Exported:
     """Make the file of another program for what spec names: a button, or a recording.
 
-    spec : as open_model takes it, or a recording's file. to : the format, or None if output's ending tells
+    spec : as open_button takes it, or a recording's file. to : the format, or None where output's suffix names
         it. Nothing is written. Raises InputError.
     """
     chosen = settings or ExportSettings()
@@ -136,7 +129,7 @@ def export_button(
     form = export_format(to, output)
     if form.of == "recording":
         raise InputError(spec, "argument", f"{form.name} is of a recording", "name a *.recording.jsonl")
-    model = open_model(spec)
+    model = open_button(spec)
     if form.of == "button":
         _needs(spec, model, form.name)
         return _BUTTONS[form.name](model, chosen)
@@ -157,7 +150,7 @@ def _vibration(spec: str, model: FDVVModel, settings: ExportSettings) -> Vibrati
 
 
 def export_vibration(vibration: Vibration, form: str, name: str, date: str | None = None) -> Exported:
-    """Write a vibration as a sound or a haptic file; figures tell how alike what is read back is.
+    """Write a vibration as a sound or a haptic file; figures compare it with what is read back.
 
     date : of an HJIF file, ISO 8601; today by default. The figures compare acceleration at 48 kHz:
         ``correlation`` at its best delay, ``spectral_similarity``, ``st_sim`` and ``spqi`` are 1 for the
@@ -177,7 +170,7 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
 
 
 def read_back(vibration: Vibration, written: Exported) -> Vibration:
-    """Give the vibration that a haptic file's reader makes of it, at the place and stroke of the original."""
+    """Read an exported haptic file as a vibration at the position and stroke of the original."""
     if written.format == "hjif":
         modes, duration_s = read_hjif(written.data)
         return replace(vibration, modes=modes, duration_s=duration_s, spread=None)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import CurveFit, FitMethod, MeasuredCurve
-from fdvv.plot import _style as style
+from fdvv.model.curve import MeasuredCurve
+from fdvv.model.fit import CurveFit, FitMethod
+from fdvv.report import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +65,6 @@ def plot_fit(
 
 
 def _draw_fit(ax: Axes, fit: CurveFit, colour: str, row: int) -> None:
-    """Draw one fit: its curve, its control polygon and its knots."""
     curve = fit.curve
     drawn = curve.sample(0.01)
     count = curve.control_points_cN.size
@@ -78,7 +78,6 @@ def _draw_fit(ax: Axes, fit: CurveFit, colour: str, row: int) -> None:
 
 
 def _fit_legend(ax: Axes, rows: int) -> None:
-    """Put the legend at the right, above the rows of knots."""
     handles: list[Any] = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
     handles.append(style.handle("control points", **POINTS))
     handles.append(style.handle("knots", linestyle="", marker="|", markersize=8.0))
@@ -87,7 +86,6 @@ def _fit_legend(ax: Axes, rows: int) -> None:
 
 
 def _method_colours(methods: Sequence[str]) -> list[str]:
-    """Give adaptive and uniform their own colours; a second fit of one method takes the next free one."""
     own = {FitMethod.ADAPTIVE: style.PALETTE[0], FitMethod.UNIFORM: style.PALETTE[1]}
     free = [c for c in style.PALETTE if c not in own.values()]
     colours: list[str] = []

@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fdvv.capture import Averaged, ForceFile, average_by_velocity, read_force_file
 from fdvv.errors import FdvvError, InputError
-from fdvv.model import (
-    CurveFit,
-    FDVVModel,
-    FitMethod,
-    Landmarks,
-    MeasuredCurve,
-    Provenance,
-    Stroke,
-    active_part,
-    find_bottom_out_mm,
-    find_contact_mm,
-    fit_curve,
-    landmarks,
-    reading_order,
-)
-from fdvv.workflow._kind import own_kind
+from fdvv.formats.force.average import Averaged, average_by_velocity
+from fdvv.formats.force.read import find_force_files, read_force_file
+from fdvv.formats.force.types import ForceFile
+from fdvv.io.documents import own_kind
+from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
+from fdvv.model.curve import MeasuredCurve, Stroke, reading_order
+from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
+from fdvv.model.landmarks import Landmarks, landmarks
+from fdvv.model.model import FDVVModel, Provenance
 
 DECIMALS_mm = 6
 """A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
@@ -34,7 +28,7 @@ DECIMALS_mm = 6
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How to fit; the fields are fdvv.model.fit_curve's."""
+    """How to fit; the fields are fdvv.model.fit.fit_curve's."""
 
     method: FitMethod = FitMethod.ADAPTIVE
     control_points: int | None = 15
@@ -42,7 +36,7 @@ class FitSettings:
     smoothing_mm: float = 0.0
 
     def describe(self) -> str:
-        """Say the settings in one sentence, for provenance."""
+        """Describe the settings in one sentence, for provenance."""
         size = "BIC*-chosen" if self.control_points is None else str(self.control_points)
         smoothing = f"smoothed with sigma {self.smoothing_mm} mm" if self.smoothing_mm else "not smoothed"
         return f"fitted with {self.method} knots, {size} control points per curve, {smoothing}"
@@ -70,7 +64,7 @@ class ModelFit:
     warnings: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv fit --json``; "strokes" holds the slowest curve of each stroke."""
+        """Return the report of ``fdvv fit --json``; "strokes" holds the slowest curve of each stroke."""
         strokes: dict[str, Any] = {}
         for fit in self.fits:
             strokes.setdefault(str(fit.curve.stroke), fit_report(fit))
@@ -88,7 +82,7 @@ class ModelFit:
 
 
 def fit_report(fit: CurveFit) -> dict[str, Any]:
-    """Give the figures of one fitted curve by name."""
+    """Return the figures of one fitted curve by name."""
     return {
         "rmse_cN": fit.rmse_cN,
         "max_cN": fit.max_cN,
@@ -193,7 +187,6 @@ def one_line(text: str) -> str:
 
 
 def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
-    """Find contact and travel on the first press (the first release if there is none)."""
     stroke = next(s for g in groups for s in (g.press, g.release) if s is not None)
     zero = find_contact_mm(stroke)
     end = find_bottom_out_mm(stroke, zero)
@@ -206,7 +199,6 @@ def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[f
 def _point(
     found: Sequence[float | None], zero: float, travel: float, what: str, warnings: list[str]
 ) -> float | None:
-    """Bring the first known contact point into the model's displacement; None beyond the travel."""
     point = next((p for p in found if p is not None), None)
     if point is None:
         return None
@@ -216,3 +208,106 @@ def _point(
         )
         return None
     return round(point - zero, DECIMALS_mm)
+
+
+@dataclass(frozen=True, eq=False)
+class FolderFit:
+    """What became of one file of a folder: a fit, or the reason why not."""
+
+    file: Path
+    fit: ModelFit | None
+    reason: str = ""
+
+
+def measured_files(folder: Path) -> list[Path]:
+    """List the files below a folder that may hold measured curves, in order; fdvv's own are passed over.
+
+    Raises InputError if there is none.
+    """
+    files = [path for path in find_force_files(folder) if not own_kind(path)]
+    if not files:
+        raise InputError(
+            folder, "folder", "no .csv, .ods, .json or .txt file of measurements in it", "name another folder"
+        )
+    return files
+
+
+def fit_folder(
+    folder: Path, settings: FitSettings | None = None, workers: int | None = None
+) -> Iterator[FolderFit]:
+    """Fit the measured_files of a folder, as fit_files does. Raises InputError if there is none."""
+    yield from fit_files(measured_files(folder), settings, workers)
+
+
+def fit_files(
+    files: Sequence[Path], settings: FitSettings | None = None, workers: int | None = None
+) -> Iterator[FolderFit]:
+    """Fit files of force curves, in order; a refused file yields its reason.
+
+    The compiled fits release the interpreter lock, so threads share the cores.
+    """
+
+    def one(path: Path) -> FolderFit:
+        try:
+            return FolderFit(path, fit_file(path, settings))
+        except FdvvError as error:
+            return FolderFit(path, None, str(error))
+
+    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        yield from pool.map(one, files)
+
+
+@dataclass(frozen=True)
+class FolderSummary:
+    """The spread of a folder's fits, per stroke.
+
+    Attributes
+    ----------
+    rmse_cN, rows_rmse_cN, time_s : (median, 90th percentile) by stroke.
+    bumps, bumps_kept : strokes with a bump, and those of which at least 95 % was kept.
+    """
+
+    files: int
+    refused: int
+    rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
+    rows_rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
+    time_s: dict[str, tuple[float, float]] = field(default_factory=dict)
+    bumps: int = 0
+    bumps_kept: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the summary of ``fdvv fit FOLDER --json``."""
+        strokes = {
+            stroke: {
+                "rmse_cN": {"median": self.rmse_cN[stroke][0], "p90": self.rmse_cN[stroke][1]},
+                "rows_rmse_cN": {"median": self.rows_rmse_cN[stroke][0], "p90": self.rows_rmse_cN[stroke][1]},
+                "time_s": {"median": self.time_s[stroke][0], "p90": self.time_s[stroke][1]},
+            }
+            for stroke in self.rmse_cN
+        }
+        counts = {"files": self.files, "refused": self.refused}
+        return {**counts, "bumps": self.bumps, "bumps_kept": self.bumps_kept, "strokes": strokes}
+
+
+def summarise(results: Sequence[FolderFit]) -> FolderSummary:
+    """Summarise a folder: medians and 90th percentiles per stroke, bumps kept."""
+    fits = [f for r in results if r.fit for f in r.fit.fits]
+    kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
+
+    def spread(attribute: str) -> dict[str, tuple[float, float]]:
+        found: dict[str, tuple[float, float]] = {}
+        for stroke in Stroke:
+            values = [getattr(f, attribute) for f in fits if f.curve.stroke is stroke]
+            if values:
+                found[str(stroke)] = (float(np.median(values)), float(np.percentile(values, 90)))
+        return found
+
+    return FolderSummary(
+        files=len(results),
+        refused=sum(r.fit is None for r in results),
+        rmse_cN=spread("rmse_cN"),
+        rows_rmse_cN=spread("rows_rmse_cN"),
+        time_s=spread("time_s"),
+        bumps=len(kept),
+        bumps_kept=sum(ratio >= BUMP_KEPT_ratio for ratio in kept),
+    )

@@ -9,15 +9,21 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.button.fit import FitSettings, fit_file, one_line
+from fdvv.button.open import open_button
 from fdvv.errors import FitError, InputError, ModelError
-from fdvv.exchange import mode_of, read_ahap, read_hjif, read_meta_haptic
-from fdvv.files import read_limited
-from fdvv.model import FDVVModel, Mode, Provenance, Stroke, Vibration
+from fdvv.formats.exchange.ahap import read_ahap
+from fdvv.formats.exchange.hjif import read_hjif
+from fdvv.formats.exchange.meta_haptic import read_meta_haptic
+from fdvv.formats.exchange.pulse import mode_of
+from fdvv.io.documents import own_kind
+from fdvv.io.files import read_limited
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration import fit_modes, read_wav
-from fdvv.workflow._fit import FitSettings, fit_file, one_line
-from fdvv.workflow._kind import own_kind
-from fdvv.workflow._open import open_model
+from fdvv.vibration.modes import fit_modes
+from fdvv.vibration.wave import read_wav
 
 HEAD_bytes = 4096
 LARGEST_bytes = 20_000_000
@@ -33,12 +39,12 @@ REMEDY = "give measured curves, *.ahap, *.haptic, *.hjif or *.wav"
 
 @dataclass(frozen=True)
 class ImportSettings:
-    """What an import may be told.
+    """Settings of an import.
 
     Attributes
     ----------
     name : of the model; by default the file's, or that of the button it goes into.
-    into : the button that a vibration is given to, as open_model takes it.
+    into : the button that a vibration is given to, as open_button takes it.
     stroke, velocity_mm_s : whose vibration it becomes; None is every speed.
     onset_mm : where it starts; by default at the button's peak, or where its contact closes.
     full_scale_m_s2 : what 1 in the file stands for; by default what the file says.
@@ -63,7 +69,7 @@ class Imported:
     notes: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv import --json``."""
+        """Return the report of ``fdvv import --json``."""
         return {
             "name": self.model.name,
             "format": self.format,
@@ -102,7 +108,7 @@ def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imp
 
 
 def _format(path: Path) -> str | None:
-    """Tell a vibration's format by what the file begins with; None for what may be curves."""
+    """Detect a vibration's format by its first bytes; None for what may be curves."""
     try:
         with path.open("rb") as stream:
             head = stream.read(HEAD_bytes)
@@ -120,8 +126,8 @@ def _format(path: Path) -> str | None:
         reason = "is a SmartKnobConfig, which holds no force curve"
         raise InputError(path, "whole file", reason, REMEDY)
     marks = {b'"perceptions"': "hjif", b'"Pattern"': "ahap", b'"signals"': "haptic"}
-    told = next((form for mark, form in marks.items() if mark in head), None)
-    return told or {".ahap": "ahap", ".haptic": "haptic", ".hjif": "hjif"}.get(path.suffix.lower())
+    marked = next((form for mark, form in marks.items() if mark in head), None)
+    return marked or {".ahap": "ahap", ".haptic": "haptic", ".hjif": "hjif"}.get(path.suffix.lower())
 
 
 def _curves(path: Path, settings: ImportSettings) -> Imported:
@@ -169,7 +175,6 @@ def _hjif(path: Path, scale: float | None) -> Read:
 
 
 def _wav(path: Path, scale: float | None) -> Read:
-    """Find the damped modes of a sound from its onset on."""
     if scale is None:
         raise InputError(path, "samples", "a sound does not say what full scale is", "pass --full-scale-m-s2")
     sound = read_wav(read_limited(path, LARGEST_bytes, "give a sound of a second or less"))
@@ -179,10 +184,10 @@ def _wav(path: Path, scale: float | None) -> Read:
     first = int(np.argmax(np.abs(samples) > ONSET_ratio * np.abs(samples).max()))
     last = samples.size - int(np.argmax(np.abs(samples[::-1]) > END_ratio * np.abs(samples).max()))
     # the last sample before is the onset: what begins there has just left zero
-    heard = samples[max(0, first - 1) : last]
-    if heard.size > LONGEST_s * sound.rate_Hz:
+    ring = samples[max(0, first - 1) : last]
+    if ring.size > LONGEST_s * sound.rate_Hz:
         raise InputError(path, "samples", f"it rings for more than {LONGEST_s:g} s", "cut one snap out of it")
-    thin, rate_Hz = _thinned(heard, sound.rate_Hz)
+    thin, rate_Hz = _thinned(ring, sound.rate_Hz)
     try:
         fit = fit_modes(thin, rate_Hz)
     except FitError as error:
@@ -191,11 +196,10 @@ def _wav(path: Path, scale: float | None) -> Read:
         raise InputError(path, "samples", "no damped mode in it", "give a snap's sound")
     modes = tuple(Mode(m.frequency_Hz, m.amplitude, m.decay_1_s, m.phase_rad) for m in fit.modes)
     note = f"{len(modes)} damped modes, {fit.noise:.3g} m/s2 of noise left per sample"
-    return modes, heard.size / sound.rate_Hz, (note,)
+    return modes, ring.size / sound.rate_Hz, (note,)
 
 
 def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
-    """Bring a sound near the rate modes are found at, without what lies above half of it."""
     from scipy.signal import resample_poly
 
     down = max(1, int(rate_Hz // MODES_Hz))
@@ -219,10 +223,10 @@ def _given(
     duration_s: float,
     notes: tuple[str, ...],
 ) -> Imported:
-    """Give a vibration to a button, in place of the one it has there."""
+    """Put a vibration into a button, in place of the one it has there."""
     if settings.into is None:
         raise InputError(path, "whole file", "holds a vibration, no button", "name the button with --into")
-    model = open_model(settings.into)
+    model = open_button(settings.into)
     onset = settings.onset_mm
     if onset is None:
         onset, where = _onset(model, settings)
@@ -252,8 +256,8 @@ def _given(
 
 
 def _onset(model: FDVVModel, settings: ImportSettings) -> tuple[float, str]:
-    """Choose where a snap is heard: at the peak, else at the contact, else half way."""
-    from fdvv.model import find_bump
+    """Choose the onset of a snap: the peak, else the contact point, else half of the travel."""
+    from fdvv.model.bump import find_bump
 
     curve = model.nearest(settings.stroke, settings.velocity_mm_s)
     if curve is not None:

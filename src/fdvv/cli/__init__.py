@@ -1,5 +1,1 @@
-"""The fdvv command: thin doors to the workflows."""
-
-from fdvv.cli._main import cli, main
-
-__all__ = ["cli", "main"]
+"""The ``fdvv`` command."""

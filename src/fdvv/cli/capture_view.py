@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import click
 
-from fdvv.cli._beep import TONES_Hz, beeper
-from fdvv.cli._cue import BEATS, BEAT_s, FRAME_s, bar, depth_at
-from fdvv.cli._output import number, one_line
+from fdvv.cli import ui
+from fdvv.cli.cue import BEATS, BEAT_s, FRAME_s, TONES_Hz, bar, beeper, depth_at
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.live import Live
 
-    from fdvv.workflow import PaceStanding, TakeAsk, TakeDone
+    from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 
 Beep = Callable[[str], None]
 Show = Callable[[float], None]
@@ -28,16 +27,16 @@ Show = Callable[[float], None]
 class CaptureView(Protocol):
     """What shows a capture."""
 
-    def cue(self, ask: TakeAsk) -> Show:
+    def cue(self, ask: TakeRequest) -> Show:
         """Say what is wanted; give what shows the pace."""
         ...
 
     def done(self, event: TakeDone) -> None:
-        """Tell what became of a take."""
+        """Report a take."""
         ...
 
     def notice(self, text: str) -> None:
-        """Tell what a person should know."""
+        """Report what a person should know."""
         ...
 
 
@@ -66,7 +65,7 @@ def _bell() -> None:
 class Beeps:
     """Beeps once for each event of a cue, when its time has come."""
 
-    def __init__(self, ask: TakeAsk, beep: Beep) -> None:
+    def __init__(self, ask: TakeRequest, beep: Beep) -> None:
         stroke_s = stroke_of(ask)
         begun_s = BEAT_s * len(BEATS)
         times_s = () if stroke_s is None else (begun_s, begun_s + stroke_s)
@@ -85,22 +84,22 @@ class CaptureLines:
     def __init__(self, paced: bool, quiet: bool, beep: Beep) -> None:
         self._paced, self._quiet, self._beep = paced, quiet, beep
 
-    def cue(self, ask: TakeAsk) -> Show:
-        """Ask a person; the pace is told by the beeps alone."""
+    def cue(self, ask: TakeRequest) -> Show:
+        """Ask a person; only beeps show the pace."""
         if not self._paced:
             return lambda _t_s: None
         click.echo(asked(ask), err=True)
         return Beeps(ask, self._beep)
 
     def done(self, event: TakeDone) -> None:
-        """Tell of a take."""
+        """Report a take."""
         if self._paced or not self._quiet:
-            click.echo(told(event), err=True)
+            click.echo(take_line(event), err=True)
 
     def notice(self, text: str) -> None:
-        """Tell it; where only a document is wanted, warnings alone."""
+        """Report it; where only a document is wanted, warnings alone."""
         if not self._quiet or text.startswith("warning: "):
-            click.echo(one_line(text), err=True)
+            click.echo(ui.one_line(text), err=True)
 
 
 class CaptureTable:
@@ -108,10 +107,10 @@ class CaptureTable:
 
     def __init__(self, paced: bool, live: Live, beep: Beep) -> None:
         self._paced, self._live, self._beep = paced, live, beep
-        self._rows: tuple[PaceStanding, ...] = ()
+        self._rows: tuple[VelocityProgress, ...] = ()
         self._line = ""
 
-    def cue(self, ask: TakeAsk) -> Show:
+    def cue(self, ask: TakeRequest) -> Show:
         """Show a person the pace."""
         if not self._paced:
             return lambda _t_s: None
@@ -126,27 +125,27 @@ class CaptureTable:
         return show
 
     def done(self, event: TakeDone) -> None:
-        """Tell of a take; one that must be made again stays on the screen."""
-        self._line, self._rows = told(event), event.standing
-        if not event.verdict.ok:
+        """Report a take; one that must be made again stays on the screen."""
+        self._line, self._rows = take_line(event), event.progress
+        if not event.check.ok:
             self._live.console.print(self._line, highlight=False, markup=False)
         self._draw()
 
     def notice(self, text: str) -> None:
-        """Tell it above the rows."""
-        self._live.console.print(one_line(text), highlight=False, markup=False)
+        """Report it above the rows."""
+        self._live.console.print(ui.one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
         self._live.update(picture(self._rows, (self._line, *lines)), refresh=True)
 
 
-def stroke_of(ask: TakeAsk) -> float | None:
-    """Give the time of a stroke; None where nothing is pressed."""
+def stroke_of(ask: TakeRequest) -> float | None:
+    """Return the time of a stroke; None where nothing is pressed."""
     velocity = ask.step.velocity_mm_s
     return None if velocity is None else ask.travel_mm / velocity
 
 
-def frame(ask: TakeAsk, t_s: float) -> str:
+def frame(ask: TakeRequest, t_s: float) -> str:
     """Draw the cue at a time: a count-in, then the bar that goes as the cap should."""
     stroke_s, begun_s = stroke_of(ask), BEAT_s * len(BEATS)
     if stroke_s is None:
@@ -156,7 +155,7 @@ def frame(ask: TakeAsk, t_s: float) -> str:
     return f"   {bar(depth_at(t_s - begun_s, stroke_s))}"
 
 
-def asked(ask: TakeAsk) -> str:
+def asked(ask: TakeRequest) -> str:
     """Say what is wanted."""
     at, again = f"{ask.number} of {ask.total}", " once more" if ask.again else ""
     stroke_s, velocity = stroke_of(ask), ask.step.velocity_mm_s
@@ -172,31 +171,31 @@ def asked(ask: TakeAsk) -> str:
 NAMES = {"rest": "bench at rest", "probe": "slow probe"}
 
 
-def told(event: TakeDone) -> str:
+def take_line(event: TakeDone) -> str:
     """Say what became of a take."""
-    take, verdict = event.take, event.verdict
+    take, check = event.take, event.check
     what = NAMES.get(str(take.stage)) or f"{take.velocity_mm_s:g} mm/s"
     at = f"take {take.number}, {event.done} of {event.total}, {what}"
-    if not verdict.ok:
+    if not check.ok:
         then = "; enough tries, the session goes on without it" if event.missed else ""
-        return one_line(f"{at}: {verdict.reason}{then}")
-    found = [f"{verdict.achieved_mm_s:.0f} mm/s"] if math.isfinite(verdict.achieved_mm_s) else []
-    found += [f"{verdict.travel_mm:.2f} mm"] if math.isfinite(verdict.travel_mm) else []
-    return one_line(f"{at}: {', '.join(['good', *found])}")
+        return ui.one_line(f"{at}: {check.reason}{then}")
+    found = [f"{check.achieved_mm_s:.0f} mm/s"] if math.isfinite(check.achieved_mm_s) else []
+    found += [f"{check.travel_mm:.2f} mm"] if math.isfinite(check.travel_mm) else []
+    return ui.one_line(f"{at}: {', '.join(['good', *found])}")
 
 
 COLUMNS = ("pace", "good", "of", "takes", "missed", "median mm/s", "least", "most")
 
 
-def cells(pace: PaceStanding) -> list[str]:
-    """Give the cells of a row."""
-    speeds = pace.achieved_mm_s
+def cells(progress: VelocityProgress) -> list[str]:
+    """Return the cells of a row."""
+    speeds = progress.achieved_mm_s
     found = (statistics.median(speeds), min(speeds), max(speeds)) if speeds else (None, None, None)
-    counts = (pace.good, pace.wanted, pace.made, pace.missed)
-    return [f"{pace.velocity_mm_s:g} mm/s", *map(str, counts), *(number(v, 1) for v in found)]
+    counts = (progress.good, progress.wanted, progress.made, progress.missed)
+    return [f"{progress.velocity_mm_s:g} mm/s", *map(str, counts), *(ui.number(v, 1) for v in found)]
 
 
-def picture(rows: tuple[PaceStanding, ...], lines: tuple[str, ...]) -> RenderableType:
+def picture(rows: tuple[VelocityProgress, ...], lines: tuple[str, ...]) -> RenderableType:
     """Lay out the rows and the lines below them."""
     from rich.console import Group
     from rich.table import Table

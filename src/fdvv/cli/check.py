@@ -7,18 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    counted,
-    json_option,
-    number,
-    one_line,
-    print_json,
-    print_table,
-    print_wrapped,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.recording import FileCheck
+    from fdvv.recording.check import FileCheck
 
 LISTED = 10
 """Of the problems of a file."""
@@ -26,17 +18,17 @@ LISTED = 10
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@json_option
+@ui.json_option
 def check(files: tuple[str, ...], as_json: bool) -> None:
     """Check files: what each is, whether it is whole, and what it holds.
 
     FILE is anything that fdvv writes: a model, a program or its image, a rig, an actuation, the folder of a
-    session, a recording of a device or of a bench. A log that fdvv reads is told of as well. Exit status: 0
+    session, a recording of a device or of a bench. A log that fdvv reads is checked as well. Exit status: 0
     all are whole; 1 all can be read, but there are problems; 2 one cannot be used.
     """
+    from fdvv.cli.check_file import check_file
     from fdvv.errors import InputError
-    from fdvv.recording import unusable
-    from fdvv.workflow import check_file
+    from fdvv.recording.check import unusable
 
     found = []
     for file in files:
@@ -45,38 +37,37 @@ def check(files: tuple[str, ...], as_json: bool) -> None:
         except InputError as error:
             found.append(unusable(Path(file), "a file", error))
     if as_json:
-        print_json({"files": [one.to_dict() for one in found]})
+        ui.print_json({"files": [one.to_dict() for one in found]})
     else:
         for one in found:
             if one.usable:
                 _print(one)
     for one in found:
         if not one.usable:
-            click.echo(f"fdvv: {one_line(f'{one.path}: {one.problems[0]}')}", err=True)
+            click.echo(f"fdvv: {ui.one_line(f'{one.path}: {one.problems[0]}')}", err=True)
     raise click.exceptions.Exit(max(one.status for one in found))
 
 
 def _print(one: FileCheck) -> None:
-    """Print the verdict in a line, and below it what was found."""
-    told = "whole" if not one.problems else f"can be read, with {counted(len(one.problems), 'problem')}"
-    print_wrapped(f"{one.path}: {one.kind}, {told}")
+    verdict = "whole" if not one.problems else f"can be read, with {ui.counted(len(one.problems), 'problem')}"
+    ui.print_wrapped(f"{one.path}: {one.kind}, {verdict}")
     for problem in one.problems[:LISTED]:
-        print_wrapped(f"  problem: {problem}")
+        ui.print_wrapped(f"  problem: {problem}")
     if len(one.problems) > LISTED:
         click.echo(f"  and {len(one.problems) - LISTED} more")
     facts = dict(one.facts)
     streams = facts.pop("streams", [])
     facts["bench"] = {name: value for name, value in facts.get("bench", {}).items() if value}
-    plain = ", ".join(f"{name} {_short(value)}" for name, value in facts.items() if _told(value))
-    print_wrapped(f"  {plain}")
+    plain = ", ".join(f"{name} {_short(value)}" for name, value in facts.items() if _is_informative(value))
+    ui.print_wrapped(f"  {plain}")
     if streams:
-        print_table(
+        ui.print_table(
             ["stream", "quantity", "clock", "kind", "samples", "rate Hz", "gaps %", "step s"],
             [_row(stream) for stream in streams],
             left=4,
         )
     for note in one.notes:
-        print_wrapped(f"  note: {note}")
+        ui.print_wrapped(f"  note: {note}")
 
 
 def _row(stream: dict[str, Any]) -> list[str]:
@@ -86,19 +77,17 @@ def _row(stream: dict[str, Any]) -> list[str]:
         stream["clock"],
         stream["kind"] if stream["axes"] == 1 else f"{stream['axes']} {stream['kind']}",
         str(stream["samples"]),
-        number(stream["rate_Hz"], 1),
-        number(stream["gaps_percent"], 1),
-        number(stream["longest_step_s"], 4),
+        ui.number(stream["rate_Hz"], 1),
+        ui.number(stream["gaps_percent"], 1),
+        ui.number(stream["longest_step_s"], 4),
     ]
 
 
-def _told(value: Any) -> bool:
-    """Tell whether a fact says anything to a person."""
+def _is_informative(value: Any) -> bool:
     return value is not None and value != "" and value != [] and value != {}
 
 
 def _short(value: Any) -> str:
-    """Write a fact in a few words; lists of records by their number."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

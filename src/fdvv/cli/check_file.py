@@ -7,15 +7,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from fdvv.compensate import load_rig
+from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import BuildError, FdvvError, InputError
-from fdvv.model import load_model
-from fdvv.program import check_program, describe, load_program
-from fdvv.recording import FileCheck, Problem, check_recording, facts_of, read_log, unusable
-from fdvv.workflow._actuation_file import load_actuation
-from fdvv.workflow._check_session import A_SESSION, check_device_recording, check_session
-from fdvv.workflow._session_log import PRESSES
-from fdvv.workflow._session_manifest import MANIFEST
+from fdvv.model.file import load_model
+from fdvv.program.check import check_program
+from fdvv.program.describe import describe
+from fdvv.program.file import load_program
+from fdvv.recording.check import FileCheck, FileProblem, check_recording, facts_of, unusable
+from fdvv.recording.read import read_log
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.press_check import A_SESSION, check_device_recording, check_session
+from fdvv.rendering.session import MANIFEST
+from fdvv.rendering.session_log import PRESSES
 
 HEAD_bytes = 400
 IMAGE = b"FDVP"
@@ -23,7 +26,7 @@ REMEDY = "name a file that fdvv wrote, the folder of a session, or a log of a be
 
 
 def check_file(path: Path | str) -> FileCheck:
-    """Tell what a file is, and whether it is whole, found by looking inside.
+    """Check what a file is by its content, and whether it is whole.
 
     Models, programs and their images, rigs, actuations, recordings, folders of sessions and what they hold,
     recordings of devices; of anything else whether it is a log that read_log reads. Never raises for what
@@ -87,7 +90,7 @@ def _program(path: Path) -> FileCheck:
     }
     report = check_program(program)
     remedy = "change it; fdvv program check tells more"
-    problems = tuple(Problem(f.state or f.place, str(f), remedy) for f in report.refused)
+    problems = tuple(FileProblem(f.state or f.place, str(f), remedy) for f in report.refused)
     return FileCheck(path, A_PROGRAM, facts, problems, tuple(map(str, report.warnings)))
 
 
@@ -124,7 +127,6 @@ def _actuation(path: Path) -> FileCheck:
 
 
 def _journal(path: Path) -> FileCheck:
-    """Check a journal: that of a session in its folder, else a recording."""
     if path.name == PRESSES and (path.parent / MANIFEST).is_file():
         return check_session(path.parent)
     return check_recording(path)
@@ -135,7 +137,6 @@ def _in_session(path: Path) -> FileCheck:
 
 
 def _log(path: Path) -> FileCheck:
-    """Check a foreign log by reading it."""
     try:
         found = read_log(path)
     except BuildError as error:

@@ -7,27 +7,17 @@ from typing import Any
 
 import click
 
-from fdvv.cli._method_options import law_of, method_options
-from fdvv.cli._output import (
-    Finite,
-    check_output,
-    counted,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_warnings,
-    print_wrapped,
-)
-from fdvv.cli._session_options import beside, guided, open_session, session_options
+from fdvv.cli import ui
+from fdvv.cli.options import law_of, method_options
+from fdvv.cli.session import beside, guided, open_session, session_options
 
 
 @click.command()
 @click.argument("button")
 @session_options
 @method_options
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="The *.actuation.json to write.")
-@json_option
+@ui.option("-o", "--output", type=ui.PATH, help="The *.actuation.json to write.")
+@ui.json_option
 def compensate(
     button: str,
     device: str,
@@ -53,24 +43,25 @@ def compensate(
     there: nothing is identified, and with --rounds 0 nothing is pressed at all.
 
     Ctrl-C stops the device; the same command goes on with a session where it stopped. A press that cannot
-    be used, because it stopped short, paused or missed its speed, is told with the reason and made again.
+    be used, because it stopped short, paused or missed its speed, is reported with the reason and made again.
     """
-    check_output(output, ".actuation.json")
-    check_output(save_rig, ".rig.json")
+    ui.check_output(output, ".actuation.json")
+    ui.check_output(save_rig, ".rig.json")
     law = law_of(**asked, save_rig=save_rig)
-    from fdvv.compensate import save_rig as keep
-    from fdvv.workflow import compensate as learn
-    from fdvv.workflow import open_model, save_actuation
+    from fdvv.button.open import open_button
+    from fdvv.compensation.identification.rig_file import save_rig as keep
+    from fdvv.rendering.actuation_file import save_actuation
+    from fdvv.rendering.compensate import compensate as learn
 
-    model = open_model(button)
+    model = open_button(button)
     default = beside(output, button, "session")
     session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
     with guided(session, device, as_json) as (found, view, guide):
         result = learn(found, model, velocities_mm_s, law, view.done, session, guide)
     if output:
         save_actuation(result, output)
-    if save_rig and result.memory:
-        keep(result.memory, save_rig)
+    if save_rig and result.learned_rig:
+        keep(result.learned_rig, save_rig)
     _print({**result.to_dict(), **_receipt(result)}, as_json)
     for path in (output, save_rig):
         if path and not as_json:
@@ -79,14 +70,16 @@ def compensate(
 
 @click.command()
 @click.argument("button")
-@click.argument("actuation", required=False, type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.argument("actuation", required=False, type=ui.FILE)
 @session_options
-@click.option("--presses", type=click.IntRange(1, 200), default=10, show_default=True, help="Per velocity.")
-@click.option(
-    "--max-mean-error-cN", "bound_cN", type=Finite(min=0),
-    help="Exit with status 1 if a curve's mean error exceeds this.",
-)  # fmt: skip
-@json_option
+@ui.option("--presses", type=click.IntRange(1, 200), default=10, help="Per velocity.")
+@ui.option(
+    "--max-mean-error-cN",
+    "bound_cN",
+    type=ui.Finite(min=0),
+    help="Exit status 1 above this mean error of a curve.",
+)
+@ui.json_option
 def probe(
     button: str,
     actuation: Path | None,
@@ -107,15 +100,17 @@ def probe(
     learning starts from: the model's own force). Errors are in true displacement, median over the
     presses. Use another --seed than for learning.
     """
-    from fdvv.compensate import Tuning
-    from fdvv.workflow import load_actuation, open_model, uncompensated
-    from fdvv.workflow import probe as judge
+    from fdvv.button.open import open_button
+    from fdvv.compensation.method import Tuning
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.compensate import uncompensated
+    from fdvv.rendering.probe import probe as judge
 
-    model = open_model(button)
+    model = open_button(button)
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
-        print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
+        ui.print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
     default = beside(actuation, button, "probe-session")
     session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
     with guided(session, device, as_json) as (found, view, guide):
@@ -138,25 +133,23 @@ def _receipt(result: Any) -> dict[str, Any]:
 
 
 def _print(document: dict[str, Any], as_json: bool) -> None:
-    """Print a report of errors per curve."""
     if as_json:
-        print_json(document)
+        ui.print_json(document)
         return
-    told = " (simulated)" if document["simulated"] else ""
-    on = f"{document['model']} on {document['device']}{told}"
-    click.echo(f"{on}, {counted(document['presses'], 'press')}")
-    print_wrapped(f"method: {document['method']}")
-    print_table(
+    on = f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}"
+    click.echo(f"{on}, {ui.counted(document['presses'], 'press')}")
+    ui.print_wrapped(f"method: {document['method']}")
+    ui.print_table(
         ["curve", "first cN", "last cN", "mean cN", "max cN"],
         [
             [
                 _curve_name(c),
                 *(
-                    number(e)
+                    ui.number(e)
                     for e in ((c["error_cN"][0], c["error_cN"][-1]) if c["error_cN"] else (None, None))
                 ),
-                number(c["mean_error_cN"]),
-                number(c["max_error_cN"]),
+                ui.number(c["mean_error_cN"]),
+                ui.number(c["max_error_cN"]),
             ]
             for c in document["curves"]
         ],
@@ -164,8 +157,8 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
     if not document["presses"]:
         click.echo("nothing was pressed: the mean is what was left on the button that taught the rig")
     if document["skipped"]:
-        count, last = counted(len(document["skipped"]), "press"), document["skipped"][-1]
-        print_warnings([f"{count} skipped; the last: {last}"])
+        count, last = ui.counted(len(document["skipped"]), "press"), document["skipped"][-1]
+        ui.print_warnings([f"{count} skipped; the last: {last}"])
 
 
 def _curve_name(curve: dict[str, Any]) -> str:

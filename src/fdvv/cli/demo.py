@@ -7,34 +7,23 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fdvv.cli._output import check_folder, json_option, number, print_json, print_table, stages
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.workflow import DemoResult
+    from fdvv.cli.demo_run import DemoResult
 
 
 @click.command()
-@click.option(
-    "--switch",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="A file of measured curves to fit; a shipped Cherry MX Brown by default.",
+@ui.option(
+    "--switch", type=ui.FILE, help="A file of measured curves to fit; a shipped Cherry MX Brown by default."
 )
-@click.option(
-    "--rig", type=click.Path(path_type=Path, exists=True, dir_okay=False), help="TOML file of the rig."
+@ui.option("--rig", type=ui.FILE, help="TOML file of the rig.")
+@ui.option("--finger", type=ui.FILE, help="TOML file of the finger.")
+@ui.option("--seed", type=ui.COUNT, default=1, help="Repeats the twin.")
+@ui.option(
+    "-o", "--output", type=ui.NEW_FOLDER, default=Path("demo"), help="Where report and model are written."
 )
-@click.option(
-    "--finger", type=click.Path(path_type=Path, exists=True, dir_okay=False), help="TOML file of the finger."
-)
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Repeats the twin.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("demo"),
-    show_default=True,
-    help="Folder for report.html and the fitted model.",
-)
-@json_option
+@ui.json_option
 def demo(
     switch: Path | None, rig: Path | None, finger: Path | None, seed: int, output: Path, as_json: bool
 ) -> None:
@@ -43,17 +32,18 @@ def demo(
     Fits a real switch, learns to render the published button at four velocities, judges the rendering on
     fresh presses, prints the table and writes OUTPUT/report.html. Rendering figures are simulated.
     """
-    check_folder(output)
-    from fdvv.files import write_atomic
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import demo as run
-    from fdvv.workflow import demo_report, open_device
+    ui.check_folder(output)
+    from fdvv.cli.demo_report import demo_report
+    from fdvv.cli.demo_run import demo as run
+    from fdvv.io.files import write_atomic
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.rendering.tuning import open_device
 
-    with stages() as stage:
+    with ui.stages() as stage:
         result = run(lambda chosen: open_device("twin", rig, finger, chosen), switch, seed, stage)
-    save_model(result.switch.adaptive.model, output / f"switch{SUFFIX}")
+    save_model(result.switch.adaptive.model, output / f"switch{MODEL_SUFFIX}")
     if as_json:
-        print_json(result.to_dict())
+        ui.print_json(result.to_dict())
     else:
         _print(result)
     # last, because it alone needs matplotlib: without it the table is there all the same
@@ -66,11 +56,11 @@ def _print(result: DemoResult) -> None:
     fits = result.switch.adaptive.fits
     name, count = result.switch.adaptive.model.name, fits[0].curve.control_points_cN.size
     click.echo(f"{name}, fitted with {count} control points")
-    print_table(
+    ui.print_table(
         ["curve", "RMSE cN", "uniform knots", "bump kept"],
         [
             [
-                str(fit.curve.stroke), number(fit.rmse_cN, 3), number(uniform.rmse_cN, 3),
+                str(fit.curve.stroke), ui.number(fit.rmse_cN, 3), ui.number(uniform.rmse_cN, 3),
                 "no bump" if fit.bump_kept_ratio is None else f"{100 * fit.bump_kept_ratio:.1f} %",
             ]
             for fit, uniform in zip(fits, result.switch.uniform, strict=True)
@@ -78,12 +68,15 @@ def _print(result: DemoResult) -> None:
     )  # fmt: skip
     click.echo(f"\n{result.button.name} on the simulated rig: error in cN, mean / max, on fresh presses")
     labels = [r.label for r in result.renderings]
-    print_table(
+    ui.print_table(
         ["curve", *labels],
         [
             [
                 f"{row['stroke']} {row['velocity_mm_s']:g} mm/s",
-                *(f"{number(row[k]['mean_error_cN'])} / {number(row[k]['max_error_cN'], 1)}" for k in labels),
+                *(
+                    f"{ui.number(row[k]['mean_error_cN'])} / {ui.number(row[k]['max_error_cN'], 1)}"
+                    for k in labels
+                ),
             ]
             for row in result.rows()
         ],

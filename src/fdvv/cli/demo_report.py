@@ -7,22 +7,13 @@ from typing import Any
 import numpy as np
 
 from fdvv import __version__
-from fdvv.plot import (
-    ErrorHistory,
-    RenderedBand,
-    RenderedCurve,
-    Section,
-    Table,
-    figure_svg,
-    plot_convergence,
-    plot_fit,
-    plot_model,
-    plot_rendering,
-    plot_scan,
-    plot_surface,
-    render_html,
-)
-from fdvv.workflow._demo import DemoResult
+from fdvv.button.figures import plot_fit, plot_scan
+from fdvv.cli.demo_run import DemoResult
+from fdvv.rendering.figures import plot_convergence, plot_rendering
+from fdvv.report.model_figures import plot_model, plot_surface
+from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.report.report import Section, Table, render_html
+from fdvv.report.svg import figure_svg
 
 
 def demo_report(result: DemoResult) -> str:
@@ -47,7 +38,6 @@ def demo_report(result: DemoResult) -> str:
 
 
 def _figure(drawn: Any, text: str) -> str:
-    """Give the svg of what a plot function returned: axes, or several of them."""
     axes = np.ravel(np.asarray(drawn, dtype=object))[0]
     return figure_svg(axes.figure, text)
 
@@ -119,7 +109,6 @@ def _rendering(result: DemoResult) -> Section:
 
 
 def _rendered(result: DemoResult) -> list[RenderedCurve]:
-    """Bring the probes' presses into bands: median, quartiles; uncompensated ones would hide the others."""
     curves = []
     learned = [r for r in result.renderings if r.learned]
     for i, first in enumerate(learned[0].judged.curves):

@@ -10,13 +10,15 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from fdvv.compensate import Tuning
-from fdvv.device import Device
-from fdvv.model import CurveFit, FDVVModel, FitMethod, fit_curve, load_builtin, scan_sizes
-from fdvv.workflow._compensate import CompensationResult, compensate, uncompensated
-from fdvv.workflow._fit import ModelFit, fit_file, fit_report
-from fdvv.workflow._probe import ProbeResult, fd_only, probe
-from fdvv.workflow._session_events import PressDone
+from fdvv.button.fit import ModelFit, fit_file, fit_report
+from fdvv.compensation.method import Tuning
+from fdvv.device.contract import Device
+from fdvv.model.file import load_builtin
+from fdvv.model.fit import CurveFit, FitMethod, fit_curve, scan_sizes
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.probe import ProbeResult, fd_only, probe
+from fdvv.rendering.session_run import PressDone
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"
@@ -63,7 +65,7 @@ class DemoResult:
     time_s: float
 
     def rows(self) -> list[dict[str, Any]]:
-        """Give one row per stroke and velocity: mean and maximum error of each rendering, in cN."""
+        """Return one row per stroke and velocity: mean and maximum error of each rendering, in cN."""
         tables = [(r.label, [c.to_dict() for c in r.judged.curves]) for r in self.renderings]
         rows = []
         for i, first in enumerate(tables[0][1]):
@@ -74,7 +76,7 @@ class DemoResult:
         return rows
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv demo --json``."""
+        """Return the report of ``fdvv demo --json``."""
         return {
             "switch": {
                 **self.switch.adaptive.to_dict(),
@@ -117,11 +119,11 @@ def demo(
 
 @contextmanager
 def _switch_path(switch: Path | None) -> Iterator[Path]:
-    """Give the path of the person's switch file, or of the shipped one."""
+    """Yield the path of the person's switch file, or of the shipped one."""
     if switch is not None:
         yield switch
         return
-    with resources.as_file(resources.files("fdvv.workflow") / "examples" / SWITCH) as path:
+    with resources.as_file(resources.files("fdvv.button") / "examples" / SWITCH) as path:
         yield path
 
 
@@ -139,12 +141,14 @@ def _fit_switch(path: Path, stage: Stage) -> SwitchFit:
 def _render(
     open_device: Callable[[int], Device], button: FDVVModel, seed: int, stage: Stage
 ) -> tuple[Rendering, ...]:
-    """Learn FD and FDVV on their own devices, then judge all on a device of yet another seed."""
     learned: list[tuple[str, CompensationResult | None]] = [("uncompensated", None)]
     for label, target in (("FD only", fd_only(button)), ("FDVV", button)):
         device = open_device(seed)
         learned.append(
-            (label, compensate(device, target, VELOCITIES_mm_s, progress=_told(stage, f"learning {label}")))
+            (
+                label,
+                compensate(device, target, VELOCITIES_mm_s, progress=_on_press(stage, f"learning {label}")),
+            )
         )
     return tuple(
         Rendering(label, result, _judge(open_device(seed + 1000), button, label, result, stage))
@@ -155,7 +159,6 @@ def _render(
 def _judge(
     device: Device, button: FDVVModel, label: str, learned: CompensationResult | None, stage: Stage
 ) -> ProbeResult:
-    """Probe a rendering; every one meets the same person, that is, the same seed."""
     surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
     return probe(
         device,
@@ -163,11 +166,11 @@ def _judge(
         surface,
         VELOCITIES_mm_s,
         PROBE_PRESSES,
-        _told(stage, f"probing {label}"),
+        _on_press(stage, f"probing {label}"),
         label,
         tuning=learned.outcome.tuning if learned else Tuning(),
     )
 
 
-def _told(stage: Stage, label: str) -> Callable[[PressDone], None]:
+def _on_press(stage: Stage, label: str) -> Callable[[PressDone], None]:
     return lambda event: stage(label, event.presses_done, event.presses_total)

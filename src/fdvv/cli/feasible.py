@@ -9,51 +9,32 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    FIGURES,
-    check_output,
-    counted,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_wrapped,
-    save_figure,
-)
-from fdvv.cli._session_options import beside, guided, open_session, session_options
+from fdvv.cli import ui
+from fdvv.cli.session import beside, guided, open_session, session_options
 
 if TYPE_CHECKING:
-    from fdvv.device import Device
-    from fdvv.model import FDVVModel
-    from fdvv.workflow import ProbeResult, Session
+    from fdvv.device.contract import Device
+    from fdvv.model.model import FDVVModel
+    from fdvv.rendering.probe import ProbeResult
+    from fdvv.rendering.session import Session
 
 NO_RIG = (
-    "fdvv feasible needs --rig-known FILE.rig.json, what presses told of this rig: identify it with "
-    "fdvv compensate BUTTON --save-rig FILE.rig.json"
+    "fdvv feasible needs --rig-known FILE.rig.json, what was learned from presses on this rig: "
+    "identify it with fdvv compensate BUTTON --save-rig FILE.rig.json"
 )
 COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 
 
 @click.command()
 @click.argument("button")
-@click.option(
-    "--rig-known",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="*.rig.json of this rig, as fdvv compensate --save-rig writes it.",
+@ui.option(
+    "--rig-known", type=ui.FILE, help="*.rig.json of this rig, as fdvv compensate --save-rig writes it."
 )
 @session_options
-@click.option(
-    "--actuation",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Press this *.actuation.json on the device too, and show what was measured.",
-)
-@click.option(
-    "--presses", type=click.IntRange(1, 200), default=5, show_default=True, help="Per velocity, to measure."
-)
-@click.option(
-    "--figure", type=click.Path(path_type=Path), help="Draw every curve into this .svg, .png or .pdf."
-)
-@json_option
+@ui.option("--actuation", type=ui.FILE, help="Also press this *.actuation.json and show what was measured.")
+@ui.option("--presses", type=click.IntRange(1, 200), default=5, help="Per velocity, to measure.")
+@ui.option("--figure", type=ui.PATH, help="Draw every curve into this .svg, .png or .pdf.")
+@ui.json_option
 def feasible(
     button: str,
     rig_known: Path | None,
@@ -69,20 +50,21 @@ def feasible(
     figure: Path | None,
     as_json: bool,
 ) -> None:
-    """Tell whether a rig can render a button, and why not, before any upload.
+    """Check whether a rig can render a button, and why not, before any upload.
 
     BUTTON is a built-in, a *.fdvv.json file or a measured file. For every stroke and speed: the force that
     is intended, the one this rig can reach within its limits, its lag and its loop, and the error to expect
     after compensation, an estimate. The device is asked for its settings only, unless --actuation is named.
     """
-    check_output(figure, *FIGURES)
+    ui.check_output(figure, *ui.FIGURES)
     if rig_known is None:
         click.echo(NO_RIG)
         return
-    from fdvv.compensate import load_rig
-    from fdvv.workflow import feasibility, open_model
+    from fdvv.button.open import open_button
+    from fdvv.compensation.identification.rig_file import load_rig
+    from fdvv.rendering.feasibility import feasibility
 
-    model, known = open_model(button), load_rig(rig_known)
+    model, known = open_button(button), load_rig(rig_known)
     session = open_session(
         folder, device, (seed, rig, finger), pace_ratio, beside(actuation, button, "feasible")
     )
@@ -91,12 +73,12 @@ def feasible(
         settings, info = found.settings(), found.info()
     report = feasibility(model, known, settings, velocities_mm_s, measured, info)
     if figure:
-        from fdvv.plot import plot_feasibility
-        from fdvv.workflow import feasible_curves
+        from fdvv.rendering.feasibility import feasible_curves
+        from fdvv.rendering.figures import plot_feasibility
 
-        save_figure(plot_feasibility(feasible_curves(report), title=model.name)[0, 0].figure, figure)
+        ui.save_figure(plot_feasibility(feasible_curves(report), title=model.name)[0, 0].figure, figure)
     if as_json:
-        print_json(report.to_dict())
+        ui.print_json(report.to_dict())
     else:
         _print(report.to_dict())
 
@@ -123,7 +105,8 @@ def _measure(
     """Probe a learned table on the device; None if there is none."""
     if actuation is None:
         return None
-    from fdvv.workflow import load_actuation, probe
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.probe import probe
 
     learned = load_actuation(actuation)
     with guided(session, device, as_json) as (found, view, guide):
@@ -134,17 +117,16 @@ def _measure(
 
 
 def _print(document: dict[str, Any]) -> None:
-    """Print a table of the curves, then the reasons, then the warmth."""
     simulated = " (simulated)" if document["simulated"] else ""
     presses = document["rig_presses"]
-    known = f"rig known from {counted(presses, 'press')}" if presses else "rig known from its file alone"
-    print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
-    print_table(COLUMNS, [_row(c) for c in document["curves"]])
+    known = f"rig known from {ui.counted(presses, 'press')}" if presses else "rig known from its file alone"
+    ui.print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
+    ui.print_table(COLUMNS, [_row(c) for c in document["curves"]])
     for curve in document["curves"]:
         for reason in curve["reasons"]:
-            print_wrapped(f"{_name(curve)}: {reason}")
+            ui.print_wrapped(f"{_name(curve)}: {reason}")
     for dose in document["thermal"]:
-        print_wrapped(_warmth(dose))
+        ui.print_wrapped(_warmth(dose))
     click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
     click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
@@ -157,11 +139,11 @@ def _row(curve: dict[str, Any]) -> list[str]:
     kept, measured = curve["bump_kept_ratio"], curve["measured"]
     return [
         _name(curve),
-        number(curve["largest_command_cN"], 0),
+        ui.number(curve["largest_command_cN"], 0),
         "–" if kept is None else f"{100 * kept:.0f} %",
-        number(min(curve["stability"]["margin"], 99.0), 1),
-        number(curve["expected_error"]["mean_cN"], 1),
-        number(measured and measured["mean_error_cN"], 1),
+        ui.number(min(curve["stability"]["margin"], 99.0), 1),
+        ui.number(curve["expected_error"]["mean_cN"], 1),
+        ui.number(measured and measured["mean_error_cN"], 1),
         curve["verdict"],
     ]
 

@@ -7,22 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    Finite,
-    check_folder,
-    check_output,
-    counted,
-    json_option,
-    number,
-    one_line,
-    print_json,
-    print_table,
-    print_warnings,
-    progress,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.workflow import FitSettings, FolderFit, ModelFit
+    from fdvv.button.fit import FitSettings, FolderFit, ModelFit
 
 
 def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) -> int | None:
@@ -38,44 +26,28 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 
 
 @click.command()
-@click.argument("path", type=click.Path(path_type=Path, exists=True))
-@click.option(
+@click.argument("path", type=ui.EXISTING)
+@ui.option(
     "--method",
     type=click.Choice(["adaptive", "uniform"]),
     default="adaptive",
-    show_default=True,
-    help="Knots where the curve needs them, or the paper's equal spans.",
+    help="Knots where needed, or the paper's equal spans.",
 )
-@click.option(
-    "--control-points",
-    callback=_control_points,
-    default="15",
-    show_default=True,
-    help="How many per curve; 'auto' lets BIC* choose.",
+@ui.option(
+    "--control-points", callback=_control_points, default="15", help="Per curve; 'auto' lets BIC* choose."
 )
-@click.option(
-    "--degree", type=click.IntRange(1, 3), help="Of the spline; 2 for adaptive, 3 for uniform knots."
-)
-@click.option(
+@ui.option("--degree", type=click.IntRange(1, 3), help="Of the spline; 2 for adaptive, 3 for uniform knots.")
+@ui.option(
     "--smoothing-mm",
-    type=Finite(min=0, max=5),
+    type=ui.Finite(min=0, max=5),
     default=0.0,
-    show_default=True,
-    help="Sigma of a Gaussian before the fit. Errors stay against the raw curve.",
+    help="Sigma of a Gaussian before the fit; errors are against the raw curve.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Where to write the model (a folder's models: a folder).",
+@ui.option("-o", "--output", type=ui.PATH, help="Where to write the model (a folder's models: a folder).")
+@ui.option(
+    "--max-rmse-cN", "max_rmse_cN", type=ui.Finite(min=0), help="Exit status 1 above this error of a curve."
 )
-@click.option(
-    "--max-rmse-cN",
-    "max_rmse_cN",
-    type=Finite(min=0),
-    help="Exit with status 1 if a curve's error exceeds this.",
-)
-@json_option
+@ui.json_option
 def fit(
     path: Path,
     method: str,
@@ -91,30 +63,29 @@ def fit(
     PATH is a file in any known format (docs/reference/force-files.md) or a folder of them. The report
     tells the error against the raw curve, how much of the bump is kept, and what was repaired.
     """
-    from fdvv.model import FitMethod
-    from fdvv.workflow import FitSettings
+    from fdvv.button.fit import FitSettings
+    from fdvv.model.fit import FitMethod
 
     settings = FitSettings(FitMethod(method), control_points, degree, smoothing_mm)
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
         reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"
-        click.echo(f"fdvv: {one_line(where)}: {reason}", err=True)
+        click.echo(f"fdvv: {ui.one_line(where)}: {reason}", err=True)
         raise click.exceptions.Exit(1)
 
 
 def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
-    """Fit one file; give the worst error and what has it."""
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import fit_file
+    from fdvv.button.fit import fit_file
+    from fdvv.model.file import MODEL_SUFFIX, save_model
 
-    check_output(output, SUFFIX)
+    ui.check_output(output, MODEL_SUFFIX)
     if output and output.exists() and output.samefile(path):
         raise click.UsageError(f"{output} is the measurement itself; give the model another name")
     found = fit_file(path, settings)
     if output:
         save_model(found.model, output)
     if as_json:
-        print_json(found.to_dict())
+        ui.print_json(found.to_dict())
     else:
         _print_fit(found)
         if output:
@@ -124,47 +95,46 @@ def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool)
 
 
 def _print_fit(found: ModelFit) -> None:
-    click.echo(f"{one_line(found.model.name)}: {found.model.provenance.method}")
-    print_table(
+    click.echo(f"{ui.one_line(found.model.name)}: {found.model.provenance.method}")
+    ui.print_table(
         ["curve", "RMSE cN", "max cN", "points", "bump kept", "ms"],
         [
             [
                 f"{f.curve.stroke}" + (f" {f.curve.velocity_mm_s:g} mm/s" if f.curve.velocity_mm_s else ""),
-                number(f.rmse_cN, 3),
-                number(f.max_cN),
+                ui.number(f.rmse_cN, 3),
+                ui.number(f.max_cN),
                 str(f.curve.control_points_cN.size),
                 "no bump" if f.bump_kept_ratio is None else f"{100 * f.bump_kept_ratio:.1f} %",
-                number(f.time_s * 1e3, 1),
+                ui.number(f.time_s * 1e3, 1),
             ]
             for f in found.fits
         ],
     )
-    print_warnings(found.warnings)
+    ui.print_warnings(found.warnings)
 
 
 def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
-    """Fit a folder; give the worst error and the file that has it."""
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import fit_files, measured_files, summarise
+    from fdvv.button.fit import fit_files, measured_files, summarise
+    from fdvv.model.file import MODEL_SUFFIX, save_model
 
     if output:
-        check_folder(output)
+        ui.check_folder(output)
     results = []
     files = measured_files(path)
-    with progress("fitting", len(files)) as advance:
+    with ui.progress("fitting", len(files)) as advance:
         for result in fit_files(files, settings):
             results.append(result)
             advance(len(results), len(files))
             if output and result.fit:
                 relative = result.file.relative_to(path)
-                save_model(result.fit.model, output / relative.with_name(relative.name + SUFFIX))
+                save_model(result.fit.model, output / relative.with_name(relative.name + MODEL_SUFFIX))
     summary = summarise(results)
     if as_json:
-        print_json(_document(results, summary.to_dict()))
+        ui.print_json(_document(results, summary.to_dict()))
     else:
         _print_folder(results, summary.to_dict())
         if output:
-            click.echo(f"{counted(len(files) - summary.refused, 'model')} written below {output}")
+            click.echo(f"{ui.counted(len(files) - summary.refused, 'model')} written below {output}")
     if summary.refused == len(files):
         click.echo(f"fdvv: {path}: no file of it could be fitted; the reasons are above", err=True)
         raise click.exceptions.Exit(2)
@@ -182,19 +152,19 @@ def _document(results: list[FolderFit], summary: dict[str, Any]) -> dict[str, An
 def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
     for result in results:
         if not result.fit:
-            click.echo(f"refused: {one_line(result.reason)}", err=True)
+            click.echo(f"refused: {ui.one_line(result.reason)}", err=True)
             continue
-        print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
-    click.echo(f"{counted(summary['files'], 'file')}, {summary['refused']} refused")
-    print_table(
+        ui.print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
+    click.echo(f"{ui.counted(summary['files'], 'file')}, {summary['refused']} refused")
+    ui.print_table(
         ["stroke", "RMSE cN median", "90 %", "ms median", "90 %"],
         [
             [
                 stroke,
-                number(s["rmse_cN"]["median"], 3),
-                number(s["rmse_cN"]["p90"], 3),
-                number(1e3 * s["time_s"]["median"], 1),
-                number(1e3 * s["time_s"]["p90"], 1),
+                ui.number(s["rmse_cN"]["median"], 3),
+                ui.number(s["rmse_cN"]["p90"], 3),
+                ui.number(1e3 * s["time_s"]["median"], 1),
+                ui.number(1e3 * s["time_s"]["p90"], 1),
             ]
             for stroke, s in summary["strokes"].items()
         ],

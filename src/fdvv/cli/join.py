@@ -6,13 +6,12 @@ from pathlib import Path
 
 import click
 
-from fdvv.cli._output import Finite, check_output, json_option, print_json, print_table, print_warnings
+from fdvv.cli import ui
 
 
-def _fact(name: str, told: str) -> click.Option:
-    """Make the option of one fact of the bench."""
+def _fact(name: str, text: str) -> click.Option:
     return click.Option(
-        [f"--{name.replace('_', '-').lower()}", name], type=Finite(min=0), default=0.0, help=told
+        [f"--{name.replace('_', '-').lower()}", name], type=ui.Finite(min=0), default=0.0, help=text
     )
 
 
@@ -27,16 +26,14 @@ FACTS = (
 
 
 @click.command()
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True, dir_okay=False))
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help="The recording to write."
-)
-@click.option("--name", required=True, help="Of the button.")
-@click.option("--marker", "markers", multiple=True, help="A marker on the cap; once or twice. Default: all.")
+@click.argument("logs", nargs=-1, required=True, type=ui.FILE)
+@ui.option("-o", "--output", required=True, type=ui.PATH, help="The recording to write.")
+@ui.option("--name", required=True, help="Of the button.")
+@ui.option("--marker", "markers", multiple=True, help="A marker on the cap; once or twice. Default: all.")
 @click.option("--light", default="", help="The marker that cameras see only while the light is on.")
 @click.option("--licence", default="", help="Of the data, as its owner states it.")
 @click.option("--person", default="", help="A word for who pressed, never a name.")
-@json_option
+@ui.json_option
 def join(
     logs: tuple[Path, ...],
     output: Path,
@@ -53,23 +50,25 @@ def join(
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
-    from fdvv.recording import RECORDING_SUFFIX, Bench, facts_of, save_recording
-    from fdvv.workflow import join_logs
+    from fdvv.bench.join_logs import join_logs
+    from fdvv.recording.check import facts_of
+    from fdvv.recording.file import RECORDING_SUFFIX, save_recording
+    from fdvv.recording.types import Bench
 
-    check_output(output, RECORDING_SUFFIX)
+    ui.check_output(output, RECORDING_SUFFIX)
     recording = join_logs(logs, name, markers, light, Bench(**facts), licence, person)  # type: ignore[arg-type]
     save_recording(recording, output)
     if as_json:
-        print_json({"recording": str(output), **facts_of(recording), "warnings": list(recording.warnings)})
+        ui.print_json({"recording": str(output), **facts_of(recording), "warnings": list(recording.warnings)})
         return
     take = recording.takes[0]
-    print_table(
+    ui.print_table(
         ["stream", "quantity", "clock", "samples", "rate Hz"],
         [[s.name, str(s.quantity), s.clock, str(s.t_s.size), f"{s.rate_Hz:.1f}"] for s in take.streams],
         left=3,
     )
     click.echo(f"written to {output}")
-    print_warnings(recording.warnings)
+    ui.print_warnings(recording.warnings)
 
 
 join.params.extend(FACTS)

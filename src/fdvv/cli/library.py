@@ -7,33 +7,19 @@ from typing import Any, get_args
 
 import click
 
-from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
-from fdvv.cli._output import (
-    check_output,
-    counted,
-    json_option,
-    number,
-    one_line,
-    print_json,
-    print_table,
-    print_warnings,
-    progress,
-)
+from fdvv.cli import ui
+from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
 
-FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
-COUNT = click.option(
-    "-n", "--count", type=click.IntRange(1), default=10, show_default=True, help="Show so many."
-)
-CSV = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Write every hit into this .csv too."
-)
-TOLD = ("travel_mm", "peak_cN", "drop_cN")
+FOLDER = ui.FOLDER
+COUNT = ui.option("-n", "--count", type=click.IntRange(1), default=10, help="Show so many.")
+CSV = ui.option("-o", "--output", type=ui.PATH, help="Write every hit into this .csv too.")
+FIGURES = ("travel_mm", "peak_cN", "drop_cN")
 NAME, PLACE = 28, 14
 """Letters of a name and of a folder in a table."""
 
 
 @click.group(invoke_without_command=True)
-@json_option
+@ui.json_option
 @click.pass_context
 def library(ctx: click.Context, as_json: bool) -> None:
     """List the built-in buttons; build and search libraries of measured ones.
@@ -45,7 +31,7 @@ def library(ctx: click.Context, as_json: bool) -> None:
 
 
 @library.command(name="list")
-@json_option
+@ui.json_option
 def list_(as_json: bool) -> None:
     """List the built-in buttons."""
     _list_builtins(as_json)
@@ -53,12 +39,11 @@ def list_(as_json: bool) -> None:
 
 @library.command()
 @click.argument("folders", nargs=-1, required=True, type=FOLDER)
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path, file_okay=False), required=True,
-    help="The library's folder: new, or of the same folders.",
-)  # fmt: skip
+@ui.option(
+    "-o", "--output", type=ui.NEW_FOLDER, required=True, help="The library's folder, new or of these folders."
+)
 @executor_options
-@json_option
+@ui.json_option
 def build(
     folders: tuple[Path, ...],
     output: Path,
@@ -73,21 +58,21 @@ def build(
     Parquet file (docs/reference/library-files.md); a file that cannot be used is kept with its reason.
     Whatever ended a build, the same command goes on; files that did not change are not read again.
     """
-    from fdvv.cli._output import check_folder
-    from fdvv.workflow import build_library, open_executor
+    from fdvv.library.build import build_library
+    from fdvv.parallel.open import open_executor
 
     check_executor(processes, workers, cluster)
-    check_folder(output)
+    ui.check_folder(output)
     with (
         kept_on_interrupt(output),
         open_executor(processes, workers, cluster) as executor,
-        progress("files", 1) as tell,
+        ui.progress("files", 1) as tell,
     ):
         found = build_library(folders, output, executor, tell)
     if as_json:
-        print_json(found.to_dict())
+        ui.print_json(found.to_dict())
         return
-    click.echo(f"{output}: {counted(found.buttons, 'button')} of {counted(found.files, 'file')}")
+    click.echo(f"{output}: {ui.counted(found.buttons, 'button')} of {ui.counted(found.files, 'file')}")
     click.echo(f"read {found.read}, not changed {found.kept}, no longer there {found.gone}")
     if found.refused:
         click.echo(f"refused {found.refused}; why: fdvv library refused {output}")
@@ -96,13 +81,11 @@ def build(
 @library.command()
 @click.argument("folder", metavar="LIBRARY", type=FOLDER)
 @click.argument("words", nargs=-1)
-@click.option(
-    "--sort", default="match", show_default=True, help="match, name, kind, date, or a figure's column."
-)
-@click.option("--descending", is_flag=True, help="Largest first.")
+@ui.option("--sort", default="match", help="match, name, kind, date, or a figure's column.")
+@ui.option("--descending", is_flag=True, help="Largest first.")
 @COUNT
 @CSV
-@json_option
+@ui.json_option
 def search(
     folder: Path,
     words: tuple[str, ...],
@@ -117,77 +100,82 @@ def search(
     WORDS must all match name, folder or what the maker states; a condition is a column with a bound, quoted
     for the shell: 'peak_cN>=50' 'travel_mm=3..3.5' kind=tactile,dome. Without words all are found.
     """
-    from fdvv.workflow import Library, library_query
+    from fdvv.library.library import Library, library_query
 
-    check_output(output, ".csv")
+    ui.check_output(output, ".csv")
     query = library_query(" ".join(words), sort, descending)
     opened = Library(folder)
     hits, mended = opened.find(query)
-    print_warnings([f"nothing is called {word}; the nearest words were taken" for word in mended])
+    ui.print_warnings([f"nothing is called {word}; the nearest words were taken" for word in mended])
     document = {"library": str(folder), "buttons": len(opened.rows), "found": len(hits)}
-    _told(hits, count, output, as_json, document)
+    _print_hits(hits, count, output, as_json, document)
 
 
 @library.command()
 @click.argument("folder", metavar="LIBRARY", type=FOLDER)
 @click.argument("button")
-@click.option(
-    "--by", type=click.Choice(["all", "curve", "landmarks"]), default="all", show_default=True,
-    help="What counts: force and shape of the curve, landmarks, or all.",
-)  # fmt: skip
+@ui.option(
+    "--by",
+    type=click.Choice(["all", "curve", "landmarks"]),
+    default="all",
+    help="Compare force and shape, landmarks, or all.",
+)
 @COUNT
 @CSV
-@json_option
+@ui.json_option
 def like(folder: Path, button: str, by: str, count: int, output: Path | None, as_json: bool) -> None:
     """Find the buttons of a library that feel most like one.
 
     BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
     in just noticeable differences (docs/explanation/library.md); they are an estimate, not tried on people.
     """
-    from fdvv.workflow import Library, LikeBy
+    from fdvv.library.library import By as LikeBy
+    from fdvv.library.library import Library
 
-    check_output(output, ".csv")
+    ui.check_output(output, ".csv")
     assert by in get_args(LikeBy)
     opened = Library(folder)
     hits = opened.like(button, by, len(opened.rows))  # type: ignore[arg-type]
     document = {"library": str(folder), "like": button, "by": by, "found": len(hits)}
-    _told(hits, count, output, as_json, document)
+    _print_hits(hits, count, output, as_json, document)
 
 
 @library.command()
 @click.argument("folder", metavar="LIBRARY", type=FOLDER)
-@json_option
+@ui.json_option
 def refused(folder: Path, as_json: bool) -> None:
-    """Tell which files of a library's folders could not be used, and why."""
-    from fdvv.workflow import Library
+    """List the files of a library's folders that could not be used, and why."""
+    from fdvv.library.library import Library
 
     found = list(Library(folder).refused())
     if as_json:
-        print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
+        ui.print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
         return
     for place, reason in found:
-        click.echo(one_line(f"{place}: {reason}"))
+        click.echo(ui.one_line(f"{place}: {reason}"))
 
 
-def _told(hits: list[Any], count: int, output: Path | None, as_json: bool, document: dict[str, Any]) -> None:
-    """Print what was found, the first of it in a table."""
+def _print_hits(
+    hits: list[Any], count: int, output: Path | None, as_json: bool, document: dict[str, Any]
+) -> None:
     if output:
-        from fdvv.workflow import write_hits
+        from fdvv.library.library import write_hits
 
         write_hits(output, hits)
     if as_json:
-        print_json({**document, "hits": [hit.to_dict() for hit in hits[:count]]})
+        ui.print_json({**document, "hits": [hit.to_dict() for hit in hits[:count]]})
         return
     near = any(hit.distance_JND is not None for hit in hits)
     rows = [
         [
-            one_line(hit.row.name, NAME), one_line(hit.row.collection, PLACE), str(hit.row.kind),
-            *([number(hit.distance_JND)] if near else []), *(number(getattr(hit.row, c)) for c in TOLD),
+            ui.one_line(hit.row.name, NAME), ui.one_line(hit.row.collection, PLACE), str(hit.row.kind),
+            *([ui.number(hit.distance_JND)] if near else []),
+            *(ui.number(getattr(hit.row, c)) for c in FIGURES),
             hit.row.id,
         ]
         for hit in hits[:count]
     ]  # fmt: skip
-    print_table(["button", "folder", "type", *(["JND"] if near else []), *TOLD, "id"], rows, left=3)
+    ui.print_table(["button", "folder", "type", *(["JND"] if near else []), *FIGURES, "id"], rows, left=3)
     more = f", {len(hits) - count} more with -n" if len(hits) > count else ""
     click.echo(f"{len(hits)} found{more}")
     if output:
@@ -195,7 +183,8 @@ def _told(hits: list[Any], count: int, output: Path | None, as_json: bool, docum
 
 
 def _list_builtins(as_json: bool) -> None:
-    from fdvv.model import builtin_names, landmarks, load_builtin
+    from fdvv.model.file import builtin_names, load_builtin
+    from fdvv.model.landmarks import landmarks
 
     models = [load_builtin(name) for name in builtin_names()]
     marks = [landmarks(model).to_dict() for model in models]
@@ -204,11 +193,11 @@ def _list_builtins(as_json: bool) -> None:
             {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
             for m, k in zip(models, marks, strict=True)
         ]
-        print_json({"buttons": entries})
+        ui.print_json({"buttons": entries})
         return
     columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
     rows = [
-        [m.name, m.provenance.source.partition(",")[0], *(number(k[c]) for c in columns)]
+        [m.name, m.provenance.source.partition(",")[0], *(ui.number(k[c]) for c in columns)]
         for m, k in zip(models, marks, strict=True)
     ]
-    print_table(["button", "source", *columns], rows, left=2)
+    ui.print_table(["button", "source", *columns], rows, left=2)

@@ -6,31 +6,24 @@ from pathlib import Path
 
 import click
 
-from fdvv.cli._output import Finite, check_output, counted
+from fdvv.cli import ui
 
-OUTPUT = click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, dir_okay=False),
-    required=True,
-    help="The *.fdvv.json to write.",
-)
+OUTPUT = ui.option("-o", "--output", type=ui.NEW_FILE, required=True, help="The *.fdvv.json to write.")
 
 
 @click.command()
 @click.argument("parts", nargs=-1, required=True)
-@click.option("--name", required=True, help="Name of the merged button.")
-@click.option(
-    "--travel-mm", type=Finite(min=0, max=1000, min_open=True), help="Needed where the parts' travels differ."
+@ui.option("--name", required=True, help="Name of the merged button.")
+@ui.option(
+    "--travel-mm", type=ui.Finite(min=0, max=1000, min_open=True), help="If the parts' travels differ."
 )
-@click.option("--actuation-mm", type=Finite(min=0), help="Needed where the parts' points differ.")
-@click.option("--reset-mm", type=Finite(min=0), help="Needed where the parts' points differ.")
-@click.option(
+@ui.option("--actuation-mm", type=ui.Finite(min=0), help="Needed where the parts' points differ.")
+@ui.option("--reset-mm", type=ui.Finite(min=0), help="Needed where the parts' points differ.")
+@ui.option(
     "--conflict",
     type=click.Choice(["refuse", "first", "last"]),
     default="refuse",
-    show_default=True,
-    help="What to do with two different curves of one stroke and velocity.",
+    help="If two curves of one stroke and velocity differ.",
 )
 @OUTPUT
 def merge(
@@ -47,17 +40,17 @@ def merge(
     PARTS are FILE[:press|:release][@VELOCITY]: a built-in, a *.fdvv.json or a measured file; only that
     stroke of it; declared to be of that velocity in mm/s. Example: merge slow.csv@0.5 fast.csv:press@100
     """
+    from fdvv.button.open import merge_parts
     from fdvv.errors import ModelError
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.workflow import merge_parts
+    from fdvv.model.file import MODEL_SUFFIX, save_model
 
-    check_output(output, SUFFIX)
+    ui.check_output(output, MODEL_SUFFIX)
     try:
         model = merge_parts(parts, name, travel_mm, actuation_mm, reset_mm, conflict)
     except ModelError as error:
         raise click.UsageError(_as_option(str(error))) from error
     save_model(model, output)
-    click.echo(f"{output}: {counted(len(model.curves), 'curve')}, travel {model.travel_mm:.3f} mm")
+    click.echo(f"{output}: {ui.counted(len(model.curves), 'curve')}, travel {model.travel_mm:.3f} mm")
 
 
 def _as_option(reason: str) -> str:
@@ -70,17 +63,12 @@ def _as_option(reason: str) -> str:
 @click.command()
 @click.argument("button")
 @click.argument("curve")
-@click.option(
-    "--stroke", type=click.Choice(["press", "release"]), required=True, help="What the curve becomes."
+@ui.option("--stroke", type=ui.STROKE, required=True, help="What the curve becomes.")
+@ui.option("--velocity", "velocity_mm_s", type=ui.POSITIVE, help="At which speed (mm/s).")
+@ui.option(
+    "--segment", "segment_mm", type=ui.Finite(), nargs=2, metavar="FROM TO", help="Only this part of it (mm)."
 )
-@click.option("--velocity", "velocity_mm_s", type=Finite(min=0, min_open=True), help="At which speed (mm/s).")
-@click.option(
-    "--segment", "segment_mm", type=Finite(), nargs=2, metavar="FROM TO", help="Only this part of it (mm)."
-)
-@click.option(
-    "--blend-mm", type=Finite(min=0, min_open=True), default=0.1, show_default=True,
-    help="Width over which old and new meet at the segment's ends.",
-)  # fmt: skip
+@ui.option("--blend-mm", type=ui.POSITIVE, default=0.1, help="Width of the transition at the segment's ends.")
 @OUTPUT
 def assign(
     button: str,
@@ -91,17 +79,17 @@ def assign(
     blend_mm: float,
     output: Path,
 ) -> None:
-    """Give a curve, or a segment of one, to press or release of a model.
+    """Assign a curve, or a segment of one, to press or release of a model.
 
     BUTTON is the model that is changed (a copy is written); CURVE is FILE[:press|:release], whose own
     stroke and velocity do not matter.
     """
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.model import assign as assign_curve
-    from fdvv.workflow import one_curve, open_model
+    from fdvv.button.open import one_curve, open_button
+    from fdvv.model.edit import assign as assign_curve
+    from fdvv.model.file import MODEL_SUFFIX, save_model
 
-    check_output(output, SUFFIX)
+    ui.check_output(output, MODEL_SUFFIX)
 
-    model = assign_curve(open_model(button), one_curve(curve), stroke, velocity_mm_s, segment_mm, blend_mm)
+    model = assign_curve(open_button(button), one_curve(curve), stroke, velocity_mm_s, segment_mm, blend_mm)
     save_model(model, output)
-    click.echo(f"{output}: {counted(len(model.curves), 'curve')}")
+    click.echo(f"{output}: {ui.counted(len(model.curves), 'curve')}")

@@ -6,31 +6,26 @@ from pathlib import Path
 
 import click
 
-from fdvv.cli._output import Finite, check_output, json_option, number, print_json, print_table
+from fdvv.cli import ui
 
 
 @click.command()
-@click.option(
+@ui.option(
     "--button", required=True, help="A shipped real button, or a TOML file (docs/reference/button.md)."
 )
-@click.option(
-    "--finger",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="TOML file of the person (docs/reference/rig.md).",
-)
-@click.option(
+@ui.option("--finger", type=ui.FILE, help="TOML file of the person (docs/reference/rig.md).")
+@ui.option(
     "--speed",
     "speeds_mm_s",
-    type=Finite(min=5, max=500),
+    type=ui.SPEED,
     multiple=True,
-    default=(50.0, 100.0, 150.0, 200.0),
-    show_default=True,
-    help="Mean speed of the stroke down, mm/s; repeatable.",
+    default=ui.SPEEDS_mm_s,
+    help="Mean speed of the press, mm/s; repeatable.",
 )
-@click.option("--presses", type=click.IntRange(1, 1000), default=3, show_default=True, help="Of each speed.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Repeats the presses.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="The *.csv of every press to write.")
-@json_option
+@ui.option("--presses", type=click.IntRange(1, 1000), default=3, help="Of each speed.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the presses.")
+@ui.option("-o", "--output", type=ui.PATH, help="The *.csv of every press to write.")
+@ui.json_option
 def press(
     button: str,
     finger: Path | None,
@@ -46,9 +41,9 @@ def press(
     are those on the cap, before the stop and over the whole press; the circuit's closing counts from the
     cap's first 0.05 mm.
     """
-    from fdvv.workflow import press_button
+    from fdvv.live.simulated_press import press_button
 
-    check_output(output, ".csv")
+    ui.check_output(output, ".csv")
     found = press_button(button, finger, speeds_mm_s, presses, seed)
     if output:
         found.write_csv(output)
@@ -64,22 +59,22 @@ def press(
             for p in found.presses
         ]
         document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
-        print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
+        ui.print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
         return
     click.echo(
         f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
         f"{found.quasi_static_peak_cN:.1f} cN before the stop at 0.5 mm/s"
     )
     head = ["asked mm/s", "reached mm/s", "before stop cN", "largest cN", "closing ms"]
-    print_table(
+    ui.print_table(
         head,
         [
             [
-                number(p.asked_mm_s),
-                number(p.achieved_mm_s),
-                number(p.before_stop_cN),
-                number(p.largest_cN),
-                number(p.closing_ms),
+                ui.number(p.asked_mm_s),
+                ui.number(p.achieved_mm_s),
+                ui.number(p.before_stop_cN),
+                ui.number(p.largest_cN),
+                ui.number(p.closing_ms),
             ]
             for p in found.presses
         ],

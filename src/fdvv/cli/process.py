@@ -8,44 +8,36 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    Finite,
-    check_output,
-    counted,
-    json_option,
-    number,
-    one_line,
-    print_json,
-    print_table,
-    print_warnings,
-    print_wrapped,
-    with_spread,
-)
-from fdvv.cli._paces import Paces
+from fdvv.cli import ui
+from fdvv.cli.options import Paces
 
 if TYPE_CHECKING:
-    from fdvv.workflow import RecordedModel
+    from fdvv.bench.model import RecordedModel
 
 
 @click.command()
-@click.argument("recording", type=click.Path(path_type=Path, exists=True, dir_okay=False))
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Where to write the model.")
-@click.option("--report", type=click.Path(path_type=Path), help="Draw every step into this .html file.")
-@click.option(
-    "--cap-mass-g", type=Finite(min=0, max=1000, min_open=True), default=3.0, show_default=True,
-    help="Mass of cap, stem, markers and a third of the spring.",
-)  # fmt: skip
-@click.option(
+@click.argument("recording", type=ui.FILE)
+@ui.option("-o", "--output", type=ui.PATH, help="Where to write the model.")
+@ui.option("--report", type=ui.PATH, help="Draw every step into this .html file.")
+@ui.option(
+    "--cap-mass-g",
+    type=ui.Finite(min=0, max=1000, min_open=True),
+    default=3.0,
+    help="Of cap, stem, markers and a third of the spring.",
+)
+@ui.option(
     "--paces",
     "paces_mm_s",
     type=Paces(),
-    help="Paces for presses that were not asked for at one, as those of a log: each is given the nearest.",
+    help="For presses of a log, which have no pace: each takes the nearest.",
 )
-@click.option(
-    "--extrapolate-vibration", "extrapolate", is_flag=True,
-    help="Give paces where no vibration was found that of other paces, scaled with speed.",
-)  # fmt: skip
-@json_option
+@ui.option(
+    "--extrapolate-vibration",
+    "extrapolate",
+    is_flag=True,
+    help="Where no vibration was found, scale that of other paces with speed.",
+)
+@ui.json_option
 def process(
     recording: Path,
     output: Path | None,
@@ -59,14 +51,15 @@ def process(
 
     RECORDING is a *.recording.jsonl file: presses, each stream on its own clock, and a slow probe if there
     was one. Clocks are joined, filters undone, presses judged, and all that may be used are averaged for
-    each stroke and pace. What was left out is told with its reason.
+    each stroke and pace. What was left out is listed with its reason.
     """
-    from fdvv.model import SUFFIX, save_model
-    from fdvv.preprocess import Settings
-    from fdvv.workflow import capture_report, process_recording, recorded_vibrations
+    from fdvv.bench.model import capture_report, process_recording
+    from fdvv.bench.vibration import recorded_vibrations
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.preprocess.process import Settings
 
-    check_output(output, SUFFIX)
-    check_output(report, ".html")
+    ui.check_output(output, MODEL_SUFFIX)
+    ui.check_output(report, ".html")
     found = process_recording(
         recording,
         Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()),
@@ -75,12 +68,12 @@ def process(
     if output:
         save_model(found.model, output)
     if report:
-        from fdvv.plot import write_report
-        from fdvv.workflow import capture_html
+        from fdvv.bench.html import capture_html
+        from fdvv.report.report import write_report
 
         write_report(report, capture_html(found))
     if as_json:
-        print_json(capture_report(found))
+        ui.print_json(capture_report(found))
     else:
         _print(found)
         for path in (output, report):
@@ -90,21 +83,21 @@ def process(
 
 def _print(found: RecordedModel) -> None:
     said = " (simulated)" if found.model.provenance.simulated else ""
-    print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
-    from fdvv.workflow import capture_report
+    ui.print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
+    from fdvv.bench.model import capture_report
 
     document = capture_report(found)
-    print_table(
+    ui.print_table(
         ["curve", "asked mm/s", "achieved mm/s", "presses", "spread cN", "most", "RMSE cN", "bump kept"],
         [
             [
                 c["stroke"],
-                number(c["velocity_mm_s"], 1),
-                with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
+                ui.number(c["velocity_mm_s"], 1),
+                ui.with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
                 "–" if c["presses"] is None else str(c["presses"]),
-                number(c["median_spread_cN"]),
-                number(c["largest_spread_cN"]),
-                number(c["rmse_cN"], 3),
+                ui.number(c["median_spread_cN"]),
+                ui.number(c["largest_spread_cN"]),
+                ui.number(c["rmse_cN"], 3),
                 "no bump" if c["bump_kept_ratio"] is None else f"{100 * c['bump_kept_ratio']:.1f} %",
             ]
             for c in document["curves"]
@@ -112,34 +105,34 @@ def _print(found: RecordedModel) -> None:
     )
     for name in ("travel", "actuation", "reset"):
         value, spread = getattr(found.model, f"{name}_mm"), getattr(found.model, f"{name}_spread")
-        told = f", {counted(spread.presses, 'press')}" if spread else ""
-        click.echo(f"{name} {with_spread(value, spread.spread_mm if spread else None, 3)} mm{told}")
+        presses = f", {ui.counted(spread.presses, 'press')}" if spread else ""
+        click.echo(f"{name} {ui.with_spread(value, spread.spread_mm if spread else None, 3)} mm{presses}")
     _print_vibrations(document["vibrations"]["in_model"])
     left = [p for p in document["presses"] if p["reason"]]
     if left:
-        print_table(
+        ui.print_table(
             ["left out", "mm/s", "why"],
-            [[f"take {p['take']}", number(p["velocity_mm_s"], 0), one_line(p["reason"])] for p in left],
+            [[f"take {p['take']}", ui.number(p["velocity_mm_s"], 0), ui.one_line(p["reason"])] for p in left],
             left=3,
         )
-    print_warnings(found.warnings)
+    ui.print_warnings(found.warnings)
 
 
 def _print_vibrations(vibrations: list[dict[str, Any]]) -> None:
     if not vibrations:
         return
-    print_table(
+    ui.print_table(
         ["vibration", "mm/s", "onset mm", "Hz", "ms", "m/s²", "presses"],
         [
             [
                 v["stroke"],
-                number(v["velocity_mm_s"], 0),
-                with_spread(v["onset_mm"], v["onset_spread_mm"], 3),
-                with_spread(v["frequency_Hz"], v["frequency_spread_Hz"], 0),
-                with_spread(
+                ui.number(v["velocity_mm_s"], 0),
+                ui.with_spread(v["onset_mm"], v["onset_spread_mm"], 3),
+                ui.with_spread(v["frequency_Hz"], v["frequency_spread_Hz"], 0),
+                ui.with_spread(
                     1e3 * v["duration_s"], v["duration_spread_s"] and 1e3 * v["duration_spread_s"], 1
                 ),
-                with_spread(v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
+                ui.with_spread(v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
                 "scaled" if v["presses"] is None else str(v["presses"]),
             ]
             for v in vibrations

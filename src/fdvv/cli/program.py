@@ -7,35 +7,27 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    Finite,
-    check_output,
-    counted,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_warnings,
-    print_wrapped,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.program import Limits, Program, Report, State
+    from fdvv.program.check import Report
+    from fdvv.program.program import Program, State
+    from fdvv.program.surface import Limits
 
 SUFFIX = ".fdvv-program.json"
 IMAGE_SUFFIX = ".fdvv-image"
 
-weight_option = click.option(
+weight_option = ui.option(
     "--weight-cN",
     "weight_cN",
-    type=Finite(min=-400, max=400),
-    help="Weight that the rig's force carries (cN); 19.6 by default, 0 for a rig that lies.",
+    type=ui.Finite(min=-400, max=400),
+    help="Weight that the rig's force carries; 19.6 by default, 0 for a rig that lies.",
 )
-opposing_option = click.option(
+opposing_option = ui.option(
     "--opposing-cN",
     "opposing_cN",
-    type=Finite(min=0),
-    help="Friction that may keep the cap down (cN); 5 by default.",
+    type=ui.Finite(min=0),
+    help="Friction that may keep the cap down; 5 by default.",
 )
 
 
@@ -49,10 +41,10 @@ def program() -> None:
 
 
 @program.command("list")
-@json_option
+@ui.json_option
 def list_(as_json: bool) -> None:
     """List the shipped programs and their parameters."""
-    from fdvv.program import programs
+    from fdvv.program.library import programs
 
     found = programs()
     if as_json:
@@ -65,17 +57,17 @@ def list_(as_json: bool) -> None:
             }
             for p in found
         ]
-        print_json({"programs": entries})
+        ui.print_json({"programs": entries})
         return
     for recipe in found:
-        print_wrapped(f"{recipe.name}: {recipe.summary}")
+        ui.print_wrapped(f"{recipe.name}: {recipe.summary}")
         if recipe.parameters:
             click.echo("  " + ", ".join(f"{p.name}={p.default:g}" for p in recipe.parameters))
 
 
 @program.command()
 @click.argument("program")
-@json_option
+@ui.json_option
 def show(program: str, as_json: bool) -> None:
     """Show the states of a program and what leads from one to another.
 
@@ -83,24 +75,24 @@ def show(program: str, as_json: bool) -> None:
     """
     path = Path(program)
     if path.is_file() and path.read_bytes()[:4] == b"FDVP":
-        from fdvv.program import describe
+        from fdvv.program.describe import describe
 
         held = describe(path.read_bytes(), path)
         parts: Any = held
-        told = f"{held.name}: image of {held.size_bytes} bytes"
+        title = f"{held.name}: image of {held.size_bytes} bytes"
     else:
-        from fdvv.workflow import open_program
+        from fdvv.program.library import open_program
 
         opened = open_program(program)
         parts = opened
-        told = f"{opened.name}: {opened.description}"
+        title = f"{opened.name}: {opened.description}"
     if as_json:
-        print_json(_parts(parts))
+        ui.print_json(_parts(parts))
         return
-    print_wrapped(told)
+    ui.print_wrapped(title)
     click.echo(f"  travel {parts.travel_mm:g} mm, starts in {parts.start!r}")
     rows = [_row(state) for state in parts.states]
-    print_table(["state", "press", "release", "plays", "key", "fade_ms", "bias_cN"], rows, left=4)
+    ui.print_table(["state", "press", "release", "plays", "key", "fade_ms", "bias_cN"], rows, left=4)
     for state in parts.states:
         for transition in state.transitions:
             click.echo(f"{state.name}: {transition}")
@@ -111,7 +103,7 @@ def _row(state: State) -> list[str]:
         state.enter_signal or "",
         f"{state.repeat_signal}/{state.repeat_ms} ms" if state.repeat_ms else "",
     ]
-    bias = number(state.bias_cN) if not state.bias_ms else f"{state.bias_cN:g}…{state.bias_end_cN:g}"
+    bias = ui.number(state.bias_cN) if not state.bias_ms else f"{state.bias_cN:g}…{state.bias_end_cN:g}"
     played = ", ".join(filter(None, plays)) or "–"
     return [state.name, state.press, state.release, played, str(state.key), str(state.fade_ms), bias]
 
@@ -124,49 +116,59 @@ def _parts(parts: Any) -> dict[str, Any]:
 
 @program.command()
 @click.argument("name")
-@click.option("--base", help="Button it stands on: a built-in, a *.fdvv.json or a measured file.")
-@click.option("--set", "given", multiple=True, metavar="NAME=NUMBER", help="A parameter; may be repeated.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, dir_okay=False),
-    required=True,
-    help="The *.fdvv-program.json to write.",
-)
+@ui.option("--base", help="Button it stands on: a built-in, a *.fdvv.json or a measured file.")
+@ui.option("--set", "given", multiple=True, metavar="NAME=NUMBER", help="A parameter; may be repeated.")
+@ui.option("-o", "--output", type=ui.NEW_FILE, required=True, help="The *.fdvv-program.json to write.")
 def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> None:
     """Make a shipped program with parameters of your own, over a button of your choice.
 
     NAME is one of fdvv program list, as in: make rapid-trigger --set press_mm=0.1 -o r.fdvv-program.json
     """
-    from fdvv.program import save_program
-    from fdvv.workflow import make_program
+    from fdvv.button.open import open_button
+    from fdvv.program.file import save_program
+    from fdvv.program.library import make as make_shipped
 
-    check_output(output, SUFFIX)
-    made = make_program(name, base, given)
+    ui.check_output(output, SUFFIX)
+    model = None if base is None else open_button(base)
+    made = make_shipped(name, model, **dict(map(_parameter, given)))
     save_program(made, output)
-    click.echo(f"{output}: {counted(len(made.states), 'state')}, travel {made.travel_mm:.3f} mm")
+    click.echo(f"{output}: {ui.counted(len(made.states), 'state')}, travel {made.travel_mm:.3f} mm")
+
+
+def _parameter(text: str) -> tuple[str, float]:
+    from fdvv.errors import InputError
+
+    name, equals, value = text.partition("=")
+    try:
+        if not equals:
+            raise ValueError
+        return name.strip().replace("-", "_"), float(value)
+    except ValueError:
+        raise InputError(
+            "--set", "parameter", f"{text!r} is not NAME=NUMBER", "write e.g. trigger_mm=1.2"
+        ) from None
 
 
 @program.command()
 @click.argument("program")
 @weight_option
 @opposing_option
-@json_option
+@ui.json_option
 def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_json: bool) -> None:
     """Check a program against the paper's rig: forces, heat, hangs, and that the cap comes back.
 
     Exit status 1 if it is refused. What is proven is in docs/explanation/programs.md.
     """
-    from fdvv.program import check_program
-    from fdvv.workflow import open_program
+    from fdvv.program.check import check_program
+    from fdvv.program.library import open_program
 
     opened = open_program(program)
     report = check_program(opened, _limits(weight_cN, opposing_cN))
     if as_json:
-        print_json(_report(opened, report))
+        ui.print_json(_report(opened, report))
     else:
         for finding in report.findings:
-            print_wrapped(f"{finding.severity}: {finding}")
+            ui.print_wrapped(f"{finding.severity}: {finding}")
         click.echo(f"{opened.name}: {'refused' if report.refused else 'accepted'}")
         if report.return_s is not None:
             click.echo(f"  back at the top within {report.return_s:.2f} s of letting go")
@@ -180,7 +182,7 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
     from dataclasses import replace
 
-    from fdvv.program import Limits
+    from fdvv.program.surface import Limits
 
     limits = Limits()
     return replace(
@@ -209,26 +211,21 @@ def _report(opened: Program, report: Report) -> dict[str, Any]:
 @click.argument("program")
 @weight_option
 @opposing_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, dir_okay=False),
-    required=True,
-    help="The *.fdvv-image to write.",
-)
-@json_option
+@ui.option("-o", "--output", type=ui.NEW_FILE, required=True, help="The *.fdvv-image to write.")
+@ui.json_option
 def compile_(
     program: str, weight_cN: float | None, opposing_cN: float | None, output: Path, as_json: bool
 ) -> None:
     """Check a program and compile it to the image that a device takes.
 
-    Columns of a surface are evenly spaced in an image; what that and rounding cost is told.
+    Columns of a surface are evenly spaced in an image; the output says what that and rounding cost.
     """
-    from fdvv.files import write_atomic
-    from fdvv.program import compile_program, require_accepted
-    from fdvv.workflow import open_program
+    from fdvv.io.files import write_atomic
+    from fdvv.program.check import require_accepted
+    from fdvv.program.compile import compile_program
+    from fdvv.program.library import open_program
 
-    check_output(output, IMAGE_SUFFIX)
+    ui.check_output(output, IMAGE_SUFFIX)
     opened = open_program(program)
     limits = _limits(weight_cN, opposing_cN)
     report = require_accepted(opened, limits)
@@ -239,8 +236,8 @@ def compile_(
             name: {"columns": columns, "grid_error_cN": compiled.grid_error_cN[name]}
             for name, columns in compiled.columns.items()
         }
-        print_json({"output": str(output), "bytes": len(compiled.image), "surfaces": surfaces})
+        ui.print_json({"output": str(output), "bytes": len(compiled.image), "surfaces": surfaces})
     else:
         worst_cN = max(compiled.grid_error_cN.values())
         click.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
-    print_warnings([str(finding) for finding in report.warnings])
+    ui.print_warnings([str(finding) for finding in report.warnings])

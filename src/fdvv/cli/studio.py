@@ -7,42 +7,29 @@ from pathlib import Path
 
 import click
 
+from fdvv.cli import ui
 from fdvv.errors import InputError
 
 
 @click.command()
-@click.argument(
-    "folders", nargs=-1, type=click.Path(path_type=Path, exists=True, file_okay=False), metavar="[FOLDER]..."
+@click.argument("folders", nargs=-1, type=ui.FOLDER, metavar="[FOLDER]...")
+@ui.option(
+    "--project", type=ui.NEW_FOLDER, default=Path("fdvv-studio"), help="Folder of your buttons and programs."
 )
-@click.option(
-    "--project",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("fdvv-studio"),
-    show_default=True,
-    help="Folder that keeps your buttons and programs; made when needed.",
-)
-@click.option(
+@ui.option(
     "--library",
     "libraries",
     multiple=True,
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="A library of the folders (fdvv library build): they need not be read again.",
+    type=ui.FOLDER,
+    help="Library of these folders (fdvv library build), read instead.",
 )
-@click.option(
-    "--port",
-    type=click.IntRange(0, 65535),
-    default=8377,
-    show_default=True,
-    help="Port; 0 takes a free one.",
+@ui.option("--port", type=click.IntRange(0, 65535), default=8377, help="Port; 0 takes a free one.")
+@ui.option("--host", default="127.0.0.1", help="Address to listen on.")
+@ui.option("--share", is_flag=True, help="Allow a --host that other machines can reach.")
+@ui.option(
+    "--keep-address", is_flag=True, help="Keep the address over restarts; its token is saved in the project."
 )
-@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
-@click.option("--share", is_flag=True, help="Allow a --host that other machines can reach.")
-@click.option(
-    "--keep-address",
-    is_flag=True,
-    help="Keep the address over restarts, for tablets that stand on it: its token is kept in the project.",
-)
-@click.option("--no-browser", is_flag=True, help="Only print the address.")
+@ui.option("--no-browser", is_flag=True, help="Only print the address.")
 def studio(
     folders: tuple[Path, ...],
     project: Path,
@@ -61,7 +48,9 @@ def studio(
     """
     _check_host(host, share)
     _check_libraries(libraries)
-    from fdvv.studio import Studio, kept_token, serve
+    from fdvv.studio.auth import saved_token
+    from fdvv.studio.server import serve
+    from fdvv.studio.studio import Studio
 
     def ready(address: str) -> None:
         click.echo(f"the studio is open at {address}")
@@ -69,13 +58,12 @@ def studio(
         if not no_browser:
             _show(address)
 
-    token = kept_token(project) if keep_address else ""
+    token = saved_token(project) if keep_address else ""
     serve(Studio(project, folders, libraries), host, port, ready, token)
     click.echo("the studio is closed; everything is kept", err=True)
 
 
 def _check_host(host: str, share: bool) -> None:
-    """Refuse an address that others reach unless that is wanted."""
     try:
         loopback = host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -87,14 +75,13 @@ def _check_host(host: str, share: bool) -> None:
 
 def _check_libraries(folders: tuple[Path, ...]) -> None:
     """Refuse at once what the background could not read. InputError, BuildError."""
-    from fdvv.workflow import Library
+    from fdvv.library.library import Library
 
     for folder in folders:
         Library(folder)
 
 
 def _show(address: str) -> None:
-    """Open the page, without waiting for the browser."""
     import threading
     import webbrowser
 

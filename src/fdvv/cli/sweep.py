@@ -8,28 +8,18 @@ from typing import Any
 
 import click
 
-from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
-from fdvv.cli._output import (
-    check_folder,
-    counted,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_warnings,
-    progress,
-)
+from fdvv.cli import ui
+from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
 
 
 @click.command()
-@click.argument("plan", type=click.Path(path_type=Path, exists=True, dir_okay=False))
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path, file_okay=False),
-    help="The folder of results: new, or that of the same sweep.",
-)  # fmt: skip
-@click.option("--preview", is_flag=True, help="Only count the cells and time a few of them.")
+@click.argument("plan", type=ui.FILE)
+@ui.option(
+    "-o", "--output", type=ui.NEW_FOLDER, help="The folder of results: new, or that of the same sweep."
+)
+@ui.option("--preview", is_flag=True, help="Only count the cells and time a few of them.")
 @executor_options
-@json_option
+@ui.json_option
 def sweep(
     plan: Path,
     output: Path | None,
@@ -45,7 +35,7 @@ def sweep(
     Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
     ended a sweep, the same command goes on. The result is the same however many processes work on it.
     """
-    from fdvv.workflow import read_sweep_plan
+    from fdvv.sweep.plan import read_sweep_plan
 
     check_executor(processes, workers, cluster)
     asked = read_sweep_plan(plan)
@@ -54,55 +44,56 @@ def sweep(
         return
     if output is None:
         raise click.UsageError("a sweep needs --output FOLDER, or --preview")
-    check_folder(output)
+    ui.check_folder(output)
     _run(asked, plan, output, (processes, workers, cluster), as_json)
 
 
 def _run(asked: Any, plan: Path, output: Path, where: tuple[Any, Any, Any], as_json: bool) -> None:
-    from fdvv.workflow import open_executor, run_sweep, sweep_summary
+    from fdvv.parallel.open import open_executor
+    from fdvv.sweep.sweep import run_sweep, sweep_summary
 
     with (
         kept_on_interrupt(output),
         open_executor(*where) as executor,
-        progress("cells", asked.count) as tell,
+        ui.progress("cells", asked.count) as tell,
     ):
         result = run_sweep(asked, output, executor, tell, plan.parent)
     document = {**result.to_dict(), "summary": sweep_summary(result)}
     if as_json:
-        print_json(document)
+        ui.print_json(document)
         return
-    click.echo(f"{asked.measure}: {counted(result.cells, 'cell')} (simulated), {result.failed} failed")
+    click.echo(f"{asked.measure}: {ui.counted(result.cells, 'cell')} (simulated), {result.failed} failed")
     for part in document["summary"]:
         figure, factor = part["figure"], part["factor"]
         rows = [
-            [str(row["value"]), str(row["cells"]), *(number(row[k], 3) for k in ("median", "low", "high"))]
+            [str(row["value"]), str(row["cells"]), *(ui.number(row[k], 3) for k in ("median", "low", "high"))]
             for row in part["rows"]
         ]
-        print_table([f"{figure} by {factor}", "cells", "median", "5 %", "95 %"], rows)
+        ui.print_table([f"{figure} by {factor}", "cells", "median", "5 %", "95 %"], rows)
     if result.failed:
-        print_warnings([f"{counted(result.failed, 'cell')} failed; the first: {result.first_reason()}"])
+        ui.print_warnings([f"{ui.counted(result.failed, 'cell')} failed; the first: {result.first_reason()}"])
     click.echo(f"written to {result.path}")
 
 
 def _preview(asked: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
-    from fdvv.workflow import preview_sweep
+    from fdvv.sweep.sweep import preview_sweep
 
     found = preview_sweep(asked, output, plan.parent)
     count = processes or len(os.sched_getaffinity(0))
-    print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])
+    ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])
     if as_json:
-        print_json({
+        ui.print_json({
             "cells": found.cells, "done": found.done, "cell_s": found.cell_s, "processes": count,
             "estimated_s": found.seconds(count), "failed": list(found.failed),
         })  # fmt: skip
         return
     for name, values in asked.levels().items():
-        told = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values[:6])
+        listed = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values[:6])
         more = f" ... {values[-1]}" if len(values) > 6 else ""
-        click.echo(f"{name} ({len(values)}): {told}{more}")
+        click.echo(f"{name} ({len(values)}): {listed}{more}")
     each = f"{found.cell_s:.3g} s each"
-    click.echo(f"{counted(found.cells, 'cell')}, {found.done} done, about {each}")
-    click.echo(f"about {_duration(found.seconds(count))} with {counted(count, 'process')}; simulated")
+    click.echo(f"{ui.counted(found.cells, 'cell')}, {found.done} done, about {each}")
+    click.echo(f"about {_duration(found.seconds(count))} with {ui.counted(count, 'process')}; simulated")
 
 
 def _duration(seconds: float) -> str:

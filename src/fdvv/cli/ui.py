@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import json
 import math
@@ -10,14 +11,31 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 WIDTH = 100
 """Columns that a table should keep to."""
 
 FIGURES = (".svg", ".png", ".pdf")
+
+option = functools.partial(click.option, show_default=True)
+"""click.option, with the default in the help text."""
+
+
+def options(*several: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Join decorators into one; the first option is listed first."""
+
+    def add(command: Command) -> Command:
+        for one in reversed(several):
+            command = one(command)
+        return command
+
+    return add
+
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON document and nothing else."
@@ -26,7 +44,7 @@ json_option = click.option(
 
 def print_json(document: dict[str, Any]) -> None:
     """Print one JSON document; numbers that are not finite become null."""
-    from fdvv.documents import finite
+    from fdvv.io.documents import finite
 
     text = json.dumps(finite(document), indent=2, ensure_ascii=False, allow_nan=False)
     try:
@@ -66,8 +84,8 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], left: int
 
 def print_spreads(report: dict[str, Any]) -> None:
     """Print how the presses behind a model's curves differ; nothing where none has a spread."""
-    told = [c for c in report["curves"] if c["presses"] is not None]
-    if not told:
+    spread = [c for c in report["curves"] if c["presses"] is not None]
+    if not spread:
         return
     click.echo("")
     print_table(
@@ -81,7 +99,7 @@ def print_spreads(report: dict[str, Any]) -> None:
                 number(c["median_spread_cN"]),
                 number(c["largest_spread_cN"]),
             ]
-            for c in told
+            for c in spread
         ],
     )
 
@@ -89,6 +107,11 @@ def print_spreads(report: dict[str, Any]) -> None:
 def print_wrapped(text: str) -> None:
     """Print a sentence over as many lines as it takes, those after the first indented."""
     click.echo(click.wrap_text(one_line(text), WIDTH, subsequent_indent="  "))
+
+
+def simulated(flag: bool) -> str:
+    """Return the mark of what no real rig made."""
+    return " (simulated)" if flag else ""
 
 
 def counted(count: int, noun: str) -> str:
@@ -114,18 +137,33 @@ class Finite(click.FloatRange):
         return found
 
 
+PATH = click.Path(path_type=Path)
+EXISTING = click.Path(path_type=Path, exists=True)
+FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
+NEW_FILE = click.Path(path_type=Path, dir_okay=False)
+NEW_FOLDER = click.Path(path_type=Path, file_okay=False)
+COUNT = click.IntRange(min=0)
+POSITIVE = Finite(min=0, min_open=True)
+SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
+SPEED = Finite(min=5, max=500)
+"""Mean speed of a stroke, mm/s."""
+PART = Finite(min=0.05, max=1)
+STROKE = click.Choice(["press", "release"])
+
+
 def check_output(path: Path | None, *endings: str) -> None:
     """Refuse at once a file that could not be written after long work. Raises InputError."""
     from fdvv.errors import InputError
 
     if path is None:
         return
-    told = " or ".join(endings)
+    allowed = " or ".join(endings)
     if path.is_dir():
-        raise InputError(path, "output", "is a folder", f"name a file ending in {told}")
+        raise InputError(path, "output", "is a folder", f"name a file ending in {allowed}")
     if path.suffix.lower() not in {"." + ending.rpartition(".")[2] for ending in endings}:
         raise InputError(
-            path, "output", "its name has another ending than what is written", f"end it in {told}"
+            path, "output", "its name has another ending than what is written", f"end it in {allowed}"
         )
     check_folder(path.parent)
 
@@ -159,17 +197,17 @@ def progress(label: str, total: int) -> Iterator[Callable[[int, int], None]]:
 def stages() -> Iterator[Callable[[str, int, int], None]]:
     """Show a progress bar for each named stage; yield what sets (label, done, total).
 
-    Where standard error is not a terminal, each stage is told once, as a line.
+    Where standard error is not a terminal, each stage is one line.
     """
     if not sys.stderr.isatty():
-        told: set[str] = set()
+        shown: set[str] = set()
 
-        def tell(label: str, _done: int, _total: int) -> None:
-            if label not in told:
-                told.add(label)
+        def show(label: str, _done: int, _total: int) -> None:
+            if label not in shown:
+                shown.add(label)
                 click.echo(label, err=True)
 
-        yield tell
+        yield show
         return
     from rich.console import Console
     from rich.progress import Progress, TaskID
@@ -187,7 +225,7 @@ def stages() -> Iterator[Callable[[str, int, int], None]]:
 
 def save_figure(figure: Any, path: Path) -> None:
     """Write a matplotlib figure in the format of the path's ending (FIGURES), whole or not at all."""
-    from fdvv.files import write_atomic
+    from fdvv.io.files import write_atomic
 
     buffer = io.BytesIO()
     figure.savefig(buffer, format=path.suffix.lstrip(".").lower(), bbox_inches="tight", dpi=150)

@@ -7,35 +7,29 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._exciter_options import exciter_option, opened_exciter
-from fdvv.cli._output import Finite, check_output, json_option, number, print_json, print_table
+from fdvv.cli import ui
+from fdvv.cli.options import exciter_option, opened_exciter
 
 if TYPE_CHECKING:
-    from fdvv.model import FDVVModel, Vibration
-    from fdvv.vibration import KnownExciter
+    from fdvv.model.model import FDVVModel
+    from fdvv.model.vibration import Vibration
+    from fdvv.vibration.exciter import KnownExciter
 
 
 @click.command()
 @click.argument("button")
-@click.option(
-    "--stroke",
-    type=click.Choice(["press", "release"]),
-    default="press",
-    show_default=True,
-    help="Of the sound that is written.",
-)
-@click.option(
+@ui.option("--stroke", type=ui.STROKE, default="press", help="Of the sound that is written.")
+@ui.option(
     "--velocity",
     "velocity_mm_s",
-    type=Finite(min=0, min_open=True),
+    type=ui.POSITIVE,
     default=100.0,
-    show_default=True,
-    help="Of the sound that is written: the nearest one, mm/s.",
+    help="Of the sound, mm/s: the nearest one.",
 )
 @exciter_option
-@click.option("--wav", type=click.Path(path_type=Path), help="The *.wav to write: acceleration, 48 kHz.")
-@click.option("--board", is_flag=True, help="Write the vibration board's own samples, 16 kHz, bit for bit.")
-@json_option
+@ui.option("--wav", type=ui.PATH, help="The *.wav to write: acceleration, 48 kHz.")
+@ui.option("--board", is_flag=True, help="Write the vibration board's own samples, 16 kHz, bit for bit.")
+@ui.json_option
 def vibration(
     button: str,
     stroke: str,
@@ -47,15 +41,16 @@ def vibration(
 ) -> None:
     """Show a button's vibrations, and write one as a sound.
 
-    BUTTON is a built-in, a *.fdvv.json file or a measured file. With a known exciter it is told how alike and
-    how strong each is rendered, as that exciter's response has it: an expectation, not a measurement. A sound
-    of acceleration is as loud as 16 bits allow; what its full scale stands for is told.
+    BUTTON is a built-in, a *.fdvv.json file or a measured file. With a known exciter the output predicts
+    from its response how alike and how strong each is rendered; it is not a measurement. A sound of
+    acceleration is as loud as 16 bits allow; its full scale is printed.
     """  # fmt: skip
+    from fdvv.button.open import open_button
     from fdvv.errors import InputError
-    from fdvv.workflow import open_model, vibration_wav
+    from fdvv.program.render_vibration import vibration_wav
 
-    check_output(wav, ".wav")
-    model, known = open_model(button), opened_exciter(exciter)
+    ui.check_output(wav, ".wav")
+    model, known = open_button(button), opened_exciter(exciter)
     if not model.vibrations:
         raise InputError(button, "vibrations", "it has none", "measure them, or tune from a model that has")
     rows = [_about(found, known) for found in model.vibrations]
@@ -69,7 +64,7 @@ def vibration(
             "unit": "count" if board else "m/s2",
         }
     if as_json:
-        print_json(document)
+        ui.print_json(document)
         return
     _print(document)
 
@@ -84,7 +79,7 @@ def _chosen(model: FDVVModel, button: str, stroke: str, velocity_mm_s: float) ->
 
 
 def _about(found: Vibration, exciter: KnownExciter | None) -> dict[str, Any]:
-    from fdvv.workflow import render_vibration
+    from fdvv.program.render_vibration import render_vibration
 
     strongest = max(found.modes, key=lambda mode: abs(mode.amplitude_m_s2))
     about: dict[str, Any] = {
@@ -121,13 +116,13 @@ def _print(document: dict[str, Any]) -> None:
     for v in document["vibrations"]:
         speed = "any speed" if v["velocity_mm_s"] is None else f"{v['velocity_mm_s']:g} mm/s"
         figures = (v["onset_mm"], 1e3 * v["duration_s"], v["frequency_Hz"], v["amplitude_m_s2"])
-        row = [f"{v['stroke']}, {speed}", *(number(figure) for figure in figures)]
+        row = [f"{v['stroke']}, {speed}", *(ui.number(figure) for figure in figures)]
         if known:
             e = v["expected"]
-            row += [e["way"], number(e["likeness"]), number(e["strength_ratio"])]
+            row += [e["way"], ui.number(e["likeness"]), ui.number(e["strength_ratio"])]
         rows.append(row)
     click.echo(document["name"])
-    print_table(head, rows)
+    ui.print_table(head, rows)
     if document["wav"]:
         scale = f"full scale is {document['wav']['full_scale']:.4g} {document['wav']['unit']}"
         click.echo(f"written to {document['wav']['path']}; {scale}")

@@ -7,17 +7,24 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.compensate._bins import bump_kept_ratio, smooth
-from fdvv.compensate._curve_state import Best, Learned, State, better, frozen
-from fdvv.compensate._error import error_cN
-from fdvv.compensate._gain import GainSchedule
-from fdvv.compensate._observe import Delays
-from fdvv.compensate._strokes import HOME_mm
+from fdvv.compensation.identification.balance import Delays
+from fdvv.compensation.method import error_cN
+from fdvv.compensation.presses import HOME_mm
+from fdvv.compensation.tables import (
+    BestPress,
+    CurveState,
+    GainSchedule,
+    LearnedCurve,
+    best_of_round,
+    bump_kept_ratio,
+    read_only,
+    smooth,
+)
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
 RIG_DELAYS = Delays(position_s=0.0005, command_s=0.002)
-"""Delays of the paper's rig, from its parts: the position's demodulator and burst less the force's filter;
+"""Delays of the paper's rig, from its parts: the position's demodulator and burst minus the force's filter;
 compute, half a tick, the coil's inductance and the force's filter."""
 
 
@@ -29,12 +36,12 @@ class PaperLaw:
     ----------
     alpha : weight of the mean in error_k.
     gain : the proportion of each correction.
-    bin_mm : width of the bins of displacement.
-    rounds, presses_per_round : independent runs, each from its own start; the best command of each run
+    bin_mm : width of the displacement bins.
+    rounds, presses_per_round : independent runs, each from its own start; the best command of each
         enters the average.
     smoothing_mm : sigma of the Gaussian over the averaged table. The paper prints 1.2 mm, which erases
         the bump it wants to render; 1.2 bins (0.06 mm) keeps it.
-    start : where a round starts: "target" the force wanted, "average" the mean of the rounds before (the
+    start : where a round starts: "target" the intended force, "average" the mean of the earlier rounds (the
         first from the target), "random" one level, half to
         all of the largest target (the paper's figure shows a random level).
     seed : of the random starts.
@@ -80,46 +87,46 @@ class PaperLaw:
 
     @classmethod
     def literal(cls, **settings: object) -> PaperLaw:
-        """Make the law as printed, without additions; the smoothing stays at 1.2 bins unless told."""
+        """Return the law as printed, without additions; smoothing stays at 1.2 bins unless given."""
         plain = {"start": "random", "delays": Delays(), "filter_mm": 0.0, "hold_ends": False, "hold_cN": 0.0}
         return cls(**{**plain, **settings})  # type: ignore[arg-type]
 
     @property
     def additions(self) -> tuple[str, ...]:
-        """Name what these settings add to the printed law."""
-        found = []
+        """What these settings add to the printed law."""
+        names = []
         if self.delays != Delays():
-            found.append(
+            names.append(
                 f"shift for known delays ({self.delays.position_s * 1e3:g} ms position, "
                 f"{self.delays.command_s * 1e3:g} ms command)"
             )
         if self.filter_mm:
-            found.append(f"zero-phase filter of the learned part, sigma {self.filter_mm:g} mm")
+            names.append(f"zero-phase filter of the learned part, sigma {self.filter_mm:g} mm")
         if self.hold_ends:
-            found.append("corrections held beyond the visited bins")
+            names.append("corrections held beyond the visited bins")
         if self.hold_cN:
-            found.append(f"at least {self.hold_cN:g} cN in the first {HOME_mm:g} mm")
+            names.append(f"at least {self.hold_cN:g} cN in the first {HOME_mm:g} mm")
         if self.start != "random":
-            found.append(f"rounds start from the {self.start}")
-        return tuple(found)
+            names.append(f"rounds start from the {self.start}")
+        return tuple(names)
 
-    def init(self, target_cN: FloatArray, grid_mm: FloatArray, limit_cN: float) -> State:
-        """Begin a curve: target_cN and grid_mm (n,), limit_cN the largest command of either sign."""
+    def init(self, target_cN: FloatArray, grid_mm: FloatArray, limit_cN: float) -> CurveState:
+        """Return the first state of a curve: target_cN, grid_mm (n,); limit_cN bounds the command."""
         if target_cN.shape != grid_mm.shape or grid_mm.size < 2:
             raise ModelError(f"target and grid must pair up, got {target_cN.shape}, {grid_mm.shape}")
         if not limit_cN > 0:
             raise ModelError(f"limit_cN must be positive, got {limit_cN}")
-        state = State(frozen(grid_mm), frozen(target_cN), frozen(target_cN), limit_cN)
+        state = CurveState(read_only(grid_mm), read_only(target_cN), read_only(target_cN), limit_cN)
         return replace(state, command_cN=self._start(state))
 
-    def step(self, measured_cN: FloatArray, state: State) -> tuple[FloatArray, State]:
+    def step(self, measured_cN: FloatArray, state: CurveState) -> tuple[FloatArray, CurveState]:
         """Learn from one press: measured_cN (n,) felt with the current command, NaN where unknown.
 
-        Gives the next command and state; after the last press of a round that is the next round's start.
-        Raises ModelError where nothing was measured.
+        Returns the next command and state; after the last press of a round, the next round's start.
+        Raises ModelError if nothing was measured.
         """
         error = error_cN(state.target_cN, measured_cN, self.alpha)
-        best = better(state, measured_cN, error)
+        best = best_of_round(state, measured_cN, error)
         errors = (*state.errors_cN, error)
         if len(errors) % self.presses_per_round:
             command = self._correct(measured_cN, error, state)
@@ -130,19 +137,21 @@ class PaperLaw:
             state = replace(state, command_cN=self._start(state))
         return state.command_cN, state
 
-    def finished(self, state: State) -> bool:
-        """Tell whether all rounds are done."""
+    def finished(self, state: CurveState) -> bool:
+        """Return whether all rounds are done."""
         return len(state.rounds) >= self.rounds
 
-    def done(self, state: State) -> Learned:
-        """Average the best commands of the rounds, smooth, and say how it went; works at any time."""
+    def done(self, state: CurveState) -> LearnedCurve:
+        """Return the smoothed average of the rounds' best commands; valid at any time."""
         bests = (*state.rounds, *([state.best] if state.best else []))
         if not bests:
             nan = float("nan")
-            return Learned(state.command_cN, (), nan, nan, "no press was learned from; the target itself")
+            return LearnedCurve(
+                state.command_cN, (), nan, nan, "no press was learned from; the target itself"
+            )
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         table = smooth(np.mean([b.command_cN for b in bests], axis=0), self.smoothing_mm, step_mm)
-        return Learned(
+        return LearnedCurve(
             self._limited(table, state),
             state.errors_cN,
             float(np.mean([b.mean_error_cN for b in bests])),
@@ -150,8 +159,7 @@ class PaperLaw:
             self._sentence(state, bests, step_mm),
         )
 
-    def _correct(self, measured_cN: FloatArray, error: float, state: State) -> FloatArray:
-        """Apply eq. 2 to the bins visited, and the additions."""
+    def _correct(self, measured_cN: FloatArray, error: float, state: CurveState) -> FloatArray:
         visited = np.flatnonzero(np.isfinite(measured_cN))
         correction = self.gain.gain(error) * (state.target_cN - measured_cN)[visited]
         ends = {} if self.hold_ends else {"left": 0.0, "right": 0.0}
@@ -161,23 +169,21 @@ class PaperLaw:
         command = state.target_cN + smooth(learned, self.filter_mm, step_mm)
         return self._limited(command, state)
 
-    def _limited(self, command_cN: FloatArray, state: State) -> FloatArray:
-        """Hold the cap up at its home and stay within the device's limit."""
+    def _limited(self, command_cN: FloatArray, state: CurveState) -> FloatArray:
         home = state.grid_mm <= HOME_mm if self.hold_cN else False
         held = np.where(home, np.maximum(command_cN, self.hold_cN), command_cN)
-        return frozen(np.clip(held, -state.limit_cN, state.limit_cN))
+        return read_only(np.clip(held, -state.limit_cN, state.limit_cN))
 
-    def _start(self, state: State) -> FloatArray:
-        """Give the command a round starts from."""
+    def _start(self, state: CurveState) -> FloatArray:
         if self.start == "random":
             draw = np.random.default_rng((self.seed, len(state.rounds)))
             level = draw.uniform(0.5, 1.0) * float(np.abs(state.target_cN).max())
             return self._limited(np.full(state.grid_mm.size, level), state)
         if self.start == "average" and state.rounds:
-            return frozen(np.mean([b.command_cN for b in state.rounds], axis=0))
+            return read_only(np.mean([b.command_cN for b in state.rounds], axis=0))
         return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 
-    def _sentence(self, state: State, bests: tuple[Best, ...], step_mm: float) -> str:
+    def _sentence(self, state: CurveState, bests: tuple[BestPress, ...], step_mm: float) -> str:
         kept = bump_kept_ratio(state.grid_mm, state.target_cN, self.smoothing_mm)
         bump = "the target has no bump" if kept is None else f"keeps {kept:.0%} of the target's bump"
         ends = ", ".join(f"{b.error_cN:.1f}" for b in bests)
@@ -185,3 +191,47 @@ class PaperLaw:
             f"error_k {state.errors_cN[0]:.1f} cN at press 1, best of each round {ends} cN; "
             f"smoothing sigma {self.smoothing_mm:g} mm ({bump})"
         )
+
+
+HOLDS_cN = (50.0, 65.0, 80.0)
+"""To be tried in turn: a smaller one renders better, a larger one holds up heavier caps."""
+
+FASTER_LOOP_s = 0.0005
+"""Loops with a shorter period have the delays of the 4 kHz rig."""
+
+FAST_DELAYS = Delays(position_s=0.0003, command_s=0.00125)
+
+
+def tuned_paper_law(
+    presses: Literal[20, 240] = 240,
+    tick_s: float = 0.001,
+    additions: bool = True,
+    hold_cN: float = HOLDS_cN[0],
+) -> PaperLaw:
+    """Return the settings of the paper's law that did best on random rigs, for a budget of presses.
+
+    presses : over four velocities together: 20 (one round of 5 each) or the paper's 240.
+    tick_s : period of the loop.
+    additions : with the additions of ``PaperLaw``; else ``PaperLaw.literal``.
+    hold_cN : with additions, the least command in the first 0.1 mm. The best of HOLDS_cN depends
+        on the mover's weight: the one whose curves end with the smallest error as the rig measures it.
+
+    Tuned on the twin (simulated): rigs and fingers drawn with seeds 100 to 119, each with one of the six
+    built-in buttons, at 50 to 200 mm/s, against fresh presses in true displacement, at 1 and 4 kHz.
+    Results: docs/explanation/paper-law.md. Many settings are equal within its noise.
+    """
+    if not additions:
+        return _printed(presses)
+    delays = RIG_DELAYS if tick_s > FASTER_LOOP_s else FAST_DELAYS
+    if presses == 20:
+        few = GainSchedule(most=0.8)
+        return PaperLaw(
+            gain=few, rounds=1, presses_per_round=5, smoothing_mm=0.0, delays=delays, hold_cN=hold_cN
+        )
+    return PaperLaw(rounds=4, presses_per_round=15, delays=delays, hold_cN=hold_cN)
+
+
+def _printed(presses: int) -> PaperLaw:
+    if presses == 20:
+        return PaperLaw.literal(gain=GainSchedule(most=0.6), rounds=1, presses_per_round=5)
+    return PaperLaw.literal(gain=GainSchedule(most=0.4), rounds=4, presses_per_round=15)

@@ -1,4 +1,4 @@
-"""Learn every stroke and velocity on its own, both strokes from the same presses."""
+"""Compensation per curve: every stroke and velocity on its own, both strokes from the same presses."""
 
 from __future__ import annotations
 
@@ -6,27 +6,28 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fdvv.compensate._curve_state import State
-from fdvv.compensate._judge import rig_columns
-from fdvv.compensate._method import Count, CurveOutcome, Job, Outcome, Trial
-from fdvv.compensate._observe import felt_at_mm, observe
-from fdvv.compensate._paper import PaperLaw
-from fdvv.compensate._strokes import split_strokes
+from fdvv.compensation.identification.balance import felt_at_mm, observe
+from fdvv.compensation.method import CompensationJob, CurveOutcome, Outcome, PressCount, Trial
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.presses import rig_columns, split_strokes
+from fdvv.compensation.tables import CurveState
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface, Press, Stroke
+from fdvv.model.curve import Stroke
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
 
-Pair = tuple[State, State]
+Pair = tuple[CurveState, CurveState]
 """Press and release of one velocity."""
 
 
 @dataclass(frozen=True, eq=False)
 class JobState:
-    """Where a job stands: the curves per velocity, presses learned from, and what the last one changed."""
+    """The curves per velocity, the presses learned from, and what the last one changed."""
 
-    job: Job
+    job: CompensationJob
     pairs: tuple[Pair, ...]
     presses: int = 0
-    told: str = ""
+    message: str = ""
 
 
 @dataclass(frozen=True)
@@ -35,9 +36,9 @@ class PerCurve:
 
     Attributes
     ----------
-    law : of each curve.
-    whole_surface : upload all rows and take the velocities in turn, so that a table is learned with the
-        neighbours that the controller will blend it with, by the speed it believes. Else upload one row
+    law : applied to each curve.
+    whole_surface : upload all rows and press the velocities in turn, so that a table is learned with the
+        neighbours that the controller interpolates it with, at the speed it estimates. Else upload one row
         at a time, one velocity after the other, as the paper's text suggests.
     """
 
@@ -46,7 +47,6 @@ class PerCurve:
 
     @property
     def name(self) -> str:
-        """Name the law and its additions."""
         added = self.law.additions
         whole = ("all speeds in turn",) if self.whole_surface else ()
         parts = "; ".join((*added, *whole))
@@ -54,11 +54,9 @@ class PerCurve:
 
     @property
     def bin_mm(self) -> float:
-        """Give the width of the bins."""
         return self.law.bin_mm
 
-    def init(self, job: Job) -> JobState:
-        """Begin both strokes of every velocity."""
+    def init(self, job: CompensationJob) -> JobState:
         grid = job.target.displacement_mm
         tables = zip(job.target.press_cN, job.target.release_cN, strict=True)
         pairs = tuple(
@@ -67,13 +65,12 @@ class PerCurve:
         )
         return JobState(job, pairs)
 
-    def count(self, state: JobState) -> Count:
-        """Count presses."""
+    def count(self, state: JobState) -> PressCount:
         each = self.law.rounds * self.law.presses_per_round
-        return Count(state.presses, len(state.pairs) * each, len(state.pairs) * (each,))
+        return PressCount(state.presses, len(state.pairs) * each, len(state.pairs) * (each,))
 
     def trial(self, state: JobState) -> Trial | None:
-        """Press the current commands of the first velocity that is not finished."""
+        """Return the current commands of the velocity to press next; None when all are finished."""
         at = self._at(state)
         if at is None:
             return None
@@ -84,21 +81,20 @@ class PerCurve:
         return Trial(surface, float(target.velocity_mm_s[at]))
 
     def step(self, press: Press, state: JobState) -> JobState:
-        """Learn both strokes from one press. Raises ModelError where a stroke of it holds no sample."""
+        """Learn both strokes from one press. Raises ModelError if a stroke has no sample."""
         at = self._at(state)
         if at is None:
-            raise ModelError("the job is finished; no press was asked for")
+            raise ModelError("the job is finished; no press is needed")
         pair = self._learn(press, state.job, state.pairs[at])
         pairs = (*state.pairs[:at], pair, *state.pairs[at + 1 :])
-        told = self._told(state.pairs[at], pair)
-        return replace(state, pairs=pairs, presses=state.presses + 1, told=told)
+        message = self._message(state.pairs[at], pair)
+        return replace(state, pairs=pairs, presses=state.presses + 1, message=message)
 
     def explain(self, state: JobState) -> str:
-        """Tell what the last press changed; empty before the first."""
-        return state.told
+        """Return what the last press changed; empty before the first."""
+        return state.message
 
     def done(self, state: JobState) -> Outcome:
-        """Collect the tables of all curves."""
         learned = [[self.law.done(curve) for curve in pair] for pair in state.pairs]
         speeds = state.job.target.velocity_mm_s
         curves = tuple(
@@ -113,14 +109,13 @@ class PerCurve:
         return Outcome(surface, curves, state.presses, complete, sentence)
 
     def _at(self, state: JobState) -> int | None:
-        """Find the velocity at work: the first with presses to make, or the one with fewest made."""
+        """Return the row to press next: the first unfinished one, or the one with the fewest presses."""
         left = [i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0])]
         if not self.whole_surface:
             return next(iter(left), None)
         return min(left, key=lambda i: len(state.pairs[i][0].errors_cN), default=None)
 
-    def _learn(self, press: Press, job: Job, pair: Pair) -> Pair:
-        """Step both curves."""
+    def _learn(self, press: Press, job: CompensationJob, pair: Pair) -> Pair:
         t_s, sensed, force = rig_columns(press)
         felt = felt_at_mm(t_s, sensed, self.law.delays)
         measured = [
@@ -133,8 +128,7 @@ class PerCurve:
         press_state, release_state = (self.law.step(m, c)[1] for m, c in zip(measured, pair, strict=True))
         return press_state, release_state
 
-    def _told(self, before: Pair, after: Pair) -> str:
-        """Say by how much the tables moved, or that a round is over."""
+    def _message(self, before: Pair, after: Pair) -> str:
         done = len(after[0].rounds)
         if done > len(before[0].rounds):
             rest = "the tables are averaged" if done == self.law.rounds else "the next round begins"

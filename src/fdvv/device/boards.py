@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 from fdvv import _native
-from fdvv.device._plant import OUTPUTS_BYTES, Inputs, Outputs
+from fdvv.device.plant import OUTPUTS_BYTES, Inputs, Outputs
 from fdvv.errors import BuildError, DeviceError
-from fdvv.protocol import ImageHeader
+from fdvv.protocol.tables import ImageHeader
 
 TAIL = struct.Struct("<II")
 SENT = struct.Struct("<I")
@@ -47,26 +47,23 @@ class LibraryBoard:
         return Outputs.unpack(self._outputs.raw)
 
     def _hand_over(self) -> None:
-        """Give the firmware as much as it has room for."""
         if self._waiting:
             count = min(len(self._waiting), 4096)
             taken = self._library.fdvv_host_receive(self._handle, self._waiting[:count], count)
             self._waiting = self._waiting[taken:]
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the link."""
         if self._plugged:
             self._waiting += data
 
     def read(self) -> bytes:
-        """Give what the board has put on the link."""
         if not self._plugged:
             return b""
         count = self._library.fdvv_host_transmit(self._handle, self._room, len(self._room))
         return self._room.raw[:count] if count else b""
 
     def program(self) -> bytes | None:
-        """Give the image that is rendered, None if there is none."""
+        """Return the image that is rendered, None if there is none."""
         found = self._library.fdvv_host_program(self._handle)
         if not found:
             return None
@@ -74,16 +71,13 @@ class LibraryBoard:
         return ctypes.string_at(found, head.size_bytes)
 
     def unplug(self) -> None:
-        """Pull the cable."""
         self._library.fdvv_host_unplug(self._handle)
         self._waiting, self._plugged = b"", False
 
     def plug(self) -> None:
-        """Plug it in again."""
         self._plugged = True
 
     def close(self) -> None:
-        """Free the board."""
         self._library.fdvv_host_free(self._handle)
         self._handle = ctypes.c_void_p()  # freeing it again does nothing
 
@@ -151,7 +145,6 @@ class HostBoard:
             self._arrived += piece
 
     def _take(self) -> bytes:
-        """Read the answer that is owed."""
         while len(self._answer) < ANSWER_BYTES:
             if not select.select([self._given], [], [], PATIENCE_s)[0]:
                 raise DeviceError(f"host: no tick in {PATIENCE_s:g} s; the program hangs")
@@ -169,12 +162,11 @@ class HostBoard:
             self._waiting = self._waiting[done:]
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the link."""
         if self._plugged:
             self._waiting += data
 
     def read(self) -> bytes:
-        """Give all that the board has put on the link in its ticks so far."""
+        """Return all that the board has put on the link in its ticks so far."""
         data, self._arrived = self._arrived, b""
         return data
 
@@ -184,11 +176,9 @@ class HostBoard:
         self._written = self._heard = 0
 
     def plug(self) -> None:
-        """Plug it in again."""
         self._plugged = True
 
     def close(self) -> None:
-        """End the program and wait for it."""
         if self._open:
             self._open = False
             for file in (self._asked, self._given, self._link, self._slave):

@@ -6,12 +6,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import TypeVar
 
-from fdvv.device._clocks import ClockRelation, Exchange, relate, unwrap_us
-from fdvv.device._port import Port
-from fdvv.device._telemetry import Telemetry
-from fdvv.device._wire import Notice, Wire
+from fdvv.device.telemetry import Telemetry
+from fdvv.device.wire import ClockRelation, Exchange, Notice, Port, Wire, relate, unwrap_us
 from fdvv.errors import DeviceError
-from fdvv.protocol import (
+from fdvv.protocol.messages import data_request, head_of
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import (
     DATA_BYTES,
     HASH,
     VERSION,
@@ -29,14 +29,11 @@ from fdvv.protocol import (
     PingRequest,
     ReadCountersReply,
     ReadFaultReply,
-    Record,
     RecordsRequest,
     SelftestReply,
     Settings,
     TelemetryRequest,
     VibrateRequest,
-    data_request,
-    head_of,
 )
 
 Kind = TypeVar("Kind", bound=Record)
@@ -55,8 +52,8 @@ class Client:
 
     Attributes
     ----------
-    hello : what the device said of itself.
-    telemetry : records so far.
+    hello : name, version and limits of the device.
+    telemetry : records received so far.
     on_key, on_fault : as above; may be set later.
     """
 
@@ -77,7 +74,7 @@ class Client:
     def connect(self) -> HelloReply:
         """Say hello; DeviceError if the device speaks another protocol."""
         self.port.write(b"\0")
-        hello = self._ask(Message.HELLO, HelloReply, HelloRequest(version=VERSION, hash=HASH))
+        hello = self._request(Message.HELLO, HelloReply, HelloRequest(version=VERSION, hash=HASH))
         if hello.hash != HASH:
             raise DeviceError(
                 f"{self.port.name}: its firmware speaks protocol {hello.hash:08x}, this fdvv {HASH:08x}; "
@@ -95,20 +92,20 @@ class Client:
 
     # -- requests ------------------------------------------------------------------------------------------
 
-    def _ask(self, message: Message, kind: type[Kind], body: Record | None = None) -> Kind:
+    def _request(self, message: Message, kind: type[Kind], body: Record | None = None) -> Kind:
         reply = self._wire.request(message, body)
         assert isinstance(reply, kind)
         self._heard_s = self.port.now_s()
         return reply
 
-    def _tell(self, message: Message, body: Record | None = None) -> None:
+    def _command(self, message: Message, body: Record | None = None) -> None:
         self._wire.request(message, body)
         self._heard_s = self.port.now_s()
 
     def ping(self) -> PingReply:
         """Show that the host is there, and compare the clocks."""
         sent_us = self.port.now_s() * 1e6
-        reply = self._ask(Message.PING, PingReply, PingRequest(host_us=int(sent_us) % 2**32))
+        reply = self._request(Message.PING, PingReply, PingRequest(host_us=int(sent_us) % 2**32))
         last_us = self._exchanges[-1] if self._exchanges else None
         near_us = last_us.device_us + sent_us - last_us.sent_us if last_us else reply.device_us
         if reply.host_us == int(sent_us) % 2**32:
@@ -121,65 +118,64 @@ class Client:
         return relate(tuple(self._exchanges))
 
     def host_s(self, time_us: int) -> float:
-        """Give the port's time of a moment, not long ago, that a notice tells; DeviceError without a ping."""
+        """Return the port's time of a recent moment of a notice; DeviceError without a ping."""
         clocks = self.clocks()
         return 1e-6 * clocks.host_us(unwrap_us(time_us, self._exchanges[-1].device_us))
 
     def read_settings(self) -> Settings:
         """Read calibration and limits."""
-        return self._ask(Message.READ_SETTINGS, Settings)
+        return self._request(Message.READ_SETTINGS, Settings)
 
     def write_settings(self, settings: Settings) -> None:
         """Replace calibration and limits; while idle, and the device forgets its programs."""
-        self._tell(Message.WRITE_SETTINGS, settings)
+        self._command(Message.WRITE_SETTINGS, settings)
 
     def upload(self, image: bytes) -> None:
         """Send a program and have it checked; it becomes the active one whole, or the old one stays."""
-        self._tell(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=head_of(image).crc32))
+        self._command(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=head_of(image).crc32))
         for offset in range(0, len(image), DATA_BYTES):
-            self._tell(Message.DATA, data_request(offset, image[offset : offset + DATA_BYTES]))
-        self._tell(Message.COMMIT)
-        self._tell(Message.ACTIVATE)
+            self._command(Message.DATA, data_request(offset, image[offset : offset + DATA_BYTES]))
+        self._command(Message.COMMIT)
+        self._command(Message.ACTIVATE)
 
     def arm(self) -> None:
         """Render the active program."""
-        self._tell(Message.ARM)
+        self._command(Message.ARM)
 
     def disarm(self) -> None:
         """Fall to zero force."""
-        self._tell(Message.DISARM)
+        self._command(Message.DISARM)
 
     def stream(self, every: int) -> None:
         """Have a record of every n-th tick sent; 0 for none."""
-        self._tell(Message.TELEMETRY, TelemetryRequest(every=every))
+        self._command(Message.TELEMETRY, TelemetryRequest(every=every))
 
     def announce(self, velocity_mm_s: float) -> None:
-        """Tell how fast the next press is meant to be."""
-        self._tell(Message.ANNOUNCE, AnnounceRequest(velocity_mm_s16=round(16 * velocity_mm_s)))
+        """Announce the mean speed of the next press."""
+        self._command(Message.ANNOUNCE, AnnounceRequest(velocity_mm_s16=round(16 * velocity_mm_s)))
 
     def event(self, number: int) -> None:
-        """Tell the program of a host event."""
-        self._tell(Message.EVENT, EventRequest(event=number))
+        """Send a host event to the program."""
+        self._command(Message.EVENT, EventRequest(event=number))
 
     def vibrate(self, slot: int) -> None:
         """Play a waveform of the active program now."""
-        self._tell(Message.VIBRATE, VibrateRequest(slot=slot))
+        self._command(Message.VIBRATE, VibrateRequest(slot=slot))
 
     def read_fault(self) -> ReadFaultReply:
         """Read the latched fault and its evidence."""
-        return self._ask(Message.READ_FAULT, ReadFaultReply)
+        return self._request(Message.READ_FAULT, ReadFaultReply)
 
     def clear_fault(self, fault: Fault) -> None:
-        """Clear the latched fault."""
-        self._tell(Message.CLEAR_FAULT, ClearFaultRequest(fault=fault))
+        self._command(Message.CLEAR_FAULT, ClearFaultRequest(fault=fault))
 
     def selftest(self) -> SelftestReply:
         """Have the device test its parts."""
-        return self._ask(Message.SELFTEST, SelftestReply)
+        return self._request(Message.SELFTEST, SelftestReply)
 
     def counters(self) -> ReadCountersReply:
         """Read what went wrong so far."""
-        return self._ask(Message.READ_COUNTERS, ReadCountersReply)
+        return self._request(Message.READ_COUNTERS, ReadCountersReply)
 
     # -- what comes unasked --------------------------------------------------------------------------------
 
@@ -201,5 +197,4 @@ class Client:
             self.on_fault(notice)
 
     def close(self) -> None:
-        """Close the line."""
         self.port.close()

@@ -1,12 +1,19 @@
-"""What every supplier of presses promises: twin, emulated board, real rig."""
+"""The protocol of devices (twin, emulated board, real rig), and the limits they share."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Protocol
 
-from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Fault, Settings
+import numpy as np
+
+from fdvv.errors import DeviceError
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Fault, Settings
+
+SPEED_LIMITS_mm_s = (0.5, 500.0)
+"""From a machine that probes statically, as the paper's did, to more than a finger does."""
 
 
 @dataclass(frozen=True)
@@ -33,32 +40,27 @@ class Device(Protocol):
     """Accepts tables of force and yields presses. Errors are DeviceError."""
 
     def info(self) -> DeviceInfo:
-        """Tell who this is."""
-        ...
+        """Return who this is."""
 
     def settings(self) -> Settings:
-        """Give calibration and limits as the device holds them."""
-        ...
+        """Return calibration and limits as the device holds them."""
 
     def configure(self, settings: Settings) -> None:
         """Replace calibration and limits, whole or not at all; upload again afterwards.
 
         Raises DeviceError with the device's reason.
         """
-        ...
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop, whole or not at all.
 
         The surface holds actuation as force (cN) in the device's own coordinates: what the motor is
-        told to push with. Its row is that of the velocity decided in the press; of the announced one,
+        commanded to push with. Its row is that of the velocity decided in the press; of the announced one,
         which is the one asked for, if paced. Raises DeviceError on a table beyond the limits.
         """
-        ...
 
     def press(self, velocity_mm_s: float) -> Press:
         """Have the participant press once at a mean speed; every call is a fresh, varied press."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -100,20 +102,42 @@ class ProgramDevice(Device, Protocol):
 
         Raises DeviceError with the device's reason.
         """
-        ...
 
     def stop(self) -> None:
         """Fall to zero force at once; allowed at any time."""
-        ...
 
     def fault(self) -> FaultReport:
-        """Tell the latched fault."""
-        ...
+        """Return the latched fault."""
 
     def clear_fault(self) -> None:
         """Clear the latched fault; DeviceError while its cause lasts."""
-        ...
 
     def close(self) -> None:
         """Stop, and let the device go; a second time does nothing."""
-        ...
+
+
+def check_table(info: DeviceInfo, surface: ForceSurface, travel_mm: float) -> None:
+    """Refuse a table or travel beyond the limits. DeviceError."""
+    largest = max(float(np.abs(table).max()) for table in (surface.press_cN, surface.release_cN))
+    if largest > info.force_limit_cN:
+        raise DeviceError(
+            f"{info.name}: the table reaches {largest:.4g} cN, the limit is {info.force_limit_cN:g} cN; "
+            "clip the table before uploading it"
+        )
+    check_travel(info, travel_mm)
+
+
+def check_travel(info: DeviceInfo, travel_mm: float) -> None:
+    """Refuse a travel that the stop cannot set. DeviceError."""
+    if not 0 < travel_mm <= info.travel_limit_mm:
+        raise DeviceError(
+            f"{info.name}: travel {travel_mm:g} mm is not within 0 to {info.travel_limit_mm:g} mm; "
+            "choose a travel that the stop can set"
+        )
+
+
+def check_speed(name: str, velocity_mm_s: float) -> None:
+    """Refuse an absurd speed of a press on the device of that name. DeviceError."""
+    low, high = SPEED_LIMITS_mm_s
+    if not low <= velocity_mm_s <= high:
+        raise DeviceError(f"{name}: speed {velocity_mm_s:g} mm/s is not within {low:g} to {high:g} mm/s")

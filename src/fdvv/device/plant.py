@@ -1,22 +1,123 @@
-"""A cap that is moved along a given path, for boards in lockstep."""
+"""What a board in lockstep is connected to, tick by tick: protocols, and a scripted person."""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
+from typing import NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from fdvv.device._plant import Inputs
-from fdvv.model import Press
-from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm, travel_mm_of
+from fdvv.model.press import Press
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm, travel_mm_of
+from fdvv.protocol.tables import NONE, Settings
 from fdvv.units import FloatArray
+
+_INPUTS = struct.Struct("<IIHHHHHBx")
+_OUTPUTS = struct.Struct("<hBBHBB6xh4x")
+INPUTS_BYTES, OUTPUTS_BYTES = _INPUTS.size, _OUTPUTS.size
+
+
+class Inputs(NamedTuple):
+    """What a board reads in a tick, as in firmware/core/inputs.h."""
+
+    time_us: int
+    sum: int
+    lowest: int
+    highest: int
+    elapsed_ticks: int = 1
+    supply_mV: int = 12000
+    force_counts: int = 0
+    board: int = 0
+
+    def pack(self) -> bytes:
+        """Return the C structure's bytes."""
+        return _INPUTS.pack(*self)
+
+
+class Outputs(NamedTuple):
+    """What a board does in a tick."""
+
+    duty_q15: int = 0
+    enable: int = 0
+    slot: int = NONE
+    stop_us: int = 0
+    key: int = 0
+    mode: int = 0
+    commanded_cN64: int = 0
+
+    @classmethod
+    def unpack(cls, data: bytes) -> Outputs:
+        """Read the C structure's bytes; the rest of the tick's record goes over the link."""
+        return cls(*_OUTPUTS.unpack(data))
+
+
+class Plant(Protocol):
+    """A rig in reality's place. `time_us` of what it gives is set by the clock of the line."""
+
+    def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
+        """Move on to the next tick with these outputs, and read the sensors there."""
+
+
+class Truth(Protocol):
+    """What really happened, all on one clock; every column (n,)."""
+
+    @property
+    def t_s(self) -> FloatArray:
+        """From 0."""
+
+    @property
+    def displacement_mm(self) -> FloatArray:
+        """Of the cap."""
+
+    @property
+    def force_cN(self) -> FloatArray:
+        """Between finger and cap."""
+
+    @property
+    def tick(self) -> npt.NDArray[np.bool_] | None:
+        """Rows at which the board read its sensors."""
+
+
+class PressedPlant(Plant, Protocol):
+    """A plant on which someone presses once."""
+
+    @property
+    def ticks(self) -> int:
+        """How many steps the press and its release take."""
+
+    def record(self) -> Truth:
+        """Return what happened in all steps so far."""
+
+
+class Person(Protocol):
+    """Someone who presses when asked, and the rig that is pressed."""
+
+    @property
+    def settings(self) -> Settings:
+        """Calibration and limits that suit the rig."""
+
+    @property
+    def settle_s(self) -> float:
+        """Time that the cap takes to come up, and the stop to move, once there is force."""
+
+    def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> PressedPlant:
+        """Come to the button at rest and press it once, at about this speed, on this program."""
+
+    def load(self, image: bytes) -> None:
+        """Load the waveforms of the active program into the rig's vibration board."""
+
+    def rest(self, settings: Settings) -> Plant:
+        """Leave the button alone."""
+
 
 Meddle = Callable[[int, Inputs], Inputs]
 """Changes what the board reads in a tick: a broken wire, a low supply, a missed tick."""
 
 
 class ScriptedPlant:
-    """A cap on a path; the force felt is what the duty stands for. `record` has one row per tick.
+    """A cap on a path; the force felt is that of the duty. `record` has one row per tick.
 
     Parameters
     ----------
@@ -43,11 +144,9 @@ class ScriptedPlant:
 
     @property
     def ticks(self) -> int:
-        """Length of the path."""
         return self._path_mm.size
 
     def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
-        """Move on by a tick."""
         felt = duty_q15 * 65536 / self._settings.duty_gain_q16 / CN64_PER_cN if enable else 0.0
         self._felt_cN.append(felt)
         x_um16 = UM16_PER_mm * float(self._path_mm[min(self._tick, self.ticks - 1)])
@@ -61,7 +160,6 @@ class ScriptedPlant:
         return inputs
 
     def record(self) -> Press:
-        """Give what happened."""
         n = self._tick
         path = self._path_mm[np.minimum(np.arange(n), self.ticks - 1)]
         t_s = np.arange(n, dtype=np.float64) * (self._settings.tick_us * 1e-6)
@@ -99,5 +197,4 @@ class ScriptedPerson:
         """Do nothing: there is no vibration board."""
 
     def rest(self, settings: Settings) -> ScriptedPlant:
-        """Leave the cap at the top."""
         return ScriptedPlant(np.zeros(1), 0.0, settings, self._random)

@@ -1,9 +1,9 @@
-"""Sessions on file: a line of JSON for everything that a device was told or gave.
+"""Sessions on file: a line of JSON for everything sent to or received from a device.
 
 The first line is ``{"fdvv": "session", "format": 1, "info": {…}, "settings": {…}}``; then, in order,
 ``{"settings": {…}}``, ``{"upload": {…}}``, ``{"program": "base64"}``, ``{"press": {…}}`` and
 ``{"error": {…}}``. An upload holds ``"paced": true`` where it was. Columns are 64-bit floats or flags,
-packed as `fdvv.columns` tells. Every line is on the disk before the next begins; a last line that was cut
+packed as in `fdvv.io.columns`. Every line is on the disk before the next begins; a last line that was cut
 short is left out when the file is read.
 """
 
@@ -20,11 +20,12 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from fdvv.columns import pack_column, unpack_column
-from fdvv.device._contract import Device, DeviceInfo, FaultReport, ProgramDevice
+from fdvv.device.contract import Device, DeviceInfo, FaultReport, ProgramDevice, check_speed, check_table
 from fdvv.errors import DeviceError, InputError
-from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Settings
+from fdvv.io.columns import pack_column, unpack_column
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Fault, Settings
 
 FORMAT = 1
 T = TypeVar("T")
@@ -70,15 +71,15 @@ class Recorder:
         self._file = self._path.open("a", encoding="ascii")
         if self._path.stat().st_size and not self._path.read_bytes().endswith(b"\n"):
             self._file.write("\n")  # of a session that was cut short
-        told = {"info": dataclasses.asdict(device.info()), "settings": dataclasses.asdict(device.settings())}
-        self._write({"fdvv": "session", "format": FORMAT, **told})
+        head = {"info": dataclasses.asdict(device.info()), "settings": dataclasses.asdict(device.settings())}
+        self._write({"fdvv": "session", "format": FORMAT, **head})
 
     def _write(self, line: dict[str, Any]) -> None:
         self._file.write(json.dumps(line) + "\n")
         self._file.flush()
         os.fsync(self._file.fileno())
 
-    def _kept(self, call: Callable[[], T], line: dict[str, Any]) -> T:
+    def _recorded(self, call: Callable[[], T], line: dict[str, Any]) -> T:
         """Call, and write what was asked; a refusal or failure is part of the session."""
         try:
             found = call()
@@ -90,54 +91,49 @@ class Recorder:
         return found
 
     def info(self) -> DeviceInfo:
-        """Tell who this is."""
         return self._device.info()
 
     def settings(self) -> Settings:
-        """Give calibration and limits."""
         return self._device.settings()
 
     def configure(self, settings: Settings) -> None:
-        """Configure and write down."""
-        self._kept(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
+        self._recorded(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
-        """Upload and write down."""
-        told = {"surface": pack_record(surface), "travel_mm": travel_mm, **({"paced": True} if paced else {})}
-        self._kept(lambda: self._device.upload(surface, travel_mm, paced), {"upload": told})
+        upload = {
+            "surface": pack_record(surface),
+            "travel_mm": travel_mm,
+            **({"paced": True} if paced else {}),
+        }
+        self._recorded(lambda: self._device.upload(surface, travel_mm, paced), {"upload": upload})
 
     def upload_program(self, image: bytes) -> None:
-        """Upload and write down."""
         line = {"program": base64.b64encode(image).decode()}
-        self._kept(lambda: self._programs().upload_program(image), line)
+        self._recorded(lambda: self._programs().upload_program(image), line)
 
     def press(self, velocity_mm_s: float) -> Press:
         """Press and write down."""
-        press = self._kept(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
+        press = self._recorded(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
         self._write({"press": pack_record(press)})
         return press
 
     def stop(self) -> None:
-        """Fall to zero force at once."""
         self._programs("stop").stop()
 
     def fault(self) -> FaultReport:
-        """Tell the latched fault."""
         return self._programs("fault").fault()
 
     def clear_fault(self) -> None:
-        """Clear the latched fault."""
         self._programs("clear_fault").clear_fault()
 
     def _programs(self, needed: str = "upload_program") -> ProgramDevice:
-        """Give the device as one that runs programs; DeviceError if it lacks what is needed of one."""
+        """Return the device as one that runs programs; DeviceError if it lacks what is needed of one."""
         if not hasattr(self._device, needed):
             lacks = "no programs" if needed == "upload_program" else f"has no {needed.replace('_', ' ')}"
             raise DeviceError(f"{self.info().name}: runs tables of force only, {lacks}")
         return self._device  # type: ignore[return-value] # it has what is needed
 
     def close(self) -> None:
-        """End the session and let the device go."""
         if hasattr(self._device, "close"):
             self._device.close()
         self._file.close()
@@ -187,3 +183,91 @@ def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
 
 def _no_record(path: Path, number: int) -> InputError:
     return InputError(path, f"line {number}", "is no record", "name a file that --record wrote")
+
+
+class ReplayDevice:
+    """Replays the presses of a recording to the same requests in the same order.
+
+    Parameters
+    ----------
+    path : a file that `Recorder` wrote; its last session is replayed. InputError.
+    """
+
+    def __init__(self, path: Path) -> None:
+        head, *self._lines = read_session(path)
+        self._path, self._place, self._active = Path(path), 0, False
+        self._info = DeviceInfo(**head["info"])
+        # a recording from before settings were written down: the default ones, at its tick
+        self._settings = Settings(**head.get("settings", {"tick_us": round(1e6 * self._info.tick_s)}))
+
+    def info(self) -> DeviceInfo:
+        return self._info
+
+    def settings(self) -> Settings:
+        """Return what the recorded device held at this place of its session."""
+        return self._settings
+
+    def configure(self, settings: Settings) -> None:
+        """Find these settings in what follows; DeviceError if they were not written then."""
+        self._find(
+            "settings", lambda found: found == dataclasses.asdict(settings), "a device with such settings"
+        )
+        self._settings, self._active = settings, False
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
+        """Find this table in what follows; DeviceError if it was not uploaded then."""
+        check_table(self._info, surface, travel_mm)
+        self._find("upload", lambda found: _same(found, surface, travel_mm, paced), "this table")
+
+    def upload_program(self, image: bytes) -> None:
+        """Find this program in what follows; DeviceError if it was not uploaded then."""
+        self._find("program", lambda found: base64.b64decode(found) == image, "this program")
+
+    def _find(self, kind: str, same: Any, what: str) -> None:
+        for place in range(self._place, len(self._lines)):
+            if kind in self._lines[place] and same(self._lines[place][kind]):
+                self._place, self._active = place + 1, True
+                return
+        raise DeviceError(f"{self._path}: {what} is not in the rest of the recording; press it on a device")
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Return the next press of this upload; DeviceError at another speed, or if none is left."""
+        if not self._active:
+            raise DeviceError(f"{self._path}: press before upload; upload a surface first")
+        check_speed(str(self._path), velocity_mm_s)
+        if self._place >= len(self._lines):
+            raise DeviceError(f"{self._path}: the recording ends here")
+        line = self._lines[self._place]
+        self._place += 1
+        if "error" in line and "press" in line["error"]:
+            raise DeviceError(str(line["error"]["reason"]))
+        if "press" not in line:
+            raise DeviceError(f"{self._path}: no further press was recorded with this upload")
+        press = unpack_press(line["press"])
+        if press.velocity_mm_s != velocity_mm_s:
+            raise DeviceError(
+                f"{self._path}: the next press was asked at {press.velocity_mm_s:g} mm/s, "
+                f"not at {velocity_mm_s:g}"
+            )
+        return press
+
+    def stop(self) -> None:
+        """Do nothing: a recording exerts no force."""
+
+    def fault(self) -> FaultReport:
+        return FaultReport(Fault.NONE, 0, 0, 0.0, 0.0, 0.0, 0)
+
+    def clear_fault(self) -> None:
+        """Refuse: there is none."""
+        raise DeviceError(f"{self._path}: a recording has no fault to clear")
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+def _same(found: dict[str, Any], surface: ForceSurface, travel_mm: float, paced: bool) -> bool:
+    then = unpack_surface(found["surface"])
+    names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
+    pairs = [(getattr(then, name), getattr(surface, name)) for name in names]
+    same = found["travel_mm"] == travel_mm and found.get("paced", False) == paced
+    return bool(same and all(np.array_equal(a, b) for a, b in pairs))

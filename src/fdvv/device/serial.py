@@ -13,7 +13,6 @@ if TYPE_CHECKING:
 WRITE_s = 1.0
 REOPEN_s = 10.0
 """Time in which a device that restarts must be back."""
-
 MISSING = "serial ports need serialx; pip install 'fdvv[serial]'"
 
 
@@ -57,15 +56,12 @@ class SerialPort:
 
     @property
     def name(self) -> str:
-        """Name the line."""
         return self._path
 
     def now_s(self) -> float:
-        """Give the host's steady clock."""
         return time.monotonic()
 
     def write(self, data: bytes) -> None:
-        """Send bytes."""
         import serialx
 
         try:
@@ -74,7 +70,6 @@ class SerialPort:
             raise self._gone(error) from error
 
     def read(self, until_s: float) -> bytes:
-        """Wait for bytes."""
         import serialx
 
         buffer = bytearray(4096)
@@ -88,7 +83,6 @@ class SerialPort:
         return DeviceError(f"{self._path}: the device is gone ({error}); plug it in again")
 
     def reopen(self) -> None:
-        """Open the line again, waiting for a device that restarts."""
         self.close()
         until_s = time.monotonic() + REOPEN_s
         while True:
@@ -102,5 +96,4 @@ class SerialPort:
                 return
 
     def close(self) -> None:
-        """Close the line."""
         self._line.close()

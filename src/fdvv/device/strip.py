@@ -1,4 +1,4 @@
-"""A bullet on an LED strip, and when a key went down while it ran: the Uno of the paper's pointing task."""
+"""The LED strip of the paper's pointing task: its messages, its rounds, and when a key went down."""
 
 from __future__ import annotations
 
@@ -6,33 +6,123 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
-from fdvv.device._clocks import unwrap_us
-from fdvv.device._port import Port
-from fdvv.device._strip_wire import StripWire
-from fdvv.errors import DeviceError
-from fdvv.protocol import (
+from fdvv.device.wire import Port, unwrap_us
+from fdvv.errors import DeviceError, ModelError
+from fdvv.protocol.frame import Frame, FrameDecoder, encode
+from fdvv.protocol.messages import REPLY
+from fdvv.protocol.record import Record
+from fdvv.protocol.strip_tables import (
+    STRIP_HASH,
     STRIP_PRESSES,
+    STRIP_VERSION,
     StripBeginReply,
     StripBeginRequest,
     StripBoardFlag,
+    StripHelloReply,
+    StripHelloRequest,
     StripLed,
     StripMessage,
     StripMode,
     StripReadRoundReply,
+    StripRefusal,
+    StripRefusedReply,
     StripShowRequest,
     StripStatusReply,
 )
 
+Kind = TypeVar("Kind", bound=Record)
+TRIES = 4
+TIMEOUT_s = 0.1
+"""A request may wait for a frame of the strip, 3 ms, and crosses in 10 ms."""
+HELLO_TRIES = 30
+"""An Uno starts again when its port is opened, and its bootloader keeps it for 1 to 2 s."""
+REASONS = {
+    StripRefusal.NONE: "no reason given",
+    StripRefusal.UNKNOWN_MESSAGE: "it does not know this request; update its firmware",
+    StripRefusal.BAD_LENGTH: "the request has a wrong length",
+    StripRefusal.BAD_VALUE: "a value is out of range",
+    StripRefusal.BUSY: "the strip is at a round of another program; wait for its end, or stop it",
+    StripRefusal.HASH_MISMATCH: "it was started anew and knows nobody; open the strip again",
+}
 GLANCE_s = 0.05
-"""Between two looks at a round; they also tell the board that the host is there."""
+"""Between two polls of a round; they also keep the link alive."""
 DELAYS_s = 0.8, 1.6
 """From asking for a round to its bullet, drawn evenly: nobody can press by rhythm alone (assumed)."""
 LONGEST_DELAY_s, PATIENCE_s = 10.0, 1.0
 PLAYING = StripMode.WAITING, StripMode.MOVING
+
+
+class StripWire:
+    """Sends requests one at a time, again if need be. A board that carried one out answers the same again.
+
+    Parameters
+    ----------
+    port : an open line. DeviceError without an answer, or from another board or version.
+
+    Attributes
+    ----------
+    hello : what the board said of itself.
+    """
+
+    def __init__(self, port: Port) -> None:
+        self.port = port
+        self._decoder = FrameDecoder()
+        self._sequence = 0
+        port.write(b"\0")
+        request = StripHelloRequest(version=STRIP_VERSION, hash=STRIP_HASH)
+        self.hello = self.ask(StripMessage.HELLO, StripHelloReply, request, HELLO_TRIES)
+        if self.hello.hash != STRIP_HASH:
+            raise DeviceError(
+                f"{port.name}: the strip's firmware speaks protocol {self.hello.hash:08x}, "
+                f"this fdvv {STRIP_HASH:08x}; update the firmware or fdvv, so that both are of one version"
+            )
+
+    def ask(
+        self, message: StripMessage, kind: type[Kind], body: Record | None = None, tries: int = TRIES
+    ) -> Kind:
+        """Ask and give the reply's body. DeviceError if it is refused, or no answer comes."""
+        return kind.unpack(self._exchange(message, body, tries))
+
+    def command(self, message: StripMessage, body: Record | None = None) -> None:
+        """Ask for what has no answer but that it is done. DeviceError as `ask`."""
+        self._exchange(message, body, TRIES)
+
+    def _exchange(self, message: StripMessage, body: Record | None, tries: int) -> bytes:
+        self._sequence = (self._sequence + 1) % 256
+        data = encode(Frame(message, self._sequence, body.pack() if body else b""))
+        heard = False
+        for attempt in range(tries):
+            # zeros end whatever half a frame the board still holds
+            self.port.write(b"\0" + data if attempt else data)
+            until_s = self.port.now_s() + TIMEOUT_s
+            while came := self.port.read(until_s):
+                heard = True
+                for frame in self._decoder.feed(came):
+                    if frame.sequence == self._sequence and frame.message == message + REPLY:
+                        return frame.payload
+                    self._refuse(frame, message)
+        found = "what answers there is no LED strip's board" if heard else "no answer"
+        raise DeviceError(
+            f"{self.port.name}: {found} ({message.name.lower()}, {tries * TIMEOUT_s:.1f} s); "
+            "check the port's name, the cable and the board's program (uno_strip)"
+        )
+
+    def _refuse(self, frame: Frame, message: StripMessage) -> None:
+        """Raise DeviceError if the frame refuses the message."""
+        if (frame.message, frame.sequence) != (StripMessage.REFUSED + REPLY, self._sequence):
+            return
+        try:
+            body = StripRefusedReply.unpack(frame.payload)
+            reason = REASONS[StripRefusal(body.refusal)]
+        except (ModelError, ValueError):
+            return
+        if body.request == message:
+            where = f" (field {body.detail})" if body.refusal == StripRefusal.BAD_VALUE else ""
+            raise DeviceError(f"{self.port.name}: refused {message.name.lower()}: {reason}{where}")
 
 
 class KeyLine(Protocol):
@@ -40,7 +130,6 @@ class KeyLine(Protocol):
 
     def press_at(self, time_s: float) -> None:
         """Let the key go down at a time of the board's clock that is still to come, after all others."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -69,12 +158,12 @@ class StripRound:
     led: StripLed = StripLed.EACH
 
     def drawn(self, seed: int, number: int) -> StripRound:
-        """Give this round with the start delay that a seed draws for a round's number: the same each time."""
+        """Return this round with the start delay that the seed and the round's number determine."""
         delay_s = float(np.random.default_rng((seed, number)).uniform(*DELAYS_s))
         return replace(self, delay_s=delay_s)
 
     def request(self, number: int) -> StripBeginRequest:
-        """Give the request for it. ModelError for a number beyond the wire's range."""
+        """Return the request for it. ModelError for a number beyond the wire's range."""
         return StripBeginRequest(
             round=number,
             speed_px_s=self.speed_px_s,
@@ -107,7 +196,7 @@ class StripResult:
     activations_s : when the key went down, rising, on that clock, to 1 us; the first eight of `presses`.
     presses : how often it did between asking for the round and its end.
     frames : sent for steps of the bullet.
-    late_s : the latest of them was begun so long after its time, as the board's clock told it.
+    late_s : the latest of them was begun so long after its time, by the board's clock.
     is_whole : false: the board went dark in the round since it heard nothing of the host.
     """
 
@@ -120,7 +209,7 @@ class StripResult:
     is_whole: bool
 
 
-class StripTask:
+class LedPointingTask:
     """The board with the LED strip.
 
     Parameters
@@ -143,7 +232,7 @@ class StripTask:
             port.close()
             raise
         self._near_us, self._near_at_s = float(status.time_us), port.now_s()
-        # another than that of a program before this one, whose request might still be told again
+        # another than that of a program before this one, whose request might still be repeated
         self._number = status.time_us % 2**16
 
     def status(self) -> StripStatusReply:
@@ -192,7 +281,7 @@ class StripTask:
         raise DeviceError(f"{self.port.name}: the strip does not end its round; reset the board")
 
     def show(self, first: int, count: int, colour: tuple[int, int, int], brightness: int = 8) -> None:
-        """Light at most 16 pixels in red, green, blue of 0 to 255 until told otherwise, to check the strip.
+        """Light at most 16 pixels in red, green, blue of 0 to 255 until the next command, to check the strip.
 
         It goes dark by itself where `status` is not asked for half a second.
         """
@@ -200,24 +289,24 @@ class StripTask:
         order = StripShowRequest(
             first=first, count=count, red=red, green=green, blue=blue, brightness=brightness
         )
-        self._wire.tell(StripMessage.SHOW, order)
+        self._wire.command(StripMessage.SHOW, order)
 
     def stop(self) -> None:
         """End the round or what is shown; the strip goes dark."""
-        self._wire.tell(StripMessage.STOP)
+        self._wire.command(StripMessage.STOP)
 
     @property
     def firmware(self) -> str:
-        """Get the version of the board's firmware."""
+        """Return the version of the board's firmware."""
         return ".".join(str(self._wire.hello.firmware >> shift & 255) for shift in (16, 8, 0))
 
     @property
     def was_reset(self) -> bool:
-        """Tell whether its watchdog had reset the board before it was opened."""
+        """Return whether its watchdog had reset the board before it was opened."""
         return bool(self._wire.hello.flags & StripBoardFlag.WATCHDOG)
 
     def _s(self, time_us: int) -> float:
-        """Give a time without the turns of the board's counter, which the line's clock bridges."""
+        """Return a time without the turns of the board's counter, which the line's clock bridges."""
         now_s = self.port.now_s()
         self._near_us = unwrap_us(time_us, self._near_us + 1e6 * (now_s - self._near_at_s))
         self._near_at_s = now_s

@@ -6,16 +6,25 @@ import ctypes
 from bisect import insort
 
 from fdvv import _native
+from fdvv.device.serial import SerialPort
+from fdvv.device.strip import LedPointingTask
+from fdvv.device.wire import Port
+from fdvv.errors import InputError
 
 STEP_us = 500
 """The board looks at its bytes so often here."""
 KEY_s = 0.1
 """How long a key pressed by `press_at` stays down."""
 REPLY_BYTES = 70
+STRIPS = {
+    "host": "the firmware's core in this process; nothing is seen, and no key is pressed",
+    "serial:PORT": "a strip's board on a serial port, its key line on the rig's controller",
+}
+"""LED strips that a word opens, and what each is."""
 
 
 class LibraryStrip:
-    """A line to a board that is no more than the firmware's core; its clock goes only while somebody waits.
+    """A line to a board that is no more than the firmware's core; its clock runs only while a caller waits.
 
     Simulated: there is no strip to be seen, and a key is pressed only by `press_at`.
 
@@ -35,11 +44,10 @@ class LibraryStrip:
         self._time_us = 0
         self._edges_us: list[int] = []
         self._up_us = 0
-        self._asked = self._told = b""
+        self._asked = self._reply = b""
         self.bullet_px: int | None = None
 
     def now_s(self) -> float:
-        """Give the board's clock, which is the line's."""
         return 1e-6 * self._time_us
 
     def press_at(self, time_s: float) -> None:
@@ -51,12 +59,11 @@ class LibraryStrip:
         self._asked += data
 
     def read(self, until_s: float) -> bytes:
-        """Let time pass until there are bytes or the time is there."""
         until_us = round(1e6 * until_s)
-        while not self._told and self._time_us < until_us:
+        while not self._reply and self._time_us < until_us:
             self._step()
-        told, self._told = self._told, b""
-        return told
+        reply, self._reply = self._reply, b""
+        return reply
 
     def _step(self) -> None:
         self._time_us += STEP_us
@@ -76,12 +83,26 @@ class LibraryStrip:
         count = self._library.fdvv_strip_bridge_receive(
             self._handle, self._asked, len(self._asked), now_us, key, room
         )
-        self._asked, self._told = b"", self._told + room.raw[:count]
+        self._asked, self._reply = b"", self._reply + room.raw[:count]
 
     def reopen(self) -> None:
         """Nothing breaks this line."""
 
     def close(self) -> None:
-        """Free the board."""
         self._library.fdvv_strip_bridge_free(self._handle)
         self._handle = ctypes.c_void_p()  # freeing it again does nothing
+
+
+def strip_port(spec: str) -> Port:
+    """Open the line to the strip that spec names (STRIPS). Raises InputError, DeviceError."""
+    kind, _, where = spec.partition(":")
+    if kind == "serial" and where:
+        return SerialPort(where)
+    if spec == "host":
+        return LibraryStrip()
+    raise InputError("--strip", spec, "names no LED strip", f"use one of {', '.join(STRIPS)}")
+
+
+def open_strip(spec: str) -> LedPointingTask:
+    """Open the strip that spec names (STRIPS). Raises InputError, DeviceError."""
+    return LedPointingTask(strip_port(spec))

@@ -7,11 +7,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.protocol import CN64_PER_cN, RecordsRequest, UM16_PER_mm
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import RecordsRequest
 from fdvv.units import FloatArray
 
 IntArray = npt.NDArray[np.int64]
-
 TICK_RECORD = np.dtype(
     [
         ("displacement_um16", "<i4"),
@@ -32,7 +32,7 @@ class TickColumns:
     ----------
     tick : since the device booted.
     displacement_mm, velocity_mm_s, commanded_cN, force_cN : as the device has them; force 0 without a sensor.
-    state, flags : of the program; bits of fdvv.protocol.TickFlag.
+    state, flags : of the program; bits of fdvv.protocol.tables.TickFlag.
     """
 
     tick: IntArray
@@ -44,7 +44,7 @@ class TickColumns:
     flags: IntArray
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> TickColumns:
-        """Give only the chosen ticks."""
+        """Return only the chosen ticks."""
         return TickColumns(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
 
@@ -57,7 +57,7 @@ class Telemetry:
     missing_frames : frames from the device that the line lost or damaged, by their sequence numbers.
     lost_records : records for which the device had no room, by its own count.
     late_ticks : ticks that the device itself missed.
-    missing_ticks : ticks between records that should have been told and were not, for whatever reason.
+    missing_ticks : ticks between records that should have come and did not.
     """
 
     def __init__(self) -> None:
@@ -91,13 +91,13 @@ class Telemetry:
         self.missing_frames = self.lost_records = self.late_ticks = self.missing_ticks = 0
 
     def take(self) -> TickColumns:
-        """Give what has arrived and forget it; counts and gaps go on."""
+        """Return what has arrived and forget it; counts and gaps go on."""
         found = self.columns()
         self._pieces = []
         return found
 
     def columns(self) -> TickColumns:
-        """Give what has arrived as columns."""
+        """Return what has arrived as columns."""
         heads = [head for head, _ in self._pieces]
         rows = np.frombuffer(b"".join(records for _, records in self._pieces), TICK_RECORD)
         ticks = [head.first_tick + head.every * np.arange(head.count, dtype=np.int64) for head in heads]

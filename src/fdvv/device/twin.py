@@ -1,27 +1,33 @@
-"""The twin as a device: a simulated person presses a simulated rig."""
+"""The twin as a device, and its person at a board that runs the firmware."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from fdvv.core import Core
-from fdvv.device._contract import DeviceInfo
-from fdvv.device._limits import check_speed, check_table, check_travel
+from fdvv.device.contract import DeviceInfo, check_speed, check_table, check_travel
+from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, ModelError
-from fdvv.model import ForceSurface, Press
-from fdvv.protocol import CN64_PER_cN, Mode, Settings, travel_mm_of
-from fdvv.twin import (
-    Finger,
-    Rig,
-    Trace,
-    draw_noise,
-    image_of,
-    settings_of,
-    simulate_program,
-    solve_program_pace,
-    vary,
-)
+from fdvv.firmware.core import Core
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
+from fdvv.protocol.tables import Mode, Settings
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import draw_noise
+from fdvv.twin.pace import solve_program_pace
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
+from fdvv.twin.simulate import simulate_program
+from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm, mm_from_m
+
+SETTLE_s = 0.3
+"""Without force the cap lies at the stop; it must be up before anyone presses."""
 
 
 class TwinDevice:
@@ -33,7 +39,7 @@ class TwinDevice:
     seed : of everything random.
 
     The person holds the asked pace on whatever is uploaded, as someone does who follows a pace indicator,
-    within the spread of the finger's habit. The controller, which is the firmware's own core, is told the
+    within the spread of the finger's habit. The controller, which is the firmware's own core, gets the
     asked pace and uses it until it has measured its own. Every press begins with a cold coil.
     """
 
@@ -46,13 +52,12 @@ class TwinDevice:
         self._fresh: set[float] = set()
 
     def info(self) -> DeviceInfo:
-        """Tell who this is."""
         control, stops = self._rig.controller, self._rig.stops
         limits = self._settings.force_limit_cN64 / CN64_PER_cN, mm_from_m(stops.travel_limit_m)
         return DeviceInfo("twin", True, *limits, control.tick_s)
 
     def settings(self) -> Settings:
-        """Give calibration and limits: those of the rig until others were configured."""
+        """Return calibration and limits: those of the rig until others were configured."""
         return self._settings
 
     def configure(self, settings: Settings) -> None:
@@ -114,7 +119,7 @@ class TwinDevice:
         self._fresh.clear()
 
     def _pace_s(self, velocity_mm_s: float, image: bytes) -> float:
-        """Give the stroke's duration, found once per upload and speed, from the last one found."""
+        """Return the stroke's duration, found once per upload and speed, from the last one found."""
         if velocity_mm_s not in self._fresh:
             guess = self._paces.get(velocity_mm_s)
             self._paces[velocity_mm_s] = solve_program_pace(
@@ -122,3 +127,56 @@ class TwinDevice:
             )
             self._fresh.add(velocity_mm_s)
         return self._paces[velocity_mm_s]
+
+
+class SimulatedPerson:
+    """Presses the twin's rig as the person of `TwinDevice` does, but on whatever board drives it. Simulated.
+
+    Parameters
+    ----------
+    rig, finger : the default ones if None.
+    seed : of everything random.
+    """
+
+    def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
+        self._plant = RigPlant(rig, finger, seed)
+        self._random = np.random.default_rng(seed)
+        self._paces: dict[tuple[bytes, float, Settings], float] = {}
+        self._ticks = 0
+        self.settle_s = SETTLE_s
+        self.settings: Settings = settings_of(self._plant.rig)
+
+    @property
+    def ticks(self) -> int:
+        return self._ticks
+
+    def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
+        return Inputs(*self._plant.step(duty_q15, bool(enable), stop_us, slot).item())
+
+    def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> SimulatedPerson:
+        """Begin a press at about this speed; what happened before it is forgotten."""
+        travel_m, speed_m_s = float(m_from_mm(travel_mm_of(image))), float(m_from_mm(velocity_mm_s))
+        pace_s = self._pace_s(image, velocity_mm_s, settings)
+        gesture = vary(self._plant.finger, travel_m, pace_s, speed_m_s, self._random)
+        self._plant.record()
+        self._plant.press(gesture)
+        self._ticks = math.ceil(gesture.duration_s / (settings.tick_us * 1e-6))
+        return self
+
+    def _pace_s(self, image: bytes, velocity_mm_s: float, settings: Settings) -> float:
+        key = image, velocity_mm_s, settings
+        if key not in self._paces:
+            self._paces[key] = solve_program_pace(
+                self._plant.rig, self._plant.finger, image, velocity_mm_s, settings=settings
+            )
+        return self._paces[key]
+
+    def record(self) -> Trace:
+        return self._plant.record()
+
+    def load(self, image: bytes) -> None:
+        self._plant.load(image)
+
+    def rest(self, settings: Settings) -> SimulatedPerson:
+        """Leave the button alone: the finger rests once its press is over."""
+        return self

@@ -1,52 +1,26 @@
-"""Requests and their replies over a line that may lose or damage bytes."""
+"""Requests and replies over a line that may lose or damage bytes, and the relation of the two clocks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
-from fdvv.device._port import Port
+import numpy as np
+
 from fdvv.errors import DeviceError, ModelError
-from fdvv.protocol import (
-    REPLY,
-    FaultedRequest,
-    Frame,
-    FrameDecoder,
-    KeyRequest,
-    Message,
-    Record,
-    RecordsRequest,
-    Refusal,
-    RefusedReply,
-    encode,
-    read_notice,
-    read_reply,
-    request_frame,
-)
+from fdvv.protocol.frame import Frame, FrameDecoder, encode
+from fdvv.protocol.messages import REPLY, read_notice, read_reply, request_frame
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import FaultedRequest, KeyRequest, Message, RecordsRequest, Refusal, RefusedReply
 
 Notice = RecordsRequest | FaultedRequest | KeyRequest
 Listener = Callable[[Notice, bytes, int], None]
-"""Told of what a device sends unasked: the notice, the bytes of its records, its sequence number."""
-
+"""Called with what a device sends unasked: the notice, the bytes of its records, its sequence number."""
 TRIES = 6
 TIMEOUT_s = 0.1
 SLOW_s = {Message.COMMIT: 1.0, Message.SELFTEST: 5.0}
 """Time for a reply; most come within a few ticks."""
-
-
-class RefusedError(DeviceError):
-    """A device did not carry a request out.
-
-    Attributes
-    ----------
-    message, refusal, detail : what was asked, why not, and where (an offset or the number of a field).
-    """
-
-    def __init__(self, name: str, message: Message, refusal: Refusal, detail: int) -> None:
-        self.message, self.refusal, self.detail = message, refusal, detail
-        where = f" (detail {detail})" if detail else ""
-        super().__init__(f"{name}: refused {message.name.lower()}: {REASONS[refusal]}{where}")
-
-
 REASONS = {
     Refusal.NONE: "no reason given",
     Refusal.UNKNOWN_MESSAGE: "it does not know this request; its firmware is older",
@@ -63,6 +37,44 @@ REASONS = {
     Refusal.BUSY: "it is still at an earlier request",
     Refusal.HASH_MISMATCH: "its firmware speaks another version of the protocol; update one of the two",
 }
+WRAP_us = 2**32
+
+
+class Port(Protocol):
+    """A line to a board. Time is the port's own: a board in lockstep runs only while someone waits."""
+
+    @property
+    def name(self) -> str:
+        """Name the line for messages to a person."""
+
+    def now_s(self) -> float:
+        """Return a clock that never goes back."""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes; DeviceError if the line is dead."""
+
+    def read(self, until_s: float) -> bytes:
+        """Wait for bytes until now_s() reaches until_s; b"" if none came. DeviceError if the line is dead."""
+
+    def reopen(self) -> None:
+        """Open the line again after it broke; DeviceError if it cannot be."""
+
+    def close(self) -> None:
+        """Close the line; a second time does nothing."""
+
+
+class RefusedError(DeviceError):
+    """A device did not carry a request out.
+
+    Attributes
+    ----------
+    message, refusal, detail : what was asked, why not, and where (an offset or the number of a field).
+    """
+
+    def __init__(self, name: str, message: Message, refusal: Refusal, detail: int) -> None:
+        self.message, self.refusal, self.detail = message, refusal, detail
+        where = f" (detail {detail})" if detail else ""
+        super().__init__(f"{name}: refused {message.name.lower()}: {REASONS[refusal]}{where}")
 
 
 class Wire:
@@ -110,13 +122,13 @@ class Wire:
             data = self.port.read(until_s)
             if not data:
                 return None
-            replies = [frame for frame in self._decoder.feed(data) if not self._told(frame)]
+            replies = [frame for frame in self._decoder.feed(data) if not self._notify(frame)]
             for frame in replies:
                 if frame.sequence == self._sequence and (found := self._reply(frame, message)):
                     return found
 
     def _reply(self, frame: Frame, message: Message) -> tuple[Record | None] | None:
-        """Give the body of the reply to message; None if this frame is another's."""
+        """Return the body of the reply to message; None if this frame is another's."""
         try:
             replied, body = read_reply(frame)
         except ModelError:
@@ -127,7 +139,7 @@ class Wire:
             raise RefusedError(self.port.name, message, Refusal(body.refusal), body.detail)
         return (body,) if replied == message else None
 
-    def _told(self, frame: Frame) -> bool:
+    def _notify(self, frame: Frame) -> bool:
         """Hand a notice on; say whether it was one."""
         if not Message.RECORDS <= frame.message < Message.REFUSED + REPLY:
             return False
@@ -142,9 +154,75 @@ class Wire:
         """Take what comes unasked until then, at most one reading; say whether there was any."""
         data = self.port.read(until_s)
         for frame in self._decoder.feed(data):
-            self._told(frame)
+            self._notify(frame)
         return bool(data)
 
     def reset(self) -> None:
         """Forget half a frame after the line was opened again."""
         self._decoder.reset()
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """One ping: when it left, what the device's clock said when it was there, when the answer was back.
+
+    Attributes
+    ----------
+    sent_us, received_us : on the host's clock.
+    device_us : on the device's, unwrapped.
+    """
+
+    sent_us: float
+    received_us: float
+    device_us: float
+
+
+@dataclass(frozen=True)
+class ClockRelation:
+    """host = offset + (1 + drift) * device, from the quickest exchanges.
+
+    Attributes
+    ----------
+    offset_us : host's clock at the device's zero.
+    drift_ppm : how much faster the host's clock runs; 0 unless the exchanges span a second.
+    residual_us : rms distance of the exchanges used from the line.
+    shortest_us : shortest round trip; half of it bounds the error of the offset.
+    exchanges : used.
+    """
+
+    offset_us: float
+    drift_ppm: float
+    residual_us: float
+    shortest_us: float
+    exchanges: int
+
+    def host_us(self, device_us: float) -> float:
+        """Turn the device's time into the host's."""
+        return self.offset_us + (1 + self.drift_ppm * 1e-6) * device_us
+
+
+def unwrap_us(time_us: int, near_us: float) -> float:
+    """Return the time nearest to near_us that a 32-bit microsecond clock shows as time_us."""
+    return time_us + WRAP_us * round((near_us - time_us) / WRAP_us)
+
+
+def relate(exchanges: Sequence[Exchange]) -> ClockRelation:
+    """Relate the clocks by least squares over the quicker half of the exchanges.
+
+    A slow exchange was held up on one of its ways, nobody knows which; its middle is no good estimate.
+    Raises DeviceError without any.
+    """
+    if not exchanges:
+        raise DeviceError("clocks cannot be related without a ping; ping the device first")
+    trips = np.array([e.received_us - e.sent_us for e in exchanges])
+    quick = np.argsort(trips, kind="stable")[: max(1, (trips.size + 1) // 2)]
+    device = np.array([exchanges[i].device_us for i in quick])
+    host = np.array([(exchanges[i].sent_us + exchanges[i].received_us) / 2 for i in quick])
+    span = device - device.mean()
+    steady = np.ptp(device) < 1e6
+    drift = 0.0 if steady else float(span @ (host - host.mean() - span) / (span @ span))
+    offset = float(host.mean() - (1 + drift) * device.mean())
+    residual = host - offset - (1 + drift) * device
+    return ClockRelation(
+        offset, drift * 1e6, float(np.sqrt(np.mean(residual**2))), float(trips.min()), quick.size
+    )

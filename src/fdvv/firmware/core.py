@@ -1,4 +1,4 @@
-"""One device's core: its memory, its doors."""
+"""The firmware's core, its records and the calls to it."""
 
 from __future__ import annotations
 
@@ -6,16 +6,79 @@ import ctypes
 from copy import copy
 from enum import IntEnum
 from functools import cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv._native import address, library, words
-from fdvv.core._records import INPUTS, OUTPUTS, RecordArray
 from fdvv.errors import BuildError, DeviceError, ModelError
-from fdvv.protocol import IMAGE_BYTES, Evidence, Fault, Mode, Refusal, Settings
+from fdvv.protocol.messages import UM16_PER_mm
+from fdvv.protocol.tables import IMAGE_BYTES, Evidence, Fault, Mode, Refusal, Settings
+
+RecordArray = np.ndarray[Any, np.dtype[np.void]]
+"""Records of one kind, one for each tick (n,)."""
+INPUTS = np.dtype(
+    [
+        ("time_us", "<u4"),
+        ("sum", "<u4"),
+        ("lowest", "<u2"),
+        ("highest", "<u2"),
+        ("elapsed_ticks", "<u2"),
+        ("supply_mV", "<u2"),
+        ("force_counts", "<u2"),
+        ("board", "u1"),
+    ],
+    align=True,
+)
+"""Readings of one tick: device clock, sum of the position readings, lowest and highest of them, ticks since
+the last call, supply, keycap force sensor, bits of what the board found wrong."""
+OUTPUTS = np.dtype(
+    [
+        ("duty_q15", "<i2"),
+        ("enable", "u1"),
+        ("slot", "u1"),
+        ("stop_us", "<u2"),
+        ("key", "u1"),
+        ("mode", "u1"),
+        ("displacement_um16", "<i4"),
+        ("velocity_mm_s16", "<i2"),
+        ("commanded_cN64", "<i2"),
+        ("force_cN64", "<i2"),
+        ("state", "u1"),
+        ("flags", "u1"),
+    ],
+    align=True,
+)
+"""Duty, bridge enable, waveform to start (NONE: none), servo pulse, reported key, mode, the tick's record
+(fdvv.protocol.tables.TickRecord)."""
 
 
-class Ask(IntEnum):
+def inputs_like(settings: Settings, sums: npt.ArrayLike) -> RecordArray:
+    """Return undisturbed inputs, one tick per sum of readings.
+
+    Ticks follow each other without a gap from time 0, single readings are the mean, the supply is nominal,
+    the keycap force sensor reads its offset.
+    """
+    counts = np.asarray(sums, np.uint32)
+    inputs = np.zeros(counts.size, INPUTS)
+    inputs["sum"] = counts
+    inputs["time_us"] = (np.arange(counts.size, dtype=np.uint64) * settings.tick_us).astype(np.uint32)
+    inputs["lowest"] = inputs["highest"] = np.minimum(counts // settings.reads, 65535)
+    inputs["elapsed_ticks"] = 1
+    inputs["supply_mV"] = settings.nominal_supply_mV
+    inputs["force_counts"] = settings.force_offset_counts
+    return inputs
+
+
+def inputs_at(settings: Settings, displacement_mm: npt.ArrayLike) -> RecordArray:
+    """Return undisturbed inputs of a cap at these displacements (mm), rounded to sums of readings."""
+    um16 = UM16_PER_mm * np.asarray(displacement_mm, float) - settings.position_offset_um16
+    sums = np.round(um16 * 2**14 / settings.position_gain_q14)
+    return inputs_like(settings, np.clip(sums, 0, 65535 * settings.reads))
+
+
+class CoreRequest(IntEnum):
     """What may be asked of the supervisor (firmware/core/supervisor.h)."""
 
     BOOTED = 0
@@ -28,7 +91,7 @@ class Ask(IntEnum):
 
 @cache
 def doors() -> ctypes.CDLL:
-    """Give the library once its records are known to be laid out as ours; else raise BuildError."""
+    """Return the library once its records are known to be laid out as ours; else raise BuildError."""
     lib = library()
     lib.fdvv_bridge_ask.restype = lib.fdvv_bridge_check_image.restype = ctypes.c_uint8
     lib.fdvv_bridge_mode.restype = lib.fdvv_bridge_latched.restype = ctypes.c_uint8
@@ -79,13 +142,13 @@ class Core:
         self._image = fresh  # the core goes on reading it
 
     def copy(self) -> Core:
-        """Copy the core as it stands, program and all; from then on the two go their own ways."""
+        """Copy the core with its program; the two are independent from then on."""
         other = copy(self)
         other._memory = self._memory.copy()
         other._core = address(other._memory)
         return other
 
-    def ask(self, ask: Ask, number: int = 0) -> Refusal:
+    def ask(self, ask: CoreRequest, number: int = 0) -> Refusal:
         """Ask the supervisor for a change of mode; number is the fault to clear."""
         return Refusal(self._lib.fdvv_bridge_ask(self._core, ctypes.c_uint8(ask), ctypes.c_uint8(number)))
 
@@ -94,21 +157,21 @@ class Core:
         if self.mode in (Mode.ARMED, Mode.DERATED):
             return
         if self.mode is Mode.BOOT:
-            self.ask(Ask.BOOTED)
-        refusal = self.ask(Ask.ARM)
+            self.ask(CoreRequest.BOOTED)
+        refusal = self.ask(CoreRequest.ARM)
         if refusal:
             raise DeviceError(f"the core was not armed from mode {self.mode.name}: {refusal.name}")
 
     def disarm(self) -> None:
         """Ask for zero force."""
-        self.ask(Ask.DISARM)
+        self.ask(CoreRequest.DISARM)
 
     def hear(self, time_us: int) -> None:
         """Let the host be heard at a time of the device clock."""
         self._lib.fdvv_bridge_hear(self._core, ctypes.c_uint32(time_us))
 
     def event(self, event: int) -> None:
-        """Tell the program of host event 0 to 31."""
+        """Send host event 0 to 31 to the program."""
         self._lib.fdvv_core_event(self._core, ctypes.c_uint8(event))
 
     def announce(self, velocity_mm_s16: int) -> None:

@@ -21,7 +21,7 @@ _HEAD = re.compile(r"([^\[:]+)(?:\[(\d+(?:,\d+)+)\])?\Z", re.ASCII)
 
 
 def pack_column(column: npt.NDArray[Any]) -> str:
-    """Write an array as text. ValueError for a kind of number that is not in KINDS."""
+    """Write an array as text. Raises ValueError for a kind of number that is not in KINDS."""
     column = np.asarray(column)
     kind = "?" if column.dtype == np.bool_ else column.dtype.newbyteorder("<").str
     if kind not in KINDS or column.ndim == 0:
@@ -32,7 +32,7 @@ def pack_column(column: npt.NDArray[Any]) -> str:
 
 
 def unpack_column(text: str) -> npt.NDArray[Any]:
-    """Read an array; it cannot be written to. ValueError on text that is none."""
+    """Read an array; it cannot be written to. Raises ValueError on text that is none."""
     head, found, data = text.partition(":")
     match = _HEAD.match(head)
     if not found or match is None or match[1] not in KINDS:

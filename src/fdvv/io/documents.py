@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
@@ -39,7 +40,7 @@ class Kind:
 
     @property
     def versions(self) -> range:
-        """Get the versions that are read."""
+        """The versions that are read."""
         return range(self.version if self.oldest is None else self.oldest, self.version + 1)
 
 
@@ -85,7 +86,7 @@ def read_document(
 
 
 def _place(data: bytes, reason: str) -> str:
-    """Tell line and column from the byte a decoder stumbled over; without one the text ended early."""
+    """Return line and column from the byte a decoder stumbled over; without one the text ended early."""
     found = re.search(r"\(byte (\d+)\)", reason)
     if not found:
         return "end of file" if "truncated" in reason else "whole file"
@@ -124,3 +125,26 @@ def tidy_schema(value: Any) -> Any:
             for k, v in value.items()
         }
     return [tidy_schema(v) for v in value] if isinstance(value, list) else value
+
+
+MODEL, ACTUATION = "an FDVV model", "an actuation"
+MARKS = {
+    b'"fdvv-model"': MODEL,
+    b'"fdvv-actuation"': ACTUATION,
+    b'"fdvv-session"': "a session",
+    b'"fdvv-receipt"': "a receipt",
+}
+HEAD_bytes = 200
+"""The format is the first field of the files that fdvv writes."""
+
+
+def own_kind(path: Path) -> str | None:
+    """Return what a file holds if fdvv wrote it; None for anything else and for what cannot be read."""
+    if path.suffix.lower() != ".json":
+        return None
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(HEAD_bytes)
+    except OSError:
+        return None
+    return next((kind for mark, kind in MARKS.items() if mark in head), None)

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 from fdvv.errors import InputError
 
@@ -28,18 +33,28 @@ def write_atomic(path: Path, content: str | bytes) -> None:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        # mkstemp makes files private; give the permissions an ordinary open() would
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(name).chmod(0o666 & ~umask)
-        Path(name).replace(path)
+        publish(name, path)
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
 
 
+def publish(temporary: str, path: Path) -> None:
+    """Rename a file of mkstemp to path, with the permissions that an ordinary open() gives."""
+    umask = os.umask(0)
+    os.umask(umask)
+    Path(temporary).chmod(0o666 & ~umask)
+    Path(temporary).replace(path)
+
+
+def require_new_folder(folder: Path, remedy: str) -> None:
+    """Raise InputError unless a folder is empty or does not exist."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(folder, "folder", "is not empty", remedy)
+
+
 def open_alone(path: Path) -> int:
-    """Open a file to read and append for this process alone, made if it is not there; give its handle.
+    """Open a file to read and append for this process alone, made if it is not there; return its handle.
 
     The system frees it however the process ends; others can still read it. Raises BlockingIOError if another
     process has it so, OSError.
@@ -102,3 +117,23 @@ def read_limited(path: Path | str, limit_bytes: int, remedy: str) -> bytes:
     if len(content) > limit_bytes:
         raise InputError(path, "whole file", f"larger than {limit_bytes // 1_000_000} MB", remedy)
     return content
+
+
+@contextmanager
+def defer_interrupt() -> Iterator[None]:
+    """Defer Ctrl-C until the block is left, so that a press that was made is stored."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+
+    def note(number: int, _frame: FrameType | None) -> None:
+        came.append(number)
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came:
+        raise KeyboardInterrupt

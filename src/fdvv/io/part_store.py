@@ -1,4 +1,4 @@
-"""Rows that reach the disk part by part while work goes on, and stand in one file, in order, when it is done.
+"""Rows written to disk in parts while work is done, and joined in order in one file at the end.
 
 A part is a file, written whole or not at all, so that a killed process loses only what it had not written.
 The one file at the end is the same to the byte however the rows were shared out and whatever was killed.
@@ -7,20 +7,72 @@ The one file at the end is the same to the byte however the rows were shared out
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+import io
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fdvv.workflow._parquet import open_parquet, write_table, write_tables
+from fdvv.errors import BuildError
+from fdvv.io.files import publish, write_atomic
 
 if TYPE_CHECKING:
     from pyarrow import Schema, Table
+if TYPE_CHECKING:
+    from pyarrow import Schema, Table
+
+
+LAYOUT: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True, "store_schema": True}
+
+
+def need_parquet() -> None:
+    """Raise BuildError without the extra `sweep`: asked before long work, not after it."""
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError as error:
+        raise BuildError('tables in Parquet need an extra: pip install "fdvv[sweep]"') from error
+
+
+def open_parquet(path: Path) -> Any:
+    """Open a file, a pyarrow.parquet.ParquetFile; the caller closes it. OSError, ValueError if damaged."""
+    import pyarrow.parquet as pq
+
+    # mapped files would count as memory of this process as long as they are open
+    return pq.ParquetFile(path, page_checksum_verification=True, memory_map=False, pre_buffer=False)
+
+
+def write_table(path: Path, table: Table) -> None:
+    """Write a small table, whole or not at all. Raises OSError."""
+    import pyarrow.parquet as pq
+
+    buffer = io.BytesIO()
+    pq.write_table(table, buffer, **LAYOUT)
+    write_atomic(path, buffer.getvalue())
+
+
+def write_tables(path: Path, schema: Schema, tables: Iterable[Table]) -> None:
+    """Write tables one after another, a row group each, whole or not at all; one is in memory at a time."""
+    import pyarrow.parquet as pq
+
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            with pq.ParquetWriter(stream, schema, **LAYOUT) as writer:
+                for table in tables:
+                    writer.write_table(table, row_group_size=max(1, table.num_rows))
+            stream.flush()
+            os.fsync(stream.fileno())
+        publish(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
 
 PARTS = "parts"
-"""The folder of the parts, there only while work goes on."""
+"""The folder of the parts, there only until the work is done."""
 GROUP_rows = 512
 """Rows of a row group of the one file: what is in memory at a time."""
-
 Key = tuple[Any, ...]
 
 
@@ -54,7 +106,7 @@ class PartStore:
         return len(self._known)
 
     def add(self, table: Table) -> None:
-        """Write rows as a part; rows of a known key stand for the earlier ones. OSError."""
+        """Write rows as a part; rows of a known key stand for the earlier ones. Raises OSError."""
         self._parts.mkdir(exist_ok=True)
         self._number += 1
         path = self._parts / f"part-{self._number:08}.parquet"
@@ -63,11 +115,11 @@ class PartStore:
         self._take(len(self._sources) - 1, table)
 
     def finish(self, order: Sequence[Key]) -> bool:
-        """Write the one file with the rows of these keys, in this order; tell whether it was not there yet.
+        """Write the one file with the rows of these keys, in this order; return whether it was not there yet.
 
         Every key must be known. What is not among them is dropped.
         """
-        changed = not self._stands(order)
+        changed = not self._is_finished(order)
         if changed:
             groups = (order[i : i + GROUP_rows] for i in range(0, len(order), GROUP_rows))
             write_tables(self._path, self._schema, (self._gathered(group) for group in groups))
@@ -78,7 +130,7 @@ class PartStore:
         return changed
 
     def tables(self, columns: Sequence[str] | None = None) -> Iterator[Table]:
-        """Give the rows of the one file, a row group after another."""
+        """Return the rows of the one file, a row group after another."""
         found = open_parquet(self._path)
         try:
             for group in range(found.num_row_groups):
@@ -86,8 +138,7 @@ class PartStore:
         finally:
             found.close()
 
-    def _stands(self, order: Sequence[Key]) -> bool:
-        """Tell whether the one file holds just that already."""
+    def _is_finished(self, order: Sequence[Key]) -> bool:
         if any(path != self._path for path, _ in self._sources):
             return False
         return self._path.exists() and list(self._known) == list(order) and bool(self._sources or not order)
@@ -118,7 +169,7 @@ class PartStore:
             found.close()
 
     def _refuse(self, path: Path) -> None:
-        """Forget a file; the rows that it may have told of before it broke are done again."""
+        """Forget a file and its rows; they are computed again."""
         kept = {i for i, (there, _) in enumerate(self._sources) if there != path}
         self._known = {key: at for key, at in self._known.items() if at[0] in kept}
         if self._mend and path != self._path:
@@ -131,7 +182,6 @@ class PartStore:
             self._known[key] = source, row
 
     def _gathered(self, keys: Sequence[Key]) -> Table:
-        """Give the rows of some keys in their order."""
         import numpy as np
         import pyarrow as pa
 
@@ -155,5 +205,5 @@ class PartStore:
 
 
 def _same(found: Schema, wanted: Schema) -> bool:
-    """Tell whether rows mean the same: columns, types, and what the schema says of itself."""
+    """Return whether rows mean the same: columns, types, and what the schema says of itself."""
     return bool(found.equals(wanted)) and dict(found.metadata or {}) == dict(wanted.metadata or {})

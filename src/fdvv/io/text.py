@@ -61,6 +61,6 @@ def cells(line: str, separator: str) -> list[str]:
 
 
 def sniff_separator(line: str) -> str:
-    """Tell the separator of a line: tab, semicolon, comma, else blanks; those in quotes do not count."""
+    """Return the separator of a line: tab, semicolon, comma, else blanks; those in quotes do not count."""
     bare = re.sub(r'"[^"]*"', "", line)
     return next((mark for mark in ("\t", ";", ",") if mark in bare), " ")

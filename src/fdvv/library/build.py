@@ -1,27 +1,95 @@
-"""Build a library of a folder of measured files, or bring one up to date."""
+"""Build a library of a folder of measured files, or update one."""
 
 from __future__ import annotations
 
+import hashlib
+import socket
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
+from msgspec.structs import replace
 
 from fdvv import __version__
-from fdvv.documents import Kind, pretty, read_document
-from fdvv.errors import InputError
-from fdvv.files import read_limited, write_atomic
-from fdvv.journal import Journal
-from fdvv.workflow._executor import Executor
-from fdvv.workflow._isolated import DEADLY, run_isolated
-from fdvv.workflow._library_columns import FORMAT, VERSION, library_schema, table_of
-from fdvv.workflow._library_record import LibraryRecord
-from fdvv.workflow._library_work import LibraryWork
-from fdvv.workflow._parquet import need_parquet
-from fdvv.workflow._part_store import PartStore
-from fdvv.workflow._shelf_files import ShelfFile, source_files
+from fdvv.button.fit import one_line
+from fdvv.errors import FdvvError, InputError
+from fdvv.eventlog import Journal
+from fdvv.formats.force.read import read_force_file
+from fdvv.io.documents import MODEL, Kind, own_kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.io.part_store import PartStore, need_parquet
+from fdvv.library.catalog import ButtonFile, source_files
+from fdvv.library.figures import polylines_of, row_of_model
+from fdvv.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sampled, table_of
+from fdvv.model.file import load_model
+from fdvv.model.model import FDVVModel
+from fdvv.parallel.campaign import DEADLY, run_campaign
+from fdvv.parallel.executor import Executor
+
+BLOCK_bytes = 1 << 20
+
+
+def read_button(file: ButtonFile) -> LibraryRecord:
+    """Read a file; whatever it holds, a record comes."""
+    record = LibraryRecord(file.id, file.place, file.stamp, one_line(file.pair.name) if file.pair else None)
+    try:
+        record = replace(record, sha256=_sha256(file))
+        kind = own_kind(file.path)
+        return _read_record(file, record, kind == MODEL) if kind in (None, MODEL) else record
+    except InputError as error:
+        reason = f"{error.place}: {error.reason}; {error.remedy}"
+    except (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError) as error:
+        reason = f"whole file: cannot be read ({error}); check the file"
+    return replace(record, reason=one_line(reason))
+
+
+@dataclass(frozen=True)
+class LibraryWork:
+    """Reads the files of a chunk.
+
+    Attributes
+    ----------
+    folders : where the files lie; a worker that does not see them must not refuse every file.
+    read : reads one file.
+    """
+
+    folders: tuple[Path, ...]
+    read: Callable[[ButtonFile], LibraryRecord] = read_button
+
+    def __call__(self, files: tuple[ButtonFile, ...]) -> list[LibraryRecord]:
+        """Return a record for every file, in their order."""
+        for folder in self.folders:
+            if not folder.is_dir():
+                host = socket.gethostname()
+                raise FileNotFoundError(
+                    f"{folder} is not there on {host}; share the folder with every worker"
+                )
+        return [self.read(file) for file in files]
+
+
+def _read_record(file: ButtonFile, record: LibraryRecord, is_model: bool) -> LibraryRecord:
+    dated = datetime.fromtimestamp(file.path.stat().st_mtime, UTC).date().isoformat()
+    if is_model:
+        model: FDVVModel = load_model(file.path)
+        row = row_of_model(model, file.id, file.origin, file.collection, dated)
+        return replace(record, row=row, format="fdvv-model", curves=sampled(model))
+    found = read_force_file(file.path)
+    model, parts = polylines_of(found, file.path)
+    row = row_of_model(model, file.id, file.origin, file.collection, dated, parts)
+    return replace(record, row=row, format=found.format, warnings=parts.warnings, curves=sampled(model))
+
+
+def _sha256(file: ButtonFile) -> str:
+    digest = hashlib.sha256()
+    for path in filter(None, (file.path, file.pair)):
+        with path.open("rb") as stream:
+            while block := stream.read(BLOCK_bytes):
+                digest.update(block)
+    return digest.hexdigest()
+
 
 MANIFEST, BUTTONS, LOCK = "library.json", "buttons.parquet", ".lock"
 REMEDY = "name the folder of a library, or build one with fdvv library build"
@@ -31,7 +99,7 @@ FILES = 64
 """Of a chunk: half a second of work, and what a killed process has to do again."""
 
 Progress = Callable[[int, int], None]
-"""Is told how many files are known, and of how many."""
+"""Called with the number of known files, and of all."""
 
 
 class LibraryManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -72,7 +140,7 @@ class LibraryBuilt:
     gone: int
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv library build --json``."""
+        """Return the report of ``fdvv library build --json``."""
         counts = ("files", "buttons", "refused", "read", "kept", "gone")
         return {"library": str(self.folder), **{name: getattr(self, name) for name in counts}}
 
@@ -86,8 +154,8 @@ def build_library(
 ) -> LibraryBuilt:
     """Read every measured file below folders into a library: what did not change is not read again.
 
-    folder : new, empty, or a library of the same folders, whole or begun. Whatever ends a build, the same
-    call goes on. work : how files are read.
+    folder : new, empty, or a library of the same folders, complete or not. An interrupted build continues
+    with the same call. work : how files are read.
     Raises InputError on a folder of other things, of another library or at work elsewhere, and if there is
     nothing to read; BuildError without the extra `sweep`; WorkerError; OSError.
     """
@@ -117,15 +185,15 @@ def read_manifest(folder: Path) -> LibraryManifest:
     )
 
 
-def _listed(sources: Sequence[Path]) -> list[ShelfFile]:
+def _listed(sources: Sequence[Path]) -> list[ButtonFile]:
     for source in sources:
         if not source.is_dir():
             raise InputError(source, "folder", "there is no such folder", "give a folder of measurements")
     files = list(source_files(sources))
     if not files:
-        told = ", ".join(map(str, sources))
+        names = ", ".join(map(str, sources))
         reason = "no .csv, .ods, .json or .txt file of measurements in it"
-        raise InputError(told, "folder", reason, "name another folder")
+        raise InputError(names, "folder", reason, "name another folder")
     return files
 
 
@@ -145,28 +213,32 @@ def _begin(folder: Path, labels: tuple[str, ...]) -> None:
 def _build(
     folder: Path,
     labels: tuple[str, ...],
-    files: Sequence[ShelfFile],
+    files: Sequence[ButtonFile],
     executor: Executor,
     progress: Progress,
     work: LibraryWork,
 ) -> LibraryBuilt:
     store = PartStore(folder / BUTTONS, library_schema(), ("id", "stamp"))
     order = [(file.id, file.stamp) for file in files]
-    missing = [file for file, key in zip(files, order, strict=True) if key not in store]
-    kept, known = len(files) - len(missing), len(store)
-    done = kept
-    progress(done, len(files))
-    chunks = [tuple(missing[i : i + FILES]) for i in range(0, len(missing), FILES)]
-    for records in run_isolated(executor, work, chunks, _deadly):
-        store.add(table_of(records))
-        done += len(records)
-        progress(done, len(files))
+    known = len(store)
+    read = run_campaign(
+        executor,
+        work,
+        files,
+        lambda _files, records: store.add(table_of(records)),
+        done=lambda file: (file.id, file.stamp) in store,
+        progress=progress,
+        item_s=1.0,
+        chunk_s=FILES,
+        lost=_deadly,
+    )
     store.finish(order)
-    return _finished(folder, labels, store, (len(missing), kept, known - kept))
+    kept = len(files) - read
+    return _finish(folder, labels, store, (read, kept, known - kept))
 
 
-def _finished(
-    folder: Path, labels: tuple[str, ...], store: PartStore, told: tuple[int, int, int]
+def _finish(
+    folder: Path, labels: tuple[str, ...], store: PartStore, changes: tuple[int, int, int]
 ) -> LibraryBuilt:
     states = [state for table in store.tables(["state"]) for state in table.column("state").to_pylist()]
     counts = len(states), states.count("button"), states.count("refused")
@@ -175,10 +247,10 @@ def _finished(
     )
     if read_manifest(folder) != manifest:
         _write_manifest(folder, manifest)
-    return LibraryBuilt(folder, *counts, *told)
+    return LibraryBuilt(folder, *counts, *changes)
 
 
-def _deadly(file: ShelfFile) -> LibraryRecord:
+def _deadly(file: ButtonFile) -> LibraryRecord:
     return LibraryRecord(file.id, file.place, file.stamp, reason=f"whole file: {DEADLY}")
 
 

@@ -1,21 +1,32 @@
-"""Figures of a button for its row, read from its curves; what is not there is None, with the reason.
+"""Rows of buttons: figures read from the curves; what is not there is None, with the reason.
 
 Measured curves are not fitted for this: they are averaged over 20 um and joined by lines.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
 
 import numpy as np
 
-from fdvv.model import Bump, FDVVModel, ForceCurve, MeasuredCurve, Stroke, find_bump, landmarks, running_mean
+from fdvv.button.fit import MeasuredParts, measured_parts, one_line
+from fdvv.errors import FdvvError, InputError
+from fdvv.formats.force.read import read_force_file
+from fdvv.formats.force.types import ForceFile
+from fdvv.io.documents import MODEL, own_kind
+from fdvv.library.row import NUMBERS, SKETCH_POINTS, ButtonRow, ButtonType, Origin, Sketch
+from fdvv.model.bump import Bump, find_bump, running_mean
+from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
+from fdvv.model.file import load_model
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
-from fdvv.workflow._fit import MeasuredParts
-from fdvv.workflow._shelf_row import NUMBERS, SKETCH_POINTS, ButtonType, Sketch
 
-STEP_mm = 0.02
+AVERAGED_mm = 0.02
 SUDDEN_mm = 0.05
 STOP_SHARE_mm = 0.15
 """A fall this near to the end of the travel is the stage turning or the stop giving way, not a bump."""
@@ -33,7 +44,7 @@ they collapse over 0.29 to 0.45 of their travel, switches of that kind of rise o
 
 
 @dataclass(frozen=True)
-class Kind:
+class ButtonKind:
     """What the force of a button does, and by which fact."""
 
     kind: ButtonType
@@ -48,8 +59,8 @@ def polyline_model(parts: MeasuredParts, name: str) -> FDVVModel:
 
 def _polyline(stroke: MeasuredCurve) -> ForceCurve:
     x, force, _ = stroke.by_displacement()
-    grid = np.linspace(x[0], x[-1], max(2, round((x[-1] - x[0]) / STEP_mm) + 1))
-    mean = np.interp(grid, x, running_mean(x, force, STEP_mm))
+    grid = np.linspace(x[0], x[-1], max(2, round((x[-1] - x[0]) / AVERAGED_mm) + 1))
+    mean = np.interp(grid, x, running_mean(x, force, AVERAGED_mm))
     knots = np.concatenate([grid[:1], grid, grid[-1:]])
     return ForceCurve(stroke.stroke, stroke.velocity_mm_s, 1, knots, mean)
 
@@ -73,29 +84,31 @@ def _samples(model: FDVVModel, stroke: Stroke) -> tuple[FloatArray, FloatArray] 
     return x, curve.force_cN(x)
 
 
-def kind_of(model: FDVVModel) -> Kind:
+def kind_of(model: FDVVModel) -> ButtonKind:
     """Decide what the force does, from the slowest press and its release."""
     found = _samples(model, Stroke.PRESS)
     if found is None:
-        return Kind(ButtonType.UNCLEAR, "no press was measured")
+        return ButtonKind(ButtonType.UNCLEAR, "no press was measured")
     bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
     if bump is None:
-        return Kind(ButtonType.LINEAR, "the force of the press never falls by 4 cN")
+        return ButtonKind(ButtonType.LINEAR, "the force of the press never falls by 4 cN")
     fall = f"the press falls by {bump.drop_cN:.1f} cN at {bump.peak_mm:.2f} mm"
     if back is None and model.of(Stroke.RELEASE):
         if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
-            return Kind(ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN")
-        return Kind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
+            return ButtonKind(
+                ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN"
+            )
+        return ButtonKind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
     return _bumpy(bump, fall, model.travel_mm, *found)
 
 
-def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatArray) -> Kind:
+def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatArray) -> ButtonKind:
     sudden = _sudden_ratio(bump, x, force)
     if sudden >= SUDDEN_ratio:
         share = f"{fall}, {100 * sudden:.0f} % of it within 50 um"
         if bump.drop_cN < SUDDEN_drop_cN:
-            return Kind(ButtonType.UNCLEAR, f"{share}: so small a jump may be the bench")
-        return Kind(ButtonType.CLICKY, f"{share}; force alone does not tell the sound")
+            return ButtonKind(ButtonType.UNCLEAR, f"{share}: so small a jump may be the bench")
+        return ButtonKind(ButtonType.CLICKY, f"{share}; force alone does not tell the sound")
     rise_mm = float(x[int(np.argmax(force >= 0.5 * bump.peak_cN))] - x[0])
     long_ratio = (bump.valley_mm - bump.peak_mm) / travel_mm
     if rise_mm >= DOME_rise_mm and long_ratio >= DOME_fall_ratio:
@@ -103,19 +116,19 @@ def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatA
             f"{fall} over {100 * long_ratio:.0f} % of the travel; half of the peak is reached after "
             f"{rise_mm:.2f} mm, without a contact step"
         )
-        return Kind(ButtonType.DOME, reason)
-    return Kind(ButtonType.TACTILE, fall)
+        return ButtonKind(ButtonType.DOME, reason)
+    return ButtonKind(ButtonType.TACTILE, fall)
 
 
 def _sudden_ratio(bump: Bump, x: FloatArray, force: FloatArray) -> float:
-    """Give the largest share of the fall that happens within 50 um."""
+    """Return the largest share of the fall that happens within 50 um."""
     near = (x >= bump.peak_mm - 0.1) & (x <= bump.valley_mm + 0.05)
     later = np.interp(x[near] + SUDDEN_mm, x, force)
     return min(1.0, float(np.max(force[near] - later)) / bump.drop_cN)
 
 
 def figures_of(model: FDVVModel) -> dict[str, float | None]:
-    """Give the figures of a row by their names in ShelfRow; those of a press are None without one."""
+    """Return the figures of a row by their names in ButtonRow; those of a press are None without one."""
     known = {"actuation_mm": model.actuation_mm, "reset_mm": model.reset_mm, "travel_mm": model.travel_mm}
     if model.nearest(Stroke.PRESS) is None:
         return {**dict.fromkeys(NUMBERS), **known}
@@ -144,7 +157,7 @@ def _bump_figures(bump: Bump | None) -> dict[str, float | None]:
 def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str, ...]:
     """Say why figures are None, each reason with its subject."""
     release = model.of(Stroke.RELEASE)
-    told = {
+    reasons = {
         "bump": figures["peak_cN"] is None and "not detected: the force never falls by 4 cN",
         "release": (not release and "the source holds no release")
         or (figures["release_drop_cN"] is None and "no bump detected: the force never falls by 4 cN"),
@@ -153,8 +166,8 @@ def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str,
         "speed": not model.velocities_mm_s(Stroke.PRESS) and "the source tells no speed: a slow bench",
     }
     if not model.of(Stroke.PRESS):
-        told |= {"bump": "the source holds no press", "press": "the source holds no press"}
-    return tuple(f"{subject}: {reason}" for subject, reason in told.items() if reason)
+        reasons |= {"bump": "the source holds no press", "press": "the source holds no press"}
+    return tuple(f"{subject}: {reason}" for subject, reason in reasons.items() if reason)
 
 
 def sketch_of(model: FDVVModel) -> Sketch:
@@ -169,3 +182,69 @@ def _sketch(model: FDVVModel, stroke: Stroke) -> tuple[int, ...]:
     x = np.linspace(0.0, model.travel_mm, SKETCH_POINTS)
     tenths: Sequence[int] = np.rint(10 * np.clip(curve.force_cN(x), -3000, 3000)).astype(int).tolist()
     return tuple(tenths)
+
+
+STATED = re.compile(
+    r"\b(silent|linear|tactile|clicky|click|dome|topre|optical|magnetic|hall|low profile|speed)\b", re.I
+)
+
+LONGEST_name = 200
+
+
+def row_of_file(path: Path, button_id: str, collection: str, origin: Origin = Origin.MEASURED) -> ButtonRow:
+    """Read the row of a measured file, or of a model file in a folder of them. Raises InputError."""
+    dated = datetime.fromtimestamp(path.stat().st_mtime, UTC).date().isoformat()
+    if own_kind(path) == MODEL:
+        return row_of_model(load_model(path), button_id, origin, collection, dated)
+    model, parts = polylines_of_file(path)
+    return row_of_model(model, button_id, origin, collection, dated, parts)
+
+
+def polylines_of_file(path: Path) -> tuple[FDVVModel, MeasuredParts]:
+    """Read a measured file as the polylines of its active strokes, unfitted. Raises InputError."""
+    return polylines_of(read_force_file(path), path)
+
+
+def polylines_of(file: ForceFile, path: Path) -> tuple[FDVVModel, MeasuredParts]:
+    """Return the active strokes of a force file as polylines. Raises InputError."""
+    try:
+        parts = measured_parts(file)
+        name = one_line(file.name)[:LONGEST_name].strip() or "unnamed"
+        return polyline_model(parts, name), parts
+    except InputError:
+        raise
+    except FdvvError as error:
+        remedy = "check that the file holds one whole stroke from contact to the stop"
+        raise InputError(path, "curve", str(error), remedy) from error
+
+
+def row_of_model(
+    model: FDVVModel,
+    button_id: str,
+    origin: Origin,
+    collection: str = "",
+    date: str | None = None,
+    parts: MeasuredParts | None = None,
+) -> ButtonRow:
+    """Return the row of a model; parts : of a measured button, with its counts of presses."""
+    kind, figures = kind_of(model), figures_of(model)
+    said = f"{model.name} {collection} {model.provenance.source}".replace("_", " ").replace("-", " ")
+    return ButtonRow(
+        id=button_id,
+        name=model.name,
+        origin=origin,
+        collection=collection,
+        stated=tuple(dict.fromkeys(word.lower() for word in STATED.findall(said))),
+        kind=kind.kind,
+        kind_reason=kind.reason,
+        **{name: None if value is None else round(value, 4) for name, value in figures.items()},  # type: ignore[arg-type]
+        speeds_mm_s=tuple(round(v, 3) for v in model.velocities_mm_s(Stroke.PRESS)),
+        cycles=parts.cycles if parts else None,
+        used=parts.used if parts else None,
+        date=date,
+        source=model.provenance.source,
+        licence=model.provenance.licence,
+        simulated=model.provenance.simulated,
+        why=reasons_of(model, figures),
+        sketch=sketch_of(model),
+    )

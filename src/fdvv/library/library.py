@@ -1,9 +1,11 @@
-"""A library of measured buttons, opened to be searched."""
+"""A library of measured buttons, opened to be searched, and searches written in one line."""
 
 from __future__ import annotations
 
 import csv
+import difflib
 import io
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -14,24 +16,27 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.files import write_atomic
-from fdvv.model import FDVVModel, builtin_names, load_builtin
-from fdvv.workflow._kind import MODEL, own_kind
-from fdvv.workflow._library_build import BUTTONS, REMEDY, LibraryManifest, read_manifest
-from fdvv.workflow._library_columns import READ_NAMES, curves_of, rows_of
-from fdvv.workflow._parquet import need_parquet, open_parquet
-from fdvv.workflow._shelf_cache import CacheLine
-from fdvv.workflow._shelf_read import row_of_file, row_of_model
-from fdvv.workflow._shelf_row import Origin, ShelfRow
-from fdvv.workflow._shelf_search import ShelfQuery, ShelfSearch
+from fdvv.io.documents import MODEL, own_kind
+from fdvv.io.files import write_atomic
+from fdvv.io.part_store import need_parquet, open_parquet
+from fdvv.library.build import BUTTONS, REMEDY, LibraryManifest, read_manifest
+from fdvv.library.figures import row_of_file, row_of_model
+from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, CacheLine, Origin
+from fdvv.library.search import LABELS, CatalogSearch, SearchQuery
+from fdvv.library.table import READ_NAMES, curves_of, rows_of
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
 
 if TYPE_CHECKING:
     from pyarrow import Table
 
+
 By = Literal["all", "curve", "landmarks"]
-"""What likeness is told by: force, shape and landmarks; the first two; or landmarks alone."""
+"""What likeness is judged by: force, shape and landmarks; the first two; or landmarks alone."""
+
 PARTS: dict[By, tuple[int, ...]] = {"all": (0, 1, 2), "curve": (0, 1), "landmarks": (2,)}
 """Which of the distances of force, shape and landmarks count."""
+
 ASKED = "asked:"
 """Begins the id of a button that is not of the library and that others are to be like."""
 
@@ -47,19 +52,19 @@ class LibraryHit:
         None if it was sought otherwise, or if nothing could be compared.
     """
 
-    row: ShelfRow
+    row: ButtonRow
     place: str
     distance_JND: float | None = None
     parts_JND: tuple[float | None, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Give it as plain values, without the sketch."""
-        told: dict[str, Any] = msgspec.to_builtins(self.row)
+        """Return plain values, without the sketch."""
+        row: dict[str, Any] = msgspec.to_builtins(self.row)
         for name in ("sketch", "origin"):
-            del told[name]
+            del row[name]
         distance = {} if self.distance_JND is None else {"distance_JND": self.distance_JND}
         names = ("force_JND", "shape_JND", "landmarks_JND")
-        return {**told, "place": self.place, **distance, **dict(zip(names, self.parts_JND, strict=False))}
+        return {**row, "place": self.place, **distance, **dict(zip(names, self.parts_JND, strict=False))}
 
 
 class Library:
@@ -75,17 +80,17 @@ class Library:
         if not self.manifest.finished:
             reason = "is not finished"
             raise InputError(self.folder, "library", reason, "run the same fdvv library build again")
-        self._search = ShelfSearch()
+        self._search = CatalogSearch()
         found = [pair for table in _tables(self.folder, READ_NAMES) for pair in rows_of(table)]
         self._places = {row.id: place for place, row in found}
         self._search.extend([row for _, row in found])
 
     @property
-    def rows(self) -> Sequence[ShelfRow]:
-        """Get the rows of all buttons, in the order of their places."""
+    def rows(self) -> Sequence[ButtonRow]:
+        """Return the rows of all buttons, in the order of their places."""
         return [row for row in self._search.rows if row.id in self._places]
 
-    def find(self, query: ShelfQuery) -> tuple[list[LibraryHit], tuple[str, ...]]:
+    def find(self, query: SearchQuery) -> tuple[list[LibraryHit], tuple[str, ...]]:
         """Find buttons; give them and the words that were read with a typo. InputError."""
         found = self._search.find(query)
         rows = [self._search.rows[i] for i in found.positions]
@@ -100,7 +105,7 @@ class Library:
         asked = self._asked(spec)
         if self._search.row(asked.id) is None:
             self._search.extend([asked])
-        found = self._search.find(ShelfQuery(like=asked.id))
+        found = self._search.find(SearchQuery(like=asked.id))
         parts = found.parts[:, PARTS[by]]
         distance = np.sqrt(np.mean(parts**2, axis=1))
         nearest = [i for i in np.argsort(distance, kind="stable") if np.isfinite(distance[i])]
@@ -108,14 +113,14 @@ class Library:
         return list(islice((hit for hit in hits if hit.row.id in self._places), count))
 
     def refused(self) -> Iterator[tuple[str, str]]:
-        """Give the files that were refused, each by its place with the reason."""
+        """Return the files that were refused, each by its place with the reason."""
         for table in _tables(self.folder, ("place", "state", "reason")):
             for line in table.to_pylist():
                 if line["state"] == "refused":
                     yield line["place"], line["reason"]
 
     def model(self, button_id: str) -> FDVVModel:
-        """Give a button as its row was read: polylines of its means, without its file. InputError."""
+        """Return a button as its row was read: polylines of its means, without its file. InputError."""
         row = self._search.row(button_id)
         if row is None:
             raise InputError(self.folder, "button", f"no button is called {button_id!r:.80}", "search for it")
@@ -129,11 +134,11 @@ class Library:
 
     def _hit(self, position: int, distance: float, parts: Any) -> LibraryHit:
         row = self._search.rows[position]
-        told = tuple(round(float(part), 3) if np.isfinite(part) else None for part in parts)
-        return LibraryHit(row, self._places.get(row.id, ""), round(float(distance), 3), told)
+        rounded = tuple(round(float(part), 3) if np.isfinite(part) else None for part in parts)
+        return LibraryHit(row, self._places.get(row.id, ""), round(float(distance), 3), rounded)
 
-    def _asked(self, spec: str) -> ShelfRow:
-        """Give the row of the button that others are to be like."""
+    def _asked(self, spec: str) -> ButtonRow:
+        """Return the row of the reference button."""
         known = self._search.row(spec) or self._at_place(spec)
         if known is not None:
             return known
@@ -150,12 +155,12 @@ class Library:
             )
         return row_of_file(path, f"{ASKED}{spec}", "")
 
-    def _at_place(self, place: str) -> ShelfRow | None:
+    def _at_place(self, place: str) -> ButtonRow | None:
         return next((self._search.row(i) for i, there in self._places.items() if there == place), None)
 
 
 def known_lines(folder: Path) -> Iterator[CacheLine]:
-    """Give what a library knows of its files as a shelf keeps it, so that a shelf need not read them.
+    """Return what a library knows of its files as lines of the cache, so that the index need not read them.
 
     Raises InputError if there is no library or it is damaged, BuildError without the extra `sweep`.
     """
@@ -163,8 +168,8 @@ def known_lines(folder: Path) -> Iterator[CacheLine]:
     read_manifest(folder)
     for table in _tables(folder, ("stamp", "reason", *READ_NAMES)):
         rows = dict(rows_of(table))
-        told = (table.column(name).to_pylist() for name in ("place", "stamp", "reason"))
-        for place, stamp, reason in zip(*told, strict=True):
+        columns = (table.column(name).to_pylist() for name in ("place", "stamp", "reason"))
+        for place, stamp, reason in zip(*columns, strict=True):
             yield CacheLine(place, stamp, rows.get(place), reason or "")
 
 
@@ -200,3 +205,85 @@ def write_hits(path: Path, hits: Sequence[LibraryHit]) -> None:
 
 def _cell(value: Any) -> Any:
     return " ".join(map(str, value)) if isinstance(value, list | tuple) else value
+
+
+_CONDITION = re.compile(r"(?P<name>[A-Za-z]\w*)(?P<sign><=|>=|<|>|=)(?P<value>\S+)")
+Range = tuple[float | None, float | None]
+FULL: Range = (None, None)
+SORTED = ("match", *(name for name in LABELS if name != "origin"), *NUMBERS)
+
+
+def library_query(text: str, sort: str = "match", descending: bool = False) -> SearchQuery:
+    """Read a search; every word and condition must hold.
+
+    Conditions have no blanks; several may name one column. A kind is written with or without its question
+    mark. sort : one of SORTED. InputError that says what was not understood.
+    """
+    words: list[str] = []
+    kinds: list[ButtonType] = []
+    ranges: dict[str, Range] = {}
+    for part in text.split():
+        found = _CONDITION.fullmatch(part)
+        if found is None:
+            _check_word(part)
+            words.append(part)
+        elif found["name"] == "kind":
+            kinds += _kinds(part, found["sign"], found["value"])
+        else:
+            _check_name(found["name"])
+            more = _range(part, found["sign"], found["value"])
+            ranges[found["name"]] = _both(ranges.get(found["name"], FULL), more)
+    if sort not in SORTED:
+        raise InputError("--sort", sort, "no such column", f"use one of {', '.join(SORTED)}")
+    return SearchQuery(" ".join(words), tuple(kinds), ranges=ranges, sort=sort, descending=descending)
+
+
+def _check_word(part: str) -> None:
+    if any(sign in part for sign in "<>="):
+        raise InputError(
+            "search", part, "is neither a word nor a condition", "write it as peak_cN>=50, without blanks"
+        )
+
+
+def _check_name(name: str) -> None:
+    if name in NUMBERS:
+        return
+    near = difflib.get_close_matches(name, NUMBERS, 1, 0.5)
+    remedy = f"did you mean {near[0]}?" if near else f"use kind or one of {', '.join(NUMBERS)}"
+    raise InputError("search", name, "no such column", remedy)
+
+
+def _kinds(part: str, sign: str, value: str) -> Sequence[ButtonType]:
+    known = {str(kind).rstrip("?"): kind for kind in ButtonType}
+    names = [name.rstrip("?") for name in value.split(",")]
+    if sign != "=" or any(name not in known for name in names):
+        raise InputError("search", part, "no such kind", f"write kind= and one or more of {','.join(known)}")
+    return [known[name] for name in names]
+
+
+def _range(part: str, sign: str, value: str) -> Range:
+    low, between, high = value.partition("..")
+    if sign == "=" and between:
+        return (_number(part, low) if low else None), (_number(part, high) if high else None)
+    number = _number(part, value)
+    if sign in (">", "<"):  # ranges hold their ends
+        number = float(np.nextafter(number, np.inf if sign == ">" else -np.inf))
+    return (None if "<" in sign else number), (None if ">" in sign else number)
+
+
+def _number(part: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        raise InputError(
+            "search", part, f"{text!r} is not a number", "write it as peak_cN>=50 or peak_cN=50..60"
+        )
+    return value
+
+
+def _both(first: Range, second: Range) -> Range:
+    lows = [low for low, _ in (first, second) if low is not None]
+    highs = [high for _, high in (first, second) if high is not None]
+    return max(lows, default=None), min(highs, default=None)

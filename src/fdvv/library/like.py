@@ -1,6 +1,6 @@
 """How unlike two buttons feel, from their rows: force along press and release, shape, landmarks.
 
-All is in just noticeable differences (JND). Of force that is 8 % (7 to 10 % are told for pressing fingers)
+All is in just noticeable differences (JND). Of force that is 8 % (reports for pressing fingers: 7 to 10 %)
 of the force plus 10 cN, so that light forces do not count for more than their share; of places it is 0.2 mm.
 The three parts are mean squares and count alike; docs/explanation/library.md tells how well that works.
 """
@@ -12,8 +12,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from fdvv.library.row import SKETCH_POINTS, ButtonRow
 from fdvv.units import FloatArray
-from fdvv.workflow._shelf_row import SKETCH_POINTS, ShelfRow
 
 FORCE_jnd_ratio, FORCE_floor_cN = 0.08, 10.0
 PLACE_jnd_mm = 0.2
@@ -33,14 +33,13 @@ class LikeTable:
 
     def __init__(self) -> None:
         self._table: FloatArray = np.empty((0, sum(_SIZES)))
-        self._fresh: list[ShelfRow] = []
+        self._fresh: list[ButtonRow] = []
 
-    def extend(self, rows: Sequence[ShelfRow]) -> None:
-        """Add buttons at the end."""
+    def extend(self, rows: Sequence[ButtonRow]) -> None:
         self._fresh += rows
 
     def parts(self, at: int) -> FloatArray:
-        """Give how far every button is from the one at a position: force, shape, landmarks in JND, (n, 3).
+        """Return how far every button is from the one at a position: force, shape, landmarks in JND, (n, 3).
 
         What either button lacks (a release, a bump's place) is left out; a part of which nothing is left is
         infinite.
@@ -55,13 +54,9 @@ class LikeTable:
         found = np.sqrt(np.column_stack(parts))
         return np.where(np.isfinite(found), found, np.inf)
 
-    def distances(self, at: int) -> FloatArray:
-        """Give the root of the mean square of the three parts, (n,)."""
-        return distances(self.parts(at))
-
 
 def distances(parts: FloatArray) -> FloatArray:
-    """Give the root of the mean square of the three parts, (n,)."""
+    """Return the root of the mean square of the three parts, (n,)."""
     return np.asarray(np.sqrt(np.mean(parts**2, axis=1)))
 
 
@@ -73,8 +68,8 @@ def _mean(squares: FloatArray) -> FloatArray:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _vectors(rows: Sequence[ShelfRow]) -> FloatArray:
-    """Give what buttons are compared by, a row each; NaN where it is unknown."""
+def _vectors(rows: Sequence[ButtonRow]) -> FloatArray:
+    """Return what buttons are compared by, a row each; NaN where it is unknown."""
     travel_mm = np.array([[row.travel_mm] for row in rows])
     strokes = [_sketches([row.sketch.press_dcN for row in rows])]
     strokes.append(_sketches([row.sketch.release_dcN for row in rows]))
@@ -83,7 +78,7 @@ def _vectors(rows: Sequence[ShelfRow]) -> FloatArray:
 
 
 def _sketches(found_dcN: Sequence[Sequence[int]]) -> FloatArray:
-    """Give forces in cN, (n, 64); NaN where a button has no such stroke."""
+    """Return forces in cN, (n, 64); NaN where a button has no such stroke."""
     none = (np.nan,) * SKETCH_POINTS
     return 0.1 * np.array([dcN or none for dcN in found_dcN], dtype=np.float64)
 
@@ -104,14 +99,14 @@ def _in_jnd(force_cN: FloatArray, travel_mm: FloatArray) -> FloatArray:
 
 
 def _normalised(force_cN: FloatArray) -> FloatArray:
-    """Give force by its mean on travel by its length, in JND."""
+    """Return force by its mean on travel by its length, in JND."""
     places = np.broadcast_to(np.linspace(0.02, 1.0, SHAPE_points), (len(force_cN), SHAPE_points))
     part = _at(force_cN, places)
     return np.asarray(part / np.maximum(part.mean(axis=1, keepdims=True), 1.0) / FORCE_jnd_ratio)
 
 
-def _landmarks(row: ShelfRow) -> list[float]:
-    """Give travel, places of peak and valley, drops of press and release; without a bump the drop is 0."""
+def _landmarks(row: ButtonRow) -> list[float]:
+    """Return travel, places of peak and valley, drops of press and release; without a bump the drop is 0."""
     typical_cN = 50.0 if row.bottom_out_cN is None else abs(row.bottom_out_cN)
     step_cN = FORCE_jnd_ratio * (typical_cN + FORCE_floor_cN)
     places = (row.travel_mm, row.peak_mm, row.valley_mm)

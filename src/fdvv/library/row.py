@@ -1,17 +1,25 @@
-"""What the shelf knows of one button without opening it: a row of figures, and a sketch of its curves."""
+"""What the catalogue knows of a button without opening it, and the cache of what was read from each file.
+
+The cache saves reading after a restart. It holds lines of JSON and only grows; a later line of a place
+replaces an earlier one. A line that cannot be read is skipped, and its file is read again.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import StrEnum
+from pathlib import Path
 
 import msgspec
+
+from fdvv.io.files import write_atomic
 
 SKETCH_POINTS = 64
 """Per stroke, evenly from contact to the end of the travel."""
 
 
 class Origin(StrEnum):
-    """Where a button of the shelf comes from."""
+    """Where a button of the catalogue comes from."""
 
     BUILTIN = "builtin"
     OWN = "own"
@@ -35,8 +43,8 @@ class Sketch(msgspec.Struct, frozen=True):
     release_dcN: tuple[int, ...] = ()
 
 
-class ShelfRow(msgspec.Struct, frozen=True, kw_only=True):
-    """One button of the shelf. A figure that is None was not detected or is not known; ``why`` says which.
+class ButtonRow(msgspec.Struct, frozen=True, kw_only=True):
+    """One button of the catalogue. A figure that is None was not detected or is unknown; ``why`` says which.
 
     Attributes
     ----------
@@ -48,7 +56,7 @@ class ShelfRow(msgspec.Struct, frozen=True, kw_only=True):
     release_drop_cN : of the bump of the release.
     actuation_mm, actuation_cN, reset_mm : of the electrical contact.
     preload_cN, bottom_out_cN, travel_mm, pre_slope_cN_mm, post_slope_cN_mm, work_mJ, loss_mJ : as
-        fdvv.model.Landmarks; loss is work put in and not given back.
+        fdvv.model.landmarks.Landmarks; loss is work put in and not given back.
     speeds_mm_s : the known speeds of the presses, rising; empty if the source tells none.
     cycles, used : how many presses the source holds and how many the mean is of; None for a model.
     date : ISO day on which the file was last changed; None for a built-in.
@@ -99,3 +107,54 @@ NUMBERS = (
 )
 """Figures of a row that can be searched by range and sorted by."""
 """The fields of a row that are ranges to filter by and columns to sort by."""
+
+
+CACHE_version = 1
+"""Of what a row holds and how it is found; another version's cache is not used."""
+
+
+class CacheLine(msgspec.Struct, frozen=True):
+    """What became of one file: its row, or the reason why it has none, or neither if it is no button."""
+
+    place: str
+    stamp: str
+    row: ButtonRow | None = None
+    reason: str = ""
+
+
+class _Head(msgspec.Struct, frozen=True):
+    format: str
+    version: int
+
+
+_HEAD = msgspec.json.encode(_Head("fdvv-shelf-cache", CACHE_version)) + b"\n"
+_LINES = msgspec.json.Decoder(CacheLine)
+
+
+def read_cache(path: Path) -> dict[str, CacheLine]:
+    """Read a cache, by place; empty if there is none of this version."""
+    try:
+        head, *lines = path.read_bytes().split(b"\n")
+    except OSError:
+        return {}
+    found: dict[str, CacheLine] = {}
+    if head + b"\n" != _HEAD:
+        return found
+    for text in lines:
+        try:
+            line = _LINES.decode(text)
+        except (msgspec.MsgspecError, UnicodeDecodeError):
+            continue
+        found[line.place] = line
+    return found
+
+
+def add_to_cache(path: Path, lines: Iterable[CacheLine]) -> None:
+    """Add lines to a cache that write_cache made. OSError if it cannot be written."""
+    with path.open("ab") as stream:
+        stream.write(b"".join(msgspec.json.encode(line) + b"\n" for line in lines))
+
+
+def write_cache(path: Path, lines: Iterable[CacheLine]) -> None:
+    """Write a cache anew, whole or not at all. OSError if it cannot be written."""
+    write_atomic(path, _HEAD + b"".join(msgspec.json.encode(line) + b"\n" for line in lines))

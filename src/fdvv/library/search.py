@@ -1,7 +1,8 @@
-"""Questions to the shelf: words, kinds and ranges together, in any order, or nearest to one button."""
+"""Searches of the catalogue: words, kinds and ranges together, or by similarity to one button."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -9,10 +10,87 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import InputError
+from fdvv.library.like import LikeTable, distances
+from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
 from fdvv.units import FloatArray
-from fdvv.workflow._shelf_like import LikeTable, distances
-from fdvv.workflow._shelf_row import NUMBERS, ButtonType, Origin, ShelfRow
-from fdvv.workflow._shelf_text import Mask, TextTable
+
+Mask = npt.NDArray[np.bool_]
+TYPO_letters = 4
+"""Shorter words are taken as they stand: with a letter changed they would match nearly everything."""
+
+_WORD = re.compile(r"[^\s/_,;()\-]+")
+
+
+class TextTable:
+    """The words of many buttons: name, collection, origin and what is stated. Positions count from 0."""
+
+    def __init__(self) -> None:
+        self._names: list[str] = []
+        self._others: list[str] = []
+        self._words: set[str] = set()
+
+    def extend(self, rows: Sequence[ButtonRow]) -> None:
+        for row in rows:
+            name = row.name.casefold()
+            other = " ".join([row.collection, row.origin, *row.stated]).casefold()
+            self._names.append(name)
+            self._others.append(_spaced(other))
+            self._words.update(_WORD.findall(f"{name} {other}"))
+
+    def match(self, text: str) -> tuple[Mask, npt.NDArray[np.float64], tuple[str, ...]]:
+        """Find the buttons that match every word.
+
+        Gives the mask (n,), how well each matches (n,): words at the start of the name count most, and the
+        words that were read with a typo.
+        """
+        mask, score = np.ones(len(self._names), bool), np.zeros(len(self._names))
+        mended = []
+        for word in text.casefold().split():
+            found = self._score([word])
+            if not found.any() and len(word) >= TYPO_letters:
+                found = self._score([w for w in self._words if _nearly(word, w)])
+                mended += [word] if found.any() else []
+            mask &= found > 0
+            score += found
+        return mask, score, tuple(mended)
+
+    def _score(self, words: Sequence[str]) -> npt.NDArray[np.float64]:
+        """Return 4 where a name begins so, 3 where a word of it does, 2 within the name, 1 elsewhere, (n,).
+
+        Elsewhere a word must begin so: "red" is no measured button.
+        """
+        score = [0] * len(self._names)  # single places of an array take longer to read and write
+        for word in words:
+            prefix = _spaced(word)
+            for i, name in enumerate(self._names):
+                at = name.find(word)
+                if at >= 0:
+                    score[i] = max(score[i], 4 if at == 0 else 3 if not name[at - 1].isalnum() else 2)
+                elif prefix in self._others[i]:
+                    score[i] = max(score[i], 1)
+        return np.array(score, dtype=np.float64)
+
+
+def _spaced(text: str) -> str:
+    return "".join(f" {word}" for word in _WORD.findall(text))
+
+
+def _nearly(typed: str, word: str) -> bool:
+    """Return whether the beginning of a word is one letter off: added, left out, another, or two swapped."""
+    n = len(typed)
+    if typed[0] not in word[:2]:
+        return False  # hardly anyone mistakes the first letter, and other words would often be near
+    return any(_one_off(typed, word[:size]) for size in (n - 1, n, n + 1) if len(word) >= size)
+
+
+def _one_off(a: str, b: str) -> bool:
+    if abs(len(a) - len(b)) > 1:
+        return False
+    start = next((i for i, (p, q) in enumerate(zip(a, b, strict=False)) if p != q), min(len(a), len(b)))
+    if a[start + 1 :] == b[start + 1 :] or a[start + 1 :] == b[start:] or a[start:] == b[start + 1 :]:
+        return True
+    return a[start : start + 2] == b[start : start + 2][::-1] and a[start + 2 :] == b[start + 2 :]
+
 
 Positions = npt.NDArray[np.intp]
 BINS = 24
@@ -21,7 +99,7 @@ LABELS = ("name", "kind", "origin", "date")
 
 
 @dataclass(frozen=True)
-class ShelfQuery:
+class SearchQuery:
     """What is sought; all of it must hold.
 
     Attributes
@@ -58,7 +136,7 @@ class Histogram:
 
 
 @dataclass(frozen=True, eq=False)
-class ShelfFound:
+class SearchResult:
     """The answer.
 
     Attributes
@@ -82,11 +160,11 @@ class ShelfFound:
     mended: tuple[str, ...]
 
 
-class ShelfSearch:
+class CatalogSearch:
     """Rows made ready to be searched; more may be added at the end."""
 
     def __init__(self) -> None:
-        self.rows: list[ShelfRow] = []
+        self.rows: list[ButtonRow] = []
         self._at: dict[str, int] = {}
         self._text, self._like = TextTable(), LikeTable()
         self._numbers: FloatArray = np.empty((0, len(NUMBERS)))
@@ -94,8 +172,7 @@ class ShelfSearch:
         self._bins: npt.NDArray[np.intp] = np.empty((0, len(NUMBERS)), dtype=np.intp)
         self._kinds = self._origins = np.empty(0, dtype=np.str_)
 
-    def extend(self, rows: Sequence[ShelfRow]) -> None:
-        """Add rows at the end."""
+    def extend(self, rows: Sequence[ButtonRow]) -> None:
         if not rows:
             return
         self._at |= {row.id: len(self.rows) + i for i, row in enumerate(rows)}
@@ -109,8 +186,8 @@ class ShelfSearch:
         self._kinds = np.append(self._kinds, [str(row.kind) for row in rows])
         self._origins = np.append(self._origins, [str(row.origin) for row in rows])
 
-    def row(self, button_id: str) -> ShelfRow | None:
-        """Give the row of a button; None if it is not among them."""
+    def row(self, button_id: str) -> ButtonRow | None:
+        """Return the row of a button; None if it is not among them."""
         at = self._at.get(button_id)
         return None if at is None else self.rows[at]
 
@@ -120,7 +197,7 @@ class ShelfSearch:
             raise InputError("library", "button", reason, "choose one of the list, or wait for the index")
         return self._at[button_id]
 
-    def find(self, query: ShelfQuery) -> ShelfFound:
+    def find(self, query: SearchQuery) -> SearchResult:
         """Answer a question. Raises InputError on a name that is not there."""
         _check(query)
         matches, score, mended = self._text.match(query.text)
@@ -132,7 +209,7 @@ class ShelfSearch:
         if query.like is not None:
             positions = positions[positions != self._position(query.like)]
         others = {name: _all_but(masks, name) for name in masks}
-        return ShelfFound(
+        return SearchResult(
             positions=positions,
             distances=distance[positions] if query.like else np.empty(0),
             parts=parts[positions] if query.like else np.empty((0, 3)),
@@ -143,10 +220,10 @@ class ShelfSearch:
             mended=mended,
         )
 
-    def _choices(self, query: ShelfQuery) -> dict[str, Mask]:
+    def _choices(self, query: SearchQuery) -> dict[str, Mask]:
         return {"kinds": _among(self._kinds, query.kinds), "origins": _among(self._origins, query.origins)}
 
-    def _ranges(self, query: ShelfQuery) -> dict[str, Mask]:
+    def _ranges(self, query: SearchQuery) -> dict[str, Mask]:
         masks = {}
         for name, (low, high) in query.ranges.items():
             values = self._numbers[:, NUMBERS.index(name)]
@@ -155,16 +232,16 @@ class ShelfSearch:
             )
         return masks
 
-    def _distances(self, query: ShelfQuery) -> tuple[FloatArray, FloatArray]:
+    def _distances(self, query: SearchQuery) -> tuple[FloatArray, FloatArray]:
         if query.like is None:
             return np.empty((0, 3)), np.empty(0)
         parts = self._like.parts(self._position(query.like))
         return parts, distances(parts)
 
     def _ordered(
-        self, query: ShelfQuery, found: npt.NDArray[np.intp], score: FloatArray
+        self, query: SearchQuery, found: npt.NDArray[np.intp], score: FloatArray
     ) -> npt.NDArray[np.intp]:
-        """Sort positions; equal ones stay in the shelf's order, what is unknown comes last."""
+        """Sort positions; equal ones stay in the order of the catalogue, what is unknown comes last."""
         if query.sort == "match":
             return found[np.argsort(-score[found], kind="stable")]
         if query.sort in LABELS:
@@ -185,7 +262,7 @@ class ShelfSearch:
 
 
 def _ends(numbers: FloatArray) -> FloatArray:
-    """Give the 1st and the 99th percentile of every column, (2, k); NaN for a column without figures."""
+    """Return the 1st and the 99th percentile of every column, (2, k); NaN for a column without figures."""
     ends = np.full((2, numbers.shape[1]), np.nan)
     for i, column in enumerate(numbers.T):
         known = column[np.isfinite(column)]
@@ -195,7 +272,7 @@ def _ends(numbers: FloatArray) -> FloatArray:
 
 
 def _bins(numbers: FloatArray, ends: FloatArray) -> npt.NDArray[np.intp]:
-    """Give the bin of every figure, (n, k): the outermost beyond the ends, BINS where it is not known."""
+    """Return the bin of every figure, (n, k): the outermost beyond the ends, BINS where it is not known."""
     found = np.full(numbers.shape, BINS, dtype=np.intp)
     for i, (low, high) in enumerate(ends.T):
         known = np.isfinite(numbers[:, i])
@@ -211,7 +288,7 @@ def _all_but(masks: dict[str, Mask], name: str) -> Mask:
 
 
 def _among(labels: npt.NDArray[np.str_], wanted: Sequence[str]) -> Mask:
-    """Tell which labels are wanted; all, where nothing is asked."""
+    """Return which labels are wanted; all if none are named."""
     return np.isin(labels, [str(one) for one in wanted]) if wanted else np.ones(labels.size, bool)
 
 
@@ -221,13 +298,12 @@ def _counts(labels: npt.NDArray[np.str_], mask: Mask) -> dict[str, int]:
     return {label: int(np.count_nonzero(mask & (labels == label))) for label in sorted(there)}
 
 
-def _active(query: ShelfQuery) -> list[str]:
-    """Name the filters that are set."""
-    told = {"text": query.text.strip(), "kinds": query.kinds, "origins": query.origins}
-    return [name for name, value in told.items() if value] + list(query.ranges)
+def _active(query: SearchQuery) -> list[str]:
+    filters = {"text": query.text.strip(), "kinds": query.kinds, "origins": query.origins}
+    return [name for name, value in filters.items() if value] + list(query.ranges)
 
 
-def _check(query: ShelfQuery) -> None:
+def _check(query: SearchQuery) -> None:
     columns = ("match", *LABELS, *NUMBERS)
     for place, name, known in (
         ("sort", query.sort, columns),

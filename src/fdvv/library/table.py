@@ -1,4 +1,4 @@
-"""The columns of a library's file, with their types and meaning: one table for code, file and documents."""
+"""What a library keeps of each file: the columns of its table with types and meaning, and sampled curves."""
 
 from __future__ import annotations
 
@@ -9,13 +9,93 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+import numpy as np
+import numpy.typing as npt
 
-from fdvv.workflow._library_record import LibraryRecord, SampledCurve
-from fdvv.workflow._shelf_cache import CACHE_version
-from fdvv.workflow._shelf_row import ButtonType, Origin, ShelfRow, Sketch
+from fdvv.library.row import ButtonRow, ButtonType, CACHE_version, Origin, Sketch
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
 
 if TYPE_CHECKING:
     from pyarrow import Schema, Table
+
+
+KEPT_STEP_mm = 0.02
+"""Of the curves: that over which the force of a measured file is averaged before its figures are read."""
+
+MOST_points = 2000
+
+
+class SampledCurve(msgspec.Struct, frozen=True):
+    """Force of one stroke at one speed, evenly sampled; contact is at 0.
+
+    Attributes
+    ----------
+    velocity_mm_s : None if the file tells none.
+    force_cN : at start_mm + i step_mm, (n,), single precision.
+    """
+
+    stroke: str
+    velocity_mm_s: float | None
+    start_mm: float
+    step_mm: float
+    force_cN: npt.NDArray[np.float32]
+
+    @classmethod
+    def of(
+        cls,
+        stroke: str,
+        velocity_mm_s: float | None,
+        start_mm: float,
+        step_mm: float,
+        force_cN: npt.ArrayLike,
+    ) -> SampledCurve:
+        return cls(stroke, velocity_mm_s, start_mm, step_mm, np.asarray(force_cN, dtype=np.float32))
+
+    def curve(self) -> ForceCurve:
+        x = self.start_mm + self.step_mm * np.arange(self.force_cN.size)
+        knots = np.concatenate([x[:1], x, x[-1:]])
+        return ForceCurve(Stroke(self.stroke), self.velocity_mm_s, 1, knots, self.force_cN.astype(np.float64))
+
+
+class LibraryRecord(msgspec.Struct, frozen=True):
+    """One file. Without a row it is refused if there is a reason, else a file of fdvv's that is no button.
+
+    Attributes
+    ----------
+    id, place, stamp, pair, sha256, format, warnings : as in the library's columns.
+    """
+
+    id: str
+    place: str
+    stamp: str
+    pair: str | None = None
+    sha256: str | None = None
+    row: ButtonRow | None = None
+    reason: str = ""
+    format: str = ""
+    warnings: tuple[str, ...] = ()
+    curves: tuple[SampledCurve, ...] = ()
+
+    @property
+    def state(self) -> str:
+        return "button" if self.row else "refused" if self.reason else "other"
+
+
+def sampled(model: FDVVModel) -> tuple[SampledCurve, ...]:
+    """Sample every curve of a model from its beginning to its end, about every 20 um."""
+    found = []
+    for curve in model.curves:
+        length = curve.end_mm - curve.start_mm
+        points = int(np.clip(round(length / KEPT_STEP_mm) + 1, 2, MOST_points))
+        x = np.linspace(curve.start_mm, curve.end_mm, points)
+        found.append(
+            SampledCurve.of(
+                str(curve.stroke), curve.velocity_mm_s, float(x[0]), length / (points - 1), curve.force_cN(x)
+            )
+        )
+    return tuple(found)
+
 
 FORMAT, VERSION = "fdvv-library", 1
 TEXTS, WHOLES = "list<string>", "list<int16>"
@@ -62,7 +142,7 @@ COLUMNS = (
     Column("post_slope_cN_mm", "double", "slope of the press after it"),
     Column("work_mJ", "double", "work of the press"),
     Column("loss_mJ", "double", "of it, what the release does not give back"),
-    Column("speeds_mm_s", "list<double>", "known speeds of the presses, rising; empty if none is told"),
+    Column("speeds_mm_s", "list<double>", "known speeds of the presses, rising; empty if none is reported"),
     Column("cycles", "int32", "presses in the file; null for a model"),
     Column("used", "int32", "presses whose mean the figures are of; null for a model"),
     Column("date", "string", "ISO day on which the file was last changed"),
@@ -76,15 +156,16 @@ COLUMNS = (
     Column("curves", CURVES, "every stroke and speed: force_cN[i] at start_mm + i step_mm, float"),
 )
 """Columns of a library's table."""
+
 _SKETCH = {"press_dcN", "release_dcN"}
-ROW_NAMES = tuple(f for f in ShelfRow.__struct_fields__ if f not in ("origin", "sketch"))
+ROW_NAMES = tuple(f for f in ButtonRow.__struct_fields__ if f not in ("origin", "sketch"))
 READ_NAMES = ("place", "state", *ROW_NAMES, *sorted(_SKETCH))
 """The columns of which rows are made again."""
 
 
 @cache
 def library_schema() -> Schema:
-    """Give the schema; what it says of itself tells which files hold rows of this meaning."""
+    """Return the schema; its metadata says which files hold rows of this meaning."""
     import pyarrow as pa
 
     curve = pa.struct(
@@ -124,7 +205,7 @@ def _line(record: LibraryRecord) -> dict[str, Any]:
     return line
 
 
-def rows_of(table: Table) -> list[tuple[str, ShelfRow]]:
+def rows_of(table: Table) -> list[tuple[str, ButtonRow]]:
     """Make rows of a table with READ_NAMES, each with its place; files without a button are left out."""
     columns = {name: table.column(name).to_pylist() for name in ("place", "state", *ROW_NAMES)}
     sketches = zip(*(_tuples(table, name) for name in ("press_dcN", "release_dcN")), strict=True)
@@ -136,12 +217,14 @@ def rows_of(table: Table) -> list[tuple[str, ShelfRow]]:
         for name in ("stated", "speeds_mm_s", "why"):
             values[name] = tuple(values[name])
         values["kind"] = ButtonType(values["kind"])
-        rows.append((columns["place"][i], ShelfRow(origin=Origin.MEASURED, sketch=Sketch(*sketch), **values)))
+        rows.append(
+            (columns["place"][i], ButtonRow(origin=Origin.MEASURED, sketch=Sketch(*sketch), **values))
+        )
     return rows
 
 
 def _tuples(table: Table, name: str) -> list[tuple[int, ...]]:
-    """Give lists of small whole numbers: as one array first, which is ten times as fast as value by value."""
+    """Return lists of integers; by way of one array, which is ten times as fast as value by value."""
     found = []
     for chunk in table.column(name).chunks:
         values, ends = chunk.flatten().to_numpy(zero_copy_only=False).tolist(), [0]

@@ -8,24 +8,44 @@ from functools import cache
 
 import numpy as np
 
-from fdvv.compensate import RigAware, RigMemory, Tuning, tuning_of
-from fdvv.device import TwinDevice
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.method import Tuning
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.compensation.rig_learning import tuning_of
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, Stroke, load_builtin
-from fdvv.program import Limits, Program, Signal, When, button_program, compile_program, require_accepted
-from fdvv.program import Surface as ProgramSurface
-from fdvv.protocol import Settings
-from fdvv.twin import Finger, Rig, load_finger, load_rig, settings_of
+from fdvv.library.catalog import BUTTONS, Catalog
+from fdvv.live.press_trace import PressTrace, drawn_traces
+from fdvv.model.curve import Stroke
+from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.program.button import button_program
+from fdvv.program.check import require_accepted
+from fdvv.program.compile import compile_program
+from fdvv.program.condition import When
+from fdvv.program.program import Program, Signal
+from fdvv.program.surface import Limits
+from fdvv.program.surface import Surface as ProgramSurface
+from fdvv.project.programs import ProgramCatalog
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.compensate import CompensationResult, compensate
+from fdvv.rendering.tuning import settings_with
+from fdvv.twin.files import load_finger, load_rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray, cN_from_N
-from fdvv.workflow._compensate import CompensationResult, compensate
-from fdvv.workflow._tuning import settings_with
 
 IDEAL_RIG = "ideal"
+
 PRESS_RIGS = ("paper", "light")
-"""Shipped rigs that one may choose between; what is felt as intended is felt on the ideal one."""
+"""Shipped rigs that one may choose between; intended renders on the ideal one."""
+
 TEACHER = "mx-clear"
-"""The button whose presses teach a rig what every other one is compensated with."""
+"""The button whose presses identify a rig."""
+
 TAUGHT_mm_s, RENDERED_mm_s = (50.0, 100.0, 150.0, 200.0), (10.0, 50.0, 100.0, 150.0, 200.0)
+
 STEP_mm = 0.02
 
 
@@ -57,7 +77,7 @@ class PressSubject:
     Attributes
     ----------
     name, mode, rig_name : what is pressed, how, on which shipped rig.
-    told : one sentence for the page: what is between this button and the finger.
+    description : one sentence for people: how this button is rendered.
     image, settings, rig, finger : what runs.
     travel_mm : where the bottom stop stands.
     actuation_mm, reset_mm : where a plain button's key goes down and up; None of a program.
@@ -70,7 +90,7 @@ class PressSubject:
     name: str
     mode: PressMode
     rig_name: str
-    told: str
+    description: str
     image: bytes
     settings: Settings
     rig: Rig
@@ -86,11 +106,11 @@ class PressSubject:
 
     @property
     def displacement_mm(self) -> FloatArray:
-        """Give places from the top to the stop, (n,)."""
+        """Return places from the top to the stop, (n,)."""
         return np.linspace(0.0, self.travel_mm, 1 + max(2, round(self.travel_mm / STEP_mm)))
 
     def meant_cN(self, velocity_mm_s: float) -> tuple[FloatArray, FloatArray]:
-        """Give press and release as they are meant in a press at a speed, (n,) each."""
+        """Return press and release as they are meant in a press at a speed, (n,) each."""
         places = self.displacement_mm.tolist()
         press, release = (
             np.array([surface.force_at_cN(place, velocity_mm_s) for place in places])
@@ -115,7 +135,7 @@ def learned_subject(model: FDVVModel, learned: CompensationResult, rig_name: str
     """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does."""
     mode = PressMode.COMPENSATED
     subject = _of_model(model, mode, *_rig(mode, rig_name), learned)
-    return replace(subject, told=f"on the simulated rig {rig_name!r}, by an actuation learned before")
+    return replace(subject, description=f"on the simulated rig {rig_name!r}, by an actuation learned before")
 
 
 def _pressable(model: FDVVModel) -> FDVVModel:
@@ -132,7 +152,7 @@ def _of_model(
     tuning = learned.outcome.tuning if learned else Tuning()
     meant = button_program(model)
     down, up = (state.transitions[0].when.value for state in meant.states)
-    subject = _subject(program, mode, rig_name, rig, limits, tuning, _told(mode, rig_name))
+    subject = _subject(program, mode, rig_name, rig, limits, tuning, _description(mode, rig_name))
     marks = (PressMark("actuation", down), PressMark("reset", up))
     press, release = _surfaces(meant)
     return replace(subject, actuation_mm=down, reset_mm=up, marks=marks, press=press, release=release)
@@ -150,24 +170,24 @@ def program_subject(
     tuning = Tuning()
     if mode is PressMode.COMPENSATED:
         law = RigAware()
-        known = rig_memory(name).known
-        tuning = tuning_of(known, program.travel_mm, law.bandwidth_Hz, law.friction_mm_s)
-    told = _told(mode, name, program=True)
-    return _subject(program, mode, name, rig, rig_limits(rig), tuning, told)
+        model = learned_rig(name).rig
+        tuning = tuning_of(model, program.travel_mm, law.bandwidth_Hz, law.friction_mm_s)
+    description = _description(mode, name, program=True)
+    return _subject(program, mode, name, rig, rig_limits(rig), tuning, description)
 
 
 @cache
-def rig_memory(rig_name: str) -> RigMemory:
-    """Give what a shipped rig teaches in 16 simulated presses on TEACHER; learned once per process."""
+def learned_rig(rig_name: str) -> LearnedRig:
+    """Return a shipped rig identified from 16 simulated presses on TEACHER; once per process."""
     device = TwinDevice(load_rig(rig_name), load_finger("paper"), seed=1)
-    memory = compensate(device, load_builtin(TEACHER), TAUGHT_mm_s, RigAware()).memory
-    assert memory is not None  # the method keeps one
-    return memory
+    learned = compensate(device, load_builtin(TEACHER), TAUGHT_mm_s, RigAware()).learned_rig
+    assert learned is not None  # the method keeps one
+    return learned
 
 
 def known_rendering(model: FDVVModel, rig_name: str) -> CompensationResult:
     """Compensate a model for a shipped rig known before, without a press. Raises InputError, DeviceError."""
-    law = RigAware(rounds=0, memory=rig_memory(rig_name))
+    law = RigAware(rounds=0, learned_rig=learned_rig(rig_name))
     return compensate(TwinDevice(load_rig(rig_name)), model, RENDERED_mm_s, law)
 
 
@@ -180,14 +200,20 @@ def _rig(mode: PressMode, rig_name: str) -> tuple[str, Rig]:
 
 
 def rig_limits(rig: Rig, learned: bool = False) -> Limits:
-    """Give what a program is compiled with for this rig; learned forces carry the weight already."""
+    """Return what a program is compiled with for this rig; learned forces carry the weight already."""
     mover = rig.mover
     weight_cN = 0.0 if learned else float(cN_from_N(mover.mass_kg * mover.gravity_m_s2))
     return Limits(settings=settings_of(rig), mass_kg=mover.mass_kg, weight_cN=weight_cN)
 
 
 def _subject(
-    program: Program, mode: PressMode, rig_name: str, rig: Rig, limits: Limits, tuning: Tuning, told: str
+    program: Program,
+    mode: PressMode,
+    rig_name: str,
+    rig: Rig,
+    limits: Limits,
+    tuning: Tuning,
+    description: str,
 ) -> PressSubject:
     try:
         settings = settings_with(settings_of(rig), tuning)
@@ -197,7 +223,7 @@ def _subject(
         program.name,
         mode,
         rig_name,
-        told,
+        description,
         compile_program(program, limits).image,
         settings,
         rig,
@@ -213,13 +239,13 @@ def _subject(
 
 
 def _surfaces(program: Program) -> tuple[ProgramSurface, ProgramSurface]:
-    """Give press and release of the start state."""
+    """Return press and release of the start state."""
     start = program.state(program.start)
     return program.surface(start.press), program.surface(start.release)
 
 
 def _marks(program: Program) -> tuple[PressMark, ...]:
-    """Give the places at which states change."""
+    """Return the places at which states change."""
     return tuple(
         PressMark(f"{state.name} → {way.to}", way.when.value)
         for state in program.states
@@ -228,7 +254,7 @@ def _marks(program: Program) -> tuple[PressMark, ...]:
     )
 
 
-def _told(mode: PressMode, rig_name: str, program: bool = False) -> str:
+def _description(mode: PressMode, rig_name: str, program: bool = False) -> str:
     if mode is PressMode.INTENDED:
         return (
             "as intended: a simulated rig of perfect parts (cap of 1 g, no weight, no friction); vibrations "
@@ -238,4 +264,53 @@ def _told(mode: PressMode, rig_name: str, program: bool = False) -> str:
         return f"on the simulated rig {rig_name!r}, not compensated: its own forces come on top"
     if program:
         return f"on the simulated rig {rig_name!r}, which looks ahead and pushes against its own forces"
-    return f"on the simulated rig {rig_name!r}, compensated from what 16 presses on {TEACHER} taught of it"
+    return f"on the simulated rig {rig_name!r}, compensated after 16 presses on {TEACHER}"
+
+
+TRY = {
+    "shipped:button": "Press it as any key: compare the others with this one.",
+    "shipped:dwell-ticks": "Hold it at the bottom and count the ticks with your finger.",
+    "shipped:fast-tapping": "Push past 1 mm and let it take over: it drops, kicks back and is ready again.",
+    "shipped:multi-level": "Sink slowly and stop at each click: three key levels lie on the way.",
+    "shipped:non-newtonian": "Press gently, then hit it: the faster, the stiffer.",
+    "shipped:rapid-trigger": "Stay deep and waggle by a few tenths of a millimetre: up and down each time.",
+    "shipped:returning-later": "Press once and let go: it stays down for a second and a half.",
+}
+"""What to do with each shipped program, in one line."""
+
+
+@dataclass(frozen=True)
+class PressChoice:
+    """Something to press: its id, its name for people, and what to try."""
+
+    id: str
+    name: str
+    hint: str
+
+
+def button_choices(shelf: Catalog) -> tuple[PressChoice, ...]:
+    """List the built-in buttons and the person's own."""
+    own = sorted(
+        path.name.removesuffix(MODEL_SUFFIX) for path in (shelf.project / BUTTONS).glob(f"*{MODEL_SUFFIX}")
+    )
+    return (
+        *(PressChoice(f"builtin:{name}", name, "built-in") for name in builtin_names()),
+        *(PressChoice(f"own:{name}", name, "your own") for name in own),
+    )
+
+
+def program_choices(shelf: ProgramCatalog) -> tuple[PressChoice, ...]:
+    """List the shipped programs and the person's own, but for files that cannot be read."""
+    return tuple(
+        PressChoice(entry.id, entry.name, TRY.get(entry.id, entry.summary))
+        for entry in shelf.entries()
+        if not entry.problem
+    )
+
+
+def drawn_trace(name: str) -> PressTrace:
+    """Return a shipped trace by its name. Raises InputError."""
+    for trace in drawn_traces():
+        if trace.name == name:
+            return trace
+    raise InputError("trace", name, "no such trace", "choose one from the list")

@@ -13,18 +13,26 @@ from fdvv.errors import InputError, ModelError
 from fdvv.units import FloatArray
 
 LARGEST_bytes = 4_000_000
+
 LONGEST_s, DEEPEST_mm = 120.0, 10.0
+
 FEWEST = 4
+
 TIMES = {"t_s": 1.0, "time_s": 1.0, "t_ms": 1e-3, "time_ms": 1e-3, "unixtime": 1e-3}
 """Columns that hold time, and what turns them into seconds."""
+
 PLACES = ("displacement_mm", "travel_mm", "x_mm")
+
 RATIO, KEY = "keyValue", "keyCode"
-"""Of keyboards that tell how far a key is down: part of its travel, and which key."""
+"""Columns of analogue keyboards: depth as a part of the travel, and which key."""
+
 FULL_mm = 4.0
 """Travel that a part of it is taken of."""
+
 STEP_s = 0.002
+
 SILENT_s = 0.02
-"""A keyboard that tells of a key only while it moves told nothing for so long: it did not."""
+"""A keyboard that reports a key only while it moves: after such a silence it had not moved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +41,13 @@ class PressTrace:
 
     Attributes
     ----------
-    name : for people. told : where it comes from.
+    name : for people. origin : where it comes from.
     t_s : (n,) rising from 0.
     displacement_mm : (n,) of the cap; 0 and above is up.
     """
 
     name: str
-    told: str
+    origin: str
     t_s: FloatArray
     displacement_mm: FloatArray
 
@@ -129,13 +137,13 @@ def _time_and_place(columns: dict[str, FloatArray], source: str) -> tuple[FloatA
 
 
 def _held(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Keep a key where it was while its keyboard had nothing to tell of it."""
+    """Hold a key's position while its keyboard reported nothing."""
     silent = np.flatnonzero(np.diff(t) > SILENT_s)
     return np.insert(t, silent + 1, t[silent + 1] - STEP_s), np.insert(x, silent + 1, x[silent])
 
 
 def drawn_traces() -> tuple[PressTrace, ...]:
-    """Give traces that were drawn for this: minimum-jerk moves from place to place, made up, of nobody."""
+    """Return synthetic traces: minimum-jerk motions between given points, not recorded from a person."""
     return (
         _drawn("slow press", (0.2, 0.0), (2.2, 4.0), (2.7, 4.0), (4.7, 0.0), (5.0, 0.0)),
         _drawn("firm press", (0.2, 0.0), (0.28, 4.0), (0.4, 4.0), (0.48, 0.0), (0.8, 0.0)),
@@ -167,5 +175,5 @@ def _drawn(name: str, *points: tuple[float, float]) -> PressTrace:
     s = np.clip((t - times[leg]) / (times[leg + 1] - times[leg]), 0.0, 1.0)
     part = s**3 * (10.0 + s * (6.0 * s - 15.0))
     return PressTrace(
-        name, "drawn for this, of nobody", t, places[leg] + (places[leg + 1] - places[leg]) * part
+        name, "synthetic, not recorded", t, places[leg] + (places[leg + 1] - places[leg]) * part
     )

@@ -1,4 +1,4 @@
-"""A live press at real pace in a thread of its own, shown as frames."""
+"""A live press in real time, in a thread of its own, shown as frames."""
 
 from __future__ import annotations
 
@@ -8,16 +8,51 @@ from dataclasses import dataclass
 from threading import Condition, Thread
 
 from fdvv.errors import FdvvError
-from fdvv.twin import LedTicks
-from fdvv.workflow._live_event import LiveEvent
-from fdvv.workflow._live_press import LivePress
-from fdvv.workflow._real_pace import RealPace
+from fdvv.live.press import LiveEvent, LivePress
+from fdvv.twin.interactive import InteractiveTicks
+
+LONGEST_s = 0.1
+"""Longest time simulated at once: more would be motion without input; it is dropped and reported."""
+
+
+class RealTimeClock:
+    """Paces simulated time by a monotonic clock.
+
+    Parameters
+    ----------
+    clock : monotonic, s.
+    longest_s : most that is caught up at once.
+    """
+
+    def __init__(self, clock: Callable[[], float], longest_s: float = LONGEST_s) -> None:
+        self._clock, self._longest_s = clock, longest_s
+        self._last_s: float | None = None
+
+    @property
+    def last_s(self) -> float:
+        """The clock as due() read it last; 0 before."""
+        return self._last_s or 0.0
+
+    def due(self) -> tuple[float, float]:
+        """Return the time due since the last call, and the time dropped; zeros after pause()."""
+        now = self._clock()
+        passed = 0.0 if self._last_s is None else now - self._last_s
+        self._last_s = now
+        run = min(passed, self._longest_s)
+        return run, passed - run
+
+    def pause(self) -> None:
+        """Stop the clock: time until the next call is neither due nor dropped."""
+        self._last_s = None
+
 
 STEP_s = 0.004
-"""The rig goes on so often; what the hand does takes effect with the next one."""
+"""Step of the simulation; input takes effect with the next one."""
+
 FRAME_s = 1 / 60
+
 SILENT_s = 3.0
-"""A page that says nothing for so long looks no more."""
+"""A page that is silent for this long is taken as closed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +63,13 @@ class LiveFrame:
     ----------
     columns, events : of that time.
     sequence : number of the last lead that had taken effect before its last tick.
-    dropped_s : real time that was not simulated since the run began, for this machine was too slow.
-    busy_ratio : part of real time that simulating took, lately.
-    zero_s : the clock when simulated time was 0, as of the last tick; time that is dropped moves it on. A
+    dropped_s : real time not simulated since the run began, because this machine was too slow.
+    busy_ratio : part of real time that simulation took since the last frame.
+    zero_s : the clock at simulated time 0, as of the last tick; dropped time advances it. A
         simulated time and this make a time of the run's clock.
     """
 
-    columns: LedTicks
+    columns: InteractiveTicks
     events: tuple[LiveEvent, ...]
     sequence: int
     dropped_s: float
@@ -43,19 +78,19 @@ class LiveFrame:
 
 
 class LiveRun:
-    """Runs a live press while somebody looks.
+    """Runs a live press while a page watches.
 
     Parameters
     ----------
     press : to be used through this run only, from now on.
     show : called with every frame, in the run's thread.
-    refused : called with one line when something asked for cannot be done; the rest goes on.
+    refused : called with one line when a request fails; the rest continues.
     failed : called once with one line if the press cannot go on.
     clock : monotonic, s.
-    silent_s : a page that says nothing for so long looks no more.
+    silent_s : a page that is silent for this long is taken as closed.
 
-    It runs until close(), pauses with the finger lifted when nobody looks, and goes on with the next thing
-    that is heard. All methods may be called from any thread.
+    It runs until close(), pauses with the finger lifted when no page watches, and resumes with the next
+    call. All methods may be called from any thread.
     """
 
     def __init__(
@@ -78,7 +113,7 @@ class LiveRun:
         self._thread.start()
 
     def ask(self, work: Callable[[LivePress], None], sequence: int | None = None) -> None:
-        """Have something done to the press before its next tick. sequence : number that frames tell back."""
+        """Queue work on the press before its next tick. sequence : number that frames return."""
         with self._changed:
             self._asked.append(work)
             if sequence is not None:
@@ -86,18 +121,18 @@ class LiveRun:
             self._hear()
 
     def here(self) -> None:
-        """Somebody looks."""
+        """Note that a page watches."""
         with self._changed:
             self._hear()
 
     def pause(self) -> None:
-        """Nobody looks: lift the finger and let no time pass until something is heard."""
+        """Lift the finger and stop time until the next call."""
         with self._changed:
             self._looking = False
             self._changed.notify()
 
     def close(self) -> None:
-        """End; waits until the thread has."""
+        """End, and wait for the thread."""
         with self._changed:
             self._over = True
             self._changed.notify()
@@ -123,8 +158,8 @@ class LiveRun:
             self._changed.wait_for(lambda: self._over or self._looking)
 
     def _look(self) -> None:
-        """Simulate at real pace while somebody looks; then lift the finger."""
-        pace, gathered = RealPace(self._clock), _Gathered(self._clock())
+        """Simulate in real time while a page watches; then lift the finger."""
+        pace, gathered = RealTimeClock(self._clock), _Gathered(self._clock())
         while self._goes_on():
             due_s, lost_s = pace.due()
             self._dropped_s += lost_s
@@ -139,13 +174,13 @@ class LiveRun:
         self._press.lift()
 
     def _frame(self, gathered: _Gathered) -> _Gathered:
-        """Show a frame, and begin to gather the next."""
+        """Show a frame, and start the next."""
         now_s = self._clock()
         self._show(gathered.frame(self._shown_sequence, self._dropped_s, now_s))
         return _Gathered(now_s)
 
     def _goes_on(self) -> bool:
-        """Wait for the next step; False once nobody looks."""
+        """Wait for the next step; return False once no page watches."""
         with self._changed:
             self._changed.wait(STEP_s)
             if self._clock() - self._heard_s > self._silent_s:
@@ -153,7 +188,7 @@ class LiveRun:
             return self._looking and not self._over
 
     def _do_asked(self) -> bool:
-        """Do what was asked for; tell whether anything was."""
+        """Do the queued work; return whether there was any."""
         with self._changed:
             asked, self._asked, self._shown_sequence = self._asked, [], self._sequence
         for work in asked:
@@ -165,16 +200,16 @@ class LiveRun:
 
 
 class _Gathered:
-    """What is gathered for the next frame."""
+    """Accumulates the next frame."""
 
     def __init__(self, now_s: float) -> None:
         self.since_s, self.led, self.zero_s = now_s, False, 0.0
-        self._columns: list[LedTicks] = []
+        self._columns: list[InteractiveTicks] = []
         self._events: list[LiveEvent] = []
         self._busy_s = 0.0
 
     def due(self, now_s: float) -> bool:
-        """Whether to show it: at once what happened, sooner what the hand did than what goes on by itself."""
+        """Whether to show it: at once with events, after half a frame with input, else after a frame."""
         waited_s = now_s - self.since_s
         return bool(self._events) or waited_s >= (FRAME_s / 2 if self.led else FRAME_s)
 
@@ -182,7 +217,7 @@ class _Gathered:
     def empty(self) -> bool:
         return not self._columns
 
-    def take(self, columns: LedTicks, events: tuple[LiveEvent, ...], busy_s: float) -> None:
+    def take(self, columns: InteractiveTicks, events: tuple[LiveEvent, ...], busy_s: float) -> None:
         self._columns.append(columns)
         self._events += events
         self._busy_s += busy_s
@@ -190,5 +225,10 @@ class _Gathered:
     def frame(self, sequence: int, dropped_s: float, now_s: float) -> LiveFrame:
         ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
         return LiveFrame(
-            LedTicks.joined(self._columns), tuple(self._events), sequence, dropped_s, ratio, self.zero_s
+            InteractiveTicks.joined(self._columns),
+            tuple(self._events),
+            sequence,
+            dropped_s,
+            ratio,
+            self.zero_s,
         )

@@ -1,4 +1,4 @@
-"""Press a simulated real button, and tell what was felt."""
+"""Presses of a simulated real button."""
 
 from __future__ import annotations
 
@@ -8,23 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.files import write_atomic
-from fdvv.twin import (
-    ButtonPhysics,
-    ButtonTrace,
-    Finger,
-    ForceSensor,
-    draw_button_noise,
-    load_button,
-    load_finger,
-    mean_speed_mm_s,
-    probe_button,
-    simulate_button,
-    solve_button_pace,
-    vary,
-)
+from fdvv.io.files import write_atomic
+from fdvv.rendering.compensate import check_speeds
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.files import load_button, load_finger
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import vary
+from fdvv.twin.pace import mean_speed_mm_s, solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace, draw_button_noise, probe_button, simulate_button
 from fdvv.units import m_from_mm, mm_from_m
-from fdvv.workflow._compensate import check_speeds
 
 COLUMNS = "press,asked_mm_s,t_s,displacement_mm,velocity_mm_s,force_cN,sensed_cN,closed"
 
@@ -37,7 +30,7 @@ class ButtonPress:
     ----------
     asked_mm_s, achieved_mm_s : mean speed of the stroke down, asked for and reached.
     before_stop_cN : largest force on the cap before the last 0.1 mm of the travel.
-    largest_cN : and over the whole press, impact at the bottom included.
+    largest_cN : largest force of the whole press, including impact at the bottom.
     closing_ms : when the circuit closed, after the cap had begun to move; None if it never did.
     """
 
@@ -50,7 +43,7 @@ class ButtonPress:
 
 
 @dataclass(frozen=True, eq=False)
-class Presses:
+class SimulatedPresses:
     """Presses of one button, and its slow curve for comparison; simulated.
 
     Attributes
@@ -83,7 +76,7 @@ def press_button(
     speeds_mm_s: Sequence[float],
     presses: int,
     seed: int = 0,
-) -> Presses:
+) -> SimulatedPresses:
     """Have the simulated person press a simulated real button, each press a fresh one.
 
     button : name of a shipped one or a TOML file; finger : a TOML file, the default person if None.
@@ -94,7 +87,7 @@ def press_button(
     physics, person = load_button(button), load_finger(finger) if finger else Finger()
     made = press_physics(physics, person, speeds_mm_s, presses, seed)
     travel_mm = float(mm_from_m(physics.curve.travel_m))
-    return Presses(str(button), travel_mm, quasi_static_peak_cN(physics), made)
+    return SimulatedPresses(str(button), travel_mm, quasi_static_peak_cN(physics), made)
 
 
 def press_physics(
@@ -115,7 +108,7 @@ def press_physics(
 
 
 def quasi_static_peak_cN(physics: ButtonPhysics) -> float:
-    """Give the largest force of a press at 0.5 mm/s before the last 0.1 mm of the travel."""
+    """Return the largest force of a press at 0.5 mm/s before the last 0.1 mm of the travel."""
     slow = probe_button(physics)
     before = slow.displacement_mm < float(mm_from_m(physics.curve.travel_m)) - 0.1
     return float(slow.press_cN[before].max())

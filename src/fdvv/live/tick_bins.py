@@ -1,4 +1,4 @@
-"""Ticks of a device as a screen shows them: the least and the most of every pixel column."""
+"""Ticks of a device binned for a display: minimum and maximum of every pixel column."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class TickBins:
 
 
 class TickBinner:
-    """Collects pieces and gives bins once they are whole: no peak is lost, however few bins there are.
+    """Collects pieces and returns complete bins: no peak is lost at any bin width.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class TickBinner:
         self._kept: TickPiece | None = None
 
     def add(self, piece: TickPiece) -> TickBins:
-        """Take a piece; give the bins that are whole now. Times before what was given are not expected."""
+        """Add a piece, later than all before; return the bins that are complete now."""
         whole = joined(self._kept, piece) if self._kept else piece
         number = np.floor(whole.t_s / self.bin_s).astype(np.int64)
         last = number == number[-1] if number.size else np.zeros(0, dtype=np.bool_)
@@ -76,7 +76,7 @@ class TickBinner:
 
 
 def joined(first: TickPiece, second: TickPiece) -> TickPiece:
-    """Put two pieces together."""
+    """Concatenate two pieces."""
     return TickPiece(
         np.concatenate([first.t_s, second.t_s]),
         np.concatenate([first.displacement_mm, second.displacement_mm]),

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import _bspline
-from fdvv.model._checks import LARGEST_cN, LARGEST_mm, check_size, column
-from fdvv.model._spread import CurveSpread
+from fdvv.model import bspline as _bspline
+from fdvv.model.bspline import LARGEST_cN, LARGEST_mm, check_size, column
+from fdvv.model.spread import CurveSpread
 from fdvv.units import FloatArray
 
 
@@ -27,23 +27,19 @@ class OfStroke(Protocol):
     """Anything that belongs to one stroke at one velocity."""
 
     @property
-    def stroke(self) -> Stroke:
-        """Get the stroke."""
-        ...
+    def stroke(self) -> Stroke: ...
 
     @property
-    def velocity_mm_s(self) -> float | None:
-        """Get the velocity; None if it is unknown."""
-        ...
+    def velocity_mm_s(self) -> float | None: ...
 
 
 def reading_order(part: OfStroke) -> tuple[bool, float]:
-    """Give the key that sorts as people read: presses before releases, slow before fast."""
+    """Return the key that sorts presses before releases, slow before fast."""
     return part.stroke is not Stroke.PRESS, part.velocity_mm_s or 0.0
 
 
 def check_velocity(velocity_mm_s: float | None) -> None:
-    """Refuse a velocity that is not a positive finite number (None means unknown)."""
+    """Raise ModelError unless a velocity is positive and finite, or None (unknown)."""
     if velocity_mm_s is not None and not (np.isfinite(velocity_mm_s) and velocity_mm_s > 0):
         raise ModelError(f"velocity_mm_s must be positive and finite, got {velocity_mm_s}")
 
@@ -116,10 +112,10 @@ class ForceCurve:
     control_points_cN : (n,) one force per basis function; with ``control_points_mm`` (the Greville
         abscissae) these are the points a designer drags.
     spread : how the presses it was averaged from differ; None if it was not measured that way. It belongs to
-        this shape at this stroke and velocity: whoever changes one of them passes None along with it.
+        this shape at this stroke and velocity: a change of one of them resets it to None.
 
     Outside its knots the curve holds its end values, with derivative 0: a resting cap and a stop are
-    not the curve's to tell. Raises ModelError on anything that is not such a spline.
+    not part of the curve. Raises ModelError on anything that is not such a spline.
     """
 
     stroke: Stroke
@@ -140,17 +136,15 @@ class ForceCurve:
 
     @property
     def start_mm(self) -> float:
-        """Get the displacement at which the curve begins."""
         return float(self.knots_mm[0])
 
     @property
     def end_mm(self) -> float:
-        """Get the displacement at which the curve ends."""
         return float(self.knots_mm[-1])
 
     @property
     def control_points_mm(self) -> FloatArray:
-        """Get the (n,) Greville abscissae: where on the displacement axis each control point sits."""
+        """Return the (n,) Greville abscissae: the displacement of each control point."""
         return _bspline.greville(self.knots_mm, self.degree)
 
     def force_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:

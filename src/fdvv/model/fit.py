@@ -13,10 +13,9 @@ import numpy as np
 
 from fdvv._native import address, library
 from fdvv.errors import FitError
-from fdvv.model import _bspline
-from fdvv.model._bump import find_bump
-from fdvv.model._curve import ForceCurve, MeasuredCurve
-from fdvv.model._extent import find_bottom_out_mm, find_contact_mm
+from fdvv.model import bspline as _bspline
+from fdvv.model.bump import find_bottom_out_mm, find_bump, find_contact_mm
+from fdvv.model.curve import ForceCurve, MeasuredCurve
 from fdvv.units import FloatArray
 
 CONTROL_POINTS = 15
@@ -101,7 +100,6 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
 
 
 def _uniform(x: FloatArray, y: FloatArray, degree: int, size: int) -> tuple[FloatArray, FloatArray]:
-    """Space the knots equally."""
     t = _bspline.uniform_knots(x[0], x[-1], size, degree)
     return t, _bspline.least_squares(t, degree, x, y)
 
@@ -192,7 +190,7 @@ def scan_sizes(
 
 
 def active_part(measured: MeasuredCurve) -> MeasuredCurve:
-    """Cut a stroke to the part from contact to bottom-out (to its end if it never met the stop)."""
+    """Cut a stroke to the part from contact to bottom-out (to its end if it did not reach the stop)."""
     start = find_contact_mm(measured)
     end = find_bottom_out_mm(measured, start)
     return measured.between(start, float(measured.displacement_mm[-1]) if end is None else end)
@@ -247,7 +245,6 @@ def _score(
     penalty: float,
     begun: float,
 ) -> CurveFit:
-    """Compare a fitted curve with the raw one."""
     x, force = raw
     fitted = curve.force_cN(x)
     error = fitted - force

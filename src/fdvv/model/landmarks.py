@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model._bump import find_bump
-from fdvv.model._curve import ForceCurve, Stroke
-from fdvv.model._extent import STOP_LEAST_cN_mm
-from fdvv.model._model import FDVVModel
+from fdvv.model.bump import STOP_LEAST_cN_mm, find_bump
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import PointSpread
 from fdvv.units import FloatArray
 
 STEP_mm = 0.005
@@ -72,17 +72,11 @@ class Landmarks:
     hysteresis_loss_mJ: float | None
 
     def to_dict(self) -> dict[str, float | None]:
-        """Give the landmarks by name, units in the names."""
         return asdict(self)
-
-    def _repr_html_(self) -> str:
-        from fdvv.model._html import landmarks_html
-
-        return landmarks_html(self)
 
 
 def _contact_step_end(x: FloatArray, slope: FloatArray) -> int:
-    """Find the index where the contact step has been climbed; 0 if the curve has none."""
+    """Return the index of the end of the contact step; 0 if the curve has none."""
     near = slope[: max(2, int(np.searchsorted(x, x[0] + CONTACT_REACH_mm)))]
     steep = np.flatnonzero(near > STOP_LEAST_cN_mm)
     return min(int(steep[-1]) + 1, x.size - 2) if steep.size else 0
@@ -93,7 +87,7 @@ def _work_mJ(x: FloatArray, force_cN: FloatArray) -> float:
 
 
 def dense(curve: ForceCurve, end_mm: float) -> FloatArray:
-    """Give the places that landmarks are read from: the curve to the end of the travel, longer if it must."""
+    """Return the displacements that landmarks are read at, to the end of the curve or of the travel."""
     end_mm = max(end_mm, curve.start_mm + STEP_mm)
     count = max(8, round((end_mm - curve.start_mm) / STEP_mm) + 1)
     return np.linspace(curve.start_mm, end_mm, count)
@@ -149,3 +143,60 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
         release_work_mJ=release_work,
         hysteresis_loss_mJ=None if release_work is None else work - release_work,
     )
+
+
+@dataclass(frozen=True)
+class LandmarkError:
+    """Standard error of one landmark, in the landmark's own unit, and of how many presses."""
+
+    error: float
+    presses: int
+
+
+def landmark_errors(model: FDVVModel, velocity_mm_s: float | None = None) -> dict[str, LandmarkError]:
+    """Return the standard errors of the landmarks at a velocity, by the names of Landmarks.
+
+    Included are forces at positions the curve itself sets (there a shift of it costs no force: peaks,
+    valleys, the ends) and positions measured on each press (actuation, reset, travel). A ratio, a
+    slope or an area takes how presses differ at several places together, which a model does not keep; what
+    is not known is left out, as is everything of a model that was not measured on presses.
+
+    Raises ModelError as landmarks does.
+    """
+    marks = landmarks(model, velocity_mm_s)
+    press, release = (model.nearest(stroke, velocity_mm_s) for stroke in Stroke)
+    found = {
+        "peak_cN": _force(press, marks.peak_mm),
+        "valley_cN": _force(press, marks.valley_mm),
+        "bottom_out_cN": _force(press, marks.bottom_out_mm),
+        **_of_release(release, marks),
+        "actuation_mm": _place(model.actuation_spread),
+        "pre_travel_mm": _place(model.actuation_spread) if marks.pre_travel_mm is not None else None,
+        "reset_mm": _place(model.reset_spread),
+        "bottom_out_mm": _place(model.travel_spread),
+        "travel_mm": _place(model.travel_spread),
+    }
+    return {name: error for name, error in found.items() if error is not None}
+
+
+def _of_release(release: ForceCurve | None, marks: Landmarks) -> dict[str, LandmarkError | None]:
+    if release is None:
+        return {}
+    x = dense(release, marks.bottom_out_mm)
+    bump = find_bump(x, release.force_cN(x))
+    return {
+        "release_peak_cN": _force(release, bump.peak_mm if bump else None),
+        "release_valley_cN": _force(release, bump.valley_mm if bump else None),
+    }
+
+
+def _force(curve: ForceCurve | None, place_mm: float | None) -> LandmarkError | None:
+    """Return the error of a force; beyond its end a curve holds its last value, and so its error."""
+    if curve is None or curve.spread is None or place_mm is None:
+        return None
+    error_cN = float(curve.spread.error_cN(min(place_mm, curve.end_mm)))
+    return LandmarkError(error_cN, curve.spread.presses) if np.isfinite(error_cN) else None
+
+
+def _place(spread: PointSpread | None) -> LandmarkError | None:
+    return None if spread is None else LandmarkError(spread.error_mm, spread.presses)

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._checks import LARGEST_mm, check_size
-from fdvv.model._curve import ForceCurve, Stroke, reading_order
-from fdvv.model._spread import PointSpread
-from fdvv.model._velocity import Interpolation, blend, blend_slope
-from fdvv.model._vibration import Vibration
+from fdvv.model.bspline import LARGEST_mm, check_size
+from fdvv.model.curve import ForceCurve, Stroke, reading_order
+from fdvv.model.spread import PointSpread
+from fdvv.model.velocity import Interpolation, blend, blend_slope
+from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
 
@@ -95,29 +95,28 @@ class FDVVModel:
 
     @staticmethod
     def _check_velocities(stroke: Stroke, velocities: list[float | None], what: str) -> None:
-        """Refuse two of a kind at one velocity, and an unknown velocity beside others."""
         if len(set(velocities)) != len(velocities):
             raise ModelError(f"{stroke} has two {what}s at one velocity: {velocities} mm/s")
         if None in velocities and len(velocities) > 1:
             raise ModelError(f"a {stroke} {what} of unknown velocity must stand alone, got {velocities} mm/s")
 
     def of(self, stroke: Stroke | str) -> tuple[ForceCurve, ...]:
-        """Give the curves of one stroke, velocities rising; empty if it has none."""
+        """Return the curves of one stroke, velocities rising; empty if it has none."""
         return tuple(c for c in self.curves if c.stroke is Stroke(stroke))
 
     def nearest(self, stroke: Stroke | str, velocity_mm_s: float | None = None) -> ForceCurve | None:
-        """Give the curve nearest in velocity, the slowest if none is asked for; None if there is none."""
+        """Return the curve nearest in velocity, by default the slowest; None if there is none."""
         wanted = velocity_mm_s or 0.0
         return min(self.of(stroke), key=lambda c: abs((c.velocity_mm_s or 0.0) - wanted), default=None)
 
     def velocities_mm_s(self, stroke: Stroke | str) -> tuple[float, ...]:
-        """Give the known velocities of one stroke, rising."""
+        """Return the known velocities of one stroke, rising."""
         return tuple(c.velocity_mm_s for c in self.of(stroke) if c.velocity_mm_s is not None)
 
     def _serving(
         self, displacement_mm: npt.ArrayLike, velocity_mm_s: npt.ArrayLike, stroke: Stroke | str
     ) -> tuple[tuple[ForceCurve, ...], Interpolation, FloatArray, FloatArray]:
-        """Gather what blend takes: curves, method, velocities and displacements of one shape."""
+        """Return the arguments of blend: curves, method, velocities and displacements of one shape."""
         curves = self.of(stroke)
         if not curves:
             raise ModelError(f"model {self.name!r} has no {Stroke(stroke)} curve")
@@ -158,25 +157,16 @@ class FDVVModel:
         return blend_slope(*self._serving(displacement_mm, velocity_mm_s, stroke))
 
     def vibration(self, stroke: Stroke | str, velocity_mm_s: float) -> Vibration | None:
-        """Give the vibration of the stroke nearest in velocity; None if it has none."""
+        """Return the vibration of the stroke nearest in velocity; None if it has none."""
         found = [v for v in self.vibrations if v.stroke is Stroke(stroke)]
         return min(found, key=lambda v: abs((v.velocity_mm_s or 0.0) - velocity_mm_s), default=None)
 
     def renamed(self, name: str) -> FDVVModel:
-        """Copy the model under another name."""
         return replace(self, name=name)
 
-    def _repr_html_(self) -> str:
-        from fdvv.model._html import model_html
-
-        return model_html(self)
-
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
-        """Show the model in a notebook; its plain text is one line, not every number."""
-        from fdvv.model._html import bundle
-
+    def __repr__(self) -> str:
         curves = f"{len(self.curves)} curves, {len(self.vibrations)} vibrations"
-        return bundle(self._repr_html_(), f"FDVVModel({self.name!r}, {self.travel_mm:g} mm, {curves})")
+        return f"FDVVModel({self.name!r}, {self.travel_mm:g} mm, {curves})"
 
     def _key(self) -> tuple[object, ...]:
         curves = tuple(

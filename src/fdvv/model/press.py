@@ -20,7 +20,7 @@ class Press:
     displacement_mm : (n,) true displacement of the cap, into the button.
     force_cN : (n,) force between finger and cap.
     velocity_mm_s : the speed that was asked for.
-    sensed_mm, sensed_cN, commanded_cN : (n,) what the rig believed and did; None where there is no rig.
+    sensed_mm, sensed_cN, commanded_cN : (n,) what the rig sensed and commanded; None where there is no rig.
     saturated : (n,) the command was cut to a limit; None where there is no rig.
     tick : (n,) the rig's control loop sampled here; between ticks the sensed and commanded columns hold
         their last values. None where there is no rig.
@@ -47,13 +47,5 @@ class Press:
         if self.t_s.size < 2 or np.any(np.diff(self.t_s) <= 0):
             raise ModelError("t_s must hold at least 2 strictly rising times")
 
-    def _repr_html_(self) -> str:
-        from fdvv.model._html import press_html
-
-        return press_html(self)
-
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
-        """Show the press in a notebook; its plain text is one line, not every sample."""
-        from fdvv.model._html import bundle
-
-        return bundle(self._repr_html_(), f"Press({self.t_s.size} samples at {self.velocity_mm_s:g} mm/s)")
+    def __repr__(self) -> str:
+        return f"Press({self.t_s.size} samples at {self.velocity_mm_s:g} mm/s)"

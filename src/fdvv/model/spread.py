@@ -1,18 +1,21 @@
 """How what was measured differs from press to press, as standard deviations.
 
-A standard error is the spread over the root of the presses. It tells how well these presses tell the mean;
+A standard error is the spread over the root of the presses. It says how well they determine the mean;
 what all of them share, such as a sensor's scale or the finger that pressed, is in none of it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec import Meta
 
 from fdvv.errors import ModelError
-from fdvv.model._checks import LARGEST_cN, LARGEST_mm, check_presses, check_size, check_spread, column
+from fdvv.model.bspline import LARGEST_cN, LARGEST_mm, check_presses, check_size, check_spread, column
 from fdvv.units import FloatArray
 
 
@@ -60,12 +63,12 @@ class CurveSpread:
         check_spread(self.achieved_spread_mm_s, "achieved_spread_mm_s")
 
     def at_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:
-        """Give the spread of the force, in the shape of displacement_mm; NaN where it was not measured."""
+        """Return the spread of the force, in the shape of displacement_mm; NaN where it was not measured."""
         x = np.asarray(displacement_mm, dtype=np.float64)
         return np.interp(x, self.displacement_mm, self.spread_cN, left=np.nan, right=np.nan)
 
     def error_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:
-        """Give the standard error of the mean force, in the shape of displacement_mm; NaN likewise."""
+        """Return the standard error of the mean force, in the shape of displacement_mm; NaN likewise."""
         return np.asarray(self.at_cN(displacement_mm) / np.sqrt(self.presses))
 
     def _key(self) -> tuple[object, ...]:
@@ -92,7 +95,7 @@ class PointSpread:
 
     @property
     def error_mm(self) -> float:
-        """Get the standard error of the mean; that of a median is a quarter more."""
+        """Return the standard error of the mean; that of a median is a quarter more."""
         return float(self.spread_mm / np.sqrt(self.presses))
 
 
@@ -130,3 +133,73 @@ class VibrationSpread:
         check_presses(self.presses)
         for name in ("onset_mm", "duration_s"):
             check_spread(getattr(self, name), f"the spread of {name}")
+
+
+Presses = Annotated[int, Meta(ge=2, description="how many presses")]
+
+Deviation = Annotated[float, Meta(ge=0)] | None
+
+
+class PointSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """How a point of the travel differs between presses."""
+
+    spread_mm: Annotated[float, Meta(ge=0, description="standard deviation between presses, mm")]
+    presses: Presses
+
+    def read(self) -> PointSpread:
+        return PointSpread(self.spread_mm, self.presses)
+
+
+class CurveSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """How the force of a curve differs between presses."""
+
+    presses: Presses
+    displacement_mm: Annotated[list[float], Meta(min_length=2, description="places, mm, strictly rising")]
+    spread_cN: Annotated[
+        list[Annotated[float, Meta(ge=0)]],
+        Meta(min_length=2, description="standard deviation between presses at each place, cN"),
+    ]
+    achieved_mm_s: Annotated[
+        Annotated[float, Meta(gt=0)] | None,
+        Meta(description="mean speed that the presses really had, mm/s; null if unknown"),
+    ] = None
+    achieved_spread_mm_s: Annotated[
+        Deviation, Meta(description="its standard deviation between presses, mm/s; null if unknown")
+    ] = None
+
+    def read(self) -> CurveSpread:
+        return CurveSpread(**{name: getattr(self, name) for name in self.__struct_fields__})
+
+
+class ModeSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """Standard deviations between presses of one mode."""
+
+    frequency_Hz: Annotated[Deviation, Meta(description="of the frequency, Hz; null if unknown")] = None
+    amplitude_m_s2: Annotated[Deviation, Meta(description="of the amplitude, m/s²; null if unknown")] = None
+    decay_1_s: Annotated[Deviation, Meta(description="of the decay, 1/s; null if unknown")] = None
+
+
+class VibrationSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """How a vibration differs between presses."""
+
+    presses: Presses
+    onset_mm: Annotated[Deviation, Meta(description="of the onset, mm; null if unknown")] = None
+    duration_s: Annotated[Deviation, Meta(description="of the duration, s; null if unknown")] = None
+    modes: Annotated[list[ModeSpreadRecord], Meta(description="one for each mode; empty if unknown")] = []
+
+    def read(self) -> VibrationSpread:
+        modes = tuple(ModeSpread(**msgspec.to_builtins(mode)) for mode in self.modes)
+        return VibrationSpread(self.presses, self.onset_mm, self.duration_s, modes)
+
+
+def written(
+    spread: CurveSpread | PointSpread | VibrationSpread | None, name: str = "spread"
+) -> dict[str, Any]:
+    """Return a spread as a field of a file; no field where there is none, as in files of version 1."""
+    if spread is None:
+        return {}
+    if not isinstance(spread, CurveSpread):
+        return {name: msgspec.to_builtins(spread)}
+    columns = {"displacement_mm": spread.displacement_mm.tolist(), "spread_cN": spread.spread_cN.tolist()}
+    speeds = {n: getattr(spread, n) for n in ("achieved_mm_s", "achieved_spread_mm_s")}
+    return {name: {"presses": spread.presses, **columns, **speeds}}

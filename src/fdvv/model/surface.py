@@ -1,4 +1,4 @@
-"""Force on a grid of displacement and velocity: what a rig is given, and what it is told to push with."""
+"""Force on a grid of displacement and velocity: what a rig is commanded."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._curve import Stroke
-from fdvv.model._model import FDVVModel
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 
@@ -58,5 +58,5 @@ class ForceSurface:
         return cls(x, v, press, release)
 
     def table_cN(self, stroke: Stroke | str) -> FloatArray:
-        """Give the (nv, nx) table of one stroke."""
+        """Return the (nv, nx) table of one stroke."""
         return self.press_cN if Stroke(stroke) is Stroke.PRESS else self.release_cN

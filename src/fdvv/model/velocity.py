@@ -1,7 +1,7 @@
-"""Force between the measured velocities: how curves at several speeds make one surface.
+"""Force between the measured velocities: curves at several speeds make one surface.
 
-Notation: v the n measured velocities, h (n - 1,) their steps, y (n, ...) what the curves say at the
-displacements asked for, d (n - 1, ...) the secants diff(y) / h, m (n, ...) the slopes over velocity.
+Notation: v the n measured velocities, h (n - 1,) their steps, y (n, ...) the curves' values at the given
+displacements, d (n - 1, ...) the secants diff(y) / h, m (n, ...) the slopes over velocity.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fdvv.model._curve import ForceCurve
+from fdvv.model.curve import ForceCurve
 from fdvv.units import FloatArray
 
 
@@ -100,20 +100,10 @@ def _speeds(curves: Sequence[ForceCurve]) -> FloatArray:
 
 
 def _evaluate(curves: Sequence[ForceCurve], x: FloatArray, derivative: int = 0) -> FloatArray:
-    """Evaluate every curve at x, (n, ...); curves that share their knots go through the basis once."""
-    k, t = curves[0].degree, curves[0].knots_mm
-    if any(c.degree != k or not np.array_equal(c.knots_mm, t) for c in curves):
-        return np.stack([c.stiffness_cN_mm(x) if derivative else c.force_cN(x) for c in curves])
-    from scipy.interpolate import BSpline
-
-    inside = np.clip(x, t[0], t[-1])
-    together = BSpline(t, np.stack([c.control_points_cN for c in curves], axis=-1), k)
-    y = np.ascontiguousarray(np.moveaxis(together(inside, nu=derivative), -1, 0))
-    return np.where(inside == x, y, 0.0) if derivative else y
+    return np.stack([c.stiffness_cN_mm(x) if derivative else c.force_cN(x) for c in curves])
 
 
 def _locate(v: FloatArray, wanted: FloatArray) -> _Place:
-    """Find the two measured velocities around each wanted one, held at the ends."""
     held = np.clip(wanted, v[0], v[-1])
     lower = np.clip(np.searchsorted(v, held, side="right") - 1, 0, v.size - 2)
     h = v[lower + 1] - v[lower]
@@ -121,12 +111,11 @@ def _locate(v: FloatArray, wanted: FloatArray) -> _Place:
 
 
 def _take(y: FloatArray, index: np.ndarray[tuple[int, ...], np.dtype[np.intp]]) -> FloatArray:
-    """Pick y[index] point by point."""
     return np.asarray(np.take_along_axis(y, index[np.newaxis], axis=0)[0])
 
 
 def _slopes(v: FloatArray, force: FloatArray, y: FloatArray) -> FloatArray:
-    """Give the PCHIP slopes over velocity, (n, ...), for n >= 3 curves.
+    """Return the PCHIP slopes over velocity, (n, ...), for n >= 3 curves.
 
     Inside they are the weighted harmonic means of the secants beside them, 0 where those differ in sign
     (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984). Such slopes are homogeneous in the
@@ -147,7 +136,7 @@ def _slopes(v: FloatArray, force: FloatArray, y: FloatArray) -> FloatArray:
 def _end_slope(
     h0: FloatArray, h1: FloatArray, d0: FloatArray, d1: FloatArray, of0: FloatArray, of1: FloatArray
 ) -> FloatArray:
-    """Give the slope at an end: of the parabola through three curves, bounded to stay monotone."""
+    """Return the slope at an end: of the parabola through three curves, bounded to stay monotone."""
     far = h0 / (h0 + h1)
     slope = (1 + far) * d0 - far * d1
     parabola = (1 + far) * of0 - far * of1

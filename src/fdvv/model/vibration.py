@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model._curve import Stroke, check_velocity
-from fdvv.model._spread import VibrationSpread
+from fdvv.model.curve import Stroke, check_velocity
+from fdvv.model.spread import VibrationSpread
 from fdvv.units import FloatArray
 
 

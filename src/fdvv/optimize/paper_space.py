@@ -7,10 +7,15 @@ signal, activation and vibration in [0.5, 5.5] mm.
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
-from fdvv.model import FDVVModel, ForceCurve, Mode, Provenance, Stroke, Vibration
-from fdvv.optimize._space import Constraint, Design, DesignSpace, Parameter
+from fdvv.errors import InputError
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel, Provenance
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 from fdvv.units import FloatArray
 
 PAPER_TRAVEL_mm = 6.2
@@ -26,7 +31,7 @@ TEMPLATE_s = 0.016
 
 
 def paper_space(constraints: tuple[Constraint, ...] = ()) -> DesignSpace:
-    """Give the paper's eight parameters with their ranges; any constraints on top, as of a rig."""
+    """Return the paper's eight parameters with their ranges; any constraints on top, as of a rig."""
     low_cN, high_cN = (LARGEST_cN * signal / LARGEST_signal for signal in SIGNALS)
     edges = (0.0, 1.0, 3.0, PAPER_TRAVEL_mm)
     along = (Parameter(f"x{i + 1}_mm", edges[i], edges[i + 1] - APART_mm) for i in range(3))
@@ -72,3 +77,49 @@ def _monotone(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     after, before = y[:2] + slope[:2] * third, y[1:] - slope[1:] * third
     knots = np.concatenate([np.full(4, x[0]), np.full(2, x[1]), np.full(4, x[2])])
     return knots, np.array([y[0], after[0], before[0], after[1], before[1], y[2]])
+
+
+PLACES = 7
+"""Tried in the range of each point."""
+
+
+def paper_design_like(model: FDVVModel) -> dict[str, float]:
+    """Return the design whose points are nearest to a button's slowest press in the mean square.
+
+    The three places are searched on a grid; what a range does not reach stays at its bound. InputError on a
+    model without a press.
+    """
+    if not model.of(Stroke.PRESS):
+        raise InputError(model.name, "curves", "it has no press", "start from another button")
+    space = paper_space()
+    curve = model.of(Stroke.PRESS)[0]
+    x = np.linspace(0.0, model.travel_mm, 100)
+    wanted = curve.force_cN(np.clip(x, curve.start_mm, curve.end_mm))
+    tried = [_points(space, places, x, wanted) for places in product(*_places(space, model.travel_mm))]
+    best = min(tried, key=lambda points: _miss(points, x, wanted))
+    names = (*(f"x{i}_mm" for i in (1, 2, 3)), *(f"y{i}_cN" for i in (1, 2, 3)))
+    design = dict(zip(names, best.T.ravel().tolist(), strict=True))
+    actuation_mm = model.actuation_mm if model.actuation_mm is not None else model.travel_mm / 2
+    onset_mm = model.vibrations[0].onset_mm if model.vibrations else actuation_mm
+    return _within(space, {**design, "actuation_mm": actuation_mm, "vibration_mm": onset_mm})
+
+
+def _places(space: DesignSpace, travel_mm: float) -> list[FloatArray]:
+    """Return what is tried for each place; none beyond the travel but where the range begins there."""
+    ranges = [one for one in space.parameters if one.name.startswith("x")]
+    return [np.linspace(one.low, max(one.low, min(one.high, travel_mm)), PLACES) for one in ranges]
+
+
+def _points(space: DesignSpace, places: tuple[float, ...], x: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Put the points on the curve, within their ranges, (3, 2)."""
+    low, high = next((one.low, one.high) for one in space.parameters if one.name == "y1_cN")
+    return np.column_stack([places, np.clip(np.interp(places, x, wanted), low, high)])
+
+
+def _miss(points: FloatArray, x: FloatArray, wanted: FloatArray) -> float:
+    return float(np.mean((np.interp(x, points[:, 0], points[:, 1]) - wanted) ** 2))
+
+
+def _within(space: DesignSpace, design: dict[str, float]) -> dict[str, float]:
+    found = {one.name: float(np.clip(design[one.name], one.low, one.high)) for one in space.parameters}
+    return space.checked(found)

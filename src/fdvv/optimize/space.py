@@ -47,13 +47,13 @@ class Constraint:
 
     Attributes
     ----------
-    name : short. told : what it asks, one sentence for a person.
+    name : short. text : what it requires, one sentence for a person.
     slack : of a design: at least 0 where it holds, the more below 0 the worse it is missed. Continuous in the
         design where it can be, so that engines may follow it.
     """
 
     name: str
-    told: str
+    text: str
     slack: Callable[[Design], float]
 
 
@@ -77,11 +77,11 @@ class DesignSpace:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Get the names of the parameters, in order."""
+        """The names of the parameters, in order."""
         return tuple(one.name for one in self.parameters)
 
     def checked(self, design: Design, source: object = "design") -> dict[str, float]:
-        """Give a design in the order of parameters. InputError if a value is missing, alien or outside."""
+        """Return a design in the order of parameters. InputError if a value is missing, alien or outside."""
         for name in design:
             if name not in self.names:
                 raise InputError(

@@ -1,23 +1,22 @@
-"""Chunks on dask.distributed: workers started here, or a cluster that runs already."""
+"""Open the executor that a command names."""
 
 from __future__ import annotations
 
 import importlib.metadata
 import logging
+import os
 import uuid
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from fdvv import __version__
 from fdvv.errors import BuildError, InputError
-from fdvv.workflow._executor import TRIES, ChunkLost, answered, found_or_raised
+from fdvv.parallel.executor import TRIES, Chunk, ChunkLost, Executor, Found, answered, found_or_raised
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
-Chunk = TypeVar("Chunk")
-Found = TypeVar("Found")
 
 HERE = "127.0.0.1:0"
 """Without an address dask's status service listens to every network; it cannot be left out."""
@@ -40,13 +39,11 @@ class DaskExecutor:
 
     @property
     def processes(self) -> int:
-        """Get how many work at once."""
         return sum(self._client.nthreads().values())
 
     def run(
         self, work: Callable[[Chunk], Found], chunks: Sequence[Chunk]
     ) -> Generator[tuple[int, Found], None, None]:
-        """Work on every chunk; see Executor."""
         from distributed import KilledWorker, as_completed
 
         run = uuid.uuid4().hex  # keys of their own: a result is never one of an earlier run
@@ -89,7 +86,7 @@ def started_workers(workers: int | None) -> Iterator[LocalCluster]:
     import dask
     from distributed import LocalCluster
 
-    # a worker that is lost is told of in many lines, but it is no error: its chunk is done again
+    # a lost worker is logged in many lines, but it is no error: its chunk is done again
     with dask.config.set(LOCAL), LocalCluster(
         n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
         host="127.0.0.1", dashboard_address=HERE, worker_dashboard_address=HERE,
@@ -115,3 +112,29 @@ def _check_workers(client: Client, address: str) -> None:
     if not versions or set(versions) != {__version__}:
         reason = "it has no workers" if not versions else f"not all of its workers have fdvv {__version__}"
         raise InputError("--cluster", address, reason, "install the same fdvv there")
+
+
+@contextmanager
+def open_executor(
+    processes: int | None = None, workers: int | None = None, cluster: str | None = None
+) -> Iterator[Executor]:
+    """Open what the options of a command ask for; it is closed when the context is left.
+
+    Parameters
+    ----------
+    processes : local processes; None: as many as this process may use.
+    workers : workers of a dask cluster started here, reachable from this machine only.
+    cluster : address of a dask scheduler that runs already, as ``tcp://10.0.0.5:8786``. Whoever controls it
+        can run code here: use none but your own.
+
+    Raises BuildError without the extra `sweep`, InputError if nobody answers at cluster.
+    """
+    if workers is None and cluster is None:
+        from fdvv.parallel.executor import ProcessExecutor
+
+        yield ProcessExecutor(processes or len(os.sched_getaffinity(0)))
+        return
+    pass
+
+    with open_dask(workers, cluster) as executor:
+        yield executor

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.preprocess._basis import EvenBasis, rough
-from fdvv.preprocess._fuse import CurveOfForce
-from fdvv.preprocess._press import StrokeTrack
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.fuse import CurveOfForce, EvenBasis, rough
+from fdvv.preprocess.press import StrokeTrack
 from fdvv.units import FloatArray
 
 IntArray = np.ndarray[tuple[Any, ...], np.dtype[np.int64]]
@@ -26,11 +25,11 @@ PENALTIES = np.logspace(-5, 4, 19)
 
 @dataclass(frozen=True, eq=False)
 class AveragedCurve:
-    """Force on displacement of many presses at one pace, on the 50 um grid.
+    """Force on displacement of many presses at one velocity, on the 50 um grid.
 
     Attributes
     ----------
-    stroke, velocity_mm_s : which stroke, at what pace that was asked for; None if none was.
+    stroke, velocity_mm_s : which stroke, at what requested velocity; None if none was.
     achieved_mm_s, achieved_spread_mm_s : mean speed of the presses, median and standard deviation.
     displacement_mm : (n,) rising.
     force_cN : (n,) mean over the presses.
@@ -51,7 +50,7 @@ class AveragedCurve:
 
     @property
     def error_cN(self) -> FloatArray:
-        """Standard error of the mean, (n,)."""
+        """Return the standard error of the mean, (n,)."""
         return np.asarray(self.spread_cN / np.sqrt(self.presses))
 
 
@@ -96,7 +95,6 @@ def pool(tracks: Sequence[StrokeTrack], shape: CurveOfForce, end_mm: float, star
 
 
 def _smooth(basis: EvenBasis, x: FloatArray, rest_cN: FloatArray, who: IntArray) -> tuple[FloatArray, float]:
-    """Choose the penalty by cross-validation and give coefficients and equivalent width."""
     rows, penalty = basis.rows(x), rough(basis.size)
     square, roughness = rows.T @ rows, penalty.T @ penalty
     target = rows.T @ rest_cN
@@ -117,7 +115,7 @@ def _smooth(basis: EvenBasis, x: FloatArray, rest_cN: FloatArray, who: IntArray)
 
 
 def _by_press(x: FloatArray, rest_cN: FloatArray, who: IntArray) -> FloatArray:
-    """Give each press's own line through what is left: it differs as a whole, which is not scatter."""
+    """Return each press's own line through the residuals: it differs as a whole, which is not scatter."""
     line = np.zeros_like(rest_cN)
     for i in np.unique(who):
         mine = who == i
@@ -128,7 +126,7 @@ def _by_press(x: FloatArray, rest_cN: FloatArray, who: IntArray) -> FloatArray:
 
 
 def _apart(grid: FloatArray, x: FloatArray, left_cN: FloatArray) -> FloatArray:
-    """Put what is left of one press on the grid, NaN beyond its samples."""
+    """Put the residuals of one press on the grid, NaN beyond its samples."""
     order = np.argsort(x)
     if not order.size:
         return np.full(grid.size, np.nan)
@@ -138,7 +136,7 @@ def _apart(grid: FloatArray, x: FloatArray, left_cN: FloatArray) -> FloatArray:
 def averaged(
     tracks: Sequence[StrokeTrack], pooled: Pooled, velocity_mm_s: float | None, achieved_mm_s: FloatArray
 ) -> AveragedCurve:
-    """Make the curve and its spread; the spread at a place is that of the presses seen there."""
+    """Return the curve and its spread; the spread at a position is that of the presses seen there."""
     there = np.isfinite(pooled.apart_cN).sum(axis=0)
     square = np.nansum(pooled.apart_cN**2, axis=0) / np.maximum(there - 1, 1)
     known = there >= 2

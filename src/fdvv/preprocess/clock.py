@@ -1,9 +1,9 @@
 """One clock out of two: a light that one instrument switches and the other sees (clapperboard).
 
-A frame tells of an edge only that it fell between two exposures, at 256 Hz 3.6 ms of doubt, or how much
+A frame shows of an edge only that it fell between two exposures, at 256 Hz 3.6 ms of doubt, or how much
 of one exposure it cut off, and then to microseconds. Many edges narrow offset and rate down together:
 each is a pair of bounds, ``low <= offset + rate * edge <= high``, and what fits all of them is a polygon
-(linear programming). Edges that contradict the others cost slack and are told.
+(linear programming). Edges that contradict the others cost slack and are reported.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.preprocess._edges import Edges, match, seen_edges
+from fdvv.preprocess.edges import Edges, match, seen_edges
 from fdvv.units import FloatArray
 
 PPM_LARGEST = 2e4
@@ -42,7 +42,7 @@ class ClockFit:
     refused: int = 0
 
     def board_s(self, other_s: FloatArray) -> FloatArray:
-        """Tell the board's time from the other clock's."""
+        """Return the board's time for one of the other clock."""
         return (other_s - self.offset_s) / self.rate
 
 
@@ -54,7 +54,7 @@ def align_clocks(
     board : when the light was switched, on the board's clock.
     frame_s, light : (f,) starts of exposures on the camera's clock and the part of each that was lit, 0 to 1,
         or any brightness that rises with it; NaN where a frame was lost.
-    exposure_s : length of an exposure; 0 if unknown, and then partly lit frames tell no more than the others.
+    exposure_s : length of an exposure; 0 if unknown, then partly lit frames carry no more than others.
 
     Raises ModelError where no pattern of edges is common to both.
     """
@@ -74,7 +74,6 @@ def align_clocks(
 def _fits(
     edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Keep edges that one line fits: that line which the least total slack asks for."""
     from scipy import sparse
     from scipy.optimize import linprog
 
@@ -116,7 +115,7 @@ def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused:
         method="highs",
     )
     assert least.x is not None
-    # with the least slack a single line is left, which would be told without doubt: as much again is doubt
+    # with the least slack a single line is left, which would seem certain: as much again is doubt
     limits = widen + 2 * float(least.x[2]) + 1e-3
     corners = []
     for at in (away.min(), 0.0, away.max()):

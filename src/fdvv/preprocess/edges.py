@@ -20,7 +20,7 @@ LEAST_HITS = 3
 """Fewer edges in common are chance."""
 
 TOLERANCE_s, CLOSE_s = 4e-3, 1.5e-3
-"""An edge lies within its bounds and this, at a lead that one edge tells, and at the lead of its group."""
+"""An edge lies within its bounds and this, at a lead known from one edge, and at the lead of its group."""
 
 SURE_sigmas = 5.0
 """A frame is dark or lit if nearer to that than so many times the noise; what is between, an edge cut."""
@@ -72,7 +72,7 @@ def seen_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> See
     """Find edges in the brightness of frames.
 
     Between a dark and a lit frame the edge lies after the first exposure ends and before the second begins. A
-    frame that is partly lit tells the moment itself, as well as the noise of brightness lets it. Lost frames
+    frame that is partly lit gives the moment itself, as well as the noise of brightness lets it. Lost frames
     widen the bounds.
     """
     seen = np.isfinite(light)
@@ -93,7 +93,7 @@ def seen_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> See
 
 
 def _scaled(light: FloatArray) -> tuple[FloatArray, float]:
-    """Bring any brightness to 0 for dark and 1 for lit; also within what it is surely one of them."""
+    """Scale any brightness to 0 for dark and 1 for lit, with the tolerance of either state."""
     if not light.size or np.ptp(light) == 0:
         return np.zeros_like(light), LEAST_DOUBT
     middle = 0.5 * (float(light.min()) + float(light.max()))
@@ -106,7 +106,7 @@ def _scaled(light: FloatArray) -> tuple[FloatArray, float]:
 def _bounds(
     times: FloatArray, part: FloatArray, doubt: float, between: tuple[int, int], on: bool, exposure_s: float
 ) -> tuple[float, float]:
-    """Tell when an edge was, between the last frame of the old state and the first of the new."""
+    """Bound every edge by the last frame of the old state and the first of the new."""
     before, after = between
     if after == before + 2 and exposure_s > 0:
         lit = float(part[before + 1]) if on else 1 - float(part[before + 1])
@@ -137,7 +137,7 @@ def match(board: Edges, seen: SeenEdges, rate_error: float) -> npt.NDArray[np.in
 
 
 def _again(board: Edges, seen: SeenEdges, pairs: Sequence[tuple[int, int]]) -> npt.NDArray[np.int64]:
-    """Pair all edges once more, along the line through those that were paired on the way."""
+    """Pair all edges once more, along the line through those already paired."""
     found = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
     if len(found) < LEAST_HITS:
         return found
@@ -152,12 +152,10 @@ def _again(board: Edges, seen: SeenEdges, pairs: Sequence[tuple[int, int]]) -> n
 
 
 def _outward(count: int) -> list[int]:
-    """Give at most five groups to begin with, the middle one first."""
     return list(dict.fromkeys(int(part * (count - 1)) for part in (0.5, 0.25, 0.75, 0.0, 1.0)))
 
 
 def _likely(board: Edges, seen: SeenEdges, group: IntArray) -> list[float]:
-    """Give the leads at which most of a group was seen."""
     leads = _leads(board, seen, group)
     hits = np.array([_best_lead(board, seen, group, leads[i : i + 1])[0] for i in range(leads.size)])
     good = leads[hits >= max(min(LEAST_HITS, group.size), 0.6 * group.size)]
@@ -177,14 +175,12 @@ def _both_ways(
 
 
 def _leads(board: Edges, seen: SeenEdges, group: IntArray) -> FloatArray:
-    """Give every lead at which one of the first edges of a group was seen."""
     return np.unique(
         np.concatenate([seen.t_s[seen.on == board.on[i]] - board.t_s[i] for i in group[:LEAST_HITS]])
     )
 
 
 def _best_lead(board: Edges, seen: SeenEdges, group: IntArray, leads: FloatArray) -> tuple[int, float]:
-    """Find the lead at which most of a group was seen, with the middle of what those edges tell."""
     best = (0, 0.0)
     for lead in leads:
         own, theirs = _hits(board, seen, group, float(lead))
@@ -198,7 +194,7 @@ def _best_lead(board: Edges, seen: SeenEdges, group: IntArray, leads: FloatArray
 def _hits(
     board: Edges, seen: SeenEdges, group: IntArray, lead_s: float, slack_s: float = TOLERANCE_s
 ) -> tuple[IntArray, IntArray]:
-    """Tell which edges of a group were seen at a lead, and as which."""
+    """Return which edges of a group were seen at a lead, and as which."""
     near = _nearest(seen.t_s, board.t_s[group] + lead_s)
     at_s = board.t_s[group] + lead_s
     hit = (at_s >= seen.low_s[near] - slack_s) & (at_s <= seen.high_s[near] + slack_s)
@@ -216,7 +212,6 @@ def _nearest(sorted_s: FloatArray, at_s: FloatArray) -> IntArray:
 def _follow(
     board: Edges, seen: SeenEdges, groups: Sequence[IntArray], lead_s: float, rate_error: float
 ) -> list[tuple[int, int]]:
-    """Go from group to group; each is expected at the lead of the last, and the rate so far."""
     pairs: list[tuple[int, int]] = []
     trail: list[tuple[float, float]] = []
     drift, doubt = 0.0, rate_error

@@ -2,7 +2,7 @@
 
 At 200 mm/s a camera of 256 frames a second sees the stroke five times, a snap perhaps once. The force is
 sampled four times as often, and ``M x'' = F - U(x)`` ties it to the motion: M is the mass of cap and tip,
-U the force of the button on its cap at this pace, alike in all presses of it. Paths of all presses (cubic
+U the force of the button on its cap at this velocity, alike in all presses of it. Paths of all presses (cubic
 splines between the samples of the force) and U (a curve known beforehand plus a spline) are found together
 as least squares over the frames, weighted by their noise, and over the equation, weighted by what it leaves
 out. Gauss-Newton; the paths are eliminated press by press.
@@ -10,14 +10,62 @@ out. Gauss-Newton; the paths are eliminated press by press.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.preprocess._basis import EvenBasis, rough
 from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm
+
+
+class EvenBasis:
+    """Cubic B-splines on even knots over start, start + step, ...; pieces + 3 of them.
+
+    Parameters
+    ----------
+    start, step : first knot and spacing, in the unit of what is passed to rows.
+    pieces : number of spans.
+    """
+
+    def __init__(self, start: float, step: float, pieces: int) -> None:
+        self.start, self.step, self.pieces = start, step, pieces
+
+    @property
+    def size(self) -> int:
+        return self.pieces + 3
+
+    def rows(self, at: FloatArray, derivative: int = 0) -> FloatArray:
+        """Evaluate every function or its derivative of order 0 to 2, (len(at), size); ends held."""
+        place = np.clip((at - self.start) / self.step, 0.0, float(self.pieces))
+        left = np.minimum(place.astype(np.int64), self.pieces - 1)
+        u = place - left
+        matrix = np.zeros((at.size, self.size))
+        for k, weight in enumerate(_WEIGHTS[derivative](u)):
+            matrix[np.arange(at.size), left + k] = weight / self.step**derivative
+        return matrix
+
+
+def _values(u: FloatArray) -> tuple[FloatArray, ...]:
+    return (1 - u) ** 3 / 6, (3 * u**3 - 6 * u**2 + 4) / 6, (3 * (u + u**2 - u**3) + 1) / 6, u**3 / 6
+
+
+def _slopes(u: FloatArray) -> tuple[FloatArray, ...]:
+    return -((1 - u) ** 2) / 2, (3 * u**2 - 4 * u) / 2, (1 + 2 * u - 3 * u**2) / 2, u**2 / 2
+
+
+def _bends(u: FloatArray) -> tuple[FloatArray, ...]:
+    return 1 - u, 3 * u - 2, 1 - 3 * u, u
+
+
+_WEIGHTS = (_values, _slopes, _bends)
+
+
+def rough(size: int) -> FloatArray:
+    """Return the matrix of third differences, (size - 3, size), which a smooth spline keeps small."""
+    return np.diff(np.eye(size), 3, axis=0)
+
 
 CurveOfForce = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From displacements (mm) to force (cN) and stiffness (cN/mm)."""
@@ -110,9 +158,9 @@ class _Stroke:
 
 
 def fuse(strokes: Sequence[Seen], known: CurveOfForce, settings: Fusion) -> tuple[list[Path], CurveOfForce]:
-    """Find the paths of all strokes of one kind at one pace, and the force of the button that they share.
+    """Find the paths of all strokes of one kind at one velocity, and the force of the button that they share.
 
-    known : U as far as it is known beforehand, of a slow probe or a slower pace; zero if it is not.
+    known : U as far as it is known beforehand, of a slow probe or a lower velocity; zero if it is not.
     """
     work = [_stroke(seen) for seen in strokes]
     low = min(float(s.guess_mm.min()) for s in strokes) - OUTSIDE_mm
@@ -151,7 +199,7 @@ def _known_N(known: CurveOfForce, x_mm: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def _first(work: Sequence[_Stroke], basis: EvenBasis, known: CurveOfForce) -> FloatArray:
-    """Fit the spline to the force as it was felt, as if nothing had mass."""
+    """Fit the spline to the measured force, as if nothing had mass."""
     x = np.concatenate([one.places @ one.path for one in work])
     rest = np.concatenate([one.force_N for one in work]) - _known_N(known, x)[0]
     smooth = 0.02 * np.sqrt(x.size / basis.size) * rough(basis.size)
@@ -162,7 +210,6 @@ def _first(work: Sequence[_Stroke], basis: EvenBasis, known: CurveOfForce) -> Fl
 def _improve(
     work: Sequence[_Stroke], basis: EvenBasis, shared_N: FloatArray, known: CurveOfForce, settings: Fusion
 ) -> FloatArray:
-    """Take one Gauss-Newton step: paths are solved for as functions of the shared force."""
     moving_kg = 1e-3 * settings.moving_g
     sure_1_N = 1 / (moving_kg * settings.left_out_m_s2)
     penalty = rough(basis.size) / settings.roughness_N
@@ -204,13 +251,13 @@ def _improve(
 
 
 def _curve(basis: EvenBasis, shared_N: FloatArray, known: CurveOfForce) -> CurveOfForce:
-    """Tabulate the button's force: a curve that is known from a curve that is known must not grow slower."""
+    """Tabulate the button's force without extrapolating a slope."""
     x = np.linspace(basis.start, basis.start + basis.step * basis.pieces, TABLE)
     return table_curve(x, cN_from_N(_known_N(known, x)[0] + basis.rows(x) @ shared_N))
 
 
 def unknown_curve(x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Give no force at all: nothing is known of the button beforehand."""
+    """Return zero force and stiffness, the start where nothing is known of the button."""
     return np.zeros_like(x_mm), np.zeros_like(x_mm)
 
 
@@ -224,3 +271,50 @@ def table_curve(x_mm: FloatArray, force_cN: FloatArray) -> CurveOfForce:
         return np.interp(at_mm, x_mm, force_cN), np.where(inside, stiffness[i], 0.0)
 
     return curve
+
+
+def undo_filter(values: FloatArray, step_s: float, filter_s: float) -> FloatArray:
+    """Undo an RC filter before a converter, (n,) even samples.
+
+    Between samples the input is taken as a line, for which the filter is exact:
+    ``y[k] = e y[k-1] + p u[k] + q u[k-1]``, ``e = exp(-step/filter)``, ``p = 1 - (1-e) filter/step``,
+    ``q = (1-e) filter/step - e``. That is solved for u. Noise grows by about 1.6 at 1 ms and 0.333 ms.
+
+    Raises ModelError for a filter slower than 0.9 steps, where the recursion would ring or diverge.
+    """
+    from scipy.signal import lfilter, lfiltic
+
+    if filter_s == 0 or values.size == 0:
+        return values
+    if not 0 < filter_s <= 0.9 * step_s:
+        raise ModelError(
+            f"a filter of {1e3 * filter_s:g} ms cannot be undone at steps of {1e3 * step_s:g} ms; "
+            "sample faster, or state 0 to leave it in"
+        )
+    fade = math.exp(-step_s / filter_s)
+    slow = (1 - fade) * filter_s / step_s
+    here, before = 1 - slow, slow - fade
+    # a record begins settled: input and output were the first value for long
+    start = lfiltic([1.0, -fade], [here, before], y=[values[0]], x=[values[0]])
+    undone, _ = lfilter([1.0, -fade], [here, before], values, zi=start)
+    return np.asarray(undone)
+
+
+def even(t_s: FloatArray, values: FloatArray, step_s: float) -> tuple[FloatArray, FloatArray]:
+    """Resample at even times; missing samples are interpolated linearly."""
+    count = round((float(t_s[-1]) - float(t_s[0])) / step_s) + 1
+    times = t_s[0] + step_s * np.arange(count)
+    return times, np.interp(times, t_s, values)
+
+
+def undo_play(force_cN: FloatArray, play_cN: float) -> FloatArray:
+    """Undo a sensor's play: it reads half of it too little while the force rises, too much while it falls.
+
+    force_cN : (n,) even samples. Its direction is found from four samples around, and where it goes
+    nowhere, nothing is added.
+    """
+    if play_cN == 0 or force_cN.size < 5:
+        return force_cN
+    ahead = np.concatenate([force_cN[2:], np.repeat(force_cN[-1], 2)])
+    behind = np.concatenate([np.repeat(force_cN[0], 2), force_cN[:-2]])
+    return np.asarray(force_cN + 0.5 * play_cN * np.clip((ahead - behind) / (2 * play_cN), -1.0, 1.0))

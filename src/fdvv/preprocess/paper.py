@@ -17,9 +17,9 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.preprocess._average import AveragedCurve, GRID_mm
-from fdvv.preprocess._reject import Judged
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.average import AveragedCurve, GRID_mm
+from fdvv.preprocess.reject import Judged
 from fdvv.units import FloatArray
 
 EVEN_WIDTH = 2 * math.sqrt(math.pi)
@@ -47,12 +47,12 @@ class Gaussian:
             raise ModelError(f"sigma must be at least 0 and finite, got {self.sigma}")
 
     def in_time_s(self, step_s: float, speed_mm_s: float) -> float:
-        """Give sigma in seconds for samples every step_s, at a speed."""
+        """Return sigma in seconds for samples every step_s, at a velocity."""
         per = {SigmaUnit.SAMPLES: step_s, SigmaUnit.MS: 1e-3, SigmaUnit.MM: 1 / speed_mm_s}
         return self.sigma * per[self.unit]
 
     def in_way_mm(self, step_mm: float, speed_mm_s: float) -> float:
-        """Give sigma in millimetres for places every step_mm, at a speed."""
+        """Return sigma in millimetres for positions every step_mm, at a velocity."""
         per = {SigmaUnit.SAMPLES: step_mm, SigmaUnit.MS: 1e-3 * speed_mm_s, SigmaUnit.MM: 1.0}
         return self.sigma * per[self.unit]
 
@@ -82,7 +82,7 @@ def paper_average(
     recipe: PaperRecipe,
     zero_mm: float = 0.0,
 ) -> AveragedCurve:
-    """Average the presses of one pace that are not left out, as the paper does.
+    """Average the presses of one velocity that are not left out, as the paper does.
 
     judged : presses and what is thought of them; the paper leaves out those that did not hit the bottom.
     zero_mm : added to displacement, as Processed.zero_mm.
@@ -125,7 +125,7 @@ def filtered(values: FloatArray, sigma: float) -> FloatArray:
 
 
 def register(x_mm: FloatArray, force_cN: FloatArray, grid_mm: FloatArray) -> FloatArray:
-    """Give the force at places, on lines between samples in the order of displacement.
+    """Return the force at positions, on lines between samples in the order of displacement.
 
     Of samples that lie no deeper than one before them the first is kept: a curve has one value.
     """
@@ -135,7 +135,6 @@ def register(x_mm: FloatArray, force_cN: FloatArray, grid_mm: FloatArray) -> Flo
 
 
 def _stroke(one: Judged, stroke: Stroke, streams: Gaussian, zero_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Filter force and displacement, upsample displacement to the force's clock, cut the stroke out."""
     press, speed_mm_s = one.press, one.achieved_mm_s
     begin_s, end_s = one.spans.of(stroke)
     columns = []

@@ -1,13 +1,99 @@
-"""Where presses lie in a record of depth: their strokes, how fast and how far they went."""
+"""One press as it comes out of a recording: samples and frames on one clock, nothing averaged yet."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.preprocess._press import RawPress, Spans
+from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
+
+GUARD_s = 0.02
+"""Rest ends this long before the cap is seen to move, and begins this long after it came back."""
+
+
+@dataclass(frozen=True, eq=False)
+class RawPress:
+    """A press and its release on the clock of the force.
+
+    Attributes
+    ----------
+    take, part : number of its take, and which press of that take, both from 1.
+    velocity_mm_s : the requested velocity; None if none was.
+    t_s, force_cN : (n,) even times and what the force sensor felt, its filter undone, zero taken off.
+    frame_s, frame_mm : (k,) middle of each exposure, and how deep the cap was; 0 at rest before the press.
+    apart_mm : (k,) how far the two markers went from each other; NaN where not both were seen, or one is all.
+    closed_s, open_s : when the circuit closed first and opened last; None if it did not or nobody looked.
+    """
+
+    take: int
+    part: int
+    velocity_mm_s: float | None
+    t_s: FloatArray
+    force_cN: FloatArray
+    frame_s: FloatArray
+    frame_mm: FloatArray
+    apart_mm: FloatArray
+    closed_s: float | None = None
+    open_s: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Name the press for messages."""
+        return f"take {self.take}" if self.part == 1 else f"take {self.take}, press {self.part}"
+
+
+@dataclass(frozen=True)
+class Spans:
+    """When the strokes of a press begin and end, seconds on its clock.
+
+    Attributes
+    ----------
+    start_s : the cap leaves its rest.
+    bottom_s, leave_s : it reaches the lowest place and leaves it again.
+    end_s : it is back at rest.
+    bottom_mm : the lowest place, as a median over the time there.
+    """
+
+    start_s: float
+    bottom_s: float
+    leave_s: float
+    end_s: float
+    bottom_mm: float
+
+    @property
+    def rested_s(self) -> float:
+        """End of the rest before the press."""
+        return self.start_s - GUARD_s
+
+    def of(self, stroke: Stroke) -> tuple[float, float]:
+        """Return start and end of one stroke."""
+        return (self.start_s, self.bottom_s) if stroke is Stroke.PRESS else (self.leave_s, self.end_s)
+
+
+@dataclass(frozen=True, eq=False)
+class StrokeTrack:
+    """One stroke of a press, reconstructed at the samples of the force.
+
+    Attributes
+    ----------
+    take, part : of which press.
+    stroke : press or release.
+    t_s, displacement_mm, velocity_mm_s, acceleration_m_s2 : (n,) of the cap; velocity signed, down positive.
+    force_cN : (n,) between finger and cap: what the tip's own mass took is given back.
+    """
+
+    take: int
+    part: int
+    stroke: Stroke
+    t_s: FloatArray
+    displacement_mm: FloatArray
+    velocity_mm_s: FloatArray
+    acceleration_m_s2: FloatArray
+    force_cN: FloatArray
+
 
 MOVED_mm = 0.3
 """The cap is being pressed when it is deeper than this, and was not when it is back within half of it."""
@@ -18,7 +104,7 @@ LEFT_mm = 0.05
 NEAR_mm = 0.12
 """Closer than this to the lowest place is at the bottom; stops give way by less, frames are noisy by less."""
 
-PACE_START_mm = 0.1
+SPEED_START_mm = 0.1
 """Mean speed counts from this depth to the bottom."""
 
 
@@ -69,7 +155,6 @@ def spans_of(t_s: FloatArray, depth_mm: FloatArray, excursion: tuple[int, int]) 
 
 
 def _when(t_s: FloatArray, depth_mm: FloatArray, i: int, level_mm: float) -> float:
-    """Tell when a level was passed between frames i and i + 1."""
     i = min(max(i, 0), t_s.size - 2)
     rise = depth_mm[i + 1] - depth_mm[i]
     part = (level_mm - depth_mm[i]) / rise if rise else 0.5
@@ -77,7 +162,7 @@ def _when(t_s: FloatArray, depth_mm: FloatArray, i: int, level_mm: float) -> flo
 
 
 def achieved_mm_s(press: RawPress, spans: Spans) -> float:
-    """Give the mean speed of the press between 0.1 mm and the bottom; NaN where it cannot be told.
+    """Return the mean speed of the press between 0.1 mm and the bottom; NaN where it is undefined.
 
     Both ends lie between frames; they are found on lines, so one press at 200 mm/s is known to some per cent.
     """
@@ -86,14 +171,14 @@ def achieved_mm_s(press: RawPress, spans: Spans) -> float:
     if t.size < 2:
         return float("nan")
     deepest = np.maximum.accumulate(x)
-    above = np.flatnonzero(deepest > PACE_START_mm)
-    if not above.size or spans.bottom_mm <= PACE_START_mm + NEAR_mm:
+    above = np.flatnonzero(deepest > SPEED_START_mm)
+    if not above.size or spans.bottom_mm <= SPEED_START_mm + NEAR_mm:
         return float("nan")
     start_s = _when(
-        press.frame_s, press.frame_mm, int(np.flatnonzero(down)[0]) + int(above[0]) - 1, PACE_START_mm
+        press.frame_s, press.frame_mm, int(np.flatnonzero(down)[0]) + int(above[0]) - 1, SPEED_START_mm
     )
     end_mm = spans.bottom_mm - NEAR_mm
-    return (end_mm - PACE_START_mm) / max(spans.bottom_s - start_s, 1e-6)
+    return (end_mm - SPEED_START_mm) / max(spans.bottom_s - start_s, 1e-6)
 
 
 def common_bottom_mm(bottoms_mm: Sequence[float]) -> float:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.preprocess._force import undo_play
-from fdvv.preprocess._fuse import CurveOfForce, table_curve
-from fdvv.recording import Quantity, Recording, Stage, Take
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.fuse import CurveOfForce, table_curve, undo_play
+from fdvv.preprocess.reject import Judged
+from fdvv.recording.types import Quantity, Recording, Stage, Take
 from fdvv.units import FloatArray
 
 STEP_mm = 0.02
@@ -25,7 +26,7 @@ STOP_cN_mm = 400.0
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """What slow probes of a button told, both strokes.
+    """The slow probes of a button, both strokes.
 
     Attributes
     ----------
@@ -33,7 +34,7 @@ class Probe:
     displacement_mm : (n,) even, from 0, the first touch, to the stop.
     press_cN, release_cN : (n,).
     spread_cN : (2, n) between probes, press and release; 0 for a single one.
-    closed_mm, open_mm : where the circuit closed and opened, one per probe that told.
+    closed_mm, open_mm : where the circuit closed and opened, one per probe that recorded it.
     probes : how many.
     """
 
@@ -47,12 +48,12 @@ class Probe:
     probes: int
 
     def curve(self, stroke: Stroke) -> CurveOfForce:
-        """Give force and stiffness of one stroke."""
+        """Return force and stiffness of one stroke."""
         force = self.press_cN if stroke is Stroke.PRESS else self.release_cN
         return table_curve(self.displacement_mm, force)
 
     def rest_mm(self, force_cN: float) -> float:
-        """Tell how deep a cap sinks under a finger that rests on it with a force."""
+        """Return how deep the cap sinks under a resting finger of a given force."""
         steep = self.displacement_mm <= 0.3
         risen = np.maximum.accumulate(self.press_cN[steep])
         return float(np.interp(max(force_cN, 0.0), risen, self.displacement_mm[steep]))
@@ -119,14 +120,12 @@ def _way(take: Take, play_cN: float, zero_cN: float) -> _Way:
 
 
 def _touch_mm(x_mm: FloatArray, force_cN: FloatArray) -> float:
-    """Find where the probe first touched the cap: its force, over five samples, rises and stays."""
     mean = np.convolve(force_cN, np.full(5, 0.2), mode="same")
     below = np.flatnonzero(mean[: int(np.argmax(mean > FIRM_cN))] < TOUCH_cN)
     return float(x_mm[below[-1] + 1]) if below.size else float(x_mm[0])
 
 
 def _stop(x_mm: FloatArray, force_cN: FloatArray) -> int:
-    """Count the bins from the first touch to the stop."""
     whole = int(x_mm.max() / STEP_mm)
     force = _binned(STEP_mm * np.arange(whole + 1.0), x_mm, force_cN)
     steep = np.flatnonzero(np.diff(force)[whole // 2 :] > STOP_cN_mm * STEP_mm)
@@ -134,10 +133,50 @@ def _stop(x_mm: FloatArray, force_cN: FloatArray) -> int:
 
 
 def _binned(grid_mm: FloatArray, x_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
-    """Average samples within half a step of each place; a place without samples is drawn as a line."""
+    """Average samples within half a step of each position; empty bins are interpolated."""
     place = np.rint(x_mm / STEP_mm).astype(np.int64)
     inside = (place >= 0) & (place < grid_mm.size)
     count = np.bincount(place[inside], minlength=grid_mm.size)
     total = np.bincount(place[inside], force_cN[inside], minlength=grid_mm.size)
     known = count > 0
     return np.interp(grid_mm, grid_mm[known], total[known] / count[known])
+
+
+FIRST_cN, FIRST_mm = 12.0, 0.4
+"""The first give of the cap is read from so much force above the resting finger's, within this depth."""
+
+FEWEST_SAMPLES = 30
+"""Fewer samples of it are not used."""
+
+SLOWEST_PART, FEWEST = 4, 3
+"""Measured on the slowest quarter of the presses, or three."""
+
+
+def resting_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
+    """Return the depth of the cap before presses began, under the resting finger.
+
+    With a probe from its curve; without one from how the place goes with the first force of slow presses.
+    """
+    used = [one for one in judged if one.reason is None]
+    rests = [one.press.force_cN[one.press.t_s < one.spans.rested_s] for one in used]
+    rest_cN = float(np.median([np.median(rest) for rest in rests if rest.size])) if rests else 0.0
+    if probe is not None:
+        return probe.rest_mm(rest_cN)
+    slowest = sorted(used, key=lambda one: one.achieved_mm_s)[: max(FEWEST, len(used) // SLOWEST_PART)]
+    return max(rest_cN, 0.0) * _first_give_mm_cN(slowest, rest_cN)
+
+
+def _first_give_mm_cN(used: Sequence[Judged], rest_cN: float) -> float:
+    """Return the initial compliance, by the slope of position on force, which is known far better."""
+    places, forces = [], []
+    for one in used:
+        press = one.press
+        place = np.interp(press.t_s, press.frame_s, press.frame_mm)
+        first = (press.t_s > one.spans.start_s - 0.1) & (press.t_s < one.spans.bottom_s) & (place < FIRST_mm)
+        first &= (press.force_cN > rest_cN - 1) & (press.force_cN < rest_cN + FIRST_cN)
+        places.append(place[first])
+        forces.append(press.force_cN[first])
+    place, force = np.concatenate([*places, np.zeros(0)]), np.concatenate([*forces, np.zeros(0)])
+    if place.size < FEWEST_SAMPLES or np.ptp(force) < 0.5 * FIRST_cN:
+        return 0.0
+    return max(float(np.polyfit(force, place, 1)[0]), 0.0)

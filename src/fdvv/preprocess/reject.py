@@ -8,8 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from fdvv.preprocess._press import RawPress, Spans
-from fdvv.preprocess._strokes import NEAR_mm, achieved_mm_s, common_bottom_mm
+from fdvv.preprocess.average import Pooled
+from fdvv.preprocess.press import NEAR_mm, RawPress, Spans, achieved_mm_s, common_bottom_mm
 
 
 class Reason(StrEnum):
@@ -33,7 +33,7 @@ class Limits:
     ----------
     short_mm : that much above the stop is not at the bottom.
     apart_mm : the markers may differ so much more after the press than before.
-    slowest_ratio, fastest_ratio : of the median speed at the same pace.
+    slowest_ratio, fastest_ratio : of the median speed at the same velocity.
     stop_ratio : part of the stroke's time that the cap may spend within a twentieth of the travel.
     unlike : a press may differ from the mean by so many times what presses differ by.
     """
@@ -64,7 +64,7 @@ class Judged:
 
 
 def judge(presses: Sequence[RawPress], spans: Sequence[Spans], limits: Limits) -> list[Judged]:
-    """Judge presses by how the cap moved; the first reason found is told.
+    """Judge presses by how the cap moved; the first reason found counts.
 
     The stop is found from all of them, so one press alone is complete by definition.
     """
@@ -98,7 +98,6 @@ def _reason(press: RawPress, span: Spans, bottom_mm: float, two: bool, limits: L
 
 
 def _knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
-    """Tell whether the markers are apart differently after the press than before."""
     before = press.apart_mm[press.frame_s < span.start_s]
     after = press.apart_mm[press.frame_s > span.end_s]
     before, after = before[np.isfinite(before)], after[np.isfinite(after)]
@@ -108,7 +107,7 @@ def _knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
 
 
 def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
-    """Tell whether the cap rested between a tenth and four fifths of the way down.
+    """Return whether the cap rested between a tenth and four fifths of the way down.
 
     The longest time within a twentieth of the travel is compared with the time of the stroke.
     """
@@ -126,12 +125,11 @@ def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
 
 
 def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
-    """Leave out what was much slower or faster than the others of the same pace."""
     speeds: dict[float, list[float]] = {}
     for one in found:
         if one.press.velocity_mm_s is not None and one.reason is None:
             speeds.setdefault(one.press.velocity_mm_s, []).append(one.achieved_mm_s)
-    usual = {pace: float(np.nanmedian(achieved)) for pace, achieved in speeds.items()}
+    usual = {asked_mm_s: float(np.nanmedian(achieved)) for asked_mm_s, achieved in speeds.items()}
     return [replace(one, reason=Reason.OFF_PACE) if _off(one, usual, limits) else one for one in found]
 
 
@@ -139,5 +137,38 @@ def _off(one: Judged, usual_mm_s: Mapping[float, float], limits: Limits) -> bool
     if one.press.velocity_mm_s is None or one.reason is not None:
         return False
     ratio = one.achieved_mm_s / usual_mm_s[one.press.velocity_mm_s]
-    # a speed that cannot be told is off, too
+    # an unknown speed is off, too
     return not limits.slowest_ratio <= ratio <= limits.fastest_ratio
+
+
+GAIN_OFF = 0.1
+"""Presses at one velocity differ in force as a whole by less: that is its own spread."""
+
+LEAST_USUAL_cN = 1.0
+"""What presses differ by is never taken as less."""
+
+FEWEST = 3
+"""Among so few no outlier can be detected."""
+
+
+def unlike(pooled: Pooled, limit: float) -> list[int]:
+    """Find presses that differ from the mean by much more than presses do, the worst first."""
+    slipped = _slipped(pooled)
+    if slipped:
+        return slipped
+    apart = np.sqrt(np.nanmean(pooled.apart_cN**2, axis=1))
+    usual = float(np.median(apart))
+    far = np.flatnonzero(apart > limit * max(usual, LEAST_USUAL_cN))
+    return [int(i) for i in far if apart[i] >= 0.5 * apart.max()] if apart.size > FEWEST else []
+
+
+def _slipped(pooled: Pooled) -> list[int]:
+    """Find presses whose force is the others' times a number: the sensor slipped or was tilted."""
+    gains = []
+    for apart in pooled.apart_cN:
+        seen = np.isfinite(apart)
+        mean = pooled.force_cN[seen]
+        gains.append(1 + float(apart[seen] @ mean) / max(float(mean @ mean), 1e-9))
+    off = np.abs(np.array(gains) - np.median(gains))
+    far = np.flatnonzero(off > max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))
+    return [int(i) for i in far if off[i] >= 0.5 * off.max()] if len(gains) > FEWEST else []

@@ -1,25 +1,32 @@
-"""A model's program: the plain button, with its key report and its vibrations."""
+"""The program of a model: the plain button, with key report and vibrations; ranges of parameters."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
 
-from fdvv.model import FDVVModel, ForceSurface, Stroke, Vibration
-from fdvv.program._compile import Compiled, compile_program
-from fdvv.program._condition import Condition, Transition, When
-from fdvv.program._limits import Limits
-from fdvv.program._program import During, Program, Signal, State, VibrationEvent
-from fdvv.program._surface import of_model, of_surface
+from fdvv.errors import InputError
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.model.vibration import Vibration
+from fdvv.program.compile import Compiled, compile_program
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import During, Program, Signal, State, VibrationEvent
+from fdvv.program.surface import Limits, of_model, of_surface
 
 ACTUATION_ratio = 0.5
 """Where a model of unknown actuation is taken to act, of its travel."""
 HYSTERESIS_mm = 0.1
 """How far above its actuation a model of unknown reset, or one with both at one place, is taken to reset."""
+NEAR_BOTTOM_mm = 0.3
+HOLD_mm = 0.2
+"""How far a cap must come back before a place counts as left."""
+Ranges = dict[str, tuple[float, float]]
 
 
 def key_points_mm(model: FDVVModel) -> tuple[float, float]:
-    """Give where the key goes down and where it comes up, the latter always above."""
+    """Return where the key goes down and where it comes up, the latter always above."""
     actuation_mm = model.actuation_mm
     if actuation_mm is None:
         actuation_mm = ACTUATION_ratio * model.travel_mm
@@ -71,7 +78,7 @@ def compile_button(
 
 
 def vibrations_of(model: FDVVModel) -> tuple[tuple[Signal, ...], tuple[VibrationEvent, ...]]:
-    """Give a model's vibrations as signals and events; equal signals are told once."""
+    """Return a model's vibrations as signals and events; equal signals appear once."""
     signals: list[Signal] = []
     events: list[VibrationEvent] = []
     for stroke in Stroke:
@@ -88,7 +95,6 @@ def vibrations_of(model: FDVVModel) -> tuple[tuple[Signal, ...], tuple[Vibration
 
 
 def _halfway(vibrations: list[Vibration]) -> list[float]:
-    """Give the velocities at which the nearest vibration changes."""
     speeds = [v.velocity_mm_s or 0.0 for v in vibrations]
     return [(slow + fast) / 2 for slow, fast in pairwise(speeds)]
 
@@ -100,3 +106,53 @@ def _signal_of(vibration: Vibration, signals: list[Signal]) -> str:
             return known.name
     signals.append(fresh)
     return fresh.name
+
+
+def ranges(program: str, base: FDVVModel, levels: int = 1, **_: float) -> Ranges:
+    """Return the least and the most of each parameter of a shipped program over a base.
+
+    levels : of the program multi-level, whose detents must fit between them.
+    """
+    half_mm = base.travel_mm / 2 - 0.1
+    below_actuation_mm = base.travel_mm - key_points_mm(base)[0]
+    found: dict[str, Ranges] = {
+        "fast-tapping": {
+            "trigger_mm": (0.4, base.travel_mm - 2 * NEAR_BOTTOM_mm),
+            "pull_cN": (6, 200),
+            "push_cN": (20, 300),
+            "drop_ms": (5, 1000),
+        },
+        "non-newtonian": {
+            "soft_ratio": (0.1, 1.5),
+            "stiffening_per_m_s": (0, 20),
+            "fastest_mm_s": (10, 1000),
+        },
+        "multi-level": {
+            "levels": (1, 8),
+            "detent_cN": (0, 100),
+            "detent_mm": (0.1, base.travel_mm / (levels + 1)),
+        },
+        "dwell-ticks": {
+            "period_ms": (20, 10_000),
+            "bottom_mm": (0.05, below_actuation_mm - 2 * HOLD_mm),
+        },
+        "returning-later": {
+            "cooldown_ms": (1, 60_000),
+            "event": (0, 31),
+            "sunk_cN": (6, 100),
+            "fade_ms": (0, 2000),
+        },
+        "rapid-trigger": dict.fromkeys(
+            ("press_mm", "release_mm", "top_dead_mm", "bottom_dead_mm"), (0.01, half_mm)
+        ),
+    }
+    return found.get(program, {})
+
+
+def check_ranges(program: str, base: FDVVModel, **given: float) -> None:
+    """Raise InputError for the first parameter that is out of its range."""
+    levels = int(given.get("levels", 1))
+    for name, (low, high) in ranges(program, base, levels=max(1, levels)).items():
+        if not low <= given[name] <= high:
+            reason = f"must be {low:g} to {high:g}, got {given[name]:g}"
+            raise InputError(name, "value", reason, "choose another")

@@ -1,4 +1,4 @@
-"""Whether a program may be given to a rig: what it asks for, whether it hangs, whether the cap comes back."""
+"""Check whether a rig can run a program: its demands, endless loops, and whether the cap returns."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.program._compile import compile_program
-from fdvv.program._condition import When
-from fdvv.program._limits import Limits
-from fdvv.program._program import Program, State
-from fdvv.program._return import Returning
-from fdvv.program._still import find_hang
-from fdvv.program._surface import Surface
+from fdvv.program.compile import compile_program
+from fdvv.program.condition import When
+from fdvv.program.program import Program, State
+from fdvv.program.reachability import find_hang
+from fdvv.program.return_analysis import ReturnAnalysis
+from fdvv.program.surface import Limits, Surface
 
 FASTEST_PRESS_mm_s = 300.0
 """Speed at which a surface's slope is held against the rig's slew; fingers seldom press faster."""
@@ -71,12 +70,12 @@ class Report:
 
     @property
     def refused(self) -> tuple[Finding, ...]:
-        """Give the findings that forbid the program."""
+        """Return the findings that forbid the program."""
         return tuple(f for f in self.findings if f.severity is Severity.REFUSED)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Give the others."""
+        """Return the others."""
         return tuple(f for f in self.findings if f.severity is Severity.WARNING)
 
 
@@ -88,11 +87,11 @@ def check_program(program: Program, limits: Limits | None = None) -> Report:
     repeated before they end, a hold at the bottom that overheats the coil, states that follow each other for
     ever without motion, and a program whose cap is not proven to come back. Warnings: stiffness that may
     buzz, a hold that derates, transitions beyond the travel.
-    docs/explanation/programs.md tells what is proven.
+    docs/explanation/programs.md says what is proven.
     """
     limits = limits or Limits()
     refusal, margin_cN = _compiled(program, limits)
-    returning = Returning(program, limits, margin_cN)
+    returning = ReturnAnalysis(program, limits, margin_cN)
     rests = [_held_at_bottom_cN(program, state, limits) for state in program.states]
     findings = [
         *refusal,
@@ -135,7 +134,7 @@ def _warning(state: str, place: str, reason: str, remedy: str) -> Finding:
 
 
 def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
-    """Give the refusal to compile, and how far the image's forces are from the program's."""
+    """Return the refusal to compile, and how far the image's forces are from the program's."""
     try:
         compiled = compile_program(program, limits)
     except InputError as error:
@@ -193,7 +192,7 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
 
 
 def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
-    """Give the steepest slope of a surface below the top, up or down, and where it begins.
+    """Return the steepest slope of a surface below the top, up or down, and where it begins.
 
     Above it the cap rests against its stop, and the contact step of a real button is as steep as it is.
     """
@@ -204,7 +203,7 @@ def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
 
 
 def _held_at_bottom_cN(program: Program, state: State, limits: Limits) -> float:
-    """Give the strongest force, weight included, that a state holds against a finger at the bottom."""
+    """Return the strongest force, weight included, that a state holds against a finger at the bottom."""
     bottom = np.array([program.travel_mm])
     forces = [
         float(surface.row_cN(row, bottom)[0]) + bias + limits.weight_cN
@@ -248,7 +247,7 @@ def _hang(program: Program) -> Iterator[Finding]:
         yield _refused(cycle[0], place, reason, "move two of their conditions apart, or add an after_ms")
 
 
-def _flaws(returning: Returning) -> Iterator[Finding]:
+def _flaws(returning: ReturnAnalysis) -> Iterator[Finding]:
     flaws = returning.dead_ends()
     if not flaws:
         cycle = returning.cycle_flaw()

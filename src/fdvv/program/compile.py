@@ -9,15 +9,12 @@ from functools import partial
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import Vibration
-from fdvv.program._grid import Candidates, Grid, START_um16, speed_mm_s16
-from fdvv.program._image import lay_out
-from fdvv.program._limits import Limits
-from fdvv.program._program import Program, State
-from fdvv.program._surface import Surface
-from fdvv.program._synth import POOL_BYTES
-from fdvv.program._vibration_slot import ConvertedVibration, slot_of_vibration
-from fdvv.protocol import (
+from fdvv.model.vibration import Vibration
+from fdvv.program.image import lay_out
+from fdvv.program.program import Program, State
+from fdvv.program.surface import Candidates, Grid, Limits, START_um16, Surface, speed_mm_s16
+from fdvv.program.synth import POOL_BYTES, ConvertedVibration, slot_of_vibration
+from fdvv.protocol.tables import (
     IMAGE_BYTES,
     SLOTS,
     STATES,

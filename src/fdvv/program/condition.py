@@ -1,4 +1,4 @@
-"""When a program moves on: one condition with its value, and what leads from state to state."""
+"""Conditions of a program, and the transitions between its states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.protocol import Condition as Code
+from fdvv.protocol.tables import Condition as Code
 
 EVENTS = 32
 LARGEST_mm = 100.0
@@ -38,7 +38,7 @@ class When(StrEnum):
 
     @property
     def code(self) -> Code:
-        """Give its number on the device: both lists have one order."""
+        """Return its number on the device: both lists have one order."""
         return Code(list(When).index(self))
 
 

@@ -9,26 +9,18 @@ from typing import TypeVar
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.program._condition import Condition, Transition, When
-from fdvv.program._program import During, State, Velocity, VibrationEvent
-from fdvv.program._surface import Surface
-from fdvv.program._synth import Slot, Waveform
-from fdvv.protocol import (
-    IMAGE_BYTES,
-    IMAGE_MAGIC,
-    NONE,
-    CN64_PER_cN,
-    ImageHeader,
-    MM_S16_PER_mm_s,
-    Record,
-    UM16_PER_mm,
-    checksum_of,
-)
-from fdvv.protocol import Slot as SlotRecord
-from fdvv.protocol import State as StateRecord
-from fdvv.protocol import Surface as SurfaceRecord
-from fdvv.protocol import Transition as TransitionRecord
-from fdvv.protocol import Vibration as VibrationRecord
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import During, State, Velocity, VibrationEvent
+from fdvv.program.surface import Surface
+from fdvv.program.synth import Slot, Waveform
+from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm, checksum_of
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, NONE, ImageHeader
+from fdvv.protocol.tables import Slot as SlotRecord
+from fdvv.protocol.tables import State as StateRecord
+from fdvv.protocol.tables import Surface as SurfaceRecord
+from fdvv.protocol.tables import Transition as TransitionRecord
+from fdvv.protocol.tables import Vibration as VibrationRecord
 
 R = TypeVar("R", bound=Record)
 

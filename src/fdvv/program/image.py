@@ -5,16 +5,17 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from fdvv.program._condition import Condition, When
-from fdvv.program._grid import Grid, counts_cN64, place_um16, speed_mm_s16
-from fdvv.program._program import Program, State, VibrationEvent
-from fdvv.program._synth import Slot
-from fdvv.protocol import IMAGE_BYTES, IMAGE_MAGIC, IMAGE_VERSION, NONE, ImageHeader, seal
-from fdvv.protocol import Slot as SlotRecord
-from fdvv.protocol import State as StateRecord
-from fdvv.protocol import Surface as SurfaceRecord
-from fdvv.protocol import Transition as TransitionRecord
-from fdvv.protocol import Vibration as VibrationRecord
+from fdvv.program.condition import Condition, When
+from fdvv.program.program import Program, State, VibrationEvent
+from fdvv.program.surface import Grid, counts_cN64, place_um16, speed_mm_s16
+from fdvv.program.synth import Slot
+from fdvv.protocol.messages import seal
+from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, IMAGE_VERSION, NONE, ImageHeader
+from fdvv.protocol.tables import Slot as SlotRecord
+from fdvv.protocol.tables import State as StateRecord
+from fdvv.protocol.tables import Surface as SurfaceRecord
+from fdvv.protocol.tables import Transition as TransitionRecord
+from fdvv.protocol.tables import Vibration as VibrationRecord
 
 NAME_BYTES = 10
 
@@ -27,7 +28,7 @@ class _Pool:
         self.places: dict[tuple[bytes, int], int] = {}
 
     def put(self, data: bytes, align: int = 2) -> int:
-        """Give the offset in the image at which these bytes lie."""
+        """Return the offset in the image at which these bytes lie."""
         if (data, align) not in self.places:
             self.data += bytes(-(self.start + len(self.data)) % align)
             self.places[data, align] = self.start + len(self.data)
@@ -36,7 +37,7 @@ class _Pool:
 
 
 def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weight_cN: float) -> bytes:
-    """Give the image of a program whose states carry a weight.
+    """Return the image of a program whose states carry a weight.
 
     An image that is larger than a device takes is only as long as it would be, and empty.
     """
@@ -129,7 +130,7 @@ def _state_record(program: Program, state: State, first: int, weight_cN: float) 
 
 
 def value_of(condition: Condition) -> int:
-    """Give a condition's value as the image holds it."""
+    """Return a condition's value as the image holds it."""
     if condition.when.endswith("_mm"):
         return place_um16(condition.value)
     if condition.when.endswith("_mm_s"):

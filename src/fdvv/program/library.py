@@ -1,20 +1,38 @@
-"""Buttons that no mechanism has: the five of the paper, and rapid trigger, each over a base model.
+"""The shipped programs by name, with their parameters.
 
+Buttons that no mechanism has, each over a base model: the five of the paper, and rapid trigger.
 Button Simulation and Design via FDVV Models (CHI 2020), "Prototyping Innovative Buttons". What
 each does is promised in its docstring and tested in tests/program/test_ideas.py.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib import resources
+from pathlib import Path
 
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, Mode, Stroke
-from fdvv.program._button import key_points_mm, vibrations_of
-from fdvv.program._condition import Condition, Transition, When
-from fdvv.program._program import Program, Signal, State, Velocity, VibrationEvent
-from fdvv.program._ranges import HOLD_mm, NEAR_BOTTOM_mm, check_ranges
-from fdvv.program._surface import STEP_mm, Surface, flat, of_model, raised, scaled
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Mode
+from fdvv.program.button import (
+    HOLD_mm,
+    NEAR_BOTTOM_mm,
+    button_program,
+    check_ranges,
+    key_points_mm,
+    vibrations_of,
+)
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.file import PROGRAM_SUFFIX, load_program, program_from_json
+from fdvv.program.program import Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program.surface import STEP_mm, Surface, flat, of_model, raised, scaled
+
+BASE = "mx-red"
+"""Base of the shipped programs by default: linear, so that nothing distracts."""
 
 
 def _surfaces(base: FDVVModel) -> tuple[Surface, Surface]:
@@ -39,7 +57,6 @@ def _tick(name: str, frequency_Hz: float, amplitude_m_s2: float = 6.0) -> Signal
 
 
 def _snaps(base: FDVVModel, *states: str) -> tuple[tuple[Signal, ...], tuple[VibrationEvent, ...]]:
-    """Give the base's own vibrations, in some of the states."""
     signals, events = vibrations_of(base)
     return signals, tuple(replace(event, states=states) for event in events)
 
@@ -73,8 +90,8 @@ def fast_tapping(
         State("returning", "push", "push", (_shallower(trigger_mm / 2, "ready"),)),
     )
     surfaces = (press, release, flat("pull", -pull_cN), flat("push", push_cN))
-    told = f"Pressed {trigger_mm:g} mm deep it drops to the bottom and comes back by itself."
-    return Program("fast-tapping", base.travel_mm, "ready", states, surfaces, signals, events, told)
+    summary = f"Pressed {trigger_mm:g} mm deep it drops to the bottom and comes back by itself."
+    return Program("fast-tapping", base.travel_mm, "ready", states, surfaces, signals, events, summary)
 
 
 def non_newtonian(
@@ -113,8 +130,8 @@ def non_newtonian(
             velocity=Velocity.CONTINUOUS,
         ),
     )
-    told = "Soft when pressed gently, stiff when pressed fast."
-    return Program("non-newtonian", base.travel_mm, "up", states, (press, release), signals, events, told)
+    summary = "Soft when pressed gently, stiff when pressed fast."
+    return Program("non-newtonian", base.travel_mm, "up", states, (press, release), signals, events, summary)
 
 
 def _slowest(base: FDVVModel, stroke: Stroke) -> tuple[float, ...]:
@@ -125,7 +142,7 @@ def _slowest(base: FDVVModel, stroke: Stroke) -> tuple[float, ...]:
 def multi_level(
     base: FDVVModel, levels: int = 3, detent_cN: float = 25.0, detent_mm: float = 0.32
 ) -> Program:
-    """Divide the stroke into depths that can be told apart, each with its key level.
+    """Divide the stroke into depths that can be distinguished, each with its key level.
 
     Level k of `levels` begins at k / (levels + 1) of the travel, to 0.02 mm. Before it, the press is raised
     by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz
@@ -149,8 +166,8 @@ def multi_level(
         states.append(State(f"level {level}", "detents", release.name, tuple(ways), key=level))
     clicks = tuple(_tick(f"click {k}", 100.0 + 40.0 * k) for k in range(1, levels + 1))
     surfaces = (raised(press, "detents", bumps), release)
-    told = f"{levels} levels, told by detents and clicks, each reported as a key level."
-    return Program("multi-level", base.travel_mm, "level 0", tuple(states), surfaces, clicks, (), told)
+    summary = f"{levels} levels, marked by detents and clicks, each reported as a key level."
+    return Program("multi-level", base.travel_mm, "level 0", tuple(states), surfaces, clicks, (), summary)
 
 
 def dwell_ticks(base: FDVVModel, period_ms: int = 250, bottom_mm: float = 0.3) -> Program:
@@ -178,9 +195,9 @@ def dwell_ticks(base: FDVVModel, period_ms: int = 250, bottom_mm: float = 0.3) -
             repeat_ms=period_ms,
         ),
     )
-    told = f"Ticks every {period_ms} ms while held at the bottom."
+    summary = f"Ticks every {period_ms} ms while held at the bottom."
     sounds = (*signals, _tick("tick", 200.0))
-    return Program("dwell-ticks", base.travel_mm, "up", states, (press, release), sounds, events, told)
+    return Program("dwell-ticks", base.travel_mm, "up", states, (press, release), sounds, events, summary)
 
 
 def returning_later(
@@ -205,8 +222,8 @@ def returning_later(
         State("returning", *both, (_shallower(actuation_mm / 2, "ready"),), fade_ms=fade_ms),
     )
     surfaces = (press, release, flat("sunk", -sunk_cN))
-    told = f"Once pressed it stays down for {cooldown_ms} ms, or until the host lets it go."
-    return Program("returning-later", base.travel_mm, "ready", states, surfaces, signals, events, told)
+    summary = f"Once pressed it stays down for {cooldown_ms} ms, or until the host lets it go."
+    return Program("returning-later", base.travel_mm, "ready", states, surfaces, signals, events, summary)
 
 
 def rapid_trigger(
@@ -242,5 +259,115 @@ def rapid_trigger(
         State("up", *both, (_deeper(bottom_mm, "down"), fall)),
         State("down", *both, (_shallower(top_dead_mm, "up"), rise), key=1),
     )
-    told = f"Down after {press_mm:g} mm of fall, up after {release_mm:g} mm of rise, anywhere."
-    return Program("rapid-trigger", base.travel_mm, "up", states, (press, release), signals, events, told)
+    summary = f"Down after {press_mm:g} mm of fall, up after {release_mm:g} mm of rise, anywhere."
+    return Program("rapid-trigger", base.travel_mm, "up", states, (press, release), signals, events, summary)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that a shipped program takes; its unit is the last part of its name."""
+
+    name: str
+    default: float
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A shipped program before it is made.
+
+    Attributes
+    ----------
+    name : what `make` calls it.
+    summary : what it does, one line.
+    details : its promises, and what its parameters mean.
+    parameters : with their defaults.
+    """
+
+    name: str
+    summary: str
+    details: str
+    parameters: tuple[Parameter, ...]
+
+
+def _button(base: FDVVModel) -> Program:
+    """Be the base itself, with its key report and its vibrations.
+
+    Key 1 between the base's actuation and reset.
+    """
+    return button_program(base)
+
+
+MAKERS: dict[str, Callable[..., Program]] = {
+    "button": _button,
+    "dwell-ticks": dwell_ticks,
+    "fast-tapping": fast_tapping,
+    "multi-level": multi_level,
+    "non-newtonian": non_newtonian,
+    "rapid-trigger": rapid_trigger,
+    "returning-later": returning_later,
+}
+
+
+def programs() -> tuple[Recipe, ...]:
+    """List the shipped programs, sorted by name."""
+    return tuple(_recipe(name) for name in sorted(MAKERS))
+
+
+def _recipe(name: str) -> Recipe:
+    text = inspect.getdoc(MAKERS[name]) or ""
+    summary, _, details = text.partition("\n\n")
+    parameters = list(inspect.signature(MAKERS[name]).parameters.values())[1:]
+    return Recipe(name, summary, details, tuple(Parameter(p.name, p.default) for p in parameters))
+
+
+def make(name: str, base: FDVVModel | str | None = None, /, **parameters: float) -> Program:
+    """Make a shipped program.
+
+    base : the model it extends, or the name of a built-in; mx-red by default.
+    parameters : those of the program; the others have their defaults.
+    Raises InputError for an unknown name or parameter, or a value out of range. The result is not checked.
+    """
+    if name not in MAKERS:
+        remedy = f"use one of: {', '.join(sorted(MAKERS))}"
+        raise InputError("program", "name", f"none is called {name!r}", remedy)
+    known = {p.name: p.default for p in _recipe(name).parameters}
+    for parameter, value in parameters.items():
+        if parameter not in known:
+            remedy = f"use one of: {', '.join(known) or 'none'}"
+            raise InputError(f"program {name!r}", "parameter", f"none is called {parameter!r}", remedy)
+        if isinstance(known[parameter], int):
+            if value != int(value):
+                reason = f"must be a whole number, got {value:g}"
+                raise InputError(f"program {name!r}", parameter, reason, "round it")
+            parameters[parameter] = int(value)
+    model = load_builtin(base or BASE) if base is None or isinstance(base, str) else base
+    return MAKERS[name](model, **parameters)
+
+
+def load_shipped(name: str) -> Program:
+    """Read a shipped program as it is made with the default base and parameters, from its file."""
+    folder = resources.files("fdvv.program").joinpath("library")
+    known = sorted(
+        f.name.removesuffix(PROGRAM_SUFFIX) for f in folder.iterdir() if f.name.endswith(PROGRAM_SUFFIX)
+    )
+    if name not in known:
+        raise InputError("program", "name", f"none is called {name!r}", f"use one of: {', '.join(known)}")
+    return program_from_json(folder.joinpath(name + PROGRAM_SUFFIX).read_bytes(), name + PROGRAM_SUFFIX)
+
+
+def names_program(spec: str) -> bool:
+    """Return whether spec names a program: a shipped one, or a file of that ending."""
+    return spec.endswith(PROGRAM_SUFFIX) or spec in [recipe.name for recipe in programs()]
+
+
+def open_program(spec: str) -> Program:
+    """Return the program that spec names: a shipped one, or a *.fdvv-program.json file. Raises InputError."""
+    names = [recipe.name for recipe in programs()]
+    if spec in names:
+        return load_shipped(spec)
+    if not spec or not Path(spec).is_file():
+        reason = "no such file or shipped program"
+        raise InputError(
+            spec or "''", "argument", reason, f"name a *{PROGRAM_SUFFIX} or one of {', '.join(names)}"
+        )
+    return load_program(spec)

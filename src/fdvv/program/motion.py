@@ -1,4 +1,4 @@
-"""How the cap of a program may move with the finger off: speeds, ways and times, each a bound."""
+"""Bounds of the cap's motion with the finger off: speeds, distances and times."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from fdvv.program._cells import Cells, make_cells
-from fdvv.program._condition import When
-from fdvv.program._limits import Limits
-from fdvv.program._program import Program, Velocity
+from fdvv.program.condition import When
+from fdvv.program.program import Program, Velocity
+from fdvv.program.reachability import Cells, make_cells
+from fdvv.program.surface import Limits
 
 cN_mm_PER_J = 1e5
 
@@ -36,11 +36,11 @@ class Motion:
         self.pull_cN = -self.cells.greatest_cN.max(axis=1) - limits.opposing_cN
 
     def lifts(self, state: int) -> bool:
-        """Tell whether a state moves the cap up from everywhere below the top."""
+        """Return whether a state moves the cap up from everywhere below the top."""
         return bool(self.lift_cN[state] > 0)
 
     def pulls(self, state: int) -> bool:
-        """Tell whether a state moves the cap down from everywhere."""
+        """Return whether a state moves the cap down from everywhere."""
         return bool(self.pull_cN[state] > 0)
 
     @cached_property
@@ -61,18 +61,18 @@ class Motion:
         return 0.5 * self.limits.mass_kg * speed_m_s**2 * cN_mm_PER_J
 
     def _spent_at(self, state: int, first: int, last: int, speed_m_s: float) -> int:
-        """Give the first edge beyond cells first to last that a cap leaving them downward cannot pass."""
+        """Return the first edge beyond cells first to last that a cap leaving them downward cannot pass."""
         work = self._work_cN_mm[state]
         needed = float(work[first : last + 2].max()) + self._energy_cN_mm(speed_m_s)
         beyond = np.flatnonzero(work[last + 2 :] >= needed)
         return int(last + 2 + beyond[0]) if beyond.size else self.cells.count
 
     def coast_cells(self, state: int, cell: int) -> range:
-        """Give the cells through which the cap may still go down after a lifting state was entered in one."""
+        """Return the cells through which the cap may still go down after it entered a lifting state."""
         return range(cell, max(cell + 1, self._spent_at(state, cell, cell, self.down_m_s)))
 
     def top_cells(self, state: int) -> range:
-        """Give the cells in which a cap that came to the top in a lifting state bounces and rests."""
+        """Return the cells in which a cap that came to the top in a lifting state bounces and rests."""
         last = max(self.first - 1, 0)
         return range(self._spent_at(state, 0, last, self.limits.rebound_ratio * self.up_m_s))
 
@@ -101,7 +101,7 @@ class Motion:
         return 2 * self.limits.mass_kg * ratio * self.up_m_s / lift_N / (1 - ratio)
 
     def longest_stay_s(self, state: int) -> float | None:
-        """Give when a state is left wherever the cap is, by an `after_ms` of its own; None if never."""
+        """Return when a state is left wherever the cap is, by an `after_ms` of its own; None if never."""
         found = [
             t.when.value / 1000
             for t in self.program.states[state].transitions
@@ -110,7 +110,7 @@ class Motion:
         return min(found, default=None)
 
     def stay_at_top_s(self, state: int) -> float | None:
-        """Give when a lifting state is left by a cap at rest at the top; None if never."""
+        """Return when a lifting state is left by a cap at rest at the top; None if never."""
         source = self.program.states[state].velocity
 
         def wait_s(when: When, value: float) -> float | None:

@@ -1,4 +1,4 @@
-"""What a device runs, in a designer's words: states, what leads from one to another, what is felt in each."""
+"""A program in a designer's units: states, transitions, surfaces, signals and vibration events."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ from typing import Protocol
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Stroke, Vibration
-from fdvv.program._condition import Transition
-from fdvv.program._surface import Surface, check_name
-from fdvv.protocol import Stroke as Direction
-from fdvv.protocol import VelocitySource
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
+from fdvv.program.condition import Transition
+from fdvv.program.surface import Surface, check_name
+from fdvv.protocol.tables import Stroke as Direction
+from fdvv.protocol.tables import VelocitySource
 
 TRAVEL_mm = (0.2, 6.4)
 LONGEST_fade_ms = 2000
 LONGEST_ms = 65_535
 LISTED = 16
-"""How many known names an error tells; a device holds no more states or surfaces."""
+"""Number of known names that an error lists; a device holds no more states or surfaces."""
 
 
 class Velocity(StrEnum):
-    """Which velocity chooses the row of a surface: told by the host, found once a press, or ever anew."""
+    """Velocity that chooses the row of a surface: announced, measured once per press, or all the time."""
 
     ANNOUNCED = "announced"
     DECIDED = "decided"
@@ -34,7 +35,7 @@ class Velocity(StrEnum):
 
     @property
     def code(self) -> VelocitySource:
-        """Give its number on the device."""
+        """Return its number on the device."""
         return VelocitySource[self.name]
 
 
@@ -47,7 +48,7 @@ class During(StrEnum):
 
     @property
     def code(self) -> Direction:
-        """Give its number on the device."""
+        """Return its number on the device."""
         return Direction[self.name]
 
 
@@ -72,7 +73,7 @@ class Signal:
         self.vibration()
 
     def vibration(self) -> Vibration:
-        """Give it as the model room's vibration, at displacement 0; raises ModelError."""
+        """Return it as the model room's vibration, at displacement 0; raises ModelError."""
         return Vibration(Stroke.PRESS, None, 0.0, self.duration_s, self.modes)
 
 
@@ -159,7 +160,7 @@ class State:
             raise ModelError(f"state {self.name!r}: {field} must be a whole number to {high}, got {value}")
 
     def biases_cN(self) -> tuple[float, float]:
-        """Give the least and the greatest bias while in the state."""
+        """Return the least and the greatest bias while in the state."""
         end = self.bias_end_cN if self.bias_ms else self.bias_cN
         return min(self.bias_cN, end), max(self.bias_cN, end)
 
@@ -169,7 +170,7 @@ class Named(Protocol):
 
     @property
     def name(self) -> str:
-        """Give it."""
+        """Return it."""
 
 
 @dataclass(frozen=True)
@@ -217,16 +218,15 @@ class Program:
                 _check_known(name, states, "state", f"vibration {i + 1}")
 
     def state(self, name: str) -> State:
-        """Give a state by its name."""
+        """Return a state by its name."""
         return next(state for state in self.states if state.name == name)
 
     def surface(self, name: str) -> Surface:
-        """Give a surface by its name."""
+        """Return a surface by its name."""
         return next(surface for surface in self.surfaces if surface.name == name)
 
 
 def _names(things: Iterable[Named], what: str) -> dict[str, int]:
-    """Count names that must be each there once, in their order."""
     found = Counter(thing.name for thing in things)
     twice = [name for name, count in found.items() if count > 1]
     if twice:

@@ -9,11 +9,11 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Vibration
-from fdvv.program import (
+from fdvv.model.vibration import Vibration
+from fdvv.program.surface import Limits
+from fdvv.program.synth import (
     RATE_HZ,
     ConvertedVibration,
-    Limits,
     SILENCE_counts,
     Slot,
     Waveform,
@@ -21,19 +21,9 @@ from fdvv.program import (
     slot_of_vibration,
 )
 from fdvv.units import FloatArray
-from fdvv.vibration import (
-    FULL_SCALE_V,
-    Drive,
-    InverseSettings,
-    KnownExciter,
-    Wav,
-    acceleration_m_s2,
-    board_wav,
-    correlation,
-    drive_for,
-    to_wav,
-    vibration_samples,
-)
+from fdvv.vibration.exciter import FULL_SCALE_V, KnownExciter
+from fdvv.vibration.inverse import Drive, InverseSettings, acceleration_m_s2, correlation, drive_for
+from fdvv.vibration.wave import Wav, board_wav, to_wav, vibration_samples
 
 PLAIN = Limits().counts_per_m_s2
 COUNTS_V = SILENCE_counts / FULL_SCALE_V
@@ -43,7 +33,7 @@ NO_WORSE = 0.01
 """A plain slot is kept if the inverse is no more alike than by so much: it takes no room among the waves."""
 
 
-class Way(StrEnum):
+class SynthesisMethod(StrEnum):
     """How a slot was made: the vibration's own waveform, or the exciter's inverse."""
 
     PLAIN = "plain"
@@ -64,7 +54,7 @@ class RenderedVibration:
     """
 
     slot: Slot
-    way: Way
+    way: SynthesisMethod
     lead_s: float
     likeness: float
     strength_ratio: float
@@ -80,16 +70,22 @@ def render_vibration(
     """
     chosen = settings or InverseSettings()
     inverse = _judged(
-        _wave(drive_for(exciter, vibration, chosen)), Way.INVERSE, vibration, exciter, chosen.lead_s
+        _wave(drive_for(exciter, vibration, chosen)),
+        SynthesisMethod.INVERSE,
+        vibration,
+        exciter,
+        chosen.lead_s,
     )
-    plain = _judged(_plain(vibration, exciter, chosen.limit_V), Way.PLAIN, vibration, exciter, 0.0)
+    plain = _judged(
+        _plain(vibration, exciter, chosen.limit_V), SynthesisMethod.PLAIN, vibration, exciter, 0.0
+    )
     return plain if plain.likeness >= inverse.likeness - NO_WORSE else inverse
 
 
 def converter(
     exciter: KnownExciter, settings: InverseSettings | None = None
 ) -> Callable[[Vibration], ConvertedVibration]:
-    """Give what compiling a program uses to make slots, where the exciter is known."""
+    """Return what compiling a program uses to make slots, where the exciter is known."""
 
     def convert(vibration: Vibration) -> ConvertedVibration:
         made = render_vibration(vibration, exciter, settings)
@@ -99,7 +95,7 @@ def converter(
 
 
 def slot_volts(slot: Slot, samples: int | None = None) -> FloatArray:
-    """Give the volts of a slot at 16 kHz, bit for bit as the board plays it."""
+    """Return the volts of a slot at 16 kHz, bit for bit as the board plays it."""
     count = slot.duration_samples if samples is None else samples
     return (render(slot, count).astype(np.float64) - SILENCE_counts) / COUNTS_V
 
@@ -140,7 +136,7 @@ def _plain(vibration: Vibration, exciter: KnownExciter, limit_V: float) -> Slot:
 
 
 def _judged(
-    slot: Slot, way: Way, vibration: Vibration, exciter: KnownExciter, lead_s: float
+    slot: Slot, way: SynthesisMethod, vibration: Vibration, exciter: KnownExciter, lead_s: float
 ) -> RenderedVibration:
     """Compare what the exciter makes of the board's samples with the vibration."""
     longest = max(slot.duration_samples, round((vibration.duration_s + lead_s) * RATE_HZ))

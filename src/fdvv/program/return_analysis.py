@@ -14,13 +14,13 @@ from enum import Enum
 from functools import cached_property
 from typing import NamedTuple
 
-from fdvv.program._cells import Way
-from fdvv.program._limits import Limits
-from fdvv.program._motion import Motion
-from fdvv.program._program import Program
+from fdvv.program.motion import Motion
+from fdvv.program.program import Program
+from fdvv.program.reachability import Direction
+from fdvv.program.surface import Limits
 
 
-class Kind(Enum):
+class HazardKind(Enum):
     """What is known of the cap's motion at a node."""
 
     DOWN = "moving down against a force that lifts"
@@ -35,12 +35,12 @@ class Node(NamedTuple):
     """Where the cap may be: number of the state, what is known of its motion, cell."""
 
     state: int
-    kind: Kind
+    kind: HazardKind
     cell: int = 0
 
 
 @dataclass(frozen=True)
-class Flaw:
+class ReturnHazard:
     """Why the return cannot be proven: the state, the place in it, what may happen, and what helps."""
 
     state: str
@@ -49,7 +49,7 @@ class Flaw:
     remedy: str
 
 
-class Returning:
+class ReturnAnalysis:
     """The graph of all motions of one program with the finger off."""
 
     def __init__(self, program: Program, limits: Limits, margin_cN: float) -> None:
@@ -57,10 +57,10 @@ class Returning:
         self.motion = Motion(program, limits, margin_cN)
         self.cells = self.motion.cells
         self.index = {state.name: i for i, state in enumerate(program.states)}
-        self._known: dict[tuple[int, int, Way], tuple[list[int], bool]] = {}
+        self._known: dict[tuple[int, int, Direction], tuple[list[int], bool]] = {}
 
-    def fired(self, state: int, cell: int, way: Way) -> tuple[list[int], bool]:
-        """Give the states that may follow at once in a cell, and whether one of them must."""
+    def fired(self, state: int, cell: int, way: Direction) -> tuple[list[int], bool]:
+        """Return the states that may follow at once in a cell, and whether one of them must."""
         key = (state, cell, way)
         if key not in self._known:
             found, must = [], False
@@ -73,91 +73,88 @@ class Returning:
             self._known[key] = found, must
         return self._known[key]
 
-    def enter(self, state: int, cell: int, way: Way, pulled: bool = False) -> Node:
-        """Give the node that a transition leads to; pulled: the force before it may not have lifted."""
+    def enter(self, state: int, cell: int, way: Direction, pulled: bool = False) -> Node:
+        """Return the node that a transition leads to; pulled: the force before it may not have lifted."""
         fades = self.program.states[state].fade_ms > 0
         if self.motion.lifts(state):
             if fades and pulled:
-                return Node(state, Kind.FADING)
-            return Node(state, Kind.DOWN if way is Way.DOWN else Kind.UP, cell)
-        if self.motion.pulls(state) and way is Way.DOWN and not fades:
-            return Node(state, Kind.PULLED, cell)
-        return Node(state, Kind.ANYHOW)
+                return Node(state, HazardKind.FADING)
+            return Node(state, HazardKind.DOWN if way is Direction.DOWN else HazardKind.UP, cell)
+        if self.motion.pulls(state) and way is Direction.DOWN and not fades:
+            return Node(state, HazardKind.PULLED, cell)
+        return Node(state, HazardKind.ANYHOW)
 
-    def _entered(self, node: Node, cell: int, way: Way) -> Iterator[Node]:
-        pulled = node.kind in (Kind.PULLED, Kind.ANYHOW, Kind.FADING)
+    def _entered(self, node: Node, cell: int, way: Direction) -> Iterator[Node]:
+        pulled = node.kind in (HazardKind.PULLED, HazardKind.ANYHOW, HazardKind.FADING)
         for state in self.fired(node.state, cell, way)[0]:
             yield self.enter(state, cell, way, pulled)
 
     def followers(self, node: Node) -> tuple[list[Node], list[Node]]:
-        """Give the nodes that follow by motion within the state, and those that follow by a transition."""
+        """Return the nodes that follow by motion within the state, and those that follow by a transition."""
         match node.kind:
-            case Kind.DOWN:
+            case HazardKind.DOWN:
                 return self._down(node)
-            case Kind.UP:
+            case HazardKind.UP:
                 return self._up(node)
-            case Kind.TOP:
+            case HazardKind.TOP:
                 near = self.motion.top_cells(node.state)
-                return [], [e for c in near for way in Way for e in self._entered(node, c, way)]
-            case Kind.PULLED:
+                return [], [e for c in near for way in Direction for e in self._entered(node, c, way)]
+            case HazardKind.PULLED:
                 return self._pulled(node)
             case _:
                 everywhere = range(self.cells.count)
-                entered = [e for c in everywhere for way in Way for e in self._entered(node, c, way)]
-                kinds = (Kind.DOWN, Kind.UP) if node.kind is Kind.FADING else ()
+                entered = [e for c in everywhere for way in Direction for e in self._entered(node, c, way)]
+                kinds = (HazardKind.DOWN, HazardKind.UP) if node.kind is HazardKind.FADING else ()
                 return [Node(node.state, kind, c) for c in everywhere for kind in kinds], entered
 
     def _down(self, node: Node) -> tuple[list[Node], list[Node]]:
-        """Coast down from anywhere in the cell, and turn."""
         turned: list[Node] = []
         entered: list[Node] = []
         for cell in self.motion.coast_cells(node.state, node.cell):
-            entered += self._entered(node, cell, Way.DOWN)
-            if self.fired(node.state, cell, Way.DOWN)[1]:
+            entered += self._entered(node, cell, Direction.DOWN)
+            if self.fired(node.state, cell, Direction.DOWN)[1]:
                 break
-            turned = [Node(node.state, Kind.UP, cell)]
+            turned = [Node(node.state, HazardKind.UP, cell)]
         return turned, entered
 
     def _up(self, node: Node) -> tuple[list[Node], list[Node]]:
-        """Rise by a cell, into the bounces at the top in the end."""
-        entered = list(self._entered(node, node.cell, Way.UP))
-        if self.fired(node.state, node.cell, Way.UP)[1]:
+        entered = list(self._entered(node, node.cell, Direction.UP))
+        if self.fired(node.state, node.cell, Direction.UP)[1]:
             return [], entered
         if node.cell in self.motion.top_cells(node.state):
-            return [Node(node.state, Kind.TOP)], entered
-        return [Node(node.state, Kind.UP, node.cell - 1)], entered
+            return [Node(node.state, HazardKind.TOP)], entered
+        return [Node(node.state, HazardKind.UP, node.cell - 1)], entered
 
     def _pulled(self, node: Node) -> tuple[list[Node], list[Node]]:
-        """Go down to the bottom, and bounce there."""
         edges_mm = self.cells.edges_mm
         zone_mm = edges_mm[-1] - self.motion.bottom_zone_mm(node.state)
         entered: list[Node] = []
         for cell in range(self.cells.count):
             bounces = edges_mm[cell + 1] > zone_mm
             if cell >= node.cell or bounces:
-                entered += self._entered(node, cell, Way.DOWN)
+                entered += self._entered(node, cell, Direction.DOWN)
             if bounces:
-                entered += self._entered(node, cell, Way.UP)
+                entered += self._entered(node, cell, Direction.UP)
         return [], entered
 
     # -- flaws ---------------------------------------------------------------------------------------------
 
-    def dead_ends(self) -> list[Flaw]:
-        """Give the states in which the cap may stay for ever, other than at the top in the start state."""
+    def dead_ends(self) -> list[ReturnHazard]:
+        """Return the states in which the cap may stay for ever, other than at the top in the start state."""
         found = []
         for i, state in enumerate(self.program.states):
             lifts = self.motion.lifts(i)
             if not lifts and state.name == self.program.start:
                 reason = "may not lift the cap, and is the start state"
-                found.append(Flaw(state.name, self._weakest(i), reason, "raise its forces there"))
+                found.append(ReturnHazard(state.name, self._weakest(i), reason, "raise its forces there"))
             elif not lifts and self.motion.longest_stay_s(i) is None:
                 reason = "may not lift the cap, and no after_ms without a guard ends it"
                 remedy = "raise its forces there, or let an after_ms without only_if end it"
-                found.append(Flaw(state.name, self._weakest(i), reason, remedy))
+                found.append(ReturnHazard(state.name, self._weakest(i), reason, remedy))
             elif lifts and self.motion.stay_at_top_s(i) is None and state.name != self.program.start:
                 reason = "nothing is sure to lead on to the start state"
                 remedy = "let a shallower_than_mm lead towards it"
-                found.append(Flaw(state.name, "at the top", reason, remedy))
+                found.append(ReturnHazard(state.name, "at the top", reason, remedy))
         return found
 
     def _weakest(self, state: int) -> str:
@@ -172,15 +169,15 @@ class Returning:
 
     @cached_property
     def starts(self) -> list[Node]:
-        """Give every node in which the finger may leave the cap."""
+        """Return every node in which the finger may leave the cap."""
         found = []
         for i in range(len(self.program.states)):
             for cell in range(self.cells.count):
-                found += [self.enter(i, cell, way) for way in Way]
+                found += [self.enter(i, cell, way) for way in Direction]
         return list(dict.fromkeys(found))
 
     def find_cycle(self) -> list[Node]:
-        """Give nodes that may follow each other for ever, the last being the first again; or none."""
+        """Return nodes that may follow each other for ever, the last being the first again; or none."""
         done: set[Node] = set()
         for start in self.starts:
             path: dict[Node, Iterator[Node]] = {}
@@ -203,16 +200,18 @@ class Returning:
             moved, entered = self.followers(node)
             path[node] = iter(dict.fromkeys([*moved, *entered]))
 
-    def cycle_flaw(self) -> Flaw | None:
-        """Tell of a cycle, by its states and where it turns."""
+    def cycle_flaw(self) -> ReturnHazard | None:
+        """Return the first cycle as a hazard: its states and where it turns."""
         cycle = self.find_cycle()
         if not cycle:
             return None
         names = [self.program.states[node.state].name for node in cycle]
-        told = [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
+        loop = [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
         edge_mm = self.cells.edges_mm[max(node.cell for node in cycle)]
-        reason = f"with the finger off it may go {' → '.join(told if len(told) > 1 else told * 2)} for ever"
-        return Flaw(names[0], f"near {edge_mm:.2f} mm", reason, "move the conditions of these states apart")
+        reason = f"with the finger off it may go {' → '.join(loop if len(loop) > 1 else loop * 2)} for ever"
+        return ReturnHazard(
+            names[0], f"near {edge_mm:.2f} mm", reason, "move the conditions of these states apart"
+        )
 
     # -- time ----------------------------------------------------------------------------------------------
 
@@ -235,15 +234,15 @@ class Returning:
         return max(known[n] + self._entry_s(n) for n in self.starts)
 
     def _top_s(self, node: Node) -> float:
-        if node.kind is not Kind.TOP:
+        if node.kind is not HazardKind.TOP:
             return 0.0
         return self.motion.settle_s(node.state) + (self.motion.stay_at_top_s(node.state) or 0.0)
 
     def _entry_s(self, node: Node) -> float:
         match node.kind:
-            case Kind.DOWN | Kind.UP:
+            case HazardKind.DOWN | HazardKind.UP:
                 return self.motion.rise_s(node.state)
-            case Kind.FADING:
+            case HazardKind.FADING:
                 return self.program.states[node.state].fade_ms / 1000 + self.motion.rise_s(node.state)
             case _:
                 return self.motion.longest_stay_s(node.state) or 0.0

@@ -1,4 +1,4 @@
-"""What presses on a rig gave for a button, as a project keeps it: bands to draw beside the intended force."""
+"""Forces measured on a rig for a button: quartiles to draw beside the intended force."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import msgspec
 from msgspec import Meta
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.model import Stroke
+from fdvv.io.files import read_limited
+from fdvv.model.curve import Stroke
 
 LIMIT_bytes = 8_000_000
 _REMEDY = "probe the button again"
@@ -38,12 +38,12 @@ class MeasuredBand:
 
 @dataclass(frozen=True)
 class MeasuredButton:
-    """The bands of a button; simulated : the presses came from the twin."""
+    """The curves of a button; simulated : the presses came from the twin."""
 
     device_name: str
     presses: int
     simulated: bool
-    bands: tuple[MeasuredBand, ...]
+    curves: tuple[MeasuredBand, ...]
 
 
 class _Curve(msgspec.Struct):

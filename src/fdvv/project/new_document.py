@@ -1,12 +1,58 @@
-"""Names of a person's buttons, which are names of files too."""
+"""New buttons: templates, and names that are valid as names of files."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 from collections.abc import Iterable
+from enum import StrEnum
+
+import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel, Provenance
+
+TRAVEL_mm = 4.0
+VELOCITY_mm_s = 50.0
+"""Of the first curves; more can be drawn beside them."""
+
+FRICTION_cN = 8.0
+"""A release gives back so much less than the press took."""
+
+
+class ModelTemplate(StrEnum):
+    """A plain spring, or one with a bump half-way."""
+
+    LINEAR = "linear"
+    TACTILE = "tactile"
+
+
+_PRESS_cN = {
+    ModelTemplate.LINEAR: [40, 42, 44, 46, 48, 50, 52, 54, 56, 58, 60, 62],
+    ModelTemplate.TACTILE: [25, 34, 44, 54, 60, 52, 40, 42, 48, 54, 60, 66],
+}
+
+
+def new_model(name: str, template: ModelTemplate | str) -> FDVVModel:
+    """Make a button of 4 mm travel, drawn, to be edited. Raises ModelError on a name that is none."""
+    template = ModelTemplate(template)
+    points = np.array(_PRESS_cN[template], dtype=np.float64)
+    degree = 3
+    inner = np.linspace(0.0, TRAVEL_mm, points.size - degree + 1)
+    knots = np.concatenate([np.zeros(degree), inner, np.full(degree, TRAVEL_mm)]).round(6)
+    forces = {Stroke.PRESS: points, Stroke.RELEASE: points - FRICTION_cN}
+    return FDVVModel(
+        name=name,
+        travel_mm=TRAVEL_mm,
+        curves=tuple(ForceCurve(s, VELOCITY_mm_s, degree, knots, f) for s, f in forces.items()),
+        actuation_mm=2.0,
+        reset_mm=1.8,
+        provenance=Provenance(
+            method=f"drawn from the {template} template", assumptions=("Nothing is measured.",)
+        ),
+    )
+
 
 LONGEST = 60
 """Characters; with a suffix and in any script it stays below the 255 bytes of file systems."""
@@ -16,7 +62,7 @@ _SAFE = re.compile(r"\w[\w .+()-]*", re.UNICODE)
 
 
 def check_name(name: str, there: Iterable[str] = ()) -> str:
-    """Give a name that every file system takes, and that is not there yet in any case.
+    """Return a name that every file system takes, and that is not there yet in any case.
 
     Raises InputError on another, with the reason.
     """
@@ -43,7 +89,7 @@ def _wrong(name: str) -> str:
 
 
 def free_name(wanted: str, there: Iterable[str]) -> str:
-    """Give a safe name near the wanted one that is not there yet: "name", "name 2", "name 3"."""
+    """Return a valid free name near the wanted one: "name", "name 2", "name 3"."""
     taken = {name.casefold() for name in there}
     base = re.sub(r"[^\w .+()-]+", "-", unicodedata.normalize("NFC", wanted)).strip(" ._-+()")
     base = base[: LONGEST - 6].rstrip(" .") or "button"

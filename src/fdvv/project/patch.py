@@ -1,4 +1,4 @@
-"""The smallest difference between two models: what a page sends and a draft keeps.
+"""The smallest difference between two models: what a page sends and a journal keeps.
 
 A patch holds both sides of every change, so that it can be inverted by itself and refuses a model that it
 was not made of. `web/src/model/patch.ts` does the same; both are checked against one set of cases. Models are
@@ -15,7 +15,9 @@ import msgspec
 from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, Stroke, model_from_json, model_to_json
+from fdvv.model.curve import Stroke
+from fdvv.model.file import model_from_json, model_to_json
+from fdvv.model.model import FDVVModel
 
 Record: TypeAlias = dict[str, Any]
 Field = Literal[
@@ -69,13 +71,13 @@ class Patch(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaul
 
 
 def record_of(model: FDVVModel) -> Record:
-    """Give a model as a plain record: what its file holds, vibrations in reading order too."""
+    """Return a model as a plain record: what its file holds, vibrations in reading order too."""
     record: Record = json.loads(model_to_json(model))
     return canonical(record)
 
 
 def model_of(record: Record, source: object) -> FDVVModel:
-    """Give a record's model. Raises InputError that names source and the place."""
+    """Return a record's model. Raises InputError that names source and the place."""
     try:
         text = json.dumps(record, allow_nan=False)
     except (RecursionError, ValueError) as error:
@@ -103,7 +105,7 @@ def _order(part: Mapping[str, Any]) -> tuple[bool, float]:
 
 
 def same(a: Any, b: Any) -> bool:
-    """Tell whether two values hold the same numbers, texts and fields; an absent field counts as null."""
+    """Return whether two values hold the same numbers, texts and fields; an absent field counts as null."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return all(same(a.get(name), b.get(name)) for name in {*a, *b})
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
@@ -144,7 +146,7 @@ def _shape(part: Record | None) -> Record | None:
 
 
 def _points(before: Record, after: Record) -> Record | None:
-    """Tell only the control points that differ, if nothing else does."""
+    """Return the control points that differ, or None if anything else differs."""
     if not all(same(before.get(name), after.get(name)) for name in ("degree", "knots_mm", "spread")):
         return None
     pairs = enumerate(zip(before["control_points_cN"], after["control_points_cN"], strict=True))
@@ -152,7 +154,6 @@ def _points(before: Record, after: Record) -> Record | None:
 
 
 def inverse_patch(patch: Patch) -> Patch:
-    """Give the patch that takes another one back."""
     fields = {name: (b, a) for name, (a, b) in patch.fields.items()}
     return Patch(fields, [_turned(c) for c in patch.curves], [_turned(v) for v in patch.vibrations])
 

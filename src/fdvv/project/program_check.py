@@ -1,16 +1,20 @@
-"""What stands against a program, each with the place in its document, and how much of a device it takes."""
+"""Problems of a program, each with the place in its document, and how much of a device it takes."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv.program import Compiled, Finding, Limits, Program, Severity, check_program, compile_program
-from fdvv.protocol import (
+from fdvv.program.check import Finding, Severity, check_program
+from fdvv.program.compile import Compiled, compile_program
+from fdvv.program.program import Program
+from fdvv.program.surface import Limits
+from fdvv.project.programs import read_program
+from fdvv.protocol.tables import (
     IMAGE_BYTES,
     SLOTS,
     STATES,
@@ -20,7 +24,6 @@ from fdvv.protocol import (
     TRANSITIONS,
     VIBRATIONS,
 )
-from fdvv.workflow._program_shelf import read_program
 
 PARTS = {"state": "states", "surface": "surfaces", "signal": "signals"}
 """Kinds of named parts, and the fields of a document that list them."""
@@ -49,7 +52,7 @@ class PlacedFinding:
 
 @dataclass(frozen=True)
 class Size:
-    """How much of something a program takes, and how much a device holds; None if it cannot be told yet."""
+    """How much of something a program takes, and how much a device holds; None if it is not known yet."""
 
     what: str
     taken: int | None
@@ -67,7 +70,7 @@ class SurfaceSize:
 
 
 @dataclass(frozen=True)
-class ProgramStanding:
+class ProgramCheckResult:
     """What a check found and what compiling would give.
 
     Attributes
@@ -77,6 +80,7 @@ class ProgramStanding:
     surfaces : empty while the program cannot be compiled.
     return_s : bound of the time in which the cap comes back; None if unproven.
     stiffness_cN_mm, rise_K : as a Report has them; None if the program was not checked so far.
+    accepted : a device may be given the program: nothing is refused.
     """
 
     findings: tuple[PlacedFinding, ...]
@@ -85,14 +89,14 @@ class ProgramStanding:
     return_s: float | None = None
     stiffness_cN_mm: float | None = None
     rise_K: float | None = None
+    accepted: bool = field(init=False)
 
-    @property
-    def accepted(self) -> bool:
-        """Tell whether a device may be given it."""
-        return not any(f.severity is Severity.REFUSED for f in self.findings)
+    def __post_init__(self) -> None:
+        refused = any(f.severity is Severity.REFUSED for f in self.findings)
+        object.__setattr__(self, "accepted", not refused)
 
 
-def program_standing(text: str, limits: Limits | None = None) -> ProgramStanding:
+def checked_program(text: str, limits: Limits | None = None) -> ProgramCheckResult:
     """Check the text of a program file as far as it goes; never raises for what a person can mend.
 
     A text that is no program has one finding. One that no device could hold is not checked further than
@@ -102,15 +106,15 @@ def program_standing(text: str, limits: Limits | None = None) -> ProgramStanding
     try:
         program = read_program(text)
     except InputError as error:
-        return ProgramStanding((_unreadable(text, error),))
+        return ProgramCheckResult((_unreadable(text, error),))
     try:
         compiled = compile_program(program, limits)
     except InputError as error:
         if _beyond(program):
-            return ProgramStanding((_uncompiled(program, error),), _sizes(program, None))
+            return ProgramCheckResult((_uncompiled(program, error),), _sizes(program, None))
         compiled = None
     report = check_program(program, limits)
-    return ProgramStanding(
+    return ProgramCheckResult(
         tuple(_placed(program, finding) for finding in report.findings),
         _sizes(program, compiled),
         _surface_sizes(program, compiled),
@@ -163,11 +167,11 @@ def _names(program: Program) -> dict[str, list[str]]:
 
 def _placed(program: Program, finding: Finding) -> PlacedFinding:
     names = _names(program)
-    told = f"state {finding.state!r}, {finding.place}" if finding.state else finding.place
+    words = f"state {finding.state!r}, {finding.place}" if finding.state else finding.place
     number = re.search(r"(-?\d+(?:\.\d+)?) mm\b", finding.place)
     return PlacedFinding(
         finding.severity,
-        path_of(told, names),
+        path_of(words, names),
         finding.state,
         finding.place,
         finding.reason,
@@ -182,7 +186,7 @@ def _uncompiled(program: Program, error: InputError) -> PlacedFinding:
 
 
 def _unreadable(text: str, error: InputError) -> PlacedFinding:
-    """Place what makes a text no program: by the path that was told, or by the part that is named."""
+    """Locate what makes a text invalid: by the path in the error, or by the part it names."""
     path = error.place.removeprefix("$").removeprefix(".") if error.place.startswith("$") else ""
     if not path:
         path = path_of(error.reason, _names_in(text))
@@ -207,30 +211,30 @@ def _name(part: object) -> str:
     return str(part.get("name")) if isinstance(part, dict) else ""
 
 
-def path_of(told: str, names: dict[str, list[str]]) -> str:
+def path_of(words: str, names: dict[str, list[str]]) -> str:
     """Turn words such as ``state 'up', transition 1`` into the path of that part; empty for the whole.
 
     A surface named within a state is the part that is meant, for it is what can be mended.
     """
-    found = {kind: _named(told, kind, names.get(kind, ())) for kind in PARTS}
+    found = {kind: _named(words, kind, names.get(kind, ())) for kind in PARTS}
     if found["surface"] is not None:
         return f"surfaces[{found['surface']}]"
     if found["state"] is not None:
         path = f"states[{found['state']}]"
-        transition = re.search(r", transition (\d+)", told)
+        transition = re.search(r", transition (\d+)", words)
         return f"{path}.transitions[{int(transition[1]) - 1}]" if transition else path
     if found["signal"] is not None:
         return f"signals[{found['signal']}]"
-    vibration = re.match(r"vibration (\d+)", told)
+    vibration = re.match(r"vibration (\d+)", words)
     if vibration:
         return f"vibrations[{int(vibration[1]) - 1}]"
-    return {"travel": "travel_mm", "travel_mm": "travel_mm", "start:": "start"}.get(told.split(" ")[0], "")
+    return {"travel": "travel_mm", "travel_mm": "travel_mm", "start:": "start"}.get(words.split(" ")[0], "")
 
 
-def _named(told: str, kind: str, names: Sequence[str]) -> int | None:
-    """Give which part is named where the words begin or go on after a comma; the last of equal names."""
+def _named(words: str, kind: str, names: Sequence[str]) -> int | None:
+    """Return the index of the part named at the start or after a comma; the last of equal names."""
     for i in reversed(range(len(names))):
-        words = f"{kind} {names[i]!r}"
-        if told.startswith(words) or f", {words}" in told or told == f"two {kind}s are called {names[i]!r}":
+        part = f"{kind} {names[i]!r}"
+        if words.startswith(part) or f", {part}" in words or words == f"two {kind}s are called {names[i]!r}":
             return i
     return None

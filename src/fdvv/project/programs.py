@@ -1,4 +1,4 @@
-"""The programs of a project: the shipped ones to start from, and the person's own, kept as files."""
+"""The programs of a project: the shipped ones, and the person's own, which are files."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from pathlib import Path
 from threading import Lock
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited, sync_folder, write_atomic
-from fdvv.program import SUFFIX, Program, load_shipped, program_from_json, program_to_json, programs
+from fdvv.io.files import read_limited, sync_folder, write_atomic
+from fdvv.program.file import PROGRAM_SUFFIX, program_from_json, program_to_json
+from fdvv.program.library import load_shipped, programs
+from fdvv.program.program import Program
 
 FOLDER = "programs"
 """Folder of a project that holds the person's own programs."""
@@ -43,19 +45,19 @@ class ProgramEntry:
 
 @dataclass(frozen=True)
 class KeptProgram:
-    """A program as it is kept: its id, the text of its file, and which text of that file it is.
+    """A program as it is kept: its id (`program`), the text of its file, and which text of that file it is.
 
     Attributes
     ----------
     revision : changes with every change of the file; empty for a shipped program.
     """
 
-    id: str
+    program: str
     text: str
     revision: str
 
 
-class ProgramShelf:
+class ProgramCatalog:
     """Shipped programs and the person's own ones in ``<project>/programs``.
 
     Ids are looked up among what is there; only a new name becomes part of a path, and only one that `NAME`
@@ -67,17 +69,15 @@ class ProgramShelf:
         self._lock = Lock()
 
     def entries(self) -> tuple[ProgramEntry, ...]:
-        """List the shipped programs, then the person's own; a broken file is told, not hidden."""
+        """List the shipped programs, then the person's own; a broken file is listed with its problem."""
         shipped = [_entry(f"shipped:{r.name}", load_shipped(r.name), r.summary) for r in programs()]
         return (*shipped, *(self._own_entry(name) for name in self._own()))
 
     def open(self, program_id: str) -> KeptProgram:
-        """Give the canonical text of a program."""
         program, revision = self._opened(program_id)
         return KeptProgram(program_id, program_to_json(program), revision)
 
     def program(self, program_id: str) -> Program:
-        """Give a program by its id."""
         return self._opened(program_id)[0]
 
     def save(self, program_id: str, text: str, revision: str = "") -> KeptProgram:
@@ -94,7 +94,7 @@ class ProgramShelf:
                 self._check_free(name)
             self._check_revision(program_id, held, revision)
             content = program_to_json(program)
-            path = held or self.folder / (name + SUFFIX)
+            path = held or self.folder / (name + PROGRAM_SUFFIX)
             write_atomic(path, content)
             sync_folder(path.parent)
         return KeptProgram(program_id, content, _revision(content.encode()))
@@ -106,7 +106,7 @@ class ProgramShelf:
         return self.save(f"own:{chosen}", program_to_json(replace(program, name=chosen)))
 
     def free_name(self, like: str) -> str:
-        """Give a name that no program of the person's has: the wanted one, or it with a number."""
+        """Return a free name: the wanted one, or it with a number."""
         stem = re.sub(r"[^A-Za-z0-9 ._-]", "-", like).strip(" ._-")[:34].strip(" ._-") or "program"
         taken = {name.casefold() for name in self._own()}
         for number in range(1, MOST_COPIES):
@@ -124,30 +124,33 @@ class ProgramShelf:
             self._check_revision(program_id, held, revision)
             trash = self.folder / TRASH
             trash.mkdir(parents=True, exist_ok=True)
-            stem = held.name.removesuffix(SUFFIX)
+            stem = held.name.removesuffix(PROGRAM_SUFFIX)
             thrown = next(
-                n for i in range(1, 10**9) if not (trash / ((n := f"{stem}~{i}") + SUFFIX)).exists()
+                n for i in range(1, 10**9) if not (trash / ((n := f"{stem}~{i}") + PROGRAM_SUFFIX)).exists()
             )
-            held.rename(trash / (thrown + SUFFIX))
+            held.rename(trash / (thrown + PROGRAM_SUFFIX))
             sync_folder(self.folder)
         return thrown
 
     def restore(self, thrown: str) -> KeptProgram:
         """Take a program out of the trash, under its old name or the next free one."""
         with self._lock:
-            found = {p.name.removesuffix(SUFFIX): p for p in (self.folder / TRASH).glob(f"*{SUFFIX}")}
+            found = {
+                p.name.removesuffix(PROGRAM_SUFFIX): p
+                for p in (self.folder / TRASH).glob(f"*{PROGRAM_SUFFIX}")
+            }
             if thrown not in found:
                 raise InputError("studio", thrown, "not in the trash", "look in the list again")
             name = self.free_name(thrown.rpartition("~")[0])
-            found[thrown].rename(self.folder / (name + SUFFIX))
+            found[thrown].rename(self.folder / (name + PROGRAM_SUFFIX))
             sync_folder(self.folder)
         return self.open(f"own:{name}")
 
     # -- files ---------------------------------------------------------------------------------------------
 
     def _own(self) -> dict[str, Path]:
-        found = sorted(self.folder.glob(f"*{SUFFIX}")) if self.folder.is_dir() else []
-        return {p.name.removesuffix(SUFFIX): p for p in found if not p.name.startswith(".")}
+        found = sorted(self.folder.glob(f"*{PROGRAM_SUFFIX}")) if self.folder.is_dir() else []
+        return {p.name.removesuffix(PROGRAM_SUFFIX): p for p in found if not p.name.startswith(".")}
 
     def _opened(self, program_id: str) -> tuple[Program, str]:
         """Read a program, and which text of its file it is."""
@@ -189,7 +192,7 @@ class ProgramShelf:
 
 
 def read_program(text: str, source: str = "program") -> Program:
-    """Read the text of a program that came from elsewhere, within the size that a shelf keeps."""
+    """Read the text of a program that came from elsewhere, within the size that is kept."""
     size_bytes = len(text.encode(errors="surrogatepass"))
     if size_bytes > LARGEST_bytes:
         reason = f"{size_bytes / 1e6:.1f} MB, a program has at most {LARGEST_bytes / 1e6:g} MB"

@@ -6,7 +6,7 @@ import binascii
 from dataclasses import dataclass
 
 from fdvv.errors import ModelError
-from fdvv.protocol._tables import FRAME_BYTES
+from fdvv.protocol.tables import FRAME_BYTES
 
 OVERHEAD_BYTES = 4
 """Id, sequence and checksum."""
@@ -36,7 +36,7 @@ class Frame:
 
 
 def crc16(data: bytes, start: int = 0xFFFF) -> int:
-    """Give the CRC-16 of CCITT: polynomial 0x1021, not reflected, started at 0xffff."""
+    """Return the CRC-16 of CCITT: polynomial 0x1021, not reflected, started at 0xffff."""
     return binascii.crc_hqx(data, start)
 
 
@@ -59,7 +59,7 @@ def unstuff(data: bytes) -> bytes:
 
 
 def encode(frame: Frame) -> bytes:
-    """Give the bytes of a frame on the wire, its ending zero among them."""
+    """Return the bytes of a frame on the wire, its ending zero among them."""
     data = bytes([frame.message, frame.sequence]) + frame.payload
     return stuff(data + crc16(data).to_bytes(2, "little")) + b"\0"
 
@@ -69,9 +69,9 @@ def decode(stuffed: bytes) -> Frame:
     data = unstuff(stuffed)
     if not OVERHEAD_BYTES <= len(data) <= FRAME_BYTES:
         raise ModelError(f"a frame has {OVERHEAD_BYTES} to {FRAME_BYTES} bytes, got {len(data)}")
-    told, found = int.from_bytes(data[-2:], "little"), crc16(data[:-2])
-    if told != found:
-        raise ModelError(f"checksum is {told:#06x}, the bytes give {found:#06x}")
+    sent, computed = int.from_bytes(data[-2:], "little"), crc16(data[:-2])
+    if sent != computed:
+        raise ModelError(f"checksum is {sent:#06x}, the bytes give {computed:#06x}")
     return Frame(data[0], data[1], data[2:-2])
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import zlib
+
 from fdvv.errors import ModelError
-from fdvv.protocol._frame import Frame
-from fdvv.protocol._record import Record
-from fdvv.protocol._tables import (
+from fdvv.protocol.frame import Frame
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import (
     DATA_BYTES,
     AnnounceRequest,
     BeginRequest,
@@ -16,6 +18,7 @@ from fdvv.protocol._tables import (
     FaultedRequest,
     HelloReply,
     HelloRequest,
+    ImageHeader,
     KeyRequest,
     Message,
     PingReply,
@@ -33,7 +36,6 @@ from fdvv.protocol._tables import (
 
 REPLY = 0x80
 """What a reply's number has more than its request's."""
-
 REQUESTS: dict[Message, type[Record]] = {
     Message.HELLO: HelloRequest,
     Message.PING: PingRequest,
@@ -50,7 +52,6 @@ REQUESTS: dict[Message, type[Record]] = {
     Message.KEY: KeyRequest,
 }
 """Structure of a request, or of what the device sends unasked; absent: it has no payload."""
-
 REPLIES: dict[Message, type[Record]] = {
     Message.HELLO: HelloReply,
     Message.PING: PingReply,
@@ -62,6 +63,15 @@ REPLIES: dict[Message, type[Record]] = {
     Message.REFUSED: RefusedReply,
 }
 """Structure of a reply; absent: it has no payload."""
+_NOTICES = (Message.RECORDS, Message.FAULTED, Message.KEY)
+UM16_PER_mm = 16_000
+"""Counts of displacement: um16."""
+CN64_PER_cN = 64
+"""Counts of force: cN64."""
+MM_S16_PER_mm_s = 16
+"""Counts of velocity: mm_s16."""
+CHECKED_FROM = 8
+"""The checksum covers what follows magic and checksum."""
 
 
 def request_frame(message: Message, sequence: int, body: Record | None = None) -> Frame:
@@ -82,12 +92,12 @@ def _payload(body: Record | None) -> bytes:
 
 
 def data_request(offset: int, piece: bytes) -> DataRequest:
-    """Give the message that carries a piece of an image."""
+    """Return the message that carries a piece of an image."""
     return DataRequest(offset=offset, count=len(piece), bytes=piece.ljust(DATA_BYTES, b"\0"))
 
 
 def read_reply(frame: Frame) -> tuple[Message, Record | None]:
-    """Give a reply's message and body. ModelError if it is no reply, or has another length."""
+    """Return a reply's message and body. ModelError if it is no reply, or has another length."""
     if not REPLY <= frame.message < Message.RECORDS and frame.message != Message.REFUSED + REPLY:
         raise ModelError(f"message {frame.message:#04x} is no reply")
     try:
@@ -119,4 +129,21 @@ def read_notice(frame: Frame) -> tuple[RecordsRequest | FaultedRequest | KeyRequ
     return body, rest
 
 
-_NOTICES = (Message.RECORDS, Message.FAULTED, Message.KEY)
+def head_of(image: bytes) -> ImageHeader:
+    """Read the header of an image; ModelError if it is shorter or its fields are out of range."""
+    return ImageHeader.unpack(image[: ImageHeader.length_bytes()])
+
+
+def travel_mm_of(image: bytes) -> float:
+    """Return where a program's bottom stop is set; ModelError as head_of."""
+    return head_of(image).travel_um16 / UM16_PER_mm
+
+
+def checksum_of(image: bytes) -> int:
+    """Compute the checksum that an image should carry."""
+    return zlib.crc32(image[CHECKED_FROM:])
+
+
+def seal(image: bytes) -> bytes:
+    """Put the checksum of an image in its place."""
+    return image[:4] + checksum_of(image).to_bytes(4, "little") + image[CHECKED_FROM:]

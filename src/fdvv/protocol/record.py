@@ -31,7 +31,7 @@ class Record:
         return struct.calcsize(cls.FORMAT)
 
     def pack(self) -> bytes:
-        """Give the bytes on the wire."""
+        """Return the bytes on the wire."""
         return struct.pack(self.FORMAT, *(getattr(self, f.name) for f in dataclasses.fields(self)))
 
     @classmethod

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.recording._reading import Reading, counted, refusal
-from fdvv.recording._types import Mark, Quantity, Stream
+from fdvv.recording.reading import Reading, counted, refusal
+from fdvv.recording.types import Mark, Quantity, Stream
 from fdvv.units import FloatArray
 
 CLOCK, LOOSE_CLOCK = "board", "samples"
@@ -33,7 +33,7 @@ Counts = npt.NDArray[np.int16]
 
 
 def is_forcepeaks(head: Sequence[str]) -> bool:
-    """Tell such a log by lines that all begin with S, R or V, numbered one after another."""
+    """Recognise such a log by lines that all begin with S, R or V, numbered one after another."""
     found = [_LINE.match(line) for line in head[1:]]
     whole = [match for match in found if match]
     beats = [int(match[2]) for match in whole if match[1] == "S"]
@@ -42,35 +42,35 @@ def is_forcepeaks(head: Sequence[str]) -> bool:
 
 
 def read_forcepeaks(source: Path, lines: Sequence[str]) -> Reading:
-    """Read beats and taps as marks, force as counts. InputError."""
+    """Read beats and taps as marks, force as counts. Raises InputError."""
     found = [_LINE.match(line) for line in lines if line.strip() and line.strip() != "E"]
-    told: dict[str, list[tuple[int, int]]] = {"S": [], "R": [], "V": []}
+    rows: dict[str, list[tuple[int, int]]] = {"S": [], "R": [], "V": []}
     for match in found:
         if match:
-            told[match[1]].append((int(match[2]), int(match[3])))
+            rows[match[1]].append((int(match[2]), int(match[3])))
     warnings = []
     if None in found:
         warnings.append(f"{counted(found.count(None), 'line')} garbled and left out")
-    if not told["S"]:
+    if not rows["S"]:
         raise refusal(source, "whole file", "it holds no beat")
-    marks = [Mark(name, CLOCK, ms / 1000) for letter, name in MARKS.items() for _, ms in told[letter]]
-    streams, said = _force(told)
-    return Reading("forcepeaks", streams, marks, [*warnings, *said])
+    marks = [Mark(name, CLOCK, ms / 1000) for letter, name in MARKS.items() for _, ms in rows[letter]]
+    streams, notes = _force(rows)
+    return Reading("forcepeaks", streams, marks, [*warnings, *notes])
 
 
-def _force(told: dict[str, list[tuple[int, int]]]) -> tuple[list[Stream], list[str]]:
-    if not told["V"]:
+def _force(rows: dict[str, list[tuple[int, int]]]) -> tuple[list[Stream], list[str]]:
+    if not rows["V"]:
         return [], ["the log holds no force; the taps, if any, came before the sixth beat"]
-    counts = np.array([value for _, value in told["V"]], dtype=np.int64)
+    counts = np.array([value for _, value in rows["V"]], dtype=np.int64)
     scale = "force is in counts of a converter whose scale nobody stated"
-    if counts.max() > np.iinfo(np.int16).max or [i for i, _ in told["V"]] != list(range(counts.size)):
+    if counts.max() > np.iinfo(np.int16).max or [i for i, _ in rows["V"]] != list(range(counts.size)):
         return [_loose(counts)], [
             scale,
             "samples are missing or garbled; their clock knows no pauses",
         ]
     raw = counts.astype(np.int16)
-    taps_s = np.array([ms for _, ms in told["R"]]) / 1000
-    sixth_s = next((ms / 1000 for number, ms in told["S"] if number == FIRST_BEAT), np.inf)
+    taps_s = np.array([ms for _, ms in rows["R"]]) / 1000
+    sixth_s = next((ms / 1000 for number, ms in rows["S"] if number == FIRST_BEAT), np.inf)
     placed = _placed(raw, taps_s, sixth_s)
     if placed is None:
         why = "the samples do not fit the taps and run together; their clock knows no pauses"
@@ -94,7 +94,6 @@ def _loose(raw: npt.NDArray[Any]) -> Stream:
 def _placed(
     raw: Counts, taps_s: FloatArray, sixth_s: float
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]] | None:
-    """Find where the samples of each tap begin and how many there are; None if they do not fit the taps."""
     ends_s = taps_s + WINDOW_s
     early = int(np.sum(ends_s <= sixth_s))
     at, starts, lengths = early, [], []

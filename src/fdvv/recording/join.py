@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, TypeVar
 
+import numpy as np
+
 from fdvv.errors import ModelError
-from fdvv.recording._reading import unlike
-from fdvv.recording._types import Bench, Recording, Take
+from fdvv.recording.reading import unlike
+from fdvv.recording.types import Bench, Quantity, Recording, Stream, Take
 
 Known = TypeVar("Known")
 
@@ -42,7 +44,6 @@ def join(recordings: Sequence[Recording], name: str = "") -> Recording:
 
 
 def _one(what: str, values: Sequence[Known], unknown: Known | None) -> Known:
-    """Give the one value that is known."""
     known = {value for value in values if value != unknown}
     if len(known) > 1:
         raise ModelError(f"the recordings differ in {what}: {sorted(map(str, known))}")
@@ -63,7 +64,6 @@ def _clocks(recording: Recording) -> set[str]:
 
 
 def _apart(recordings: Sequence[Recording]) -> list[Recording]:
-    """Name clocks so that no two recordings share one."""
     met: set[str] = set()
     found = []
     for recording in recordings:
@@ -88,7 +88,7 @@ def _renamed(take: Take, names: dict[str, str]) -> Take:
 
 
 def _side_by_side(takes: Sequence[Take]) -> Take:
-    """Join takes of one number; what the first of them says of itself holds."""
+    """Join takes of one number; the first take's own facts hold."""
 
     def said(attribute: str, unknown: Any) -> Any:
         return next((v for take in takes if (v := getattr(take, attribute)) != unknown), unknown)
@@ -102,3 +102,37 @@ def _side_by_side(takes: Sequence[Take]) -> Take:
         velocity_mm_s=said("velocity_mm_s", None),
         stage=said("stage", "unknown"),
     )
+
+
+def select(recording: Recording, markers: Sequence[str] = (), light: str = "") -> Recording:
+    """Keep the markers of the cap, and make a marker that is seen while a light is on the light.
+
+    markers : names of the one or two on the cap; none named keeps all.
+    light : name of a marker that cameras see only while an infrared light is lit; empty if there is none. It
+        becomes a LIGHT stream, 1 in frames that show it and 0 in others.
+
+    A warning names what is left out. Raises ModelError for a name that no take holds.
+    """
+    there = list(dict.fromkeys(s.name for take in recording.takes for s in take.of(Quantity.MARKER)))
+    for name in [*markers, *([light] if light else [])]:
+        if name not in there:
+            listed = ", ".join(repr(other) for other in there) or "none"
+            raise ModelError(f"no take has a marker {name!r}; there are {listed}")
+    kept = [name for name in there if name in markers] if markers else [n for n in there if n != light]
+    left = [name for name in there if name not in kept and name != light]
+    warning = (f"markers left out: {', '.join(left)}",) if left else ()
+    takes = tuple(_of_take(take, frozenset(kept), light) for take in recording.takes)
+    return replace(recording, takes=takes, warnings=(*recording.warnings, *warning))
+
+
+def _of_take(take: Take, kept: frozenset[str], light: str) -> Take:
+    streams: list[Stream] = []
+    for stream in take.streams:
+        if stream.quantity is not Quantity.MARKER or stream.name in kept:
+            streams.append(stream)
+        elif stream.name == light:
+            seen = np.isfinite(stream.values).reshape(stream.t_s.size, -1).all(axis=1)
+            lit_raw = np.asarray(seen, dtype=np.int8)
+            lit = Stream(stream.name, Quantity.LIGHT, stream.clock, stream.t_s, lit_raw)
+            streams.append(lit)
+    return replace(take, streams=tuple(streams))

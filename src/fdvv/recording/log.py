@@ -8,11 +8,10 @@ from types import TracebackType
 from typing import Self
 
 from fdvv.errors import InputError, ModelError
-from fdvv.journal import Journal
-from fdvv.recording._file import CUT, pack_mend, read_file
-from fdvv.recording._mend import Mend, mended
-from fdvv.recording._records import pack_head, pack_take
-from fdvv.recording._types import Recording, Take
+from fdvv.eventlog import Journal
+from fdvv.recording.file import CUT, Correction, corrected, pack_correction, read_file
+from fdvv.recording.records import pack_head, pack_take
+from fdvv.recording.types import Recording, Take
 
 MUST_AGREE = ("name", "bench", "licence", "person", "simulated")
 
@@ -47,7 +46,6 @@ class RecordingLog:
             raise
 
     def _opened(self, about: Recording) -> Recording:
-        """Go on with what is there, or begin; a record that was not finished is cut off."""
         there, end, _ = read_file(self.path)
         if there is not None:
             _check(self.path, there, about)
@@ -59,7 +57,6 @@ class RecordingLog:
 
     @property
     def next_number(self) -> int:
-        """Tell which number the next take bears."""
         return len(self.recording.takes) + 1
 
     def add(self, take: Take) -> None:
@@ -77,17 +74,17 @@ class RecordingLog:
             raise ModelError(f"take {take.number}: {error}") from error
         self.recording = replace(self.recording, takes=(*self.recording.takes, take))
 
-    def mend(self, mend: Mend, made: str = "") -> None:
+    def mend(self, mend: Correction, made: str = "") -> None:
         """Correct what may be corrected; the samples stay as they are.
 
         made : when, as ISO 8601. Raises ModelError if it names what is not there, OSError.
         """
-        found = mended(self.recording, mend)
-        self._journal.write({"mend": pack_mend(mend, made)})
+        found = corrected(self.recording, mend)
+        self._journal.write({"mend": pack_correction(mend, made)})
         self.recording = found
 
     def close(self) -> None:
-        """Let go of the file; a second time does nothing."""
+        """Close the file; a second call does nothing."""
         self._journal.close()
 
     def __enter__(self) -> Self:
@@ -105,7 +102,6 @@ def _busy(path: Path) -> InputError:
 
 
 def _check(path: Path, there: Recording, about: Recording) -> None:
-    """Refuse a recording of something else."""
     old, new = asdict(replace(there, takes=())), asdict(about)
     unequal = [key for key in MUST_AGREE if old[key] != new[key]]
     if unequal:

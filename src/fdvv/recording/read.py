@@ -8,24 +8,23 @@ from dataclasses import replace
 from pathlib import Path
 
 from fdvv.errors import InputError, ModelError
-from fdvv.files import read_limited
-from fdvv.recording._counts import is_counts, read_counts
-from fdvv.recording._file import load_recording
-from fdvv.recording._forcepeaks import is_forcepeaks, read_forcepeaks
-from fdvv.recording._motive import read_motive
-from fdvv.recording._motive_head import is_motive
-from fdvv.recording._reading import REMEDY, Reading, refusal
-from fdvv.recording._serial import read_serial
-from fdvv.recording._serial_lines import is_serial
-from fdvv.recording._sound import read_sound, sound_kind
-from fdvv.recording._table import find_header, read_table
-from fdvv.recording._types import Recording, Source, Take
-from fdvv.text import decode_lines
+from fdvv.io.files import read_limited
+from fdvv.io.text import decode_lines
+from fdvv.recording.file import load_recording
+from fdvv.recording.forcepeaks import is_forcepeaks, read_forcepeaks
+from fdvv.recording.motive import is_motive, read_motive
+from fdvv.recording.reading import REMEDY, Reading, refusal
+from fdvv.recording.serial import is_serial, read_serial
+from fdvv.recording.sound import read_sound, sound_kind
+from fdvv.recording.table import find_header, is_counts, read_counts, read_table
+from fdvv.recording.types import Recording, Source, Take
 
 LARGEST_bytes = 512_000_000
+
 JOURNAL = b'{"crc32": '
 
 Lines = Sequence[str]
+
 READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines], Reading]], ...] = (
     (is_motive, read_motive),
     (is_forcepeaks, read_forcepeaks),
@@ -36,7 +35,7 @@ READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines], Reading]],
 
 
 def log_formats() -> tuple[str, ...]:
-    """List the formats that can be read, as Source.format gives them."""
+    """List the formats that can be read, as in Source.format."""
     motive = [f"motive-1.{minor}" for minor in range(21, 26)]
     return (*motive, "fdvv-capture", "forcepeaks", "table", "counts", "wav", "flac", "ogg", "mp3")
 
@@ -50,10 +49,10 @@ def read_log(
     ----------
     path : the file; one that is a recording already is loaded as it is.
     name : of the button; that of the file if it is empty.
-    rate_Hz : of a log of bare numbers whose name does not tell it.
+    rate_Hz : of a log of bare numbers whose name does not state it.
     full_scale_V : voltage at full scale of a sound file; without it sound stays counts.
 
-    What was repaired or is not known is told in ``warnings``. Raises InputError, one line, if the file cannot
+    ``warnings`` say what was repaired or is unknown. Raises InputError, one line, if the file cannot
     be used; BuildError where soundfile is needed and is not installed.
     """
     path = Path(path)

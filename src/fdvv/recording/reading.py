@@ -1,4 +1,4 @@
-"""What readers hand on, and what they share."""
+"""What readers of log files return, and the checks they share."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import InputError
-from fdvv.recording._types import Bench, Mark, Stream
+from fdvv.recording.types import Bench, Mark, Stream
 from fdvv.units import FloatArray
 
 REMEDY = "give one of the formats of docs/reference/log-files.md"
+
+
 LARGEST = 1e15
 """No instrument counts further; what is larger is a fault."""
 
@@ -31,12 +33,12 @@ class Reading:
 
 
 def refusal(source: object, place: str, reason: str, remedy: str = REMEDY) -> InputError:
-    """Make the error for a file that cannot be used."""
+    """Return the error for a file that cannot be used."""
     return InputError(source, place, reason, remedy)
 
 
 def number(text: str) -> float:
-    """Read a cell as a number; NaN for a blank and for what is none."""
+    """Read a cell as a number; NaN for a blank or text."""
     try:
         found = float(text) if "_" not in text else np.nan
     except ValueError:
@@ -45,7 +47,7 @@ def number(text: str) -> float:
 
 
 def rising(t: FloatArray) -> npt.NDArray[np.bool_]:
-    """Pick the samples whose times rise strictly; a single time that leaps ahead goes, not all behind it."""
+    """Select the samples whose times rise strictly; of a single leap ahead only that sample is dropped."""
     keep = np.isfinite(t)
     at = np.flatnonzero(keep)
     falls = np.flatnonzero(np.diff(t[at]) < 0)
@@ -58,7 +60,7 @@ def rising(t: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def unlike(streams: Iterable[Stream]) -> tuple[Stream, ...]:
-    """Give streams different names, by a number behind those that are met again."""
+    """Make the names of streams distinct by a number behind repeated ones."""
     met: set[str] = set()
     found = []
     for stream in streams:

@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-from fdvv.columns import pack_column, unpack_column
-from fdvv.documents import tidy_schema
 from fdvv.errors import ModelError
-from fdvv.recording._types import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
+from fdvv.io.columns import pack_column, unpack_column
+from fdvv.io.documents import tidy_schema
+from fdvv.recording.types import Bench, Mark, Quantity, Recording, Source, Stage, Stream, Take
 
 FORMAT, VERSION = "fdvv-recording", 1
 COLUMN = r"^(\?|\|[iu]1|<[iu][248]|<f[48])(\[\d+(,\d+)+\])?:"
@@ -86,7 +86,7 @@ class TakeRecord(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class MendRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A correction; the names are those of Mend."""
+    """A correction; the names are those of Correction."""
 
     values: dict[str, Any]
     take: int | None
@@ -96,7 +96,7 @@ class MendRecord(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def schema() -> dict[str, Any]:
-    """Give the JSON schema of one line, as published in docs/reference/fdvv-recording.schema.json."""
+    """Return the JSON schema of one line, as published in docs/reference/fdvv-recording.schema.json."""
     kinds = {"head": HeadRecord, "take": TakeRecord, "mend": MendRecord}
     found, parts = msgspec.json.schema_components(kinds.values(), ref_template="#/$defs/{name}")
     records = [
@@ -117,7 +117,7 @@ def schema() -> dict[str, Any]:
 
 
 def pack_head(recording: Recording) -> dict[str, Any]:
-    """Write what a recording is of, without its takes."""
+    """Encode a recording without its takes."""
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -132,7 +132,7 @@ def pack_head(recording: Recording) -> dict[str, Any]:
 
 
 def pack_take(take: Take) -> dict[str, Any]:
-    """Write a take. ModelError for a kind of number that no file holds."""
+    """Encode a take. ModelError for a kind of number that no file holds."""
     try:
         streams = [_pack_stream(stream) for stream in take.streams]
     except ValueError as error:
@@ -161,16 +161,16 @@ def _pack_stream(stream: Stream) -> dict[str, Any]:
 
 
 def unpack_head(found: object) -> Recording:
-    """Read what a recording is of. ValueError."""
+    """Decode a recording without takes. Raises ValueError."""
     head = msgspec.convert(found, HeadRecord)
     sources = tuple(Source(**msgspec.to_builtins(source)) for source in head.sources)
     bench = Bench(**msgspec.to_builtins(head.bench))
-    told = (head.licence, head.person, head.simulated, tuple(head.warnings))
-    return Recording(head.name, (), bench, sources, *told)
+    facts = (head.licence, head.person, head.simulated, tuple(head.warnings))
+    return Recording(head.name, (), bench, sources, *facts)
 
 
 def unpack_take(found: object) -> Take:
-    """Read a take. ValueError."""
+    """Decode a take. Raises ValueError."""
     take = msgspec.convert(found, TakeRecord)
     return Take(
         take.number,

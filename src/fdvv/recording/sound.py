@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import BuildError
-from fdvv.recording._reading import Reading, refusal
-from fdvv.recording._types import Quantity, Stream
+from fdvv.recording.reading import Reading, refusal
+from fdvv.recording.types import Quantity, Stream
 
 CLOCK = "sound card"
 REMEDY = "give a WAV, FLAC, OGG or MP3 file that plays"
@@ -38,7 +38,7 @@ class Samples:
 
 
 def sound_kind(content: bytes) -> str | None:
-    """Tell a sound file by its first bytes; None for anything else."""
+    """Recognise a sound file by its first bytes; None for anything else."""
     if content[:4] in (b"RIFF", b"RIFX", b"RF64") and content[8:12] == b"WAVE":
         return "wav"
     for start, kind in ((b"OggS", "ogg"), (b"fLaC", "flac"), (b"ID3", "mp3")):
@@ -63,8 +63,8 @@ def read_sound(source: Path, content: bytes, full_scale_V: float | None) -> Read
     channels = list(found.raw.T)
     if len(channels) == 2 and (alike := _likeness(*channels)) > LIKE_ratio:
         channels.pop()
-        told = "the same" if alike == 1 else f"alike to {alike:.5f}"
-        warnings.append(f"both channels are {told}; the left one is read")
+        likeness = "the same" if alike == 1 else f"alike to {alike:.5f}"
+        warnings.append(f"both channels are {likeness}; the left one is read")
     t_s = np.arange(found.raw.shape[0]) / found.rate_Hz
     names = ["sound"] if len(channels) == 1 else [f"sound {i + 1}" for i in range(len(channels))]
     if full_scale_V is None:
@@ -81,7 +81,6 @@ def read_sound(source: Path, content: bytes, full_scale_V: float | None) -> Read
 
 
 def _likeness(left: npt.NDArray[Any], right: npt.NDArray[Any]) -> float:
-    """Correlate two channels; 1 if they are the same, 0 if one is silent and the other is not."""
     if np.array_equal(left, right):
         return 1.0
     a, b = (channel - channel.mean(dtype=np.float64) for channel in (left, right))
@@ -91,7 +90,6 @@ def _likeness(left: npt.NDArray[Any], right: npt.NDArray[Any]) -> float:
 
 
 def _wav(source: Path, content: bytes) -> Samples | None:
-    """Read whole numbers; None if the file holds something else."""
     try:
         with wave.open(io.BytesIO(content)) as file:
             width, channels, rate_Hz = file.getsampwidth(), file.getnchannels(), file.getframerate()
@@ -117,7 +115,6 @@ def _whole(data: bytes, width: int) -> npt.NDArray[Any]:
 
 
 def _any(source: Path, content: bytes) -> Samples:
-    """Read by soundfile: floats from minus to plus one."""
     try:
         import soundfile
     except ImportError:

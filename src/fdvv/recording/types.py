@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import html_bundle
 from fdvv.units import FloatArray
 
 
@@ -51,13 +50,13 @@ class Stream:
 
     Attributes
     ----------
-    name : tells the stream from others of its take, as "force" or "left".
+    name : unique within its take, as "force" or "left".
     quantity : what it holds; UNITS gives the unit of values.
     clock : name of the clock that t_s is on.
     t_s : (n,) strictly rising.
     raw : (n,) or, for a marker with three axes, (n, 3); whole numbers of a converter or floats; NaN where
         nothing was seen. Never changed after the recording.
-    scale, zero : values are scale * (raw - zero): the calibration, that may be mended later.
+    scale, zero : values are scale * (raw - zero): the calibration, which may be corrected later.
     """
 
     name: str
@@ -83,12 +82,12 @@ class Stream:
 
     @property
     def values(self) -> FloatArray:
-        """Samples in the unit of the quantity, in the shape of raw."""
+        """Return the samples in the unit of the quantity, in the shape of raw."""
         return self.scale * (np.asarray(self.raw, dtype=np.float64) - self.zero)
 
     @property
     def rate_Hz(self) -> float:
-        """Median rate; NaN for fewer than two samples."""
+        """Return the median rate; NaN for fewer than two samples."""
         return float(1 / np.median(np.diff(self.t_s))) if self.t_s.size > 1 else float("nan")
 
 
@@ -112,7 +111,7 @@ class Mark:
 
 
 class Stage(StrEnum):
-    """What a take is for: presses at a pace, a slow probe, the empty bench, or nothing known."""
+    """What a take is for: presses at a velocity, a slow probe, the empty bench, or nothing known."""
 
     PRESS = "press"
     PROBE = "probe"
@@ -130,7 +129,7 @@ class Take:
     streams : names differ.
     marks : in any order.
     stage : what it is for.
-    velocity_mm_s : the pace that was asked for; None if none was.
+    velocity_mm_s : the requested velocity; None if none was.
     made : when, as ISO 8601, empty if unknown.
     remark : what was said of it when it was made, empty if nothing.
     """
@@ -158,11 +157,11 @@ class Take:
             raise ModelError(f"velocity_mm_s must be finite and above 0, got {self.velocity_mm_s}")
 
     def of(self, quantity: Quantity | str) -> tuple[Stream, ...]:
-        """Give the streams of one quantity, in order; empty if there is none."""
+        """Return the streams of one quantity, in order; empty if there is none."""
         return tuple(stream for stream in self.streams if stream.quantity is Quantity(quantity))
 
     def times_s(self, name: str) -> FloatArray:
-        """Give the times of the marks of one name, rising."""
+        """Return the times of the marks of one name, rising."""
         return np.sort(np.array([mark.t_s for mark in self.marks if mark.name == name]))
 
 
@@ -177,7 +176,7 @@ class Bench:
     force_play_cN : by how much the force sensor reads more on the way back than on the way there.
     tip_mass_g : what the force sensor accelerates with the cap: cone and plunger.
     sound_V_s_m : what the microphone gives per speed of the cap; 0 if nobody calibrated it, and then sound
-        tells when and how a vibration rings, but not how strongly.
+        shows when and how a vibration rings, but not how strongly.
     exposure_ms : over which a camera averages a frame; frames are stamped at its start.
     clocks_go_on : the clocks run through all takes, so that one alignment serves them all.
     """
@@ -238,11 +237,5 @@ class Recording:
         if [take.number for take in self.takes] != list(range(1, len(self.takes) + 1)):
             raise ModelError("the takes of a recording must be numbered from 1 in order")
 
-    def _repr_html_(self) -> str:
-        from fdvv.recording._html import recording_html
-
-        return recording_html(self)
-
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, str]:
-        """Show the recording in a notebook; its plain text is one line, not every sample."""
-        return html_bundle(self._repr_html_(), f"Recording({self.name!r}, {len(self.takes)} takes)")
+    def __repr__(self) -> str:
+        return f"Recording({self.name!r}, {len(self.takes)} takes)"

@@ -1,4 +1,4 @@
-"""The file of an actuation: tables for one device, how they were learned, and the receipt."""
+"""The file of an actuation: tables for one device, how they were learned, and the session's summary."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from fdvv.compensate import CurveOutcome, Outcome, Tuning
+from fdvv.compensation.method import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
-from fdvv.files import write_atomic
-from fdvv.model import ForceSurface, Stroke
-from fdvv.workflow._compensate import CompensationResult
-from fdvv.workflow._kind import ACTUATION, own_kind
-from fdvv.workflow._receipt import Receipt, read_receipt
+from fdvv.io.documents import ACTUATION, own_kind
+from fdvv.io.files import write_atomic
+from fdvv.model.curve import Stroke
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import CompensationResult
+from fdvv.rendering.run_summary import RunSummary, read_run_summary
 
 FORMAT = "fdvv-actuation"
+
 VERSION = 2
+
 READ = (1, 2)
 """Version 1 had no receipt."""
 
@@ -55,7 +58,7 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     skipped: list[str]
     explanation: str
     simulated: bool
-    receipt: Receipt | None = None
+    receipt: RunSummary | None = None
     tuning: dict[str, float | bool] = {}
 
 
@@ -93,10 +96,10 @@ def load_actuation(path: Path | str) -> CompensationResult:
         raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
 
 
-def open_receipt(path: Path) -> Receipt | None:
-    """Give the receipt of an actuation or of a session's folder; None if path is neither. InputError."""
+def open_run_summary(path: Path) -> RunSummary | None:
+    """Return the summary in an actuation or a session's folder; None for other paths. Raises InputError."""
     if not (path.name.endswith(SUFFIX) or own_kind(path) == ACTUATION):
-        return read_receipt(path)
+        return read_run_summary(path)
     receipt = load_actuation(path).receipt
     if receipt is None:
         reason = "was written before actuations had one (version 1)"
@@ -126,7 +129,7 @@ def _result(record: ActuationRecord) -> CompensationResult:
 
 
 def _tuning(found: dict[str, float | bool]) -> Tuning:
-    """Give the tuning of a file; one that names none has none. ModelError on an unknown name."""
+    """Return the tuning of a file, none if empty. Raises ModelError on an unknown name."""
     unknown = sorted(set(found) - {f.name for f in fields(Tuning)})
     if unknown:
         raise ModelError(f"unknown field {unknown[0]!r} - at `$.tuning`")

@@ -1,4 +1,4 @@
-"""Know the exciter of a rig: hum through it and watch the cap with the rig's own position sensor."""
+"""Identification of a rig's exciter: play tones and measure the cap with the rig's position sensor."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.compensate import KnownRig
-from fdvv.device import Device, Remote
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.device.contract import Device
+from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FitError, InputError
-from fdvv.model import Mode
-from fdvv.program import Limits, Program, Signal, State, Surface, compile_program
-from fdvv.protocol import Settings
+from fdvv.model.vibration import Mode
+from fdvv.program.compile import compile_program
+from fdvv.program.program import Program, Signal, State
+from fdvv.program.surface import Limits, Surface
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.session_run import clear_latched
 from fdvv.units import FloatArray
-from fdvv.vibration import (
+from fdvv.vibration.exciter import (
     FULL_SCALE_V,
-    InverseSettings,
     KnownExciter,
     Tone,
     ToneBench,
@@ -25,13 +28,13 @@ from fdvv.vibration import (
     fit_exciter,
     measure_tone,
 )
-from fdvv.workflow._session_run import clear_latched
+from fdvv.vibration.inverse import InverseSettings
 
 TONES_Hz = np.arange(260.0, 861.0, 40.0)
-"""Below them friction grips, above them the cap hardly moves."""
+"""Below this range friction holds the cap, above it the cap hardly moves."""
 APART_Hz = 150.0
 TRAVEL_mm, SPRING_cN_mm = 4.0, 20.0
-"""The motor holds the cap in the middle on a spring so soft that it takes no part in what is measured."""
+"""The motor holds the cap at mid travel on a spring too soft to affect the measurement."""
 SETTLE_s, START_s, END_s = 0.6, 0.1, 0.02
 LONGEST_s = 4.0
 COUNTS = 2047
@@ -43,17 +46,17 @@ Record = tuple[FloatArray, FloatArray]
 
 def identify_exciter(
     device: Device,
-    rig: KnownRig | None = None,
+    rig: RigModel | None = None,
     tone_s: float = 3.0,
     progress: Progress = lambda _done, _total: None,
     notice: Callable[[str], None] = lambda _text: None,
 ) -> KnownExciter:
-    """Play tones one after the other on a cap that nobody touches, and fit the exciter to how it moves.
+    """Play tones one after the other on an untouched cap, and fit the exciter to its motion.
 
-    rig : tells the lag of the position sensor; without it the gain is known to a third only.
-    progress, notice : told of every tone, and of what a person should know.
-    tone_s : of each of 14 tones or so; errors fall with its root. The device is left without force, and its
-    program is that of the tones. Raises InputError if it cannot play on command, DeviceError, FitError.
+    rig : gives the lag of the position sensor; without it the gain is uncertain by a third.
+    progress, notice : called after every tone, and with notices.
+    tone_s : duration of each of about 14 tones; errors fall with its root. The device is left without force,
+    with the program of the tones. Raises InputError if it cannot play on command, DeviceError, FitError.
     """
     if not isinstance(device, Remote):
         reason = "it plays vibrations within presses only"
@@ -81,7 +84,7 @@ def identify_exciter(
 
 
 def tone_image(frequencies_Hz: Sequence[float], tone_s: float) -> bytes:
-    """Give the program that holds the cap in mid travel, with a steady tone in each slot."""
+    """Return the program that holds the cap at mid travel, with a steady tone in each slot."""
     middle_cN = SPRING_cN_mm * TRAVEL_mm / 2
     hold = Surface("hold", (0.0, TRAVEL_mm), ((-middle_cN, middle_cN),))
     signals = tuple(Signal(f"{f:g} Hz", tone_s, (Mode(f, float(COUNTS), 0.0),)) for f in frequencies_Hz)
@@ -90,7 +93,7 @@ def tone_image(frequencies_Hz: Sequence[float], tone_s: float) -> bytes:
 
 
 def with_lead(settings: Settings, exciter: KnownExciter, lead_s: float | None = None) -> Settings:
-    """Tell settings to start vibrations as early as latency and drive ask for; unchanged without a latency.
+    """Return settings that start vibrations early by latency and drive lead; unchanged without a latency.
 
     lead_s : of the drive; that of InverseSettings if None.
     """
@@ -101,7 +104,7 @@ def with_lead(settings: Settings, exciter: KnownExciter, lead_s: float | None = 
 
 
 def prepare_exciter(device: Device, exciter: KnownExciter) -> None:
-    """Have a device start vibrations as early as with_lead says, if not yet; it forgets its program then."""
+    """Configure a device with with_lead(); unless that changes nothing, it loses its program."""
     before = device.settings()
     wanted = with_lead(before, exciter)
     if wanted != before:
@@ -120,11 +123,11 @@ def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> l
             client.listen(port.now_s() + START_s)
             client.telemetry.clear()
             client.listen(port.now_s() + tone_s - START_s - END_s)
-            told = client.telemetry.columns()
-            if told.tick.size < 20:
+            telemetry = client.telemetry.columns()
+            if telemetry.tick.size < 20:
                 raise DeviceError(f"{port.name}: no telemetry arrived during a tone")
-            t_s = (told.tick - told.tick[0]) * 1e-6 * device.settings().tick_us
-            found.append((t_s, 1e-3 * told.displacement_mm))
+            t_s = (telemetry.tick - telemetry.tick[0]) * 1e-6 * device.settings().tick_us
+            found.append((t_s, 1e-3 * telemetry.displacement_mm))
             client.listen(port.now_s() + END_s + START_s)
             progress(slot + 1, count)
         return found

@@ -1,4 +1,4 @@
-"""Can a known rig render a button: intended, achievable and measured, before anything is uploaded."""
+"""Feasibility of a button on an identified rig: intended, achievable and measured force."""
 
 from __future__ import annotations
 
@@ -9,33 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.compensate import (
-    ExpectedError,
-    FollowVerdict,
-    KnownRig,
+from fdvv.compensation.feasibility.limits import (
+    AchievableStroke,
     Motion,
-    NominalFinger,
-    Reach,
     RigLimits,
-    Stability,
-    ThermalDose,
-    expected_error,
-    follow_verdict,
+    achievable_stroke,
     minimum_jerk,
     needed_cN,
-    reach,
-    stability,
-    thermal_dose,
 )
-from fdvv.device import DeviceInfo
+from fdvv.compensation.feasibility.stability import NominalFinger, Stability, stability
+from fdvv.compensation.feasibility.thermal import ThermalDose, thermal_dose
+from fdvv.compensation.feasibility.verdict import ExpectedError, FollowVerdict, expected_error, follow_verdict
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.device.contract import DeviceInfo
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, Stroke
-from fdvv.plot import FeasibleCurve, RenderedBand
-from fdvv.protocol import Settings
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.compensate import check_speeds
+from fdvv.rendering.probe import ProbeCurve, ProbeResult
+from fdvv.report.records import FeasibleCurve, RenderedBand
 from fdvv.units import FloatArray
-from fdvv.workflow._compensate import check_speeds
-from fdvv.workflow._probe import ProbeResult
-from fdvv.workflow._probe_curve import ProbeCurve
 
 STEP_mm = 0.01
 
@@ -56,13 +50,12 @@ class CurveFeasibility:
     stroke: Stroke
     velocity_mm_s: float
     verdict: FollowVerdict
-    reached: Reach
+    reached: AchievableStroke
     stable: Stability
     expected: ExpectedError
     measured: ProbeCurve | None
 
     def to_dict(self) -> dict[str, Any]:
-        """Give it as a document, the curves among it."""
         reached, measured = self.reached, self.measured
         columns = ("displacement_mm", "intended_cN", "achievable_cN", "command_cN")
         return {
@@ -85,7 +78,7 @@ class CurveFeasibility:
 
 @dataclass(frozen=True, eq=False)
 class FeasibilityReport:
-    """What a known rig makes of a button. All but ``measured`` is computed, no press was made.
+    """What an identified rig can render of a button. All but ``measured`` is computed, without a press.
 
     Attributes
     ----------
@@ -104,7 +97,7 @@ class FeasibilityReport:
     simulated: bool
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv feasible --json``."""
+        """Return the report of ``fdvv feasible --json``."""
         warmth = zip(self.velocity_mm_s, self.doses, strict=True)
         return {
             "model": self.model_name,
@@ -117,12 +110,11 @@ class FeasibilityReport:
         }
 
     def to_json(self) -> str:
-        """Give the same as text."""
         return json.dumps(self.to_dict(), indent=2, allow_nan=False)
 
 
 def feasible_curves(report: FeasibilityReport) -> list[FeasibleCurve]:
-    """Give what fdvv.plot draws of a report; a measured band is the quartiles of the presses."""
+    """Return the curves for fdvv.report; a measured band is the quartiles of the presses."""
     return [_drawn(curve, report.simulated) for curve in report.curves]
 
 
@@ -147,7 +139,7 @@ def _drawn(curve: CurveFeasibility, simulated: bool) -> FeasibleCurve:
 
 def feasibility(
     model: FDVVModel,
-    known: KnownRig,
+    known: RigModel,
     settings: Settings,
     velocities_mm_s: Sequence[float],
     measured: ProbeResult | None = None,
@@ -155,9 +147,10 @@ def feasibility(
     finger: NominalFinger | None = None,
     motions: Mapping[tuple[Stroke, float], Motion] | None = None,
 ) -> FeasibilityReport:
-    """Tell for every stroke and speed whether a known rig can render a model, and why not.
+    """Decide for every stroke and speed whether a rig can render a model, and why not.
 
-    known : as identified from presses (fdvv.compensate.identify), or load_rig of its file.
+    known : as identified from presses (fdvv.compensation.identification.identify.identify), or load_rig
+    of its file.
     settings : of the device (Device.settings). info : its name and deepest stop.
     measured : presses of a probe at some of these speeds. finger : who holds the cap still.
     motions : how the cap really goes, by stroke and speed, where that is known; else minimum jerk.
@@ -180,10 +173,10 @@ def feasibility(
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """All that does not change from speed to speed."""
+    """Everything that is common to all speeds."""
 
     model: FDVVModel
-    known: KnownRig
+    known: RigModel
     limits: RigLimits
     measured: ProbeResult | None
     info: DeviceInfo | None
@@ -191,13 +184,11 @@ class _Case:
     motions: Mapping[tuple[Stroke, float], Motion]
 
     def motion(self, stroke: Stroke, speed_mm_s: float) -> Motion:
-        """Give the motion that is known, else one of minimum jerk."""
         known = self.motions.get((stroke, speed_mm_s))
         return known or minimum_jerk(stroke, self.model.travel_mm, speed_mm_s, self.limits.tick_s)
 
 
 def _at_speed(case: _Case, speed_mm_s: float) -> tuple[ThermalDose, list[CurveFeasibility]]:
-    """Judge press and release at one speed."""
     travel_mm = case.model.travel_mm
     x = np.linspace(0.0, travel_mm, 1 + max(2, round(travel_mm / STEP_mm)))
     forces = _forces(case.model, x, speed_mm_s)
@@ -205,8 +196,8 @@ def _at_speed(case: _Case, speed_mm_s: float) -> tuple[ThermalDose, list[CurveFe
     dose = _dose(case.known, case.limits, x, forces, motions)
     curves = []
     for stroke, force, motion in zip(Stroke, forces, motions, strict=True):
-        reached = reach(case.known, case.limits, motion, x, force)
-        # the step between the strokes is told once, with the release
+        reached = achievable_stroke(case.known, case.limits, motion, x, force)
+        # the step between the strokes is reported once, with the release
         over = forces[0] if stroke is Stroke.RELEASE else None
         stable = stability(case.known, case.limits, x, force, over, case.finger)
         stop_mm = case.info.travel_limit_mm if case.info else None
@@ -218,13 +209,13 @@ def _at_speed(case: _Case, speed_mm_s: float) -> tuple[ThermalDose, list[CurveFe
 
 
 def _forces(model: FDVVModel, x: FloatArray, speed_mm_s: float) -> list[FloatArray]:
-    """Give press and release; without a release curve the press serves for both."""
+    """Return press and release; without a release curve the press serves for both."""
     served = [stroke if model.of(stroke) else Stroke.PRESS for stroke in Stroke]
     return [model.force_cN(x, speed_mm_s, stroke) for stroke in served]
 
 
 def _dose(
-    known: KnownRig, limits: RigLimits, x: FloatArray, forces: list[FloatArray], motions: list[Motion]
+    known: RigModel, limits: RigLimits, x: FloatArray, forces: list[FloatArray], motions: list[Motion]
 ) -> ThermalDose:
     along = [
         needed_cN(known, motion, np.interp(motion.displacement_mm, x, force))

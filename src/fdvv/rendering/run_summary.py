@@ -1,4 +1,4 @@
-"""How a result came about: rig, method, presses used and not used, errors, time."""
+"""Summary of a session: rig, method, presses used and not used, errors, time."""
 
 from __future__ import annotations
 
@@ -10,16 +10,13 @@ from typing import Any, Literal
 
 import msgspec
 
-from fdvv.compensate import CurveOutcome
-from fdvv.documents import Kind, pretty, read_document
-from fdvv.files import read_limited, write_atomic
-from fdvv.workflow._answer_log import ANSWERS, read_answers
-from fdvv.workflow._session_file import Run
-from fdvv.workflow._session_log import PRESSES, Entry, read_log
-from fdvv.workflow._session_manifest import MANIFEST, LARGEST_bytes, Manifest, ModelName, read_manifest
+from fdvv.compensation.method import CurveOutcome
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.rendering.session import MANIFEST, LARGEST_bytes, Manifest, ModelName, read_manifest
+from fdvv.rendering.session_log import ANSWERS, PRESSES, PressEntry, SessionRun, read_answers, read_log
 
 RECEIPT = "receipt.json"
-KIND = Kind("fdvv-receipt", 1, "a receipt", "run the session's command again, which writes it anew")
 
 
 class NotUsed(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -35,8 +32,8 @@ class CurveErrors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes
     ----------
-    first_cN, last_cN, best_cN : error_k of presses, as measured by whoever made the result: the rig itself
-        while it learned, the probe in true displacement.
+    first_cN, last_cN, best_cN : error_k of presses, measured by the rig itself
+        while it learned, or by a probe in true displacement.
     mean_cN, max_cN : of |target - felt| over the displacement.
     """
 
@@ -50,12 +47,12 @@ class CurveErrors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_cN: float | None
 
 
-class Receipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How a result came about.
+class RunSummary(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How a result was obtained.
 
     Attributes
     ----------
-    device : as the session's manifest tells it.
+    device : from the session's manifest.
     seed, runs : of a simulated device the seed of the first run; every start of the program on the session.
     used, not_used : presses; answers of a tuning.
     begun, finished : UTC; the first start and the last press, None if there is none yet. Pauses between
@@ -73,7 +70,7 @@ class Receipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     velocities_mm_s: list[float]
     seed: int | None
     simulated: bool
-    runs: list[Run]
+    runs: list[SessionRun]
     used: int
     not_used: list[NotUsed]
     curves: list[CurveErrors]
@@ -82,17 +79,19 @@ class Receipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pressing_s: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Give it as plain values."""
         found = msgspec.to_builtins(self)
         assert isinstance(found, dict)
         return found
 
 
-def make_receipt(
-    manifest: Manifest, runs: Sequence[Run], entries: Sequence[Entry], curves: Sequence[CurveOutcome] = ()
-) -> Receipt:
-    """Write down how a result came about; without curves, how far a session is that is not finished."""
-    return Receipt(
+def make_run_summary(
+    manifest: Manifest,
+    runs: Sequence[SessionRun],
+    entries: Sequence[PressEntry],
+    curves: Sequence[CurveOutcome] = (),
+) -> RunSummary:
+    """Return the summary of a session; without curves, of one that is not finished."""
+    return RunSummary(
         "fdvv-receipt",
         1,
         manifest.task,
@@ -113,13 +112,13 @@ def make_receipt(
     )
 
 
-def save_receipt(folder: Path, receipt: Receipt) -> None:
-    """Write the receipt of a session into its folder. Raises OSError."""
+def save_run_summary(folder: Path, receipt: RunSummary) -> None:
+    """Write the summary of a session into its folder. Raises OSError."""
     write_atomic(folder / RECEIPT, pretty(receipt.to_dict()) + "\n")
 
 
-def read_receipt(path: Path) -> Receipt | None:
-    """Give the receipt of a session's folder; None if it is no such folder. InputError on a damaged one."""
+def read_run_summary(path: Path) -> RunSummary | None:
+    """Return the summary of a session's folder; None if it is none. Raises InputError if it is damaged."""
     if not (path / MANIFEST).is_file():
         return None
     manifest = read_manifest(path / MANIFEST)
@@ -128,24 +127,28 @@ def read_receipt(path: Path) -> Receipt | None:
         return read_document(text, path / RECEIPT, KIND, _decoded, lambda _: None)
     tuning = manifest.task == "tune"
     runs, entries, _ = read_answers(path / ANSWERS) if tuning else read_log(path / PRESSES)
-    return make_receipt(manifest, runs, entries)
+    return make_run_summary(manifest, runs, entries)
 
 
-def _decoded(data: bytes) -> Receipt:
-    return msgspec.json.decode(data, type=Receipt)
+def _decoded(data: bytes) -> RunSummary:
+    return msgspec.json.decode(data, type=RunSummary)
 
 
 def _errors(curve: CurveOutcome) -> CurveErrors:
     errors = curve.error_cN
-    told = (errors[0], errors[-1], min(errors)) if errors else (None, None, None)
+    summary = (errors[0], errors[-1], min(errors)) if errors else (None, None, None)
     kept = (e if math.isfinite(e) else None for e in (curve.mean_error_cN, curve.max_error_cN))
     return CurveErrors(
-        "press" if str(curve.stroke) == "press" else "release", curve.velocity_mm_s, len(errors), *told, *kept
+        "press" if str(curve.stroke) == "press" else "release",
+        curve.velocity_mm_s,
+        len(errors),
+        *summary,
+        *kept,
     )
 
 
-def _pressing_s(runs: Sequence[Run], entries: Sequence[Entry]) -> float:
-    """Add up the time of each run, from its start to its last press."""
+def _pressing_s(runs: Sequence[SessionRun], entries: Sequence[PressEntry]) -> float:
+    """Sum the time of each run, from its start to its last press."""
     starts = [datetime.fromisoformat(run.started) for run in runs]
     presses = [datetime.fromisoformat(entry.made) for entry in entries]
     total_s = 0.0
@@ -154,3 +157,6 @@ def _pressing_s(runs: Sequence[Run], entries: Sequence[Entry]) -> float:
         inside = [made for made in presses if start <= made and (end is None or made <= end)]
         total_s += (max(inside) - start).total_seconds() if inside else 0.0
     return round(total_s, 3)
+
+
+KIND = Kind("fdvv-receipt", 1, "a receipt", "run the session's command again, which writes it anew")

@@ -1,4 +1,4 @@
-"""What is tried when a vibration is tuned: the one that was measured, and templates around it."""
+"""Candidates of a vibration's tuning: the measured one, and templates around it."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, ForceSurface, Stroke, Vibration
-from fdvv.program import Limits, button_program, compile_program
-from fdvv.vibration import (
-    FULL_SCALE_V,
-    KnownExciter,
-    TemplateGrid,
-    correlation,
-    spectral_similarity,
-    st_sim,
-    templates_around,
-)
-from fdvv.workflow._vibration_slots import converter
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.model.vibration import Vibration
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.program.render_vibration import converter
+from fdvv.program.surface import Limits
+from fdvv.vibration.exciter import FULL_SCALE_V, KnownExciter
+from fdvv.vibration.inverse import correlation, spectral_similarity, st_sim
+from fdvv.vibration.templates import TemplateGrid, templates_around
+from fdvv.vibration.tune import SimulatedObserver
 
 SCORE_Hz = 16_000
+
 RING_s = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """The vibrations that are tried at one velocity; the first is the measured one as it is."""
+    """The candidate vibrations of one velocity; the first is the measured one."""
 
     velocity_mm_s: float
     vibrations: tuple[Vibration, ...]
@@ -51,7 +52,7 @@ class Candidates:
         return found
 
     def plain(self) -> list[dict[str, Any]]:
-        """Write the vibrations as JSON would give them back."""
+        """Return the vibrations as plain values for JSON."""
         return [{**asdict(v), "stroke": str(v.stroke)} for v in self.vibrations]
 
 
@@ -61,9 +62,9 @@ def candidates_for(
     grid: TemplateGrid | None = None,
     exciter: KnownExciter | None = None,
 ) -> tuple[Candidates, ...]:
-    """Give what to try at each velocity: the model's vibration of the press nearest to it, and templates.
+    """Return the candidates of each velocity: the model's nearest vibration of the press, and templates.
 
-    exciter : tells how many m/s² a volt is at the vibration's frequency, and so where templates meet the
+    exciter : gives m/s² per volt at the vibration's frequency, which decides where templates reach the
     limit; without it Limits does. Raises InputError if the model has no vibration of the press.
     """
     found = []
@@ -81,7 +82,7 @@ def candidates_for(
 
 
 def acceleration_per_volt(vibration: Vibration, exciter: KnownExciter | None) -> float:
-    """Give m/s² of the cap per volt at a vibration's strongest frequency, as uploads use it."""
+    """Return m/s² of the cap per volt at a vibration's strongest frequency, as uploads use it."""
     if exciter is None:
         return 2048 / FULL_SCALE_V / Limits().counts_per_m_s2
     strongest = max(vibration.modes, key=lambda mode: abs(mode.amplitude_m_s2))
@@ -89,7 +90,7 @@ def acceleration_per_volt(vibration: Vibration, exciter: KnownExciter | None) ->
 
 
 def tuned_model(model: FDVVModel, chosen: Sequence[Vibration]) -> FDVVModel:
-    """Give a model with these vibrations of the press instead of its own at their velocities.
+    """Return a model with these vibrations of the press instead of its own at their velocities.
 
     One that served every velocity is replaced by them all.
     """
@@ -103,7 +104,7 @@ def tuned_model(model: FDVVModel, chosen: Sequence[Vibration]) -> FDVVModel:
 def candidate_image(
     model: FDVVModel, surface: ForceSurface, vibration: Vibration, exciter: KnownExciter | None
 ) -> bytes:
-    """Give the program that plays one vibration in every press. InputError if the board cannot."""
+    """Return the program that plays one vibration in every press. Raises InputError if the board cannot."""
     others = tuple(v for v in model.vibrations if v.stroke is not Stroke.PRESS)
     shown = replace(model, vibrations=(*others, replace(vibration, velocity_mm_s=None)))
     convert = converter(exciter) if exciter else None
@@ -114,10 +115,32 @@ def candidate_image(
 
 
 def _alike(a: Vibration, b: Vibration) -> bool:
-    """Tell whether two vibrations differ by less than rounding."""
+    """Return whether two vibrations are equal within rounding."""
     if len(a.modes) != len(b.modes) or not np.isclose(a.duration_s, b.duration_s):
         return False
     mine, theirs = (
         [(m.frequency_Hz, m.amplitude_m_s2, m.decay_1_s, m.phase_rad) for m in v.modes] for v in (a, b)
     )
     return bool(np.allclose(mine, theirs, rtol=1e-3, atol=1e-9))
+
+
+TIMES_s = np.arange(800) / 8000
+
+FOR_SHAPE, FOR_STRENGTH = 4.0, 1.5
+"""Loss of preference, in units of the noise: for an uncorrelated shape, for twice the strength."""
+
+
+def simulated_observer(candidates: Sequence[Candidates], seed: int = 0) -> SimulatedObserver:
+    """Return an observer with a random favourite per velocity, who prefers the others by similarity."""
+    random = np.random.default_rng([seed, 1])
+    likes = []
+    for found in candidates:
+        favourite = found.vibrations[int(random.integers(len(found.vibrations)))]
+        likes.append([_like(vibration, favourite) for vibration in found.vibrations])
+    return SimulatedObserver(likes, seed=seed)
+
+
+def _like(vibration: Vibration, favourite: Vibration) -> float:
+    felt, wanted = (v.acceleration_m_s2(TIMES_s) for v in (vibration, favourite))
+    strength = abs(float(np.log2((np.linalg.norm(felt) + 1e-9) / (np.linalg.norm(wanted) + 1e-9))))
+    return FOR_SHAPE * (correlation(felt, wanted) - 1) - FOR_STRENGTH * strength

@@ -16,7 +16,7 @@ from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
 COLOURS = ("#2f8fd8", "#e0702a", "#1fa37a", "#b86fc4", "#c79a1b", "#d8577b")
-"""Told apart by a colour-blind reader, and above 3:1 against both white and near-black."""
+"""Distinct for a colour-blind reader, and above 3:1 against both white and near-black."""
 MOST_POINTS = 400
 LEFT, RIGHT, TOP, BOTTOM = 46.0, 12.0, 10.0, 36.0
 LEGEND, LETTER = 34.0, 6.2
@@ -47,9 +47,13 @@ class ChartLine:
     dots: bool = False
 
 
-def words(text: str) -> str:
-    """Make text from a file fit for markup: escaped, and nothing that cannot be printed."""
-    return escape("".join(c if c.isprintable() else "?" for c in text))
+def printable(text: str) -> str:
+    """Return text from a file with a question mark for everything that cannot be printed."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def _escaped(text: str) -> str:
+    return escape(printable(text))
 
 
 def chart_svg(
@@ -73,8 +77,8 @@ def chart_svg(
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
         f'height="{height:g}" role="img" '
-        f'aria-label="{words(title)}" font-family="sans-serif" font-size="11">',
-        f"<title>{words(title)}</title>",
+        f'aria-label="{_escaped(title)}" font-family="sans-serif" font-size="11">',
+        f"<title>{_escaped(title)}</title>",
         *_axes(x_range, y_range, x_label, y_label, right, height - BOTTOM),
     ]
     for line in lines:
@@ -97,7 +101,7 @@ def _range(columns: Sequence[FloatArray]) -> tuple[float, float]:
 
 
 def _steps(low: float, high: float) -> list[float]:
-    """Give round numbers within a range, about six."""
+    """Return round numbers within a range, about six."""
     rough = (high - low) / TICKS
     size = 10.0 ** math.floor(math.log10(rough))
     step = next(size * m for m in (1, 2, 5, 10) if size * m >= rough)
@@ -124,10 +128,10 @@ def _axes(
         labels.append(f'<text x="{LEFT - 5}" y="{at + 4:.1f}" text-anchor="end">{value:g}</text>')
     middle = (LEFT + right) / 2, (TOP + bottom) / 2
     labels.append(
-        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{words(x_label)}</text>'
+        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{_escaped(x_label)}</text>'
     )
     turned = f'transform="translate(11 {middle[1]:.1f}) rotate(-90)"'
-    labels.append(f'<text {turned} text-anchor="middle">{words(y_label)}</text>')
+    labels.append(f'<text {turned} text-anchor="middle">{_escaped(y_label)}</text>')
     return [*made, "</g>", *labels, "</g>"]
 
 
@@ -181,6 +185,6 @@ def _legend(lines: Sequence[ChartLine], right: float) -> list[str]:
             if line.dots
             else _path(line, np.array([start, start + 18]), np.array([y, y]))
         )
-        text = f'<text x="{start + 24:g}" y="{y + 4:g}" fill="currentColor">{words(line.name)}</text>'
+        text = f'<text x="{start + 24:g}" y="{y + 4:g}" fill="currentColor">{_escaped(line.name)}</text>'
         made += [sign, text]
     return made

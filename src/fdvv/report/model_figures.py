@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, ForceCurve, Stroke, Vibration, landmarks
-from fdvv.plot import _style as style
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.landmarks import landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Vibration
+from fdvv.report import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -222,7 +225,7 @@ def _mark_points(ax: Axes, model: FDVVModel, velocity_mm_s: float | None, colour
 
 
 def _category_colours(count: int) -> list[Any]:
-    """Give count colours to tell things apart: the palette, or evenly spaced hues if it is too short."""
+    """Return count distinct colours: the palette, or evenly spaced hues if it is too short."""
     from matplotlib import colormaps
 
     if count <= len(style.PALETTE):

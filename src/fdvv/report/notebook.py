@@ -1,21 +1,24 @@
-"""What a notebook shows of a model, its landmarks or a press: small charts and tables, without script."""
+"""Models, landmarks, presses and recordings in a notebook: small charts and tables, without script.
+
+Records do not know their pictures: `import fdvv` registers `to_html` with IPython where one runs.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from fdvv.model._chart import ChartLine, chart_svg, words
-from fdvv.model._curve import ForceCurve, Stroke
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.landmarks import Landmarks, landmarks
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.recording.types import UNITS, Recording, Stream, Take
+from fdvv.report.chart import ChartLine, chart_svg, printable
+from fdvv.report.templates import environment
 
-if TYPE_CHECKING:
-    from fdvv.model._landmarks import Landmarks
-    from fdvv.model._model import FDVVModel
-    from fdvv.model._press import Press
-
-UNITS = {"mm_s": "mm/s", "cN_mm": "cN/mm", "mm": "mm", "cN": "cN", "mJ": "mJ", "ratio": "1"}
+READ_UNITS = {"mm_s": "mm/s", "cN_mm": "cN/mm", "mm": "mm", "cN": "cN", "mJ": "mJ", "ratio": "1"}
 """Last parts of our names, longest first, and what people read."""
 POINTS = 160
 LONGEST_LICENCE = 36
@@ -23,31 +26,18 @@ FORCE, DISPLACEMENT = "force (cN)", "displacement (mm)"
 
 
 def block(title: str, note: str, parts: Sequence[str]) -> str:
-    """Join charts and tables side by side under a title; they go below each other where there is no room.
+    """Return charts and tables side by side under a title; they wrap where there is no room.
 
     title and note are escaped, parts are HTML already.
     """
-    head = f"<strong>{words(title)}</strong>" + (f" <span>{words(note)}</span>" if note else "")
-    body = "".join(f'<div style="flex:none">{part}</div>' for part in parts)
-    style = "display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start"
-    return f'<div style="color:inherit"><div>{head}</div><div style="{style}">{body}</div></div>'
+    template = environment().get_template("notebook_block.html")
+    return template.render(title=printable(title), note=printable(note), parts=parts)
 
 
 def table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
-    """Lay text out as a table; the first column to the left, the others to the right. Cells are escaped."""
-    style = "padding:1px 8px;text-align:{};background:none;color:inherit;font-weight:{}"
-
-    def line(cells: Sequence[str], tag: str) -> str:
-        weight = "600" if tag == "th" else "normal"
-        made = [
-            f'<{tag} style="{style.format("right" if i else "left", weight)}">{words(cell)}</{tag}>'
-            for i, cell in enumerate(cells)
-        ]
-        return f'<tr style="background:none">{"".join(made)}</tr>'
-
-    titles = line(head, "th") if head else ""
-    body = "".join(line(row, "td") for row in rows)
-    return f'<table style="border-collapse:collapse;font-size:90%;margin:0">{titles}{body}</table>'
+    """Return text as a table; the first column to the left, the others to the right. Cells are escaped."""
+    cells = [[printable(cell) for cell in row] for row in rows]
+    return environment().get_template("notebook_table.html").render(rows=cells, head=head)
 
 
 def model_html(model: FDVVModel) -> str:
@@ -85,13 +75,11 @@ def _named(curve: ForceCurve, of: int) -> str:
 
 
 def _facts(model: FDVVModel) -> list[tuple[str, str]]:
-    from fdvv.model._landmarks import landmarks
-
     rows = [("curves", str(len(model.curves))), ("vibrations", str(len(model.vibrations)))]
     if model.of(Stroke.PRESS):
         found = landmarks(model).to_dict()
         names = ("preload_cN", "peak_mm", "peak_cN", "valley_cN", "snap_ratio", "bottom_out_cN", "work_mJ")
-        rows += [_row(name, found[name]) for name in names if found[name] is not None]
+        rows += [_landmark_row(name, found[name]) for name in names if found[name] is not None]
     if model.provenance.licence:
         licence = model.provenance.licence
         rows.append(
@@ -100,9 +88,9 @@ def _facts(model: FDVVModel) -> list[tuple[str, str]]:
     return rows
 
 
-def _row(name: str, value: float | None) -> tuple[str, str]:
+def _landmark_row(name: str, value: float | None) -> tuple[str, str]:
     """Take the unit out of a name and put it behind the number."""
-    for ending, unit in UNITS.items():
+    for ending, unit in READ_UNITS.items():
         if name.endswith(f"_{ending}"):
             name = name.removesuffix(f"_{ending}")
             shown = "–" if value is None else f"{value:.3g}" if unit == "1" else f"{value:.2f} {unit}"
@@ -112,7 +100,7 @@ def _row(name: str, value: float | None) -> tuple[str, str]:
 
 def landmarks_html(found: Landmarks) -> str:
     """Show landmarks as a table; what a button has not is a dash."""
-    rows = [_row(name, value) for name, value in found.to_dict().items()]
+    rows = [_landmark_row(name, value) for name, value in found.to_dict().items()]
     half = (len(rows) + 1) // 2
     return block("landmarks", "", [table(rows[:half]), table(rows[half:])])
 
@@ -134,6 +122,54 @@ def press_html(press: Press) -> str:
     return block(title, note, [loop, time])
 
 
-def bundle(html: str, text: str) -> dict[str, str]:
-    """Give what IPython asks an object for: the drawing, and a line where nothing can be drawn."""
-    return {"text/html": html, "text/plain": text}
+MOST_TAKES = 20
+DRAWN = ("force", "displacement", "sound", "acceleration", "counts", "light")
+"""What is drawn of a take: the first of these that it has, alone, for clocks and units differ."""
+
+
+def recording_html(recording: Recording) -> str:
+    """Show a recording: its takes, and of the first press, or else the first take, one stream."""
+    rows = [_take_row(take) for take in recording.takes[:MOST_TAKES]]
+    if len(recording.takes) > MOST_TAKES:
+        rows.append((f"… {len(recording.takes) - MOST_TAKES} more", "", "", ""))
+    parts = [table(rows, ("take", "stage", "mm/s", "streams"))]
+    drawn = _drawn_stream(recording)
+    if drawn:
+        parts.append(_stream_chart(*drawn))
+    note = f"{len(recording.takes)} takes" + (", simulated" if recording.simulated else "")
+    return block(recording.name, note, parts)
+
+
+def _take_row(take: Take) -> tuple[str, str, str, str]:
+    speed = "–" if take.velocity_mm_s is None else f"{take.velocity_mm_s:g}"
+    streams = ", ".join(f"{s.name} ({s.t_s.size})" for s in take.streams)
+    return str(take.number), str(take.stage), speed, streams if len(streams) <= 80 else f"{streams[:79]}…"
+
+
+def _drawn_stream(recording: Recording) -> tuple[Take, Stream] | None:
+    """Choose what is drawn: something of a press if there is one."""
+    for take in sorted(recording.takes, key=lambda take: (take.stage != "press", take.number)):
+        for quantity in DRAWN:
+            for stream in take.of(quantity):
+                if stream.raw.ndim == 1 and stream.t_s.size > 1:
+                    return take, stream
+    return None
+
+
+def _stream_chart(take: Take, stream: Stream) -> str:
+    label = f"{stream.quantity} ({UNITS[stream.quantity]})"
+    line = ChartLine(stream.t_s - stream.t_s[0], stream.values)
+    return chart_svg([line], "time (s)", label, f"take {take.number}: {stream.name}")
+
+
+DRAWN_BY: dict[type[Any], Callable[[Any], str]] = {
+    FDVVModel: model_html,
+    Landmarks: landmarks_html,
+    Press: press_html,
+    Recording: recording_html,
+}
+
+
+def to_html(record: Any) -> str:
+    """Return the HTML of a model, landmarks, a press or a recording; raise KeyError for anything else."""
+    return DRAWN_BY[type(record)](record)

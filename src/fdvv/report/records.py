@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
+from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
 
 

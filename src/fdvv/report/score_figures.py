@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.plot import _style as style
+from fdvv.report import style
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class ScoreBars:
     level : title of the panel. names : of the conditions; the first is what was designed.
     scores : (people, conditions) the dots; bars are their means.
     spread : (conditions,) half lengths of the error bars.
-    marks : one per condition, written above its bar; empty: nothing is told.
+    marks : one per condition, written above its bar; empty: none.
     """
 
     level: str
@@ -104,9 +104,9 @@ def _write_means(ax: Axes, panel: ScoreBars, top: float) -> None:
     drawn = np.where(panel.scores <= top / ROOM, panel.scores, 0.0).max(axis=0)
     heights = np.maximum(means + panel.spread, drawn)
     for place, mark in enumerate(panel.marks or [""] * len(means)):
-        told = f"{means[place]:.1f}" + (f"\n{mark}" if mark else "")
+        label = f"{means[place]:.1f}" + (f"\n{mark}" if mark else "")
         at = (float(place), float(heights[place]))
-        ax.annotate(told, at, (0, 4), textcoords="offset points", ha="center", fontsize=8.5)
+        ax.annotate(label, at, (0, 4), textcoords="offset points", ha="center", fontsize=8.5)
 
 
 def _mark_beyond(ax: Axes, places: FloatArray, scores: FloatArray, top: float) -> None:
@@ -157,8 +157,8 @@ def _draw_training(ax: Axes, panel: TrainingScores) -> None:
         ax.fill_between(trials[begun], low, high, color=style.PALETTE[0], alpha=style.BAND, linewidth=0.0)
         middle = np.nanmedian(panel.scores[:, scored], axis=0)
         ax.plot(trials[scored], middle, color=style.PALETTE[1], label="median of people")
-    told = "best so far" if alone else "best so far, median and quartiles"
-    line: Any = {"color": style.PALETTE[0], "linewidth": 2.0, "label": told}
+    label = "best so far" if alone else "best so far, median and quartiles"
+    line: Any = {"color": style.PALETTE[0], "linewidth": 2.0, "label": label}
     ax.plot(trials[begun], np.nanmedian(best[:, begun], axis=0), **line)
 
 

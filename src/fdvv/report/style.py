@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 import numpy as np
 
 from fdvv.errors import BuildError
-from fdvv.model import FDVVModel, Stroke
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +38,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#0
 LINE = {Stroke.PRESS: "-", Stroke.RELEASE: "--"}
 
 BAND = 0.2
-"""Opacity of bands: two that overlap are still told apart."""
+"""Opacity of bands: two that overlap can still be seen apart."""
 
 LONGEST_NAME = 36
 """Names come from foreign files; a longer one would push the axes off the page."""
@@ -114,12 +115,12 @@ def new_figure(width_in: float = 7.0, height_in: float = 4.2) -> Figure:
 
 
 def axes_or_new(ax: Axes | None, width_in: float = 7.0, height_in: float = 4.2) -> Axes:
-    """Give the axes that were passed, or those of a new figure."""
+    """Return the axes that were passed, or those of a new figure."""
     return new_figure(width_in, height_in).add_subplot() if ax is None else ax
 
 
 def velocity_colour(part: float) -> tuple[float, float, float]:
-    """Give the colour of a velocity, part 0 (slowest, light) to 1 (fastest, dark).
+    """Return the colour of a velocity, part 0 (slowest, light) to 1 (fastest, dark).
 
     The map is viridis without its palest third: lightness falls evenly and it survives colour blindness.
     """
@@ -132,7 +133,7 @@ def velocity_colour(part: float) -> tuple[float, float, float]:
 def velocity_colours(
     velocities_mm_s: Iterable[float | None],
 ) -> dict[float | None, tuple[float, float, float]]:
-    """Give each distinct velocity its colour by rank; an unknown velocity ranks as the slowest."""
+    """Return a colour for each distinct velocity by rank; an unknown velocity ranks as the slowest."""
     ranked = sorted(set(velocities_mm_s), key=lambda v: v or 0.0)
     last = max(len(ranked) - 1, 1)
     return {v: velocity_colour(i / last if len(ranked) > 1 else 0.6) for i, v in enumerate(ranked)}
@@ -164,7 +165,7 @@ def set_titles(ax: Axes, title: str, simulated: bool) -> None:
 
 
 def is_simulated(models: Sequence[FDVVModel]) -> bool:
-    """Tell whether any of the models says that its numbers come from the twin."""
+    """Return whether any of the models says that its numbers come from the twin."""
     return any(model.provenance.simulated for model in models)
 
 
@@ -208,7 +209,7 @@ def legend_beside(ax: Axes, handles: Sequence[Line2D | Patch]) -> None:
 
 
 def limits_around(*columns: Any, margin: float = 0.05) -> tuple[float, float]:
-    """Give limits that hold every finite value of the columns with a margin, never of no length."""
+    """Return limits that hold every finite value of the columns with a margin, never of no length."""
     values = np.concatenate([np.ravel(np.asarray(column, dtype=np.float64)) for column in columns])
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.plot._style import house_style
+from fdvv.report.style import house_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,7 +31,7 @@ def _saving() -> Iterator[None]:
 
 
 def figure_of(drawn: Any) -> Figure:
-    """Give the figure of what a plot function gave: axes, several axes, or a figure itself."""
+    """Return the figure of what a plot function returned: axes, several axes, or a figure itself."""
     while isinstance(drawn, (tuple, np.ndarray)):
         drawn = drawn[0]
     if drawn.figure is None:

@@ -1,8 +1,8 @@
-"""Analysis of variance where every person meets every condition, with sphericity tested and handled.
+"""Repeated-measures analysis of variance, with sphericity tested and corrected for.
 
 Each effect is a set of orthonormal contrasts of a person's scores. Their mean over people makes the
-effect's sum of squares, their spread the error's, and the covariance of that spread tells how far sphericity
-is missed: one matrix for all three, which is why no library's table of F alone is used here.
+effect's sum of squares, their spread the error's, and the covariance of that spread how far sphericity is
+missed: one matrix for all three, which is why no library's table of F alone is used here.
 """
 
 from __future__ import annotations
@@ -15,13 +15,59 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.study._scores import complete_scores
-from fdvv.study._sphericity import Sphericity, sphericity
+from fdvv.stats.effect_size import complete_scores
 from fdvv.units import FloatArray
 
 
 @dataclass(frozen=True)
-class Effect:
+class Sphericity:
+    """How far sphericity holds.
+
+    Attributes
+    ----------
+    epsilon : of Greenhouse and Geisser: 1 where it holds, 1 / df at the worst.
+    W, p : Mauchly's statistic and the chance of one as small if sphericity held; None with one contrast,
+        which cannot miss it, and with too few people for the determinant.
+    """
+
+    epsilon: float
+    W: float | None = None
+    p: float | None = None
+
+
+def sphericity(values: FloatArray) -> Sphericity:
+    """Judge orthonormal contrasts of people's scores, (people, df); their covariance must not be all 0."""
+    people, df = values.shape
+    if df == 1:
+        return Sphericity(1.0)
+    covariance = np.cov(values, rowvar=False)
+    trace = float(np.trace(covariance))
+    epsilon = trace**2 / (df * float(np.sum(covariance**2)))
+    W, p = _mauchly(covariance, people) if people > df else (None, None)
+    # rounding may lift it above its bound by the last digit
+    return Sphericity(min(epsilon, 1.0), W, p)
+
+
+def _mauchly(covariance: FloatArray, people: int) -> tuple[float, float]:
+    """Return Mauchly's W and p by the expansion in two terms (Anderson 2003, section 10.7), as R has it."""
+    from scipy.stats import chi2
+
+    df, n = covariance.shape[0], people - 1
+    sign, log_determinant = np.linalg.slogdet(covariance)
+    if sign <= 0:
+        return 0.0, 0.0
+    log_W = float(log_determinant) - df * math.log(float(np.trace(covariance)) / df)
+    rho = 1.0 - (2 * df**2 + df + 2) / (6.0 * df * n)
+    second = (
+        (df + 2) * (df - 1) * (df - 2) * (2 * df**3 + 6 * df**2 + 3 * df + 2) / (288 * (n * df * rho) ** 2)
+    )
+    at, freedom = -n * rho * log_W, df * (df + 1) / 2 - 1
+    p = chi2.sf(at, freedom) * (1.0 - second) + second * chi2.sf(at, freedom + 4)
+    return math.exp(log_W), float(p)
+
+
+@dataclass(frozen=True)
+class AnovaEffect:
     """One line of the table.
 
     Attributes
@@ -51,7 +97,7 @@ class Effect:
 
     @property
     def corrected_df(self) -> tuple[float, float]:
-        """Get both degrees of freedom times epsilon."""
+        """Both degrees of freedom times epsilon."""
         epsilon = self.sphericity.epsilon
         return epsilon * self.effect_df, epsilon * self.error_df
 
@@ -68,11 +114,11 @@ class Anova:
     """
 
     people: int
-    effects: tuple[Effect, ...]
+    effects: tuple[AnovaEffect, ...]
     people_ss: float
 
-    def of(self, name: str) -> Effect:
-        """Give an effect by its name. KeyError."""
+    def of(self, name: str) -> AnovaEffect:
+        """Return an effect by its name. KeyError."""
         return {effect.name: effect for effect in self.effects}[name]
 
 
@@ -100,27 +146,27 @@ def repeated_measures_anova(scores: npt.ArrayLike, factors: Sequence[str]) -> An
     return Anova(people, tuple(_effect(name, z, spread_ss) for name, z in values.items()), people_ss)
 
 
-def _effect(name: str, values: FloatArray, spread_ss: float) -> Effect:
+def _effect(name: str, values: FloatArray, spread_ss: float) -> AnovaEffect:
     """Test one effect from its contrasts, (people, df)."""
     from scipy.stats import f
 
     people, df = values.shape
     effect_ss = people * float(np.sum(values.mean(axis=0) ** 2))
     error_ss = float(np.sum((values - values.mean(axis=0)) ** 2))
-    # what is left of rounding where every person differs in the same way
+    # rounding is all that is left where every person differs alike
     if not error_ss > 1e-24 * (effect_ss + float(np.sum(values**2))):
         raise ModelError(f"{name}: every person differs alike, so there is no error to hold it against")
     error_df = df * (people - 1)
     F = (effect_ss / df) / (error_ss / error_df)
-    met = sphericity(values)
-    return Effect(
+    found = sphericity(values)
+    return AnovaEffect(
         name=name,
         effect_df=df,
         error_df=error_df,
         F=F,
         p=float(f.sf(F, df, error_df)),
-        sphericity=met,
-        corrected_p=float(f.sf(F, met.epsilon * df, met.epsilon * error_df)),
+        sphericity=found,
+        corrected_p=float(f.sf(F, found.epsilon * df, found.epsilon * error_df)),
         effect_ss=effect_ss,
         error_ss=error_ss,
         partial_eta2=effect_ss / (effect_ss + error_ss),
@@ -129,12 +175,11 @@ def _effect(name: str, values: FloatArray, spread_ss: float) -> Effect:
 
 
 def _mean(levels: int) -> FloatArray:
-    """Give the unit row that sums over a factor, (1, levels)."""
+    """Return the unit row that sums over a factor, (1, levels)."""
     return np.full((1, levels), 1.0 / math.sqrt(levels))
 
 
 def _contrasts(levels: int) -> FloatArray:
-    """Give orthonormal contrasts of a factor, (levels - 1, levels); Helmert's."""
     rows = np.zeros((levels - 1, levels))
     for i in range(1, levels):
         rows[i - 1, :i], rows[i - 1, i] = 1.0, -float(i)

@@ -1,4 +1,4 @@
-"""Who meets which condition when: orders in which no condition profits from its place."""
+"""Counterbalanced orders of conditions: none profits from its place."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ Condition = TypeVar("Condition")
 
 
 def williams_orders(count: int) -> tuple[tuple[int, ...], ...]:
-    """Give a Williams design of count conditions: orders of 0 to count - 1 (Williams 1949).
+    """Return a Williams design of count conditions: orders of 0 to count - 1 (Williams 1949).
 
-    Every condition stands in every place, and follows every other, equally often. An even count needs as many
+    Every condition has every place, and follows every other, equally often. An even count needs as many
     orders, an odd one twice as many. Raises ModelError below 2.
     """
     if count < 2:
@@ -26,7 +26,7 @@ def williams_orders(count: int) -> tuple[tuple[int, ...], ...]:
 
 
 def counterbalanced(conditions: Sequence[Condition], blocks: int) -> tuple[tuple[Condition, ...], ...]:
-    """Give each of some blocks of trials its order of all conditions, taking Williams' orders in turn.
+    """Return each of some blocks of trials its order of all conditions, taking Williams' orders in turn.
 
     With blocks a multiple of the orders everything is balanced exactly; otherwise as nearly as can be.
     """

@@ -13,16 +13,22 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.study._effect_size import CONFIDENCE
-from fdvv.study._ordinal_fit import FLATTEST, OrdinalFit, fitted, gathered
-from fdvv.study._ordinal_likelihood import OrdinalData, OrdinalPoint, person_modes
+from fdvv.stats.effect_size import CONFIDENCE
+from fdvv.stats.ordinal_fit import (
+    FLATTEST,
+    OrdinalData,
+    OrdinalFit,
+    OrdinalPoint,
+    fitted,
+    gathered,
+    person_modes,
+)
 from fdvv.units import FloatArray
 
 NODES = {1: 15, 2: 9}
 """Quadrature nodes by dimension; more move no estimate by 1e-4 of its error."""
 
 FEWEST_NODES = 5
-
 WIDEST_ERROR = 20.0
 """Standard error, in standard deviations of a feeling, of an effect that the answers do not bound."""
 
@@ -71,7 +77,7 @@ class OrdinalModel:
     problem: str = ""
 
     def of(self, name: str) -> OrdinalEffect:
-        """Give an effect by its name. KeyError."""
+        """Return an effect by its name. KeyError."""
         return {effect.name: effect for effect in self.effects}[name]
 
 
@@ -130,7 +136,7 @@ def _check(columns: FloatArray, names: Sequence[str], slope: str | None) -> None
     if not np.isfinite(columns).all():
         raise ModelError("a predictor is missing somewhere; leave those rows out")
     if len(names) and np.linalg.matrix_rank(np.column_stack([np.ones(len(columns)), columns])) <= len(names):
-        raise ModelError(f"{', '.join(names)} cannot be told apart: one never changes or follows from others")
+        raise ModelError(f"{', '.join(names)} cannot be separated: one never changes or follows from others")
     if slope is not None and slope not in names:
         raise ModelError(f"there is no predictor {slope!r} among {', '.join(names)}")
 
@@ -144,7 +150,6 @@ def _effects(names: Sequence[str], fit: OrdinalFit) -> tuple[OrdinalEffect, ...]
 
 
 def _spread(factor: FloatArray) -> tuple[tuple[float, ...], float | None]:
-    """Give standard deviations between people, and how the two go together."""
     spread = factor @ factor.T
     sd = np.sqrt(np.diag(spread))
     correlation = float(spread[0, 1] / (sd[0] * sd[1])) if len(sd) == 2 and sd.min() > 0 else None
@@ -165,7 +170,6 @@ def _effect(name: str, value: float, error: float) -> OrdinalEffect:
 
 
 def _problem(effects: tuple[OrdinalEffect, ...], slope: float) -> str:
-    """Tell why the numbers do not hold, or nothing."""
     loose = [one.name for one in effects if not one.error < WIDEST_ERROR]
     if loose:
         return f"the answers do not bound {', '.join(loose)}: they are too few, or all lie on one side"

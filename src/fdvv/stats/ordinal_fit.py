@@ -1,9 +1,9 @@
-"""Likelihood of a cumulative probit model in which people differ: adaptive Gauss-Hermite quadrature.
+"""Fitting a cumulative probit model in which people differ: the maximum and how sharply it peaks.
 
-An answer is the category in which a normal feeling falls. Its mean is what the predictors say plus what
-is the person's own, integrated out on nodes laid about where it most likely is (Pinheiro and Bates 1995;
-Hedeker and Gibbons 1994). The slope of the log-likelihood is the mean over the same nodes of the slope that
-complete data would have (Fisher's identity).
+An answer is the category in which a normal response falls. Its mean is the predictors' sum plus the person's
+own intercept, integrated out by adaptive Gauss-Hermite quadrature on nodes about its mode (Pinheiro and Bates
+1995; Hedeker and Gibbons 1994). The slope of the log-likelihood is the mean over the same nodes of the
+complete data's slope (Fisher's identity).
 """
 
 from __future__ import annotations
@@ -18,6 +18,11 @@ from fdvv.units import FloatArray
 
 NEWTON_STEPS = 50
 LOG_ROOT_2_PI = 0.5 * math.log(2 * math.pi)
+FLATTEST = 1e-3
+"""Slope of the log-likelihood, per answer, above which no maximum was found."""
+
+STEP = 1e-4
+"""By which each number is moved to see how the slope of the log-likelihood changes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +43,12 @@ class OrdinalData:
 
     @property
     def people(self) -> int:
-        """Get how many there are."""
+        """How many there are."""
         return len(self.starts)
 
     @property
     def owner(self) -> np.ndarray:
-        """Get each row's person, (n,)."""
+        """Each row's person, (n,)."""
         return np.repeat(np.arange(self.people), np.diff(np.append(self.starts, len(self.category))))
 
     def by_person(self, values: FloatArray) -> FloatArray:
@@ -60,11 +65,11 @@ class OrdinalPoint:
     factor: FloatArray
 
     def flat(self) -> FloatArray:
-        """Give all numbers in a row."""
+        """Return all numbers in a row."""
         return np.concatenate([self.thresholds, self.effects, self.factor[np.tril_indices(len(self.factor))]])
 
     def moved(self, flat: FloatArray) -> OrdinalPoint:
-        """Give the point of other numbers in a row."""
+        """Return the point of other numbers in a row."""
         first, second = len(self.thresholds), len(self.thresholds) + len(self.effects)
         factor = np.zeros_like(self.factor)
         factor[np.tril_indices(len(factor))] = flat[second:]
@@ -72,7 +77,7 @@ class OrdinalPoint:
 
 
 def log_likelihood(data: OrdinalData, point: OrdinalPoint, nodes: int) -> tuple[float, FloatArray]:
-    """Give the log-likelihood and its slope along each number of the point."""
+    """Return the log-likelihood and its slope along each number of the point."""
     low, high = _bounds(data, point)
     lead = data.random @ point.factor
     modes, spread = person_modes(data, point)
@@ -94,7 +99,7 @@ def log_likelihood(data: OrdinalData, point: OrdinalPoint, nodes: int) -> tuple[
 
 
 def person_modes(data: OrdinalData, point: OrdinalPoint) -> tuple[FloatArray, FloatArray]:
-    """Give where each person's own parts most likely are, (people, q), and the root of their spread there."""
+    """Return the mode of each person's random effects, (people, q), and the root of their spread there."""
     low, high = _bounds(data, point)
     lead = data.random @ point.factor
     size = data.random.shape[1]
@@ -135,7 +140,6 @@ def _slope(
 
 
 def _cell(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Give the logarithm of the normal chance between two bounds, and its slopes along them."""
     from scipy.special import log_ndtr
 
     # in the upper tail the mirror image, where nothing cancels
@@ -149,7 +153,6 @@ def _cell(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, Fl
 
 
 def _bend(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Give slope and bend of the log chance along the mean."""
     _, at_low, at_high = _cell(low, high)
     slope = -(at_low + at_high)
     a, b = (np.where(np.isfinite(bound), bound, 0.0) for bound in (low, high))
@@ -161,8 +164,96 @@ def _density_ratio(bound: FloatArray, log_p: FloatArray) -> FloatArray:
 
 
 def _grid(nodes: int, size: int) -> tuple[FloatArray, FloatArray]:
-    """Give the nodes of as many dimensions, (nodes^size, size), and the logarithms of their weights."""
     at, weight = np.polynomial.hermite.hermgauss(nodes)
     places = np.array(list(product(range(nodes), repeat=size)))
     log_weight = np.log(weight) + at**2
     return at[places], log_weight[places].sum(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class OrdinalFit:
+    """The maximum.
+
+    Attributes
+    ----------
+    point : where it is. log_likelihood : there. covariance : of the point's numbers; nan where the likelihood
+        does not bend. slope : largest that is left, per answer.
+    """
+
+    point: OrdinalPoint
+    log_likelihood: float
+    covariance: FloatArray
+    slope: float
+
+
+def gathered(
+    category: np.ndarray, person: np.ndarray, columns: FloatArray, slope: int | None = None
+) -> OrdinalData:
+    """Count answers that are alike in everything, sorted by person in the order of first appearance.
+
+    category : (n,) from 0. person : (n,) of anything. columns : (n, k) predictors. slope : the one by which
+    people differ as well.
+    """
+    _, first, back = np.unique(person, return_index=True, return_inverse=True)
+    who = np.argsort(np.argsort(first))[back]
+    rows, count = np.unique(np.column_stack([who, category, columns]), axis=0, return_counts=True)
+    predictors = rows[:, 2:]
+    ones = np.ones((len(rows), 1))
+    random = ones if slope is None else np.column_stack([ones, predictors[:, slope]])
+    starts = np.unique(rows[:, 0], return_index=True)[1]
+    return OrdinalData(rows[:, 1].astype(np.int64), predictors, random, count.astype(np.float64), starts)
+
+
+def fitted(data: OrdinalData, nodes: int) -> OrdinalFit:
+    """Climb from thresholds that fit the plain shares, no effect and people who differ by half."""
+    from scipy.optimize import minimize
+    from scipy.special import ndtri
+
+    share = np.bincount(data.category, data.count) / data.count.sum()
+    cuts, size = np.asarray(1.2 * ndtri(np.cumsum(share)[:-1])), data.random.shape[1]
+    start = OrdinalPoint(cuts, np.zeros(data.predictors.shape[1]), 0.5 * np.eye(size))
+
+    def falling(free: FloatArray) -> tuple[float, FloatArray]:
+        point = start.moved(_ordered(free, cuts.size))
+        value, gradient = log_likelihood(data, point, nodes)
+        return -value, -_along_free(gradient, free, cuts.size)
+
+    free = _freed(start.flat(), cuts.size)
+    found = minimize(falling, free, jac=True, method="BFGS", options={"gtol": 1e-5, "maxiter": 500})
+    point = start.moved(_ordered(found.x, cuts.size))
+    steepest = float(np.abs(np.asarray(found.jac, float)).max()) / float(data.count.sum())
+    return OrdinalFit(point, -float(found.fun), _covariance(data, point, nodes), steepest)
+
+
+def _freed(flat: FloatArray, cuts: int) -> FloatArray:
+    free = flat.copy()
+    free[1:cuts] = np.log(np.diff(flat[:cuts]))
+    return free
+
+
+def _ordered(free: FloatArray, cuts: int) -> FloatArray:
+    flat = free.copy()
+    flat[1:cuts] = free[0] + np.cumsum(np.exp(free[1:cuts]))
+    return flat
+
+
+def _along_free(gradient: FloatArray, free: FloatArray, cuts: int) -> FloatArray:
+    turned = gradient.copy()
+    # a step moves its own threshold and all above
+    above = np.cumsum(gradient[:cuts][::-1])[::-1]
+    turned[0] = above[0]
+    turned[1:cuts] = above[1:] * np.exp(free[1:cuts])
+    return turned
+
+
+def _covariance(data: OrdinalData, point: OrdinalPoint, nodes: int) -> FloatArray:
+    flat = point.flat()
+    rows = []
+    for moved in STEP * np.eye(flat.size):
+        up, down = (log_likelihood(data, point.moved(flat + sign * moved), nodes)[1] for sign in (1, -1))
+        rows.append((down - up) / (2 * STEP))
+    bend = np.array(rows)
+    try:
+        return np.asarray(np.linalg.inv((bend + bend.T) / 2))
+    except np.linalg.LinAlgError:
+        return np.full_like(bend, np.nan)

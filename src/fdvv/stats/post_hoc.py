@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.study._effect_size import CONFIDENCE, Estimate, cohen_dz, reduction
-from fdvv.study._scores import complete_scores
+from fdvv.stats.effect_size import CONFIDENCE, Estimate, cohen_dz, complete_scores, reduction
 from fdvv.units import FloatArray
 
 
@@ -92,7 +91,6 @@ def _pairs(names: Sequence[str], against: str | None) -> list[tuple[str, str]]:
 
 
 def _paired(differences: FloatArray, pair: str) -> tuple[Estimate, float, float]:
-    """Give mean difference with its interval, t and p."""
     from scipy.stats import t as student
 
     n = differences.size

@@ -1,22 +1,28 @@
-"""Wilcoxon's signed-rank test of people's differences, with ties, zeros and missing people done right.
+"""Several conditions rated by the same people: Friedman's test, and every pair with Holm's correction.
 
-Everything follows from the ranks that a sign may turn: their sum of squares is the variance with its
-correction for ties, and their subset sums are the exact distribution. No table without ties is used anywhere.
+Wilcoxon's signed-rank test follows from the ranks whose sign may turn: their sum of squares is the variance
+with its correction for ties, and their subset sums are the exact distribution. Ties, zeros and missing people
+need no table.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.study._effect_size import CONFIDENCE
-from fdvv.study._signed_rank_exact import lower_tail, untied_quantile
+from fdvv.stats.effect_size import CONFIDENCE, complete_scores
+from fdvv.stats.post_hoc import holm
 from fdvv.units import FloatArray
+
+CHUNK_BYTES = 64_000_000
+"""Room that the sums of as many studies as go together may take."""
 
 Zeros = Literal["wilcoxon", "pratt"]
 """wilcoxon: who does not differ is left out before ranking (1945; SPSS, R). pratt: ranked, then left out
@@ -24,6 +30,53 @@ Zeros = Literal["wilcoxon", "pratt"]
 
 SAME = 1e-9
 """Part of the largest difference below which two of them are the same: means of ratings carry rounding."""
+
+
+def lower_tail(ranks: FloatArray, sums: FloatArray) -> FloatArray:
+    """Return the chance of a sum of positive ranks as small or smaller, all signs being tossed.
+
+    ranks : (studies, people), whole or half; 0 for who has no sign to toss. sums : (studies,).
+    """
+    doubled = np.sort(np.rint(2 * ranks).astype(np.int64), axis=1)
+    tops = np.rint(2 * sums).astype(np.int64)
+    # studies with like sums go together: none has to count beyond the largest
+    order = np.argsort(tops, kind="stable")
+    tail = np.empty(len(tops))
+    start = 0
+    while start < len(order):
+        size = max(1, CHUNK_BYTES // (8 * (int(tops[order[-1]]) + 1)))
+        rows = order[start : start + size]
+        tail[rows] = _chunk(doubled[rows], tops[rows])
+        start += size
+    return tail
+
+
+def _chunk(ranks: np.ndarray, tops: np.ndarray) -> FloatArray:
+    """Count (studies, 0 to the largest top) subset sums, halving at each toss so that no count overflows."""
+    chance = np.zeros((len(ranks), int(tops.max(initial=0)) + 1))
+    chance[:, 0] = 1.0
+    for column in ranks.T:
+        for rank in np.unique(column[column > 0]):
+            rows = np.flatnonzero(column == rank)
+            part = 0.5 * (chance if rows.size == len(ranks) else chance[rows])
+            moved = part[:, : part.shape[1] - min(rank, part.shape[1])].copy()
+            part[:, part.shape[1] - moved.shape[1] :] += moved
+            chance[rows] = part
+    counted = np.arange(chance.shape[1]) <= tops[:, np.newaxis]
+    return np.asarray(np.sum(chance * counted, axis=1))
+
+
+@lru_cache(maxsize=256)
+def untied_quantile(n: int, level: float) -> int | None:
+    """Return the largest sum of n ranks without ties whose lower tail is at most level; None without one."""
+    chance = np.zeros(n * (n + 1) // 2 + 1)
+    chance[0] = 1.0
+    for rank in range(1, n + 1):
+        moved = chance[: chance.size - rank].copy()
+        chance[rank:] += moved
+        chance *= 0.5
+    below = int(np.searchsorted(np.cumsum(chance), level, side="right")) - 1
+    return below if below >= 0 else None
 
 
 @dataclass(frozen=True)
@@ -141,7 +194,6 @@ def turnable_ranks(differences: FloatArray, zeros: Zeros = "wilcoxon") -> FloatA
 
 
 def _snapped(differences: FloatArray) -> FloatArray:
-    """Make differences that are the same but for rounding the same, row by row."""
     if differences.size == 0:
         return differences
     largest = np.nanmax(np.abs(differences), axis=-1, keepdims=True, initial=0.0)
@@ -150,7 +202,6 @@ def _snapped(differences: FloatArray) -> FloatArray:
 
 
 def _shift(differences: FloatArray) -> tuple[float, float | None, float | None]:
-    """Give the median of the means of two differences and the bounds that the exact test does not reject."""
     n = differences.size
     first, second = np.triu_indices(n)
     means = np.sort((differences[first] + differences[second]) / 2)
@@ -159,3 +210,84 @@ def _shift(differences: FloatArray) -> tuple[float, float | None, float | None]:
     if below is None or not math.isfinite(middle):
         return middle, None, None
     return middle, float(means[below]), float(means[-1 - below])
+
+
+@dataclass(frozen=True)
+class Friedman:
+    """Friedman's test.
+
+    Attributes
+    ----------
+    chi2, df, p : with the correction for ties; p asymptotic.
+    F, F_df, F_p : Iman and Davenport's (1980), which keeps its level better with few people.
+    W : Kendall's coefficient of concordance, 0 to 1. mean_ranks : of the conditions, 1 the lowest.
+    """
+
+    people: int
+    chi2: float
+    df: int
+    p: float
+    F: float
+    F_df: tuple[float, float]
+    F_p: float
+    W: float
+    mean_ranks: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RankPair:
+    """One pair of conditions, first minus second. holm_p : of test.p_exact, for all pairs of the table."""
+
+    first: str
+    second: str
+    test: SignedRank
+    holm_p: float
+
+
+def friedman(scores: npt.ArrayLike) -> Friedman:
+    """Test whether conditions are ranked alike: scores (people, conditions), without missing ones.
+
+    Raises ModelError on missing cells, and where every person rates all conditions alike.
+    """
+    from scipy.stats import chi2 as chi_squared
+    from scipy.stats import f, rankdata
+
+    found = complete_scores(scores, ("person", "condition"))
+    people, conditions = found.shape
+    ranks = rankdata(found, axis=1)
+    means = ranks.mean(axis=0)
+    between = people * float(np.sum((means - (conditions + 1) / 2) ** 2))
+    # of what ranks spread within people, ties and all
+    spread = float(np.sum((ranks - (conditions + 1) / 2) ** 2))
+    if spread == 0:
+        raise ModelError("every person rates all conditions alike, so there are no ranks to test")
+    W, df = between / spread, conditions - 1
+    chi2 = people * df * W
+    F = (people - 1) * W / (1 - W) if W < 1 else float("inf")
+    F_df = (float(df), float(df * (people - 1)))
+    p, F_p = float(chi_squared.sf(chi2, df)), float(f.sf(F, *F_df))
+    return Friedman(people, chi2, df, p, F, F_df, F_p, W, tuple(means.tolist()))
+
+
+def ranked_pairs(
+    scores: npt.ArrayLike, names: Sequence[str], against: str | None = None, zeros: Zeros = "wilcoxon"
+) -> tuple[RankPair, ...]:
+    """Test pairs of conditions by signed_rank, Holm's correction over their exact p.
+
+    scores : (people, conditions), nan where missing: a pair leaves out only who lacks one of the two.
+    against : only pairs of this one, as the first. Raises ModelError on unknown names.
+    """
+    found = np.asarray(scores, dtype=np.float64)
+    if found.ndim != 2 or len(names) != found.shape[1] or len(set(names)) != len(names):
+        raise ModelError(f"scores of shape {found.shape} need as many different names, got {list(names)}")
+    if against is not None and against not in names:
+        raise ModelError(f"there is no condition {against!r} among {', '.join(names)}")
+    firsts = names if against is None else [against]
+    places = [(names.index(a), j) for a in firsts for j in range(len(names)) if names[j] != a]
+    places = [(i, j) for i, j in places if against is not None or i < j]
+    tests = [signed_rank(found[:, i] - found[:, j], zeros) for i, j in places]
+    corrected = holm([test.p_exact for test in tests])
+    return tuple(
+        RankPair(names[i], names[j], test, p)
+        for (i, j), test, p in zip(places, tests, corrected, strict=True)
+    )

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from fdvv.study._share import Share, binomial_p, clopper_pearson
+from fdvv.stats.share import Share, binomial_p, clopper_pearson
 
 AbxRule = Literal["differencing", "independent"]
 """differencing: X is said to be whichever of A and B it is nearer to. independent: each of A, B and X is held
@@ -47,7 +47,7 @@ class DPrime:
 
 
 def d_prime_2afc(correct: int, n: int) -> DPrime:
-    """Give d' of two-alternative forced choice, with its sign: pc = Φ(d' / √2) (Green and Swets 1966).
+    """Return d' of two-alternative forced choice, with its sign: pc = Φ(d' / √2) (Green and Swets 1966).
 
     The interval is Clopper and Pearson's of the share. Also for a preference: d' is then the distance in what
     is preferred.
@@ -56,33 +56,33 @@ def d_prime_2afc(correct: int, n: int) -> DPrime:
 
 
 def d_prime_abx(correct: int, n: int, rule: AbxRule = "differencing") -> DPrime:
-    """Give d' of strict ABX: X is A or B (Macmillan and Creelman 2005, chapter 9).
+    """Return d' of strict ABX: X is A or B (Macmillan and Creelman 2005, chapter 9).
 
     differencing : pc = Φ(d'/√2) Φ(d'/√6) + Φ(-d'/√2) Φ(-d'/√6). independent : with d'/2 in place of d'/√6.
-    Below one half d' is 0: this task cannot tell which way.
+    Below one half d' is 0: this task has no direction.
     """
     function = share_duo_trio if rule == "differencing" else share_abx_independent
     return _transformed(correct, n, function, f"abx, {rule}", signed=False)
 
 
 def d_prime_duo_trio(correct: int, n: int) -> DPrime:
-    """Give d' of duo-trio: which of two is the reference? The same function as ABX by differencing."""
+    """Return d' of duo-trio: which of two is the reference? The same function as ABX by differencing."""
     return _transformed(correct, n, share_duo_trio, "duo-trio", signed=False)
 
 
 def share_2afc(d: float) -> float:
-    """Give the share of correct answers of 2-AFC."""
+    """Return the share of correct answers of 2-AFC."""
     return _phi(d / math.sqrt(2))
 
 
 def share_duo_trio(d: float) -> float:
-    """Give the share of correct answers of duo-trio and of ABX by differencing."""
+    """Return the share of correct answers of duo-trio and of ABX by differencing."""
     a, b = d / math.sqrt(2), d / math.sqrt(6)
     return _phi(a) * _phi(b) + _phi(-a) * _phi(-b)
 
 
 def share_abx_independent(d: float) -> float:
-    """Give the share of correct answers of ABX where A, B and X are judged each for itself."""
+    """Return the share of correct answers of ABX where A, B and X are judged each for itself."""
     a, b = d / math.sqrt(2), d / 2
     return _phi(a) * _phi(b) + _phi(-a) * _phi(-b)
 
@@ -126,5 +126,4 @@ def _better_than_guessing(correct: int, n: int) -> float:
 
 
 def _phi(x: float) -> float:
-    """Give the standard normal distribution."""
     return 0.5 * math.erfc(-x / math.sqrt(2))

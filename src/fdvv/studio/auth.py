@@ -1,19 +1,27 @@
-"""Who may talk to the studio: its own page, opened with the token that was printed, and nobody else.
+"""Access to the studio: only its own page, opened with the printed token.
 
 A page of another site can send requests to this machine's ports, and a name of another site can be made to
 point here (DNS rebinding). So the Host must be ours, a cookie counts only from our own Origin, and nothing at
-all is served without the token.
+all is served without the token. A token can be stored in the project, so that the address survives a restart.
 """
 
 from __future__ import annotations
 
 import hmac
+import os
+import re
+import secrets
+import stat
 from dataclasses import dataclass
+from pathlib import Path
 
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from fdvv.errors import InputError
+from fdvv.io.files import sync_folder, write_atomic
 
 CLOSED = 4401
 """Code of a live connection that was refused."""
@@ -29,11 +37,12 @@ HEADERS = {
     "referrer-policy": "no-referrer",
     "x-content-type-options": "nosniff",
 }
+
 NO_TOKEN = "Only its owner may open this studio: open the whole address that `fdvv studio` printed."
 
 
 @dataclass(frozen=True)
-class Door:
+class ServerAddress:
     """Where the studio is, and what opens it.
 
     Attributes
@@ -48,7 +57,7 @@ class Door:
     cookie: str
 
     def refusal(self, connection: HTTPConnection, changes: bool) -> str:
-        """Tell why a connection is refused; empty if it may pass.
+        """Return why a connection is refused; empty if it may pass.
 
         changes : it could change something or stay open, so a browser must prove where it comes from.
         """
@@ -83,10 +92,10 @@ class Door:
         return answer
 
 
-class Guard:
+class AuthMiddleware:
     """ASGI middleware that lets nothing pass a Door that is not its owner's."""
 
-    def __init__(self, app: ASGIApp, door: Door) -> None:
+    def __init__(self, app: ASGIApp, door: ServerAddress) -> None:
         self.app, self.door = app, door
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -117,3 +126,48 @@ class Guard:
             await send({"type": "websocket.close", "code": CLOSED, "reason": "not this studio's page"})
             return
         await self.app(scope, receive, send)
+
+
+TOKEN_FILE, IGNORE_FILE = ".studio-token", ".gitignore"
+TOKEN = re.compile(r"[A-Za-z0-9_-]{32,64}")
+REMEDY = "delete it: the next start draws another, and the old address opens nothing"
+
+
+def new_token() -> str:
+    return secrets.token_urlsafe(24)
+
+
+def saved_token(project: Path) -> str:
+    """Return the token that a project keeps; draw it when it is first asked for.
+
+    InputError where others can read it, or where it is none. OSError.
+    """
+    path = project / TOKEN_FILE
+    project.mkdir(parents=True, exist_ok=True)
+    try:
+        # readable by its owner only, from the moment it exists
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        return _read(path)
+    with os.fdopen(handle, "w", encoding="utf-8") as stream:
+        stream.write(token := new_token())
+        stream.flush()
+        os.fsync(stream.fileno())
+    if not (project / IGNORE_FILE).exists():
+        # projects are put under version control
+        write_atomic(project / IGNORE_FILE, f"{TOKEN_FILE}\n")
+    sync_folder(project)
+    return token
+
+
+def _read(path: Path) -> str:
+    about = path.stat(follow_symlinks=False)
+    if not stat.S_ISREG(about.st_mode):
+        raise InputError(path, "whole file", "is no plain file", REMEDY)
+    # Windows knows no such permissions
+    if os.name == "posix" and about.st_mode & 0o077:
+        raise InputError(path, "permissions", "others on this machine can read it", REMEDY)
+    token = path.read_text(encoding="utf-8", errors="replace").strip()
+    if not TOKEN.fullmatch(token):
+        raise InputError(path, "whole file", "holds no token", REMEDY)
+    return token

@@ -1,4 +1,4 @@
-"""A device that a thread of its own holds open: what is asked of it waits for its turn, ticks are told."""
+"""A device kept open by a thread of its own, which runs requests in turn and streams ticks."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from fdvv.device import Device, LinkedDevice, Remote, TickColumns, TwinDevice
+from fdvv.device.contract import Device
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.remote import Remote
+from fdvv.device.telemetry import TickColumns
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError
-from fdvv.protocol import Mode, TickFlag
-from fdvv.twin import Trace
-from fdvv.workflow import TickPiece
+from fdvv.live.tick_bins import TickPiece
+from fdvv.protocol.tables import Mode, TickFlag
+from fdvv.twin.trace import Trace
 
 Answer = TypeVar("Answer")
-
 GONE = "the device is gone; connect it again"
 GLANCE_s = 0.05
 """Of a device's time between two looks at what it tells."""
@@ -36,27 +39,26 @@ class _Turn:
         self.work, self.answer = work, Future[Any]()
 
     def run(self) -> None:
-        """Do it, and answer whoever asked."""
         try:
             self.answer.set_result(self.work())
         except BaseException as error:
             self.answer.set_exception(error)
 
 
-class HeldDevice:
+class DeviceThread:
     """A device in use by the studio.
 
     Parameters
     ----------
     device : open; closed with this.
-    told : called with ticks as they come. lost : called once if the device goes away. Both in the thread.
+    ticks : called with ticks as they come. lost : called once if the device goes away. Both in the thread.
     """
 
     def __init__(
-        self, device: Device, told: Callable[[TickPiece], None], lost: Callable[[DeviceError], None]
+        self, device: Device, ticks: Callable[[TickPiece], None], lost: Callable[[DeviceError], None]
     ) -> None:
         self.device = device
-        self._told, self._lost = told, lost
+        self._ticks, self._lost = ticks, lost
         self._asked: queue.Queue[_Turn] = queue.Queue()
         self._over, self._lock = threading.Event(), threading.Lock()
         self._twin_s = 0.0
@@ -65,11 +67,11 @@ class HeldDevice:
 
     @property
     def remote(self) -> Remote | None:
-        """Get the device as one that tells of its ticks; None if it does not."""
+        """Return the device if it streams its ticks, else None."""
         return self.device if isinstance(self.device, Remote) else None
 
     def do(self, work: Callable[[], Answer]) -> Answer:
-        """Have something done in the device's thread. Raises what it raises; DeviceError if it is gone."""
+        """Run work in the device's thread. Raises what it raises; DeviceError if the device is gone."""
         if threading.current_thread() is self._thread:
             return work()
         turn = _Turn(work)
@@ -83,17 +85,17 @@ class HeldDevice:
             raise DeviceError(f"the device has not answered for {PATIENCE_s:g} s; disconnect it") from None
 
     def press(self, velocity_mm_s: float) -> Any:
-        """Have the simulated person press once, and tell the ticks of it; call it by do. DeviceError."""
+        """Make one simulated press and stream its ticks; to be called through do(). DeviceError."""
         if isinstance(self.device, TwinDevice):
             trace = self.device.press_trace(velocity_mm_s)
-            self._told(self._of_twin(trace))
+            self._ticks(self._of_twin(trace))
             return trace.press(velocity_mm_s)
         press = self.device.press(velocity_mm_s)
         self._tell_ticks()
         return press
 
     def close(self) -> None:
-        """Let the device fall to zero force and go."""
+        """Set zero force and close the device."""
         self._over.set()
         self._thread.join(PATIENCE_s)
 
@@ -113,7 +115,6 @@ class HeldDevice:
             self._lost(lost)
 
     def _refuse(self) -> None:
-        """Answer whoever still waits: nothing is done any more."""
         with self._lock:
             self._over.set()
             while not self._asked.empty():
@@ -127,26 +128,26 @@ class HeldDevice:
         except queue.Empty:
             return
         if self.remote:
-            # what was not told while something else was done is not missing
+            # what was not sent while something else was done is not missing
             self.remote.client.telemetry.clear()
             self.remote.client.stream(1)
 
     def _watch(self) -> float:
         """Listen for a moment; give what is left of it: a device in lockstep is no faster than the clock."""
         assert self.remote
-        client, begun_s = self.remote.client, time.monotonic()
+        client, started_s = self.remote.client, time.monotonic()
         if client.telemetry.last is None:
             client.stream(1)
         client.listen(client.port.now_s() + GLANCE_s)
         self._tell_ticks()
         lockstep = isinstance(self.device, LinkedDevice)
-        return GLANCE_s - (time.monotonic() - begun_s) if lockstep else 0.0
+        return GLANCE_s - (time.monotonic() - started_s) if lockstep else 0.0
 
     def _tell_ticks(self) -> None:
         assert self.remote
         ticks = self.remote.client.telemetry.take()
         if ticks.tick.size:
-            self._told(self._of_ticks(ticks))
+            self._ticks(self._of_ticks(ticks))
 
     def _of_ticks(self, ticks: TickColumns) -> TickPiece:
         settings = self.device.settings()
@@ -161,7 +162,7 @@ class HeldDevice:
         )
 
     def _of_twin(self, trace: Trace) -> TickPiece:
-        """Give the ticks of a simulated press; presses follow each other on one clock."""
+        """Return the ticks of a simulated press; presses follow each other on one clock."""
         rows = trace.tick
         t_s = self._twin_s + BETWEEN_s + trace.t_s[rows]
         self._twin_s = float(t_s[-1])
@@ -176,6 +177,5 @@ class HeldDevice:
 
 
 def mode_of(remote: Remote) -> str:
-    """Name the mode that a device told last."""
     last = remote.client.telemetry.last
     return Mode(last.mode).name.lower() if last else ""

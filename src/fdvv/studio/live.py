@@ -1,4 +1,4 @@
-"""The one live connection of a page: envelopes ``{"channel": …, "body": …}`` in both directions."""
+"""The live connection of a page: envelopes ``{"channel": …, "body": …}`` in both directions."""
 
 from __future__ import annotations
 
@@ -15,14 +15,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
-from fdvv.studio._contract import Channel, ChannelKind, Tell
-from fdvv.studio._studio import Studio
-from fdvv.studio._told import told
+from fdvv.studio.contract import Channel, ChannelKind, Tell, error_line
+from fdvv.studio.studio import Studio
 
 WAITING = 4000
 """So many messages may wait for a page; one that does not read is cut off and may come again."""
 SLOW, MALFORMED = 4408, 4400
-
 log = logging.getLogger("fdvv.studio")
 
 
@@ -53,7 +51,7 @@ class LiveConnection:
         try:
             await self._read()
         finally:
-            # without waiting: whoever cancels this connection cancels every wait in it too
+            # without waiting: cancelling this connection cancels every wait in it too
             for task in (writer, *self._workers):
                 task.cancel()
             self._loop.run_in_executor(None, self._close)
@@ -78,7 +76,7 @@ class LiveConnection:
             await self._queue_of(kind).put(ask)
 
     async def _outgoing_done(self) -> None:
-        """Give the writer a moment to send what is wrong before the line is cut."""
+        """Wait briefly until the error is sent before the connection closes."""
         for _ in range(50):
             if self._outgoing.empty():
                 return
@@ -105,7 +103,7 @@ class LiveConnection:
             try:
                 await run_in_threadpool(channel.receive, ask)
             except FdvvError as error:
-                self._say(b"", kind.name, told(error))
+                self._say(b"", kind.name, error_line(error))
             except Exception:
                 log.exception("channel %s failed", kind.name)
                 self._say(b"", kind.name, f"{kind.name} failed; the studio's terminal tells why")
@@ -129,7 +127,6 @@ class LiveConnection:
             channel.close()
 
     def _say(self, body: bytes, channel: str = "studio", error: str = "") -> None:
-        """Queue a message, or an error, for the page."""
         if self._over:
             return
         head = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})

@@ -1,4 +1,4 @@
-"""Every part of the studio, loaded behind the first page so that the page does not wait for it."""
+"""Every part of the studio, imported while the first page loads."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import TypeVar
 
 import msgspec
 
-from fdvv.studio._contract import Call, ChannelKind
+from fdvv.studio.contract import Call, ChannelKind
 
 PARTS = (
-    *("_about", "_library", "_documents", "_editor", "_press", "_programs", "_jobs_part", "_device_part"),
-    *("_optimize", "_studies_part"),
+    *("about", "library", "library_buttons", "documents", "editor", "press", "programs", "jobs", "device"),
+    *("optimize", "optimize_setup", "optimize_trials", "play", "studies", "study_plans", "study"),
 )
 """In the order in which a person may want them: the first page is the library's."""
 
@@ -46,10 +46,10 @@ class PartLoader:
         prepared: set[type[msgspec.Struct]] = set()
         try:
             for name in self._names:
-                module = importlib.import_module(f"fdvv.studio.{name}")
+                module = importlib.import_module(f"fdvv.studio.api.{name}")
                 prepare_records(prepared)
                 getattr(module, "prepare", lambda: None)()
-                self._take(module.CALLS, module.CHANNELS)
+                self._take(getattr(module, "CALLS", ()), getattr(module, "CHANNELS", ()))
         except BaseException as error:
             self._fault = error
         finally:
@@ -64,7 +64,6 @@ class PartLoader:
         return self._parts.calls.get(name) or self.all().calls.get(name)
 
     def all(self) -> Parts:
-        """Wait for all parts."""
         with self._changed:
             self._changed.wait_for(lambda: self._ended)
         if self._fault:

@@ -4,37 +4,101 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Protocol
+from typing import Annotated, Literal, Protocol
+
+from msgspec import Meta, Struct
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import Trial, TrialState
-from fdvv.studio._messages_play import PlayKept, PlayRound
-from fdvv.studio._pointing import pointing_of, require_player
-from fdvv.workflow import OptimizeSession, PlayedRounds, RoundTiming
+from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.run.task_rounds import RoundTiming, TaskRounds
+from fdvv.optimize.tasks import TemporalPointing
+
+Count = Annotated[int, Meta(ge=0, le=2**31)]
+Time = Annotated[float, Meta(ge=0, le=1e12)]
+Delay = Annotated[float, Meta(ge=0, le=1000)]
+Hand = Literal["key", "mouse", "touch", "pen", "button"]
+
+
+class PlayDelay(Struct, frozen=True, forbid_unknown_fields=True):
+    """A delay and how far it may be off."""
+
+    ms: Delay
+    error_ms: Delay
+
+
+class PlayRound(Struct, frozen=True, forbid_unknown_fields=True, tag="round"):
+    """A round is over: keep it.
+
+    start_ms, end_ms : presses between count. target_ms : when the target was drawn.
+    display : from drawing to light. input : from finger to the browser's event.
+    clock_ms, clock_error_ms : the server's clock less the page's; None where it is not known yet.
+    frame_ms : between two pictures. hand, input : of a device's key "button" and nothing: it tells its own.
+    """
+
+    number: Count
+    start_ms: Time
+    target_ms: Time
+    end_ms: Time
+    hand: Hand
+    display: PlayDelay
+    input: PlayDelay
+    clock_ms: Annotated[float, Meta(ge=-1e15, le=1e15)] | None
+    clock_error_ms: Delay | None
+    frame_ms: Delay
+
+
+class PlayKept(Struct, frozen=True, forbid_unknown_fields=True, tag="kept"):
+    """A round is on the disk.
+
+    late_ms : of the key against the target, None if it did not go down. transport_ms : from hand to
+    simulation, taken out; None without a press, and of a device.
+    """
+
+    number: int
+    late_ms: float | None
+    transport_ms: float | None
+    finished: bool
+
+
+TASK = "temporal-pointing"
+
+
+def playable(setup: OptimizeSetup) -> bool:
+    return setup.task == TASK
+
+
+def require_player(setup: OptimizeSetup, simulated: bool) -> None:
+    """Refuse to mix presses of people with simulated ones in a run. InputError."""
+    if setup.simulated is not simulated:
+        who = "a simulated person" if setup.simulated else "a person"
+        raise InputError("optimise", "player", f"{who} plays this run", "begin another run")
+
+
+def pointing_of(setup: OptimizeSetup) -> TemporalPointing:
+    """Return the task of a run as the page plays it. InputError if it is another one.
+
+    The clocks tell times, not frames of a strip, so nothing is rounded to them.
+    """
+    if not playable(setup):
+        raise InputError("optimise", setup.task, "is not played on the page", "use fdvv optimize")
+    also = tuple(one.name for one in setup.objectives[1:])
+    return TemporalPointing(setup.level or "easy", setup.presses, quantised=False, also=also)
 
 
 class Runs(Protocol):
-    """What those who play need of the runs."""
+    """What a played trial needs of the project's runs; `Optimizations` has it."""
 
-    def session(self, run: int) -> AbstractContextManager[OptimizeSession]:
-        """Give a run to one thread at a time."""
-        ...
+    def folder(self, run: int) -> Path: ...
 
-    def hold(self, run: int) -> object:
-        """Keep its folder for this studio."""
-        ...
+    def session(self, run: int) -> AbstractContextManager[Optimization]: ...
 
-    def leave(self, run: int) -> None:
-        """Undo hold()."""
-        ...
+    def hold(self, run: int) -> object: ...
 
-    def folder(self, run: int) -> Path:
-        """Give its folder."""
-        ...
+    def leave(self, run: int) -> None: ...
 
-    def announce(self, run: int) -> None:
-        """Tell that it changed."""
-        ...
+    def announce(self, run: int) -> None: ...
 
 
 class PlayedTrial:
@@ -58,7 +122,7 @@ class PlayedTrial:
                 self.task, self.seed = pointing_of(session.setup), session.setup.seed
                 trial = _open_trial(session, number)
                 self.model = session.model(trial.design, f"trial {number + 1}")
-                self._rounds = PlayedRounds(runs.folder(run))
+                self._rounds = TaskRounds(runs.folder(run))
                 if trial.state is TrialState.SUGGESTED:
                     session.show(number)
             self.attempt = self._rounds.begin(number)
@@ -95,7 +159,7 @@ class PlayedTrial:
         self.close()
 
     def close(self) -> None:
-        """Let go of the run; rounds of an unfinished trial are kept and do not count."""
+        """Release the run; rounds of an unfinished trial are kept and do not count."""
         if not self._over:
             self._over = True
             self._rounds.close()
@@ -103,8 +167,7 @@ class PlayedTrial:
             self._runs.announce(self._run)
 
 
-def _open_trial(session: OptimizeSession, number: int) -> Trial:
-    """Give a trial that may be played. InputError."""
+def _open_trial(session: Optimization, number: int) -> Trial:
     trials = session.trials
     if not 0 <= number < len(trials):
         raise InputError("optimise", f"trial {number + 1}", "there is none", "ask for the next one")
@@ -114,6 +177,6 @@ def _open_trial(session: OptimizeSession, number: int) -> Trial:
     return trial
 
 
-def open_trials(session: OptimizeSession) -> tuple[Trial, ...]:
-    """Give the trials that are suggested or under way."""
+def open_trials(session: Optimization) -> tuple[Trial, ...]:
+    """Return the trials that are suggested or in progress."""
     return tuple(one for one in session.trials if one.state in (TrialState.SUGGESTED, TrialState.SHOWN))

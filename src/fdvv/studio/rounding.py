@@ -1,4 +1,4 @@
-"""Numbers on their way to a screen."""
+"""Numbers rounded for a screen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ DIGITS = 3
 """A thousandth of a cN, or a micrometre, is beyond any line's width."""
 
 
-def known(value: float) -> float | None:
+def finite_or_none(value: float) -> float | None:
     """Round a number; None for one that is not known (NaN, infinite)."""
     return round(value, DIGITS) if math.isfinite(value) else None
 
@@ -20,6 +20,6 @@ def rounded(row: FloatArray) -> tuple[float, ...]:
     return tuple(row.round(DIGITS).tolist())
 
 
-def partly(row: FloatArray) -> tuple[float | None, ...]:
+def finite_row(row: FloatArray) -> tuple[float | None, ...]:
     """Round a row, (n,); None where it is not known."""
-    return tuple(map(known, row.tolist()))
+    return tuple(map(finite_or_none, row.tolist()))

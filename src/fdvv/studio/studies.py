@@ -1,4 +1,4 @@
-"""The studies of a project: their folders, free seats, and who sits at a screen now."""
+"""The studies of a project: their folders, open invitations, and the screens in use."""
 
 from __future__ import annotations
 
@@ -9,26 +9,35 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock, RLock
-from typing import Protocol
+from typing import Literal, Protocol
 
 from msgspec import Struct
 
 from fdvv.errors import InputError
-from fdvv.files import write_atomic
-from fdvv.studio._messages_studies import StudiesChanged, StudyState
-from fdvv.studio._studio import Studio
-from fdvv.studio._watchers import Watchers
-from fdvv.workflow import EVERYBODY, Study, device_problems
+from fdvv.io.files import write_atomic
+from fdvv.studio.contract import Watchers
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.review import device_problems
+from fdvv.study.admin.study import Study
+from fdvv.study.files.people import EVERYBODY
 
 FOLDER, DEVICE_SUFFIX = "studies", ".device"
 TWIN = "twin"
 PATIENCE_s = 10.0
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 
+StudyState = Literal["draft", "frozen", "unsealed", "broken"]
+
+
+class StudiesChanged(Struct, frozen=True, tag="changed"):
+    """A study is not what it was."""
+
+    study: str
+
 
 @dataclass(eq=False)
-class Seat:
-    """A seat of a study, taken once.
+class Invitation:
+    """An invitation of a study, taken once.
 
     holder : the page that took it, by a word that it alone has; empty while it is free.
     person, code : whose it is until their screen knows.
@@ -46,11 +55,11 @@ class Screen(Protocol):
     """A participant's screen, as the operator may use it."""
 
     def pause(self, on: bool) -> None:
-        """Have it wait, or go on."""
+        """Pause or continue."""
         ...
 
     def leave(self, reason: str) -> None:
-        """Have it serve nobody any more."""
+        """End the session at this screen."""
         ...
 
     def withdraw(self, delete: bool) -> None:
@@ -64,20 +73,19 @@ class Studies:
     def __init__(self, studio: Studio) -> None:
         self.folder = studio.project / FOLDER
         self.watchers = Watchers[Struct]()
-        self._seats: dict[str, Seat] = {}
+        self._invitations: dict[str, Invitation] = {}
         self._screens: dict[tuple[str, str], Screen] = {}
-        self._places: dict[tuple[str, str], Lock] = {}
-        # held for a look only: whoever is at a screen may ask for it
+        self._person_locks: dict[tuple[str, str], Lock] = {}
+        # held briefly only: the thread of a screen may take it
         self._lock = RLock()
 
     def names(self) -> list[str]:
-        """List all studies."""
         if not self.folder.is_dir():
             return []
         return sorted(path.name for path in self.folder.iterdir() if NAME.fullmatch(path.name))
 
     def path(self, name: str) -> Path:
-        """Give the folder that a study of this name has, or would have. InputError on a name that is none."""
+        """Return the folder of a study, which need not exist. InputError on an invalid name."""
         if not NAME.fullmatch(name):
             remedy = "use small letters, digits and hyphens, 40 at most"
             raise InputError("study", "name", f"{name!r:.60} is no name of a study", remedy)
@@ -88,7 +96,7 @@ class Studies:
         return Study.open(self.path(name))
 
     def device(self, name: str) -> str:
-        """Tell what renders a study: the twin, or a device by what `fdvv.device` calls it."""
+        """Return what renders a study: the twin, or a device by its `fdvv.device` name."""
         path = self.path(name).with_suffix(DEVICE_SUFFIX)
         return path.read_text(encoding="utf-8").strip() if path.is_file() else TWIN
 
@@ -105,46 +113,48 @@ class Studies:
         write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")
         self.announce(name)
 
-    def free_seat(self, name: str) -> Seat:
-        """Make a seat that one person may take. InputError where nobody can begin."""
-        seat = Seat(name, secrets.token_urlsafe(9))
+    def invite(self, name: str) -> Invitation:
+        """Make an invitation for one person. InputError where nobody can begin."""
+        invitation = Invitation(name, secrets.token_urlsafe(9))
         state = state_of(self.study(name))
         if state == "draft":
             raise InputError("study", name, "is not frozen", "freeze it before the first person")
         if state == "unsealed":
             raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
         with self._lock:
-            self._seats[seat.word] = seat
+            self._invitations[invitation.word] = invitation
         self.announce(name)
-        return seat
+        return invitation
 
-    def seat(self, name: str, word: str, holder: str) -> Seat | None:
-        """Find a seat that a page may take: a free one, or its own."""
+    def invitation(self, name: str, word: str, holder: str) -> Invitation | None:
+        """Find an invitation that a page may take: a free one, or its own."""
         with self._lock:
-            seat = self._seats.get(word)
-        mine = seat and seat.study == name and seat.holder in ("", holder)
-        return seat if mine else None
+            invitation = self._invitations.get(word)
+        mine = invitation and invitation.study == name and invitation.holder in ("", holder)
+        return invitation if mine else None
 
-    def taken(self, seat: Seat) -> None:
-        """Forget a seat, and the code with it: its person's screen knows."""
+    def discard(self, invitation: Invitation) -> None:
+        """Forget an invitation, and the code with it: its person's screen knows."""
         with self._lock:
-            self._seats.pop(seat.word, None)
+            self._invitations.pop(invitation.word, None)
 
     def waiting(self, name: str) -> int:
-        """Count the free seats."""
         with self._lock:
-            return sum(seat.study == name and not seat.person for seat in self._seats.values())
+            return sum(
+                invitation.study == name and not invitation.person
+                for invitation in self._invitations.values()
+            )
 
-    def sit(self, name: str, person: str, screen: Screen) -> None:
-        """Note who sits at which screen; the one before it serves nobody any more."""
+    def attach(self, name: str, person: str, screen: Screen) -> None:
+        """Register a person's screen and end the session at an earlier one."""
         with self._lock:
             before = self._screens.pop((name, person), None)
             self._screens[name, person] = screen
         if before:
-            before.leave("this study goes on at another screen")
+            before.leave("this study continues at another screen")
         self.announce(name)
 
-    def rise(self, name: str, person: str, screen: Screen) -> None:
+    def detach(self, name: str, person: str, screen: Screen) -> None:
         """Note that a screen serves a person no more."""
         with self._lock:
             if self._screens.get((name, person)) is screen:
@@ -152,13 +162,13 @@ class Studies:
         self.announce(name)
 
     @contextmanager
-    def place(self, name: str, person: str) -> Iterator[None]:
+    def exclusive(self, name: str, person: str) -> Iterator[None]:
         """Take a person up alone: a page that is gone may still be at it when they come back on another.
 
         InputError where that takes too long.
         """
         with self._lock:
-            lock = self._places.setdefault((name, person), Lock())
+            lock = self._person_locks.setdefault((name, person), Lock())
         if not lock.acquire(timeout=PATIENCE_s):
             raise InputError("study", "screen", "is taken up elsewhere at this moment", "try again")
         try:
@@ -167,12 +177,11 @@ class Studies:
             lock.release()
 
     def screen(self, name: str, person: str) -> Screen | None:
-        """Find a person's screen."""
         with self._lock:
             return self._screens.get((name, person))
 
     def pause(self, name: str, person: str | None, on: bool) -> None:
-        """Have all screens of a study wait, or one; kept with the study. InputError."""
+        """Pause or continue all screens of a study, or one; kept with the study. InputError."""
         self.study(name).pause(person or EVERYBODY, on)
         with self._lock:
             screens = [(who, screen) for (of, who), screen in self._screens.items() if of == name]
@@ -181,7 +190,7 @@ class Studies:
         self.announce(name)
 
     def paused(self, name: str, person: str | None = None) -> bool:
-        """Tell whether a study waits, or one person of it."""
+        """Return whether a study, or one person of it, is paused."""
         return not self.study(name).paused.isdisjoint({EVERYBODY, person or EVERYBODY})
 
     def withdraw(self, name: str, person: str, delete: bool) -> None:
@@ -194,7 +203,6 @@ class Studies:
         self.announce(name)
 
     def announce(self, name: str) -> None:
-        """Tell all operators' pages that a study changed."""
         self.watchers.tell(StudiesChanged(name))
 
     def close(self) -> None:
@@ -206,7 +214,6 @@ class Studies:
 
 
 def state_of(study: Study) -> StudyState:
-    """Tell how far a study is."""
     if study.frozen is None:
         return "draft"
     return "unsealed" if any("unsealed" in record for record in study.history()) else "frozen"

@@ -7,7 +7,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
-    from fdvv.workflow import Shelf
+    from fdvv.library.catalog import Catalog
 
 P = TypeVar("P")
 
@@ -29,17 +29,16 @@ class Studio:
         self._lock = RLock()
 
     @property
-    def shelf(self) -> Shelf:
-        """Get the buttons there are to choose from."""
-        from fdvv.workflow import Shelf  # here, for the page need not wait for it
+    def catalog(self) -> Catalog:
+        from fdvv.library.catalog import Catalog  # here, for the page need not wait for it
 
         with self._lock:
-            if Shelf not in self._parts:
-                self._parts[Shelf] = Shelf(self.project, self.sources)
-            return cast(Shelf, self._parts[Shelf])
+            if Catalog not in self._parts:
+                self._parts[Catalog] = Catalog(self.project, self.sources)
+            return cast(Catalog, self._parts[Catalog])
 
     def part(self, service: type[P]) -> P:
-        """Give the one instance of a part's service, made with this studio when it is first asked for."""
+        """Return the one instance of a service, made with this studio on first use."""
         with self._lock:
             if service not in self._parts:
                 self._parts[service] = service(self)  # type: ignore[call-arg]

@@ -9,22 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.compensate import (
-    Following,
-    KnownRig,
-    Method,
-    PaperLaw,
-    RigAware,
-    tuned_paper_law,
-)
-from fdvv.device import TwinDevice
-from fdvv.model import FDVVModel, Stroke, load_builtin
-from fdvv.twin import ButtonPhysics, Finger, Rig
-from fdvv.workflow._compensate import compensate, uncompensated
-from fdvv.workflow._feasibility import CurveFeasibility, feasibility
-from fdvv.workflow._population_plan import seed_of
-from fdvv.workflow._press import press_physics, quasi_static_peak_cN
-from fdvv.workflow._probe import probe
+from fdvv.compensation.feasibility.verdict import Following
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.method import Method
+from fdvv.compensation.paper import PaperLaw, tuned_paper_law
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.twin import TwinDevice
+from fdvv.live.simulated_press import press_physics, quasi_static_peak_cN
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.population.plan import seed_of
+from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.rendering.probe import probe
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
 
 Figures = dict[str, float | int | str | None]
 LEARN, JUDGE, KNOW = 1, 2, 3
@@ -119,7 +120,7 @@ def _law(method: str, rounds: int) -> PaperLaw | Method[Any]:
 
 
 def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
-    """Ask of a rig that presses have told of whether it can render a button."""
+    """Judge whether a rig that was identified from presses can render a button."""
     assert isinstance(about.button, FDVVModel)
     assert about.rig is not None
     known = _known(about.rig, about.finger, seed_of(about.seed, KNOW), tuple(settings["velocities_mm_s"]))
@@ -147,16 +148,16 @@ def _share(curves: tuple[CurveFeasibility, ...]) -> float:
 
 
 @lru_cache(maxsize=16)
-def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float, ...]) -> KnownRig:
+def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float, ...]) -> RigModel:
     """Identify a rig from its presses; cells of one rig share it, and it is the same wherever it is done."""
     device = TwinDevice(rig, finger, seed)
-    memory = compensate(device, load_builtin(MET_ON), speeds_mm_s, RigAware()).memory
-    assert memory is not None  # RigAware always remembers
-    return memory.known
+    learned = compensate(device, load_builtin(MET_ON), speeds_mm_s, RigAware()).learned_rig
+    assert learned is not None  # RigAware always remembers
+    return learned.rig
 
 
 def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
-    """Have the simulated person press a simulated real button."""
+    """Press a simulated real button with the simulated finger."""
     assert isinstance(about.button, ButtonPhysics)
     count = settings["presses"]
     found = press_physics(about.button, about.finger or Finger(), (about.speed_mm_s,), count, about.seed)
@@ -174,14 +175,14 @@ def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
 
 @lru_cache(maxsize=256)
 def _slow_peak_cN(button: ButtonPhysics) -> float:
-    """Give what fingers do not change; it takes as long as a press."""
+    """Return what fingers do not change; it takes as long as a press."""
     return quasi_static_peak_cN(button)
 
 
 SPEEDS_mm_s = (50.0, 100.0, 200.0)
 MEASURES = {
     "probe": Measure(
-        "compensate a rig for a model, then judge it on fresh presses in true displacement",
+        "compensate a rig for a model, then judge it on held-out presses in true displacement",
         {"rig": "default", "finger": "default", "button": "mx-clear", "method": "rig-aware"},
         {"velocities_mm_s": list(SPEEDS_mm_s), "presses": 5, "rounds": 3},
         (
@@ -198,7 +199,7 @@ MEASURES = {
         0.5,
     ),
     "feasible": Measure(
-        "tell whether a rig that was identified from its presses can render a model",
+        "show whether a rig that was identified from its presses can render a model",
         {"rig": "default", "finger": "default", "button": "mx-clear"},
         {"velocities_mm_s": list(SPEEDS_mm_s)},
         (

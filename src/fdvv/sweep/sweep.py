@@ -1,42 +1,40 @@
-"""Run a sweep in a folder: chunks on an executor, each on the disk before it counts. Simulated."""
+"""Run a sweep in a folder, and summarise its results. Simulated."""
 
 from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+import numpy as np
 
-from fdvv.documents import pretty
 from fdvv.errors import InputError
-from fdvv.files import write_atomic
-from fdvv.journal import Journal
-from fdvv.model import FDVVModel, model_to_json
-from fdvv.twin import button_to_toml, finger_to_toml, rig_to_toml
-from fdvv.workflow._executor import Executor, chunks_of
-from fdvv.workflow._isolated import DEADLY, run_isolated
-from fdvv.workflow._parquet import need_parquet
-from fdvv.workflow._part_store import PartStore
-from fdvv.workflow._population_plan import seed_of
-from fdvv.workflow._sweep_columns import sweep_schema
-from fdvv.workflow._sweep_plan import REPEAT, SweepPlan, Value
-from fdvv.workflow._sweep_work import Row, SweepWork, sweep_work
+from fdvv.eventlog import Journal
+from fdvv.io.documents import pretty
+from fdvv.io.files import require_new_folder, write_atomic
+from fdvv.io.part_store import PartStore, need_parquet
+from fdvv.model.file import model_to_json
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.population.plan import seed_of
+from fdvv.parallel.campaign import DEADLY, Progress, run_campaign
+from fdvv.parallel.executor import Executor
+from fdvv.sweep.plan import REPEAT, Row, SweepPlan, SweepWork, Value, sweep_schema, sweep_work
+from fdvv.twin.files import button_to_toml, finger_to_toml, rig_to_toml
 
 if TYPE_CHECKING:
     from pyarrow import Table
 
 PLAN_FILE, RESULTS, LOCK = "sweep.json", "results.parquet", ".lock"
 CHUNK_s = 0.5
-"""What a chunk takes at least: a killed process does so much again."""
+"""Least duration of a chunk: a killed process repeats at most so much."""
 TIMED = 3
 """Cells that a preview tries."""
-
-Progress = Callable[[int, int], None]
-"""Is told how many cells are done, and of how many."""
+MOST_levels = 12
+"""A factor with more values is left out of the summary."""
 Cell = tuple[int, dict[str, Value]]
 
 
@@ -57,7 +55,7 @@ class SweepResult:
     worked: int
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the report of ``fdvv sweep --json``."""
+        """Return the report of ``fdvv sweep --json``."""
         counts = {"cells": self.cells, "failed": self.failed, "worked": self.worked}
         return {
             "measure": self.plan.measure,
@@ -68,14 +66,14 @@ class SweepResult:
         }
 
     def first_reason(self) -> str | None:
-        """Give the reason of the first cell that failed; None if none did."""
+        """Return the reason of the first cell that failed; None if none did."""
         return next((reason for reason in self.table().column("reason").to_pylist() if reason), None)
 
-    def table(self) -> Table:
-        """Read the rows, a pyarrow.Table."""
+    def table(self, columns: Sequence[str] | None = None) -> Table:
+        """Read the rows, all columns or those named, as a pyarrow.Table."""
         import pyarrow.parquet as pq
 
-        return pq.read_table(self.path)
+        return pq.read_table(self.path, columns=columns)
 
 
 @dataclass(frozen=True)
@@ -102,32 +100,50 @@ def run_sweep(
     plan: SweepPlan,
     folder: Path,
     executor: Executor,
-    progress: Progress = lambda _done, _whole: None,
+    progress: Progress = lambda _done, _total: None,
     beside: Path = Path(),
     work: Callable[[tuple[Cell, ...]], list[Row]] | None = None,
 ) -> SweepResult:
-    """Try every cell of a plan, in a folder that is new or holds the same sweep; done cells are kept.
+    """Run every cell of a plan, in a folder that is new or holds the same sweep; done cells are kept.
 
-    beside : the folder that files of the plan are named from. work : what is done to a chunk of cells.
-    Whatever ends it before, the same call goes on. The file at the end is the same whoever worked on it.
-    InputError on a plan that cannot be carried out, on a folder of another sweep or at work elsewhere;
+    beside : the folder that files of the plan are relative to. work : what is done to a chunk of cells.
+    An interrupted sweep is continued by the same call; its final file is the same however it was run.
+    Raises InputError on a plan that cannot be carried out, on a folder of another sweep or one in use;
     BuildError without the extra `sweep`; WorkerError; OSError.
     """
     need_parquet()
+    import pyarrow as pa
+
     opened = sweep_work(plan, beside)
     folder = Path(folder)
     _begin(folder, plan, opened)
-    lock = Journal(
-        folder / LOCK, InputError(folder, "folder", "another process is at work in it", "wait for it")
-    )
-    try:
-        store = PartStore(folder / RESULTS, sweep_schema(plan), ("cell",))
-        worked = _work(plan, store, executor, progress, work or opened)
+    schema = sweep_schema(plan)
+
+    def lost(cell: Cell) -> Row:
+        seed = seed_of(plan.seed, int(cell[1][REPEAT]))
+        return {"cell": cell[0], **cell[1], "state": "failed", "reason": DEADLY, "seed": seed}
+
+    def keep(_cells: tuple[Cell, ...], rows: list[Row]) -> None:
+        full = [{**row, "measure": plan.measure, "simulated": True} for row in rows]
+        store.add(pa.Table.from_pylist(full, schema))
+
+    busy = InputError(folder, "folder", "another process is at work in it", "wait for it")
+    with Journal(folder / LOCK, busy):
+        store = PartStore(folder / RESULTS, schema, ("cell",))
+        worked = run_campaign(
+            executor,
+            work or opened,
+            list(enumerate(plan.cells())),
+            keep,
+            done=lambda cell: (cell[0],) in store,
+            progress=progress,
+            item_s=plan.measured.about_s,
+            chunk_s=CHUNK_s,
+            lost=lost,
+        )
         store.finish([(number,) for number in range(plan.count)])
         states = (state for table in store.tables(["state"]) for state in table.column("state").to_pylist())
         failed = sum(state == "failed" for state in states)
-    finally:
-        lock.close()
     return SweepResult(plan, folder / RESULTS, plan.count, failed, worked)
 
 
@@ -142,61 +158,33 @@ def preview_sweep(plan: SweepPlan, folder: Path | None = None, beside: Path = Pa
     wanted = {round(i * (plan.count - 1) / max(1, TIMED - 1)) for i in range(TIMED)}
     tried = [(number, cell) for number, cell in enumerate(plan.cells()) if number in wanted]
     rows = work(tried[:1])  # what is loaded and identified once is no part of a cell
-    begun = time.process_time()
+    start = time.process_time()
     rows += work(tried)
-    cell_s = (time.process_time() - begun) / len(tried)
+    cell_s = (time.process_time() - start) / len(tried)
     reasons = dict.fromkeys(row["reason"] for row in rows if row["state"] == "failed")
     return SweepPreview(plan.count, done, cell_s, tuple(reasons))
 
 
-def _work(
-    plan: SweepPlan,
-    store: PartStore,
-    executor: Executor,
-    progress: Progress,
-    work: Callable[[tuple[Cell, ...]], list[Row]],
-) -> int:
-    """Work on the cells that are left; tell how many."""
-    import pyarrow as pa
-
-    left = [(number, cell) for number, cell in enumerate(plan.cells()) if (number,) not in store]
-    done = plan.count - len(left)
-    progress(done, plan.count)
-    chunks = chunks_of(left, plan.measured.about_s, CHUNK_s)
-
-    def deadly(cell: Cell) -> Row:
-        told = {"state": "failed", "reason": DEADLY, "seed": seed_of(plan.seed, int(cell[1][REPEAT]))}
-        return {"cell": cell[0], **cell[1], **told}
-
-    for rows in run_isolated(executor, work, chunks, deadly):
-        told = [{**row, "measure": plan.measure, "simulated": True} for row in rows]
-        store.add(pa.Table.from_pylist(told, sweep_schema(plan)))
-        done += len(rows)
-        progress(done, plan.count)
-    return len(left)
-
-
 def _begin(folder: Path, plan: SweepPlan, work: SweepWork) -> None:
-    """Write the plan into a new folder, or find the same one in it."""
+    """Write the plan into a new folder, or check that the folder holds the same one."""
     path = folder / PLAN_FILE
-    told = {**msgspec.to_builtins(plan), "settings": dict(work.settings), "sha256": dict(_digests(work))}
+    record = {**msgspec.to_builtins(plan), "settings": dict(work.settings), "sha256": dict(_digests(work))}
     if not path.exists():
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise InputError(folder, "folder", "is not empty", "name a new one, or that of the same sweep")
-        write_atomic(path, pretty(told) + "\n")
+        require_new_folder(folder, "name a new one, or that of the same sweep")
+        write_atomic(path, pretty(record) + "\n")
         return
     try:
-        kept = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
+        stored = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
     except msgspec.MsgspecError as error:
         raise InputError(path, "whole file", f"is damaged ({error})", "name a new folder") from error
-    other = [name for name in {**told, **kept} if kept.get(name) != told.get(name)]
+    other = [name for name in {**record, **stored} if stored.get(name) != record.get(name)]
     if other:
         reason = f"holds a sweep with other {', '.join(name.replace('sha256', 'files') for name in other)}"
         raise InputError(folder, "folder", reason, "give the same plan to go on, or name a new folder")
 
 
 def _digests(work: SweepWork) -> Iterator[tuple[str, str]]:
-    """Tell by their content the rigs, fingers and buttons that a sweep was made with."""
+    """Yield the SHA-256 of the rigs, fingers and buttons of a sweep, each under its name."""
     texts: dict[str, str] = {f"rig {name}": rig_to_toml(rig) for name, rig in work.rigs.items()}
     texts |= {f"finger {name}": finger_to_toml(finger) for name, finger in work.fingers.items()}
     for name, button in work.buttons.items():
@@ -204,3 +192,32 @@ def _digests(work: SweepWork) -> Iterator[tuple[str, str]]:
         texts[f"button {name}"] = text
     for name, text in texts.items():
         yield name, hashlib.sha256(text.encode()).hexdigest()
+
+
+def sweep_summary(result: SweepResult) -> list[dict[str, Any]]:
+    """Return the first numeric figure by each factor that varies: median, 5 and 95 % over the cells done."""
+    plan = result.plan
+    figure = next(f.name for f in plan.measured.figures if f.type == "double")
+    levels = {name: values for name, values in plan.levels().items() if name != REPEAT}
+    factors = [name for name, values in levels.items() if 1 < len(values) <= MOST_levels]
+    if not factors:
+        factors = [next(iter(levels))]
+    found: dict[tuple[str, Value], list[float]] = {}
+    for batch in result.table([*factors, figure]).to_batches():
+        for line in batch.to_pylist():
+            if line[figure] is not None:
+                for name in factors:
+                    found.setdefault((name, line[name]), []).append(line[figure])
+    return [
+        {
+            "factor": name,
+            "figure": figure,
+            "rows": [_row(value, found.get((name, value), [])) for value in levels[name][:MOST_levels]],
+        }
+        for name in factors
+    ]
+
+
+def _row(value: Value, figures: list[float]) -> dict[str, Any]:
+    low, median, high = np.percentile(figures, (5, 50, 95)).tolist() if figures else (None, None, None)
+    return {"value": value, "cells": len(figures), "median": median, "low": low, "high": high}

@@ -7,21 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.model import Stroke, find_bump
-from fdvv.preprocess import AveragedCurve
-from fdvv.recording import Recording, Stage
-from fdvv.twin import (
-    PARTICIPANTS,
-    ButtonPhysics,
-    ButtonTrace,
-    CaptureBench,
-    CaptureRig,
-    Finger,
-    ForceSensor,
-    Participant,
-    SimulatedTake,
-    load_button,
-)
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.preprocess.average import AveragedCurve
+from fdvv.recording.types import Recording, Stage
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.capture.bench import CaptureBench, SimulatedTake
+from fdvv.twin.capture.participant import PARTICIPANTS, Participant
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.files import load_button
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace
 from fdvv.units import FloatArray, mm_from_m
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -57,7 +54,7 @@ class CapturedSession:
     takes: tuple[SimulatedTake, ...]
 
     def of(self, outcome: str, velocity_mm_s: float | None = None) -> list[SimulatedTake]:
-        """Give presses that came out good, incomplete or wild, at one pace or at all."""
+        """Return presses that came out good, incomplete or wild, at one pace or at all."""
         presses = [t for t in self.takes if t.take.stage is Stage.PRESS]
         paces = (velocity_mm_s,) if velocity_mm_s else {t.take.velocity_mm_s for t in presses}
         return [t for t in presses if t.truth.intent.outcome == outcome and t.take.velocity_mm_s in paces]
@@ -74,7 +71,7 @@ class CapturedSession:
         return np.where(seen > 0, np.nansum(forces, axis=0) / np.maximum(seen, 1), np.nan)
 
     def true_actuation_mm(self) -> float:
-        """Give the median over good presses of where the circuit closed."""
+        """Return the median over good presses of where the circuit closed."""
         traces = [t.truth.trace for t in self.of("good") if t.truth.trace]
         places = [
             float(np.interp(t.closing_s, t.t_s, t.displacement_mm)) for t in traces if t.closing_s is not None
@@ -139,7 +136,7 @@ def true_stroke_cN(trace: ButtonTrace, stroke: Stroke, displacement_mm: FloatArr
 
 
 def top_mm(displacement_mm: FloatArray, force_cN: FloatArray) -> float:
-    """Tell where the top of a bump is: midway between the places 1.5 cN below its peak; NaN without a bump.
+    """Return where the top of a bump is: midway between the places 1.5 cN below its peak; NaN without a bump.
 
     A peak's own place is worth less: on a flat top a tenth of a centinewton moves it by 50 um.
     """

@@ -8,10 +8,12 @@ from functools import partial
 
 import numpy as np
 
-from fdvv.device import Device, ProgramDevice, surface_image
+from fdvv.device.contract import Device, ProgramDevice
+from fdvv.device.remote import surface_image
 from fdvv.errors import DeviceError
-from fdvv.model import ForceSurface, Press
-from fdvv.protocol import Fault, Settings
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Fault, Settings
 
 
 def plain_surface(force_cN: float = 40.0, travel_mm: float = 4.0) -> ForceSurface:
@@ -22,13 +24,13 @@ def plain_surface(force_cN: float = 40.0, travel_mm: float = 4.0) -> ForceSurfac
 
 
 class DeviceConformance:
-    """Inherit, implement `make`, and pytest runs the contract of fdvv.device.Device on it."""
+    """Inherit, implement `make`, and pytest runs the contract of fdvv.device.contract.Device on it."""
 
     travel_mm = 4.0
     speed_mm_s = 100.0
 
     def make(self) -> Device:
-        """Give a fresh device; twice the same one if it has a seed."""
+        """Return a fresh device; twice the same one if it has a seed."""
         raise NotImplementedError
 
     def pressed(self, device: Device) -> Press:
@@ -123,14 +125,14 @@ class DeviceConformance:
 
 
 class ProgramConformance(DeviceConformance):
-    """The contract of fdvv.device.ProgramDevice: what every device with the firmware in it honours."""
+    """The contract of fdvv.device.contract.ProgramDevice: every device with the firmware."""
 
     def make(self) -> ProgramDevice:
-        """Give a fresh device."""
+        """Return a fresh device."""
         raise NotImplementedError
 
     def program(self, force_cN: float = 40.0) -> bytes:
-        """Give a program that follows the plain surface."""
+        """Return a program that follows the plain surface."""
         return surface_image(plain_surface(force_cN, self.travel_mm), self.travel_mm)
 
     def test_a_program_is_pressed_like_a_surface(self) -> None:
@@ -169,7 +171,7 @@ class ProgramConformance(DeviceConformance):
         device.stop()
 
     def test_a_press_misses_no_tick(self) -> None:
-        """Every tick of the press was told."""
+        """Every tick of the press was reported."""
         press = self.pressed(self.make())
         assert press.tick is not None
         ticks = np.flatnonzero(press.tick)
@@ -185,7 +187,7 @@ class ProgramConformance(DeviceConformance):
 
 
 def other_settings(device: Device) -> Settings:
-    """Give a device's settings with another look ahead, which nothing makes use of."""
+    """Return a device's settings with another look ahead, which nothing makes use of."""
     return replace(device.settings(), lead_us=1234)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.core import Core
-from fdvv.device import DeviceInfo
+from fdvv.device.contract import DeviceInfo
 from fdvv.errors import DeviceError, ModelError
-from fdvv.model import ForceSurface, Press, Stroke
-from fdvv.protocol import Settings
+from fdvv.firmware.core import Core
+from fdvv.model.curve import Stroke
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
 from fdvv.units import FloatArray
 
 PERIOD_s = 1e-4
@@ -59,11 +61,11 @@ class ScriptedDevice:
         self._active: tuple[ForceSurface, float] | None = None
 
     def info(self) -> DeviceInfo:
-        """Tell who this is."""
+        """Return the device's identity and limits."""
         return self._info
 
     def settings(self) -> Settings:
-        """Give what was configured last."""
+        """Return what was configured last."""
         return self._settings
 
     def configure(self, settings: Settings) -> None:

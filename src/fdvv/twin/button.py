@@ -11,12 +11,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.twin._quantity import check, choice, quantity
-from fdvv.units import FloatArray
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.twin.quantity import check, choice, quantity
+from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
 FEWEST_FORCES = 8
 BUILT = ("elastic_N", "height_m", "rail_N", "friction_ratio")
 """Columns of a BuiltCam."""
+STEP_mm = 0.02
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ class Housing:
 
 @dataclass(frozen=True, eq=False)
 class BuiltCam:
-    """Coil, cam and friction of a leaf switch as it is built, in place of what its slow curves would tell.
+    """Coil, cam and friction of a leaf switch as it is built, in place of what its slow curves would give.
 
     Attributes
     ----------
@@ -172,7 +175,7 @@ class ButtonPhysics:
     ----------
     name, source, licence : of the button and of the curves it is made from.
     press_N, release_N : (n,) slow force at 0, curve.step_m, ... up to the stop.
-    cam : what a designed leaf switch is built as; None lets the slow curves tell it. Only for kind "leaf".
+    cam : of a designed leaf switch; None: identified from the slow curves. Only for kind "leaf".
     """
 
     name: str
@@ -215,3 +218,43 @@ class ButtonPhysics:
             )
         if curve.open_m > curve.close_m:
             raise ModelError(f"open_m must not exceed close_m {curve.close_m:g} m, got {curve.open_m:g}")
+
+
+def button_of_model(model: FDVVModel, close_mm: float | None = None, seat_mm: float = 0.1) -> ButtonPhysics:
+    """Make a leaf switch of a model; everything its curves do not say keeps its default.
+
+    close_mm : where the circuit closes, the model's activation point if None.
+    seat_mm : depth up to which the top stop shapes the curves.
+
+    Raises ModelError if a stroke is missing, or no activation point is known.
+    """
+    close = model.actuation_mm if close_mm is None else close_mm
+    if close is None:
+        raise ModelError(f"{model.name}: the model has no activation point; say where the circuit closes")
+    if not all(model.of(stroke) for stroke in Stroke):
+        raise ModelError(f"{model.name}: a real button needs curves of press and release")
+    press_cN, release_cN = (_slowest_cN(model, stroke) for stroke in Stroke)
+    origin = model.provenance
+    return ButtonPhysics(
+        model.name,
+        f"model {model.name}: {origin.source}. {origin.citation}",
+        origin.licence,
+        N_from_cN(press_cN),
+        N_from_cN(np.maximum(release_cN, 0.0)),
+        Curve(
+            travel_m=_metres(model.travel_mm),
+            close_m=_metres(close),
+            open_m=_metres(close),
+            seat_m=_metres(seat_mm),
+        ),
+    )
+
+
+def _slowest_cN(model: FDVVModel, stroke: Stroke) -> FloatArray:
+    curve = min(model.of(stroke), key=lambda c: c.velocity_mm_s or 0.0)
+    count = int(np.floor(model.travel_mm / STEP_mm + 1e-9)) + 1
+    return np.asarray(curve.force_cN(STEP_mm * np.arange(count)))
+
+
+def _metres(length_mm: float) -> float:
+    return round(m_from_mm(length_mm), 9)

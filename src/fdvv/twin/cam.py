@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.twin._button import BUILT, BuiltCam, ButtonPhysics, Leaf
+from fdvv.twin.button import BUILT, BuiltCam, ButtonPhysics, Leaf
 from fdvv.units import FloatArray
 
 CELL_m = 1e-5
@@ -67,7 +67,7 @@ def identify(button: ButtonPhysics) -> Cam:
 
 
 def _curves(button: ButtonPhysics) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Give x with margins, the middle of the two curves and half their difference; ends held level."""
+    """Return x with margins, the middle of the two curves and half their difference; ends held level."""
     from scipy.interpolate import PchipInterpolator
 
     curve = button.curve
@@ -99,13 +99,12 @@ def _built(button: ButtonPhysics, cam: BuiltCam) -> Cam:
 
 
 def _places(travel_m: float) -> FloatArray:
-    """Give the table's places, margins included."""
     low, high = -math.ceil(MARGIN_m / CELL_m), math.ceil((travel_m + MARGIN_m) / CELL_m)
     return np.asarray(CELL_m * np.arange(low, high + 1))
 
 
 def _arm(button: ButtonPhysics, middle_N: FloatArray, half_N: FloatArray) -> FloatArray:
-    """Give the arm's force so that arm and law of velocity together make the loop at the curves' speed."""
+    """Return the arm's force so that arm and law of velocity together make the loop at the curves' speed."""
     dome, speed = button.dome, button.curve.speed_m_s
     if dome.law == "log":
         growth = dome.log_ratio * math.log1p(speed / dome.log_speed_m_s)
@@ -156,14 +155,13 @@ def _spring(travel_m: float, x: FloatArray, middle_N: FloatArray) -> tuple[Float
 
 
 def _energy(taken_N: FloatArray) -> FloatArray:
-    """Integrate what the leaf gives from each x on, by trapezes."""
     steps = 0.5 * CELL_m * (taken_N[1:] + taken_N[:-1])
     left = -np.cumsum(steps[::-1])[::-1]
     return np.asarray(np.maximum(np.append(left, 0.0), 0.0))
 
 
 def _deflection(leaf: Leaf, energy_J: FloatArray, close_J: float) -> tuple[FloatArray, FloatArray, float]:
-    """Give force and height at which the springs in series hold that energy, and the leaf's preload.
+    """Return force and height at which the springs in series hold that energy, and the leaf's preload.
 
     Closed, leaf and fixed contact act side by side, behind the cam's contact; open, the leaf alone does.
     """
@@ -183,7 +181,6 @@ def _deflection(leaf: Leaf, energy_J: FloatArray, close_J: float) -> tuple[Float
 
 
 def _recede(x: FloatArray, height_m: FloatArray, free: int) -> FloatArray:
-    """Let the cam leave the leaf smoothly from row free on."""
     slope = (height_m[free] - height_m[free - 3]) / (x[free] - x[free - 3])
     past = np.maximum(x - x[free], 0.0)
     gap = min(slope, -0.05) * RECEDE_m * (1 - np.exp(-past / RECEDE_m))

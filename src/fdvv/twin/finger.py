@@ -1,14 +1,17 @@
-"""The finger that presses: impedance, pulp, and how a person varies from press to press."""
+"""The finger that presses: impedance, pad, variability from press to press; and a probing stage."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
 
 from fdvv.errors import ModelError
-from fdvv.twin._quantity import check, quantity
+from fdvv.twin.quantity import check, quantity
 
 H_H = "Hajian & Howe 1997, recalled"
 P_H = "Pawluk & Howe 1999, values assumed"
+CLEARANCE_m = 2e-4
+"""The stage begins this far above the cap, so that its gauge is seen to be free."""
+DWELL_s = 0.05
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class Impedance:
 
 
 @dataclass(frozen=True)
-class Pulp:
+class FingerPad:
     """The pulp of the fingertip: F = scale (exp(exponent depth) - 1), part of it relaxing in two arms.
 
     Exponential with relaxation after Pawluk and Howe; the split between the arms is assumed.
@@ -59,7 +62,7 @@ class Pulp:
 
 
 @dataclass(frozen=True)
-class Habit:
+class PressVariability:
     """How a person presses, and how much each press differs; a spread is one standard deviation."""
 
     lift_m: float = quantity(
@@ -104,8 +107,8 @@ class Habit:
     def __post_init__(self) -> None:
         check(self)
 
-    def still(self) -> Habit:
-        """Give the same person without any variation."""
+    def still(self) -> PressVariability:
+        """Return the same person without any variation."""
         spreads = [f.name for f in fields(self) if "spread" in f.name or "undershoot" in f.name]
         noises = ["effort_noise_ratio", "tremor_ratio"]
         return replace(self, **dict.fromkeys([*spreads, *noises], 0.0))
@@ -116,9 +119,28 @@ class Finger:
     """Everything about the person who presses."""
 
     impedance: Impedance = field(default_factory=Impedance)
-    pulp: Pulp = field(default_factory=Pulp)
-    habit: Habit = field(default_factory=Habit)
+    pulp: FingerPad = field(default_factory=FingerPad)
+    habit: PressVariability = field(default_factory=PressVariability)
 
     def __post_init__(self) -> None:
         if self.habit.push_N > 0 and self.impedance.stiffness_N_m == 0:
             raise ModelError("Finger: a finger that pushes (push_N > 0) needs a stiffness above 0, got 0 N/m")
+
+
+def stage_finger(push_N: float = 2.0) -> Finger:
+    """Make the finger that is no finger: a motorised stage which pushes a steel tip down and pulls it back.
+
+    push_N : force at which it turns, beyond the bottom stop; it must exceed the button's force there.
+
+    For static figures, at 0.5 mm/s as the paper's probing machine: ``TwinDevice(rig, stage_finger())`` and
+    ``workflow.probe(device, model, surface, [0.5])``. Drive and frame are as stiff as the equations bear
+    (5 N/mm), the tip yields 10 um to 1 N and does not relax, nothing varies from press to press and no muscle
+    trembles; noise of the rig's own sensors stays. Its referent moves as every gesture does, on minimum
+    jerk, so at 0.5 mm/s on average the cap moves at up to 0.8 mm/s: still too slow for drag, inertia and lag
+    to count.
+    """
+    return Finger(
+        Impedance(mass_kg=0.2, stiffness_N_m=5000.0, damping_N_s_m=100.0),
+        FingerPad(scale_N=5.0, exponent_1_m=2e4, relaxed_ratio=1.0, strap_N=0.0),
+        replace(PressVariability().still(), lift_m=CLEARANCE_m, push_N=push_N, onset_s=0.0, dwell_s=DWELL_s),
+    )

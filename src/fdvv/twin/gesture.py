@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.twin._finger import Finger
+from fdvv.twin.finger import Finger
 
 FULL_UNDERSHOOT_m_s = 0.2
 TAIL_s = 0.06
@@ -67,7 +67,7 @@ def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
 
 
 def depth_m(finger: Finger, force_N: float, stiffness_N_m: float) -> float:
-    """Give how far beyond a wall the referent must be for a held force: joint and relaxed pulp in series."""
+    """Return the depth of the referent beyond a wall at a static force: joint and relaxed pulp in series."""
     pulp = finger.pulp
     squeeze = math.log1p(force_N / (pulp.relaxed_ratio * pulp.scale_N + pulp.strap_N)) / pulp.exponent_1_m
     return squeeze + (force_N / stiffness_N_m if stiffness_N_m else 0.0)

@@ -8,24 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import ForceSurface
-from fdvv.protocol import (
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm, seal
+from fdvv.protocol.tables import (
     IMAGE_BYTES,
     IMAGE_MAGIC,
     IMAGE_VERSION,
     NONE,
     SURFACE_DISPLACEMENTS,
     SURFACE_VELOCITIES,
-    CN64_PER_cN,
     ImageHeader,
-    MM_S16_PER_mm_s,
     Slot,
     State,
     Surface,
-    UM16_PER_mm,
     VelocitySource,
     Vibration,
-    seal,
 )
 from fdvv.units import FloatArray
 
@@ -166,7 +163,6 @@ def _state(source: VelocitySource) -> State:
 
 
 def _sealed(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
-    """Put the header with its checksum before the parts."""
     head = ImageHeader(
         magic=IMAGE_MAGIC,
         crc32=0,

@@ -1,4 +1,4 @@
-"""A rig and its firmware's core under a finger that is led from outside while they run."""
+"""A rig, the firmware's core and a finger that follows interactive input while they run."""
 
 from __future__ import annotations
 
@@ -12,27 +12,28 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv._native import address
-from fdvv.core import INPUTS, OUTPUTS, Core
 from fdvv.errors import ModelError
-from fdvv.protocol import CN64_PER_cN, Fault, MM_S16_PER_mm_s, Settings, TickFlag, UM16_PER_mm
-from fdvv.twin._finger import Finger
-from fdvv.twin._flatten import STEP_s, grid_of, plant_of
-from fdvv.twin._gesture import Gesture, plan
-from fdvv.twin._kernel import (
-    COLUMNS,
+from fdvv.firmware.core import INPUTS, OUTPUTS, Core
+from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm
+from fdvv.protocol.tables import Fault, Settings, TickFlag
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.noise import Effort, Noise, draw_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_kernel import (
+    RIG_COLUMNS,
     TICK_COLUMNS,
-    GestureTimes,
-    GridCounts,
-    Model,
-    NoiseArrays,
     Rows,
-    doors,
+    STEP_s,
+    gesture_times,
+    grid_of,
+    noise_pointers,
+    plant_of,
     rig_bytes,
+    rig_library,
 )
-from fdvv.twin._noise import Effort, Noise, draw_ticks
-from fdvv.twin._rig import Rig
-from fdvv.twin._settings import settings_of
-from fdvv.twin._trace import CUT
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import CUT
 from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm, mm_from_m
 
 NEAR_1_s = 125.0
@@ -45,7 +46,7 @@ BLOCK_TICKS = 512
 """Noise is drawn for so many ticks at once, whatever is asked for."""
 
 
-class Led(IntEnum):
+class CursorInput(IntEnum):
     """What a finger may be led by (rig.h)."""
 
     PLACE = 1
@@ -53,7 +54,7 @@ class Led(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class LedTicks:
+class InteractiveTicks:
     """What happened at every tick of a stretch, simulated; every column (n,).
 
     Attributes
@@ -62,7 +63,7 @@ class LedTicks:
     displacement_mm, velocity_mm_s : of the cap, true.
     force_cN : between cap and finger, true.
     commanded_cN, sensed_mm, state, key, slot, mode, flags : the controller's; slot is the waveform started in
-        that tick or NONE, flags are bits of fdvv.protocol.TickFlag.
+        that tick or NONE, flags are bits of fdvv.protocol.tables.TickFlag.
     saturated : the command was cut by limit, slew or heat.
     finger_mm : where the finger is; below 0 it is above the cap at rest.
     warm_K : of the coil.
@@ -84,7 +85,7 @@ class LedTicks:
     warm_K: FloatArray
 
     @classmethod
-    def of_rows(cls, rows: Rows, first_tick: int, tick_s: float) -> LedTicks:
+    def of_rows(cls, rows: Rows, first_tick: int, tick_s: float) -> InteractiveTicks:
         """Convert the kernel's rows, one a tick, to record units."""
         x, v, force, finger = (rows.physics[:, i].copy() for i in (1, 2, 4, 7))
         out = rows.outputs
@@ -106,7 +107,7 @@ class LedTicks:
         )
 
     @classmethod
-    def joined(cls, parts: Sequence[LedTicks]) -> LedTicks:
+    def joined(cls, parts: Sequence[InteractiveTicks]) -> InteractiveTicks:
         """Join stretches that followed each other."""
         if len(parts) == 1:
             return parts[0]
@@ -114,18 +115,18 @@ class LedTicks:
 
     @property
     def release(self) -> npt.NDArray[np.bool_]:
-        """Tell where the controller took the stroke for a release."""
+        """Return where the controller took the stroke for a release."""
         return (self.flags & TickFlag.RELEASE) > 0
 
 
-class LedRig:
+class InteractiveRig:
     """A rig, the firmware's own core and a finger that is led live, moved on together. Simulated.
 
     Parameters
     ----------
     image : checked program that the core renders.
     rig, finger : the default ones if None.
-    settings : what the firmware was told of the rig; settings_of(rig) if None.
+    settings : of the firmware; settings_of(rig) if None.
     seed : of all noise; None: no noise at all.
 
     It begins armed and at rest, the finger LIFTED_m above the cap. Time passes only in advance(); the host is
@@ -163,11 +164,11 @@ class LedRig:
         The referent nears it critically damped and never jumps; the finger gives way under the button's
         force, as fingers do. ModelError on a number that is not finite or a rate not above 0.
         """
-        self._lead(Led.PLACE, m_from_mm(referent_mm), m_from_mm(velocity_mm_s), near_1_s)
+        self._lead(CursorInput.PLACE, m_from_mm(referent_mm), m_from_mm(velocity_mm_s), near_1_s)
 
     def push(self, force_cN: float, rise_cN_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
         """Lead the force that the muscle pushes with, as lead() does with a place."""
-        self._lead(Led.PUSH, N_from_cN(force_cN), N_from_cN(rise_cN_s), near_1_s)
+        self._lead(CursorInput.PUSH, N_from_cN(force_cN), N_from_cN(rise_cN_s), near_1_s)
 
     def lift(self) -> None:
         """Take the finger off the cap."""
@@ -177,10 +178,10 @@ class LedRig:
         """Let the finger follow a gesture whose time begins now; the referent jumps to its start."""
         numbers = (gesture.stiffness_N_m, gesture.damping_N_s_m, 0.0)
         parts = (ctypes.c_double(n) for n in numbers)
-        doors().fdvv_rig_press(address(self._memory), ctypes.byref(GestureTimes.of(gesture)), *parts)
+        rig_library().fdvv_rig_press(address(self._memory), ctypes.byref(gesture_times(gesture)), *parts)
 
-    def copy(self, noise: Noise | None = None) -> LedRig:
-        """Copy everything as it stands; from then on the two go their own ways.
+    def copy(self, noise: Noise | None = None) -> InteractiveRig:
+        """Copy the whole state; the two are independent from then on.
 
         noise : of the copy's next ticks, after which nothing is random; None: random as this one goes on.
         ModelError if it is that of another rig.
@@ -203,9 +204,9 @@ class LedRig:
         """Latch a fault, as one that a board finds outside its tick."""
         self.core.fail(fault)
 
-    def advance(self, ticks: int) -> LedTicks:
-        """Let so many ticks pass and tell what happened at each. ModelError if the motion diverged."""
-        rows = Rows(np.empty((ticks, COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS))
+    def advance(self, ticks: int) -> InteractiveTicks:
+        """Advance by a number of ticks and return their record. ModelError if the motion diverged."""
+        rows = Rows(np.empty((ticks, RIG_COLUMNS)), np.empty((ticks, TICK_COLUMNS)), np.zeros(ticks, OUTPUTS))
         done = 0
         while done < ticks:
             if self._used == self._noise.force_N.size:
@@ -217,12 +218,13 @@ class LedRig:
         if not np.isfinite(rows.physics).all():
             raise ModelError(f"the motion diverged: rig or finger are too stiff for steps of {STEP_s:g} s")
         self._ticks += ticks
-        return LedTicks.of_rows(rows, self._ticks - ticks, self.rig.controller.tick_s)
+        return InteractiveTicks.of_rows(rows, self._ticks - ticks, self.rig.controller.tick_s)
 
     def _run(self, ticks: int, rows: Rows) -> None:
         end = self._used + ticks
-        noise = NoiseArrays(*(address(array[self._used : end]) for array in self._noise.arrays()))
-        doors().fdvv_twin_run(
+        arrays = [array[self._used : end] for array in self._noise.arrays()]
+        noise = noise_pointers(arrays)
+        rig_library().fdvv_twin_run(
             self.core.address,
             address(self._memory),
             ctypes.c_int64(ticks),
@@ -235,10 +237,9 @@ class LedRig:
     def _begin(self) -> None:
         """Arm the core and let everything come to rest under a lifted finger."""
         self.core.arm()
-        model = Model(*vars(plant_of(self.rig, self.finger)).values())
-        counts, held = GridCounts(*vars(self._grid).values()), address(self._memory)
+        model, counts, held = plant_of(self.rig, self.finger), self._grid.counts(), address(self._memory)
         parts = (ctypes.byref(model), ctypes.byref(counts), self.core.image_address, address(self._inputs))
-        if doors().fdvv_twin_begin(self.core.address, held, *parts):
+        if rig_library().fdvv_twin_begin(self.core.address, held, *parts):
             raise ModelError("the vibration board has no room for the waveforms of this program")
         habit = replace(self.finger.habit, lift_m=LIFTED_m)
         rest = plan(replace(self.finger, habit=habit), self.rig.stops.travel_limit_m, 1.0)
@@ -246,11 +247,11 @@ class LedRig:
         self.advance(round(SETTLE_s / self.rig.controller.tick_s))
         self._ticks = 0
 
-    def _lead(self, led: Led, goal: float, goal_1_s: float, near_1_s: float) -> None:
+    def _lead(self, led: CursorInput, goal: float, goal_1_s: float, near_1_s: float) -> None:
         if not (np.isfinite([goal, goal_1_s, near_1_s]).all() and near_1_s > 0):
             raise ModelError(f"a finger is led by finite numbers, got {goal}, {goal_1_s}, rate {near_1_s}")
         numbers = (ctypes.c_double(n) for n in (goal, goal_1_s, near_1_s))
-        doors().fdvv_rig_lead(address(self._memory), ctypes.c_int(led), *numbers)
+        rig_library().fdvv_rig_lead(address(self._memory), ctypes.c_int(led), *numbers)
 
     def _draw(self) -> Noise:
         if self._random is not None:

@@ -1,4 +1,4 @@
-"""Everything random about one press, drawn beforehand so that every solver sees the same."""
+"""The random disturbances of one press, drawn beforehand so that every solver gets the same."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from itertools import accumulate
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.twin._finger import Finger, Habit
-from fdvv.twin._gesture import Gesture
-from fdvv.twin._rig import Rig
+from fdvv.twin.finger import Finger, PressVariability
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
 
 SETTLE_s = 0.08
@@ -46,7 +46,7 @@ class Noise:
                 raise ModelError(f"{name} must be {(n,)}, got {getattr(self, name).shape}")
 
     def arrays(self) -> list[FloatArray]:
-        """Give the arrays as the kernel takes them, in its order."""
+        """Return the arrays as the kernel takes them, in its order."""
         parts = (self.position_m, self.force_N, self.keycap, self.effort_ratio, self.latency)
         return [np.ascontiguousarray(part) for part in parts]
 
@@ -62,7 +62,7 @@ def count_ticks(rig: Rig, gesture: Gesture) -> int:
 
 
 def silence(rig: Rig, gesture: Gesture) -> Noise:
-    """Give no noise at all."""
+    """Return no noise at all."""
     n = settle_ticks(rig) + count_ticks(rig, gesture)
     return Noise(np.zeros((n, rig.position_sensor.reads)), *(np.zeros(n) for _ in range(4)))
 
@@ -93,20 +93,20 @@ def draw_ticks(
 
 
 def lsb_of(span: float, bits: int) -> float:
-    """Give one step of a converter over a span; 0 for a continuous one."""
+    """Return one step of a converter over a span; 0 for a continuous one."""
     return span / 2**bits if bits else 0.0
 
 
 class Effort:
     """Muscle noise of one pole plus a tremor of random phase, which goes on from one draw to the next."""
 
-    def __init__(self, habit: Habit, tick_s: float) -> None:
+    def __init__(self, habit: PressVariability, tick_s: float) -> None:
         self._habit, self._tick_s = habit, tick_s
         self._last: float | None = None
         self._turns = 0.0
 
     def draw(self, n: int, random: np.random.Generator) -> FloatArray:
-        """Give the modulation of the next n ticks, (n,)."""
+        """Return the modulation of the next n ticks, (n,)."""
         habit, first = self._habit, self._last is None
         keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * self._tick_s))
         white = random.standard_normal(n)
@@ -116,5 +116,5 @@ class Effort:
             self._turns = random.random()
         turns = habit.tremor_Hz * self._tick_s * np.arange(n) + self._turns
         self._last, self._turns = slow[-1], self._turns + habit.tremor_Hz * self._tick_s * n
-        told = np.array(slow[-n:])
-        return np.asarray(habit.effort_noise_ratio * told + habit.tremor_ratio * np.sin(2 * np.pi * turns))
+        slow_n = np.array(slow[-n:])
+        return np.asarray(habit.effort_noise_ratio * slow_n + habit.tremor_ratio * np.sin(2 * np.pi * turns))

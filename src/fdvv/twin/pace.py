@@ -1,4 +1,4 @@
-"""How fast the referent must go for the cap to go at an asked speed."""
+"""Solve for the duration of a stroke that gives the cap a mean speed, on the rig and on a button."""
 
 from __future__ import annotations
 
@@ -6,15 +6,19 @@ import math
 
 import numpy as np
 
-from fdvv.model import ForceSurface
-from fdvv.protocol import Settings, travel_mm_of
-from fdvv.twin._finger import Finger
-from fdvv.twin._gesture import plan
-from fdvv.twin._image import image_of
-from fdvv.twin._noise import silence
-from fdvv.twin._rig import Rig
-from fdvv.twin._simulate import simulate_program
-from fdvv.units import FloatArray, m_from_mm
+from fdvv.errors import ModelError
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.messages import travel_mm_of
+from fdvv.protocol.tables import Settings
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import silence
+from fdvv.twin.rig import ForceSensor, Rig
+from fdvv.twin.simulate import simulate_program
+from fdvv.twin.simulate_button import no_button_noise, simulate_button
+from fdvv.units import FloatArray, m_from_mm, mm_from_m
 
 PACE_START_mm = 0.1
 SUNK_mm = 0.05
@@ -23,10 +27,15 @@ TOLERANCE_ratio = 0.005
 ROUNDS = 12
 SHORTEST_s, LONGEST_s = 0.01, 40.0
 """Of the referent's stroke; the longest takes a stage of 0.5 mm/s over the deepest stop."""
+TOLERANCE = 0.005
+NEVER_mm_s = 1e-3
+"""Assigned to a press that does not reach the bottom."""
+DIVERGED_mm_s = 1e5
+"""Assigned to a press too sudden for the equations."""
 
 
 def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, travel_mm: float) -> float:
-    """Give the mean speed of a press between 0.1 mm and bottom-out; 0 if the cap never got there.
+    """Return the mean speed of a press between 0.1 mm and bottom-out; 0 if the cap never got there.
 
     A cap that rests deeper is timed from 0.05 mm below its rest. Both crossings are interpolated between
     rows, the first as the last one before bottom-out.
@@ -96,3 +105,43 @@ def solve_program_pace(
         slope = min(slope, -0.2)
         a, miss_a, b = b, miss_b, b - float(np.clip(miss_b / slope, -0.7, 0.7))
     return math.exp(best[1])
+
+
+def solve_button_pace(
+    button: ButtonPhysics, finger: Finger, velocity_mm_s: float, sensor: ForceSensor | None = None
+) -> float:
+    """Find the duration of the referent's stroke (s) for a mean speed of the cap, to 0.5 %.
+
+    The person has adapted to this button; nothing varies. Bisection and secants (Brent) on the logarithms of
+    duration and speed. Speeds beyond the finger's reach give the shortest or longest duration. A stroke so
+    short that its press diverges counts as too fast. Raises ModelError if the longest one diverges too.
+    """
+    from scipy.optimize import brentq
+
+    if not velocity_mm_s > 0:
+        raise ModelError(f"velocity_mm_s must be above 0, got {velocity_mm_s}")
+
+    def miss(log_s: float) -> float:
+        try:
+            speed = _speed_mm_s(button, finger, math.exp(log_s), sensor)
+        except ModelError:
+            if log_s >= high:
+                raise
+            speed = DIVERGED_mm_s
+        return math.log(max(speed, NEVER_mm_s) / velocity_mm_s)
+
+    low, high = math.log(SHORTEST_s), math.log(max(8 * mm_from_m(button.curve.travel_m) / velocity_mm_s, 0.1))
+    if miss(low) <= 0:
+        return SHORTEST_s
+    if miss(high) >= 0:
+        return min(math.exp(high), LONGEST_s)
+    found = brentq(miss, low, high, xtol=0.5 * TOLERANCE)
+    while miss(found) >= math.log(DIVERGED_mm_s / velocity_mm_s):
+        found += TOLERANCE
+    return math.exp(found)
+
+
+def _speed_mm_s(button: ButtonPhysics, finger: Finger, press_s: float, sensor: ForceSensor | None) -> float:
+    gesture = plan(finger, button.curve.travel_m, press_s)
+    trace = simulate_button(button, finger, gesture, no_button_noise(gesture), sensor)
+    return mean_speed_mm_s(trace.t_s, trace.displacement_mm, float(mm_from_m(button.curve.travel_m)))

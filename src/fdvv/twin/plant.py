@@ -10,27 +10,26 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv._native import address, words
-from fdvv.core import INPUTS, OUTPUTS, RecordArray
 from fdvv.errors import ModelError
-from fdvv.protocol import NONE
-from fdvv.twin._finger import Finger
-from fdvv.twin._flatten import grid_of, plant_of
-from fdvv.twin._gesture import Gesture, plan
-from fdvv.twin._kernel import (
-    COLUMNS,
+from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
+from fdvv.protocol.tables import NONE
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.interactive import CursorInput, LIFTED_m, NEAR_1_s
+from fdvv.twin.noise import Noise, draw_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_kernel import (
+    RIG_COLUMNS,
     TICK_COLUMNS,
-    GestureTimes,
-    GridCounts,
-    Model,
     Rows,
-    doors,
+    gesture_times,
+    grid_of,
+    plant_of,
     rig_bytes,
+    rig_library,
 )
-from fdvv.twin._led import Led, LIFTED_m, NEAR_1_s
-from fdvv.twin._noise import Noise, draw_ticks
-from fdvv.twin._rig import Rig
-from fdvv.twin._settings import settings_of
-from fdvv.twin._trace import Trace
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import Trace
 from fdvv.units import FloatArray, mm_from_m
 
 BLOCK_TICKS = 256
@@ -45,7 +44,7 @@ class RigPlant:
     ----------
     rig, finger : the default ones if None.
     seed : of all noise; None: no noise at all.
-    stop_us : servo pulse at which the bottom stop stands calibrated at the start; None: the deepest stop.
+    stop_us : servo pulse of the calibrated bottom stop at the start; None: the deepest stop.
 
     The finger rests (or hovers, as its habit says) until press() is called. A tick takes what step() is
     given compute_s (rig.controller) after it began and gives the readings of the tick that follows; inputs
@@ -64,7 +63,7 @@ class RigPlant:
         self._grid = grid_of(self.rig)
         self._memory = np.zeros(rig_bytes() // 8 + 1, np.uint64)
         self._held = address(self._memory)
-        self._told, self._inputs = np.zeros(TICK_COLUMNS), np.zeros(1, INPUTS)
+        self._sensed, self._inputs = np.zeros(TICK_COLUMNS), np.zeros(1, INPUTS)
         self._ticks = 0
         self._kept: deque[tuple[FloatArray, FloatArray, tuple[int, ...]]] = deque(
             maxlen=round(KEPT_s / self.rig.controller.tick_s)
@@ -73,7 +72,7 @@ class RigPlant:
 
     @property
     def inputs(self) -> np.void:
-        """What the board reads at the tick that now begins: one record of fdvv.core.INPUTS."""
+        """What the board reads at the tick that now begins: one record of fdvv.firmware.core.INPUTS."""
         one: np.void = self._inputs[0].copy()
         return one
 
@@ -88,7 +87,7 @@ class RigPlant:
         duty_q15 : -32768 to 32767, of the supply. enable : of the bridge. stop_us : servo pulse, 0 for none.
         slot : waveform to start, loaded before, or NONE.
         """
-        rows = np.empty((self._grid.rows_per_tick, COLUMNS))
+        rows = np.empty((self._grid.rows_per_tick, RIG_COLUMNS))
         i = self._ticks % BLOCK_TICKS
         if i == 0:
             self._noise = self._draw()
@@ -96,24 +95,24 @@ class RigPlant:
         few = np.array([noise.force_N[i], noise.keycap[i], noise.effort_ratio[i], noise.latency[i]])
         seen = int(self._inputs["sum"][0])
         given = (int(duty_q15), int(enable), int(stop_us), int(slot))
-        doors().fdvv_rig_step(
+        rig_library().fdvv_rig_step(
             self._held,
             *given,
             address(noise.position_m[i]),
             address(few),
             address(rows),
-            address(self._told),
+            address(self._sensed),
             address(self._inputs),
         )
         self._ticks += 1
-        self._kept.append((rows, self._told.copy(), (seen, *given)))
+        self._kept.append((rows, self._sensed.copy(), (seen, *given)))
         return self.inputs
 
     def press(self, gesture: Gesture) -> None:
         """Let the finger follow a gesture (plan(), vary()) from now on; it rests again after it."""
-        doors().fdvv_rig_press(
+        rig_library().fdvv_rig_press(
             self._held,
-            ctypes.byref(GestureTimes.of(gesture)),
+            ctypes.byref(gesture_times(gesture)),
             ctypes.c_double(gesture.stiffness_N_m),
             ctypes.c_double(gesture.damping_N_s_m),
             ctypes.c_double(0.0),
@@ -121,42 +120,41 @@ class RigPlant:
 
     def push(self, force_N: float) -> None:
         """Let the finger push with a steady force from now on, as a weight that lies on the cap does."""
-        self._lead(Led.PUSH, force_N)
+        self._lead(CursorInput.PUSH, force_N)
 
     def lift(self, height_m: float = LIFTED_m) -> None:
         """Let the finger wait above the cap from now on."""
-        self._lead(Led.PLACE, -height_m)
+        self._lead(CursorInput.PLACE, -height_m)
 
-    def _lead(self, led: Led, goal: float) -> None:
+    def _lead(self, led: CursorInput, goal: float) -> None:
         numbers = (ctypes.c_double(n) for n in (goal, 0.0, NEAR_1_s))
-        doors().fdvv_rig_lead(self._held, ctypes.c_int(led), *numbers)
+        rig_library().fdvv_rig_lead(self._held, ctypes.c_int(led), *numbers)
 
     def load(self, image: bytes) -> None:
-        """Give the vibration board the waveforms of a program; ModelError if it cannot hold them."""
+        """Load the waveforms of a program into the vibration board; ModelError if it cannot hold them."""
         held = words(image)
-        if not doors().fdvv_rig_load(self._held, address(held)):
+        if not rig_library().fdvv_rig_load(self._held, address(held)):
             raise ModelError("the vibration board has no room for the waveforms of this program")
 
     def record(self) -> Trace:
-        """Give what happened since the last call (60 s at most), from time 0, and forget it.
+        """Return what happened since the last call (60 s at most), from time 0, and forget it.
 
         What the board decided is not known here: sensed_mm is what the readings amount to, commanded_cN what
         the duty amounts to; release, state, key, mode and flags are 0. ModelError if no tick has passed.
         """
         if not self._kept:
             raise ModelError("no tick has passed since the last record")
-        physics, told, given = zip(*self._kept, strict=True)
+        physics, sensed, given = zip(*self._kept, strict=True)
         self._kept.clear()
-        rows = Rows(np.concatenate(physics), np.array(told), self._outputs(np.array(given)))
+        rows = Rows(np.concatenate(physics), np.array(sensed), self._outputs(np.array(given)))
         rows.physics[:, 0] = (
             np.arange(len(rows.physics)) * self.rig.controller.tick_s / self._grid.rows_per_tick
         )
         return Trace.of_rows(rows)
 
     def _start(self, stop_us: float) -> None:
-        model = Model(*vars(plant_of(self.rig, self.finger)).values())
-        counts = GridCounts(*vars(self._grid).values())
-        lib = doors()
+        model, counts = plant_of(self.rig, self.finger), self._grid.counts()
+        lib = rig_library()
         lib.fdvv_rig_start(self._held, ctypes.byref(model), ctypes.byref(counts), ctypes.c_double(stop_us))
         start = plan(self.finger, self.rig.stops.travel_limit_m, 1.0)
         # a gesture that goes nowhere: the finger rests where one would begin
@@ -174,9 +172,11 @@ class RigPlant:
 
     def _outputs(self, given: npt.NDArray[np.int64]) -> RecordArray:
         """Put sums of readings and a board's outputs, (n, 5), into records of OUTPUTS."""
-        told, out = settings_of(self.rig), np.zeros(len(given), OUTPUTS)
+        settings, out = settings_of(self.rig), np.zeros(len(given), OUTPUTS)
         sums, out["duty_q15"], out["enable"], out["stop_us"], out["slot"] = given.T
-        out["displacement_um16"] = (sums * told.position_gain_q14 + 8192 >> 14) + told.position_offset_um16
-        force = np.round(given[:, 1] * (65536 / told.duty_gain_q16))
+        out["displacement_um16"] = (
+            sums * settings.position_gain_q14 + 8192 >> 14
+        ) + settings.position_offset_um16
+        force = np.round(given[:, 1] * (65536 / settings.duty_gain_q16))
         out["commanded_cN64"] = np.clip(force, -32767, 32767)
         return out

@@ -22,7 +22,7 @@ class About:
     bounds : the range the equations and the step can bear; beyond it a value is refused.
     source : the tag of its source, "assumed" where there is none.
     choices : the words allowed, for a parameter that is a word.
-    chosen : set by whoever builds the thing, so known to them and not drawn at random.
+    chosen : set by the builder, so known and not drawn at random.
     """
 
     text: str
@@ -54,7 +54,7 @@ def choice(default: str, text: str, choices: tuple[str, ...], source: str = "ass
 
 
 def about(field: dataclasses.Field[Any]) -> About:
-    """Give what is known of a field made here."""
+    """Return what is known of a field made here."""
     return cast(About, field.metadata["about"])
 
 

@@ -1,16 +1,28 @@
-"""From records to the compiled rig's structures: flattened, in SI, cut into steps."""
+"""Parameters of the compiled rig in SI units, and the calls to it."""
 
 from __future__ import annotations
 
+import ctypes
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
+import numpy as np
+
+from fdvv._native import address, library, words
+from fdvv._native.structures import fill, structure
 from fdvv.errors import ModelError
-from fdvv.twin._finger import Finger
-from fdvv.twin._kernel import Grid, Plant
-from fdvv.twin._noise import lsb_of
-from fdvv.twin._rig import Rig
-from fdvv.twin._rig_senses import ForceSensor
+from fdvv.firmware.core import OUTPUTS, RecordArray
+from fdvv.protocol.tables import Settings
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.noise import Noise, lsb_of
+from fdvv.twin.rig import ForceSensor, Rig
+from fdvv.units import FloatArray
 
+RIG_COLUMNS, TICK_COLUMNS = 10, 3
 STEP_s = 1e-5
 ROW_s = 1e-4
 HUNT_CROSSLEY = 1.5
@@ -18,35 +30,142 @@ HUNT_CROSSLEY = 1.5
 KEYCAP_KINDS = {"none": 0.0, "force": 1.0, "acceleration": 2.0}
 
 
-def plant_of(rig: Rig, finger: Finger, step_s: float = STEP_s) -> Plant:
-    """Flatten everything constant while a rig runs, in SI."""
-    return Plant(
-        **_finger_part(rig, finger),
+@dataclass(frozen=True)
+class Grid:
+    """Discretisation of a tick; the fields of fdvv_rig_grid."""
+
+    steps_per_tick: int
+    steps_per_row: int
+    delay_steps: int
+    reads: int
+    read_steps: float
+    audit: int = 0
+
+    @property
+    def rows_per_tick(self) -> int:
+        return self.steps_per_tick // self.steps_per_row
+
+    def counts(self) -> ctypes.Structure:
+        """Return fdvv_rig_grid."""
+        return fill("fdvv_rig_grid", vars(self))
+
+
+class Rows(NamedTuple):
+    """Record of a press: physics (rows, RIG_COLUMNS), each tick's sensors (ticks, 3), the core's outputs."""
+
+    physics: FloatArray
+    sensed: FloatArray
+    outputs: RecordArray
+
+
+def gesture_times(gesture: Gesture) -> ctypes.Structure:
+    """Return fdvv_gesture."""
+    names = ("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s")
+    return fill("fdvv_gesture", {name: getattr(gesture, name) for name in names})
+
+
+def noise_pointers(arrays: Sequence[FloatArray]) -> ctypes.Structure:
+    """Return fdvv_twin_noise; the caller keeps the arrays (Noise.arrays()) alive during the call."""
+    return structure("fdvv_twin_noise")(*(address(array) for array in arrays))
+
+
+@cache
+def rig_library() -> ctypes.CDLL:
+    """Load the library; raise ModelError if it was built from other structures than the headers say."""
+    lib = library()
+    names = ("fdvv_rig_model", "fdvv_rig_grid", "fdvv_twin_press_plan", "fdvv_twin_noise")
+    expected = [ctypes.sizeof(structure(name)) for name in names] + [OUTPUTS.itemsize]
+    sizes = _sizes(lib)
+    compiled = sizes[:2] + sizes[3:]
+    if compiled != expected:
+        raise ModelError(
+            f"compiled twin has structures of {compiled} bytes, Python of {expected}; rebuild the library"
+        )
+    lib.fdvv_rig_step.restype = ctypes.c_double
+    lib.fdvv_rig_load.restype = ctypes.c_uint8
+    return lib
+
+
+def _sizes(lib: ctypes.CDLL) -> list[int]:
+    """Return the bytes of model, grid, running rig, plan, noise and outputs."""
+    sizes = [ctypes.c_int64() for _ in range(6)]
+    lib.fdvv_rig_sizes(*(ctypes.byref(size) for size in sizes[:3]))
+    lib.fdvv_twin_sizes(*(ctypes.byref(size) for size in sizes[3:]))
+    return [size.value for size in sizes]
+
+
+def rig_bytes() -> int:
+    """Return the memory of a running rig."""
+    return _sizes(rig_library())[2]
+
+
+def run(
+    plant: ctypes.Structure,
+    grid: Grid,
+    settings: Settings,
+    image: bytes,
+    gesture: Gesture,
+    noise: Noise,
+    settle_ticks: int,
+    announced_mm_s: float,
+) -> Rows:
+    """Simulate one press in C; ModelError if the noise is of another length, or the grid is impossible."""
+    noise.check(grid.reads)
+    ticks = noise.force_N.size - settle_ticks
+    plan = {
+        "gesture": gesture_times(gesture),
+        "stiffness_N_m": gesture.stiffness_N_m,
+        "damping_N_s_m": gesture.damping_N_s_m,
+        "settle_ticks": settle_ticks,
+        "ticks": ticks,
+        "announced_mm_s16": round(16 * announced_mm_s),
+    }
+    rows = Rows(
+        np.empty((max(ticks, 0) * grid.rows_per_tick, RIG_COLUMNS)),
+        np.empty((max(ticks, 0), TICK_COLUMNS)),
+        np.zeros(max(ticks, 0), OUTPUTS),
+    )
+    arrays = noise.arrays()
+    settings_words, image_words = words(settings.pack()), words(image)
+    failed = rig_library().fdvv_twin_press(
+        ctypes.byref(plant),
+        ctypes.byref(grid.counts()),
+        ctypes.byref(fill("fdvv_twin_press_plan", plan)),
+        address(settings_words),
+        address(image_words),
+        ctypes.byref(noise_pointers(arrays)),
+        *(address(array) for array in rows),
+    )
+    if failed:
+        raise ModelError(f"the compiled twin cannot run this press: {grid}, {ticks} ticks")
+    return rows
+
+
+def plant_of(rig: Rig, finger: Finger, step_s: float = STEP_s) -> ctypes.Structure:
+    """Return fdvv_rig_model: everything constant while a rig runs, in SI units."""
+    impedance = finger.impedance
+    parts = {
+        "finger": finger_part(finger, impedance.stiffness_N_m, impedance.damping_N_s_m),
+        **worn_part(rig.force_sensor),
         **_coil_part(rig),
         **_mechanics_part(rig),
         **_servo_part(rig),
         **_exciter_part(rig),
         **_sensing_part(rig),
         **_keycap_part(rig),
-        step_s=step_s,
-    )
-
-
-def _finger_part(rig: Rig, finger: Finger) -> dict[str, float]:
-    return {
-        "finger_stiffness_N_m": finger.impedance.stiffness_N_m,
-        "finger_damping_N_s_m": finger.impedance.damping_N_s_m,
-        **flesh_part(finger),
-        **worn_part(rig.force_sensor),
+        "step_s": step_s,
     }
+    return fill("fdvv_rig_model", parts)
 
 
-def flesh_part(finger: Finger) -> dict[str, float]:
-    """Flatten what every press has of a finger, whatever its gesture."""
+def finger_part(finger: Finger, stiffness_N_m: float, damping_N_s_m: float) -> dict[str, float]:
+    """Return the fields of fdvv_finger, with the impedance of one gesture."""
     pulp = finger.pulp
     relaxing = 1 - pulp.relaxed_ratio
     return {
         "finger_mass_kg": finger.impedance.mass_kg,
+        "finger_stiffness_N_m": stiffness_N_m,
+        "finger_damping_N_s_m": damping_N_s_m,
         "pulp_scale_N": pulp.scale_N,
         "pulp_exponent_1_m": pulp.exponent_1_m,
         "pulp_relaxed_ratio": pulp.relaxed_ratio,
@@ -60,7 +179,7 @@ def flesh_part(finger: Finger) -> dict[str, float]:
 
 
 def worn_part(sensor: ForceSensor) -> dict[str, float]:
-    """Flatten the mechanics of the sensor on the fingertip."""
+    """Return the fields of the force sensor on the fingertip."""
     return {
         "sensor_mass_kg": sensor.mass_kg,
         "contact_stiffness_N_m": sensor.contact_stiffness_N_m,
@@ -157,7 +276,7 @@ def _keycap_part(rig: Rig) -> dict[str, float]:
 
 
 def grid_of(rig: Rig, step_s: float = STEP_s) -> Grid:
-    """Cut a tick into steps; raise ModelError if a duration is no whole number of steps."""
+    """Divide a tick into steps; raise ModelError if a duration is no whole number of steps."""
     control, position = rig.controller, rig.position_sensor
 
     def steps(duration_s: float, name: str) -> int:

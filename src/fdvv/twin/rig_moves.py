@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fdvv.errors import ModelError
-from fdvv.twin._quantity import check, choice, quantity
+from fdvv.twin.quantity import check, choice, quantity
 
 
 @dataclass(frozen=True)
 class Coil:
-    """The voice coil and its amplifier; pulse width is averaged (its ripple: fdvv.testing.ripple_N)."""
+    """The voice coil and its amplifier; pulse width is averaged (ripple: testing.closed_forms.ripple_N)."""
 
     drive: str = choice("voltage", "what the amplifier holds", ("voltage", "current"), "assumed")
     force_constant_N_A: float = quantity(
@@ -79,7 +79,7 @@ class Coil:
 
     @property
     def steepest_H_m(self) -> float:
-        """Give the slope at which a quarter of the inductance is left at the farther end of the stroke."""
+        """Return the slope at which a quarter of the inductance is left at the farther end of the stroke."""
         return 0.75 * self.inductance_H / max(abs(self.centre_m), abs(self.stroke_m - self.centre_m))
 
 

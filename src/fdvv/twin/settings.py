@@ -1,10 +1,11 @@
-"""What the firmware is told of a rig: its parameters as the protocol's settings."""
+"""The firmware's settings for a rig, in the integers of the protocol."""
 
 from __future__ import annotations
 
 from fdvv.errors import ModelError
-from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm
-from fdvv.twin._rig import Rig
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import Settings
+from fdvv.twin.rig import Rig
 
 UM16_m = 1000 * UM16_PER_mm
 """Sixteenths of a micrometre in a metre."""
@@ -17,7 +18,7 @@ STUCK_s = 10.0
 
 
 def settings_of(rig: Rig) -> Settings:
-    """Give the calibration and limits of a rig; ModelError names what its firmware cannot hold.
+    """Return the calibration and limits of a rig; ModelError names what its firmware cannot hold.
 
     A held force equals the table where the coil is at its best: the duty gain counts coil and bridge when
     cold, at the nominal supply.
@@ -25,7 +26,7 @@ def settings_of(rig: Rig) -> Settings:
     try:
         return Settings(**_position(rig), **_loop(rig), **_output(rig), **_limits(rig), **_extras(rig))
     except ModelError as error:
-        raise ModelError(f"this rig is beyond what its firmware can be told: {error}") from error
+        raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
 
 
 def ticks(rig: Rig, duration_s: float) -> int:

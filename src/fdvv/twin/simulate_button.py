@@ -1,25 +1,92 @@
-"""From button, finger and gesture to the record of one press of a real button, or of many. Simulated."""
+"""Simulate presses and probing of a real button, one or many."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Press
-from fdvv.twin._button import ButtonPhysics
-from fdvv.twin._button_noise import ButtonNoise, button_ticks, read_force_N, settle_button_ticks
-from fdvv.twin._finger import Finger
-from fdvv.twin._flatten_button import ROW_s, STEP_s, TICK_s, button_plant, prepare
-from fdvv.twin._gesture import Gesture
-from fdvv.twin._kernel_button import ButtonGrid, run_button
-from fdvv.twin._rig_senses import ForceSensor
-from fdvv.twin._threads import in_threads
-from fdvv.twin._trace import BoolArray
-from fdvv.units import FloatArray, cN_from_N, mm_from_m
+from fdvv.model.press import Press
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.button_kernel import (
+    ButtonGrid,
+    ROW_s,
+    STEP_s,
+    TICK_s,
+    button_plant,
+    prepare,
+    run_button,
+    run_probe,
+)
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture, plan
+from fdvv.twin.noise import Effort, lsb_of
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate import in_threads
+from fdvv.twin.trace import BoolArray
+from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
+
+SETTLE_s = 0.02
+"""The press runs this long before the record starts: leaf and plate come to rest under the resting finger."""
+BEYOND_mm = 0.1
+"""The tester goes on beyond the bottom by this before it turns, as the kernel does; no row is taken there."""
+
+
+@dataclass(frozen=True, eq=False)
+class ButtonNoise:
+    """Random disturbances of one press of a real button.
+
+    Attributes
+    ----------
+    effort_ratio : (milliseconds of settling and record + 1,) modulation of the finger's own force.
+    force_N : (recorded milliseconds,) added to each force sample.
+    """
+
+    effort_ratio: FloatArray
+    force_N: FloatArray
+
+
+def settle_button_ticks() -> int:
+    """Count the milliseconds before the record starts."""
+    return round(SETTLE_s / TICK_s)
+
+
+def button_ticks(gesture: Gesture) -> int:
+    """Count the milliseconds of the record."""
+    return int(np.ceil(gesture.duration_s / TICK_s))
+
+
+def no_button_noise(gesture: Gesture) -> ButtonNoise:
+    """Return no noise at all."""
+    n = button_ticks(gesture)
+    return ButtonNoise(np.zeros(settle_button_ticks() + n + 1), np.zeros(n))
+
+
+def draw_button_noise(
+    finger: Finger, gesture: Gesture, random: np.random.Generator, sensor: ForceSensor | None = None
+) -> ButtonNoise:
+    """Draw the noise of muscle and force sensor for one press."""
+    n = button_ticks(gesture)
+    effort = Effort(finger.habit, TICK_s).draw(settle_button_ticks() + n + 1, random)
+    return ButtonNoise(effort, (sensor.noise_N if sensor else 0.0) * random.standard_normal(n))
+
+
+def read_force_N(sensor: ForceSensor, filtered_N: FloatArray, noise_N: FloatArray) -> FloatArray:
+    """Read the sensor once per millisecond: play, gain, noise, range, converter; (n,)."""
+    half = 0.5 * sensor.hysteresis_N
+
+    def play(held: float, now: float) -> float:
+        return now - half if held < now - half else now + half if held > now + half else held
+
+    filtered: list[float] = filtered_N.tolist()
+    held = np.array(list(accumulate(filtered, play, initial=0.0))[1:])
+    value = np.clip((1 + sensor.gain_error_ratio) * held + noise_N, -sensor.full_scale_N, sensor.full_scale_N)
+    lsb = lsb_of(sensor.full_scale_N, sensor.converter_bits)
+    return np.asarray(lsb * np.floor(value / lsb + 0.5) if lsb else value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +126,7 @@ class ButtonTrace:
     energy_J: FloatArray | None
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Give the record that devices share, as a bench with perfect displacement would capture it."""
+        """Return the record that devices share, as a bench with perfect displacement would capture it."""
         return Press(
             self.t_s,
             self.displacement_mm,
@@ -93,7 +160,7 @@ def simulate_button(
     per_tick, per_row = _whole(TICK_s / step_s), _whole(ROW_s / step_s)
     table = prepare(button).table
     grid = ButtonGrid(settle, ticks, per_tick, per_row, len(table), int(audit))
-    plant = replace(button_plant(button, finger, gesture, sensor), step_s=step_s)
+    plant = button_plant(button, finger, gesture, sensor, step_s=step_s)
     rows, switching = run_button(plant, grid, table, noise.effort_ratio, detour_m)
     if not np.isfinite(rows[:-1, -1]).all():
         raise ModelError(
@@ -161,3 +228,29 @@ def simulate_batch(plans: Iterable[PressPlan], threads: int = 2) -> Iterator[But
         return simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
 
     return in_threads(one, plans, threads)
+
+
+@dataclass(frozen=True, eq=False)
+class ProbedCurve:
+    """Force on displacement of one slow stroke pair, simulated; (n,) each, in rising displacement."""
+
+    displacement_mm: FloatArray
+    press_cN: FloatArray
+    release_cN: FloatArray
+
+
+def probe_button(button: ButtonPhysics, speed_mm_s: float = 0.5, step_mm: float = 0.005) -> ProbedCurve:
+    """Lead the slider down to the bottom stop and back at a constant speed; force as the tester reads it.
+
+    The tester is stiff and cannot pull; a sample every step_mm or a little less.
+    """
+    if not (speed_mm_s > 0 and step_mm > 0):
+        raise ModelError(f"a probe needs speed and step above 0, got {speed_mm_s} mm/s and {step_mm} mm")
+    travel_m = button.curve.travel_m
+    count = int(np.ceil(mm_from_m(travel_m) / step_mm - 1e-9)) + 1
+    finger = Finger()
+    plant = button_plant(button, finger, plan(finger, travel_m, 0.1), None, clamped=True)
+    rows = run_probe(plant, prepare(button).table, travel_m, m_from_mm(speed_mm_s), max(count, 2))
+    force_cN = cN_from_N(rows[:, 1])
+    half = len(rows) // 2
+    return ProbedCurve(mm_from_m(rows[:half, 0]), force_cN[:half], force_cN[half:][::-1])

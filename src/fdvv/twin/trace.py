@@ -1,4 +1,4 @@
-"""What the twin knows of one press."""
+"""The record of one simulated press."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.model import Press
-from fdvv.protocol import CN64_PER_cN, TickFlag, UM16_PER_mm
-from fdvv.twin._kernel import Rows
+from fdvv.model.press import Press
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import TickFlag
+from fdvv.twin.rig_kernel import Rows
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
 
 BoolArray = npt.NDArray[np.bool_]
@@ -27,12 +28,13 @@ class Trace:
     displacement_mm, cap_velocity_mm_s, cap_acceleration_m_s2 : of the cap, true.
     force_cN : between cap and sensor cone, true.
     sensed_mm, commanded_cN, saturated, release, state, key, slot, mode, flags : the controller's, held
-        between ticks; flags are bits of fdvv.protocol.TickFlag, slot the waveform started in that tick or
+        between ticks; flags are bits of fdvv.protocol.tables.TickFlag, slot the waveform started in
+        that tick or
         NONE.
-    sensed_cN : as the finger's force sensor told at the tick.
+    sensed_cN : reading of the finger's force sensor at the tick.
     tick : rows at which the controller ran.
     duty_ratio : of the supply, as the controller set it at the tick.
-    current_A : in the coil. warm_K : of the coil. stop_mm : where the bottom stop stands.
+    current_A : in the coil. warm_K : of the coil. stop_mm : position of the bottom stop.
     finger_mm : of the finger. magnet_um : of the exciter's magnet, from its rest in the cap.
     energy_J : energy that the balance cannot account for, 0 if integration were exact; None if not asked.
     """
@@ -96,7 +98,7 @@ class Trace:
         )
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Give the record that devices share, asked for at velocity_mm_s."""
+        """Return the record that devices share, asked for at velocity_mm_s."""
         return Press(
             self.t_s,
             self.displacement_mm,

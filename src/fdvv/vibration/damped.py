@@ -11,14 +11,15 @@ import numpy.typing as npt
 
 from fdvv.errors import FitError, ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration._projection import Records, Solved, polynomial, shapes
+from fdvv.vibration.projection import Records, Solved, polynomial, shapes
 
 MOST_STEPS = 25
 """Of the search; a fit that needs more has no clear minimum, and its standard errors say so."""
-
 FIRST_DAMPING, MOST_DAMPING = 1e-2, 1e6
 NEAR_ratio, SETTLED = 1e-9, 1e-4
 """A search ends with a step this small, or that gains this part of the noise power of one sample."""
+DECAYS = (0.5, 2.0, 8.0)
+"""Decays that are tried first, in lives per record."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class DampedFit:
 
 
 def duration_s(decay_1_s: float) -> float:
-    """Give the time in which exp(-d t) falls to a tenth; 15 ms at 239 Hz and a tenth of critical damping."""
+    """Return the time in which exp(-d t) falls to a tenth."""
     return math.log(10.0) / decay_1_s if decay_1_s > 0 else math.inf
 
 
@@ -110,7 +111,7 @@ def fit_records(records: Records, start: FloatArray, held: npt.NDArray[np.bool_]
         free = np.ones(start.size, dtype=bool) if held is None else ~held
         return _summary(records, _descend(records, start, free), free)
     except np.linalg.LinAlgError as error:
-        raise FitError(f"{modes} decaying sinusoids cannot be told apart in the records") from error
+        raise FitError(f"{modes} decaying sinusoids cannot be separated in the records") from error
 
 
 def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -> Solved:
@@ -161,7 +162,7 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
     amplitudes = np.hypot(sines, cosines) * np.exp(d * records.starts_s[:, None])
     phases = np.arctan2(cosines[0], sines[0]) - 2 * np.pi * f * records.starts_s[0]
     doubts = np.sqrt(amplitude_variances(records, found, covariance, power))
-    # of the median: a record that ends early may tell of no amplitude at all
+    # of the median: a record that ends early may hold no amplitude at all
     total = np.median(amplitudes, axis=0)
     spread = np.median(amplitudes * doubts, axis=0) * math.sqrt(
         (np.pi / 2 if len(doubts) > 2 else 1) / len(doubts)
@@ -188,7 +189,7 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
 
 
 def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
-    """Give the standard deviations between records of f and d, (p,), 0 where held; None for a single record.
+    """Return the standard deviations between records of f and d, (p,), 0 where fixed; None for one record.
 
     From one step of the search without each record (a jackknife), times the root of their number.
     """
@@ -196,7 +197,7 @@ def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | 
     if records < 2:
         return None
     each = found.curvatures[:, free][:, :, free]
-    # small against any curvature, so that a step along what only one record tells stays finite
+    # small against any curvature, so that a step along what only one record determines stays finite
     least = 1e-9 * np.trace(each.sum(axis=0)) / max(free.sum(), 1) * np.eye(int(free.sum()))
     steps = -np.linalg.solve(each.sum(axis=0) - each + least, found.slopes[:, free, None])[:, :, 0]
     spreads = np.zeros(free.size)
@@ -205,7 +206,7 @@ def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | 
 
 
 def amplitude_variances(records: Records, found: Solved, covariance: FloatArray, power: float) -> FloatArray:
-    """Give variances of the logarithms of amplitudes, (records, modes): their own, and those of f and d."""
+    """Return variances of the logarithms of amplitudes, (records, modes): their own, and those of f and d."""
     modes = found.theta.size // 2
     variances = np.zeros((len(found.weights), modes))
     for k in range(modes):
@@ -222,14 +223,14 @@ def amplitude_variances(records: Records, found: Solved, covariance: FloatArray,
 def cramer_rao(
     times_s: Sequence[FloatArray], mode: tuple[float, float, float, float], noise: float, degree: int = -1
 ) -> tuple[float, float]:
-    """Give the least standard errors (Hz, 1/s) with which white noise lets f and d be known.
+    """Return the least standard errors (Hz, 1/s) with which white noise lets f and d be known.
 
     times_s : one array per record, times after the start of the mode.
     mode : f (Hz), d (1/s), amplitude and phase (rad); the latter two are unknown in each record.
     noise : rms per sample, in the unit of the amplitude.
     degree : of the unknown polynomial beneath each record; -1 for none.
 
-    Infinite where the records are too short to tell anything.
+    Infinite where the records are too short to determine anything.
     """
     f, d, amplitude, phase = mode
     if noise <= 0 or amplitude <= 0:
@@ -245,3 +246,42 @@ def cramer_rao(
         return math.inf, math.inf
     bound = np.sqrt(np.diag(np.linalg.inv(fisher)))
     return float(bound[0]), float(bound[1])
+
+
+def fit_decaying_sinusoid(
+    t_s: npt.ArrayLike, signal: npt.ArrayLike, degree: int = -1, lowest_Hz: float | None = None
+) -> DampedFit:
+    """Fit one decaying sinusoid by least squares; the fit has one mode.
+
+    t_s, signal : (n,) from the onset on, rising; even spacing is not needed.
+    degree : of a polynomial beneath, -1 for none.
+    lowest_Hz : where the search begins; one period of the record if None.
+
+    The record's own spectrum on a grid of frequencies, at three decays, gives the first guess. Raises
+    FitError if there are too few samples.
+    """
+    t, y = np.asarray(t_s, dtype=np.float64), np.asarray(signal, dtype=np.float64)
+    if t.shape != y.shape or t.ndim != 1 or t.size < 2 or np.any(np.diff(t) <= 0):
+        raise ModelError(f"a signal needs one value at each of rising times, got {y.shape} at {t.shape}")
+    length = float(t[-1] - t[0])
+    fits = [
+        fit_damped(
+            [t],
+            [y],
+            [_loudest_Hz(t, y * np.exp(-lives * (t - t[0]) / length), lowest_Hz)],
+            [lives / length],
+            degree,
+        )
+        for lives in DECAYS
+    ]
+    return min(fits, key=lambda fit: fit.bic)
+
+
+def _loudest_Hz(t: FloatArray, y: FloatArray, lowest_Hz: float | None) -> float:
+    """Return the frequency with the largest spectrum up to half the mean rate, four points to a line."""
+    length = float(t[-1] - t[0])
+    step, highest = 0.25 / length, 0.5 * (t.size - 1) / length
+    grid = np.arange(lowest_Hz or 1 / length, highest, step)
+    if not grid.size:
+        return 1 / length
+    return float(grid[np.argmax(np.abs(np.exp(-2j * np.pi * np.outer(grid, t)) @ (y - y.mean())))])

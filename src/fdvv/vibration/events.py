@@ -11,28 +11,22 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration._snap import NotFound
+from fdvv.vibration.snap import NotFound
 
 LOW_CUT_Hz = 300.0
 """Hum, handling and the room below this carry no burst of a key."""
-
 SHORT_s, LONG_s = 0.0007, 0.004
 """A burst begins where the mean power of the first, ahead, exceeds that of the second, behind."""
-
 RISE_ratio = 8.0
 """By so much, 9 dB: far more than two stretches of one noise differ, 30 and 180 samples at 44.1 kHz."""
-
 QUIET_ratio = 1e-3
 """Bursts 30 dB below the loudest of the stroke are of the room or of a lossy codec."""
-
 GROUP_s = 0.045
 """Contact, click and bottom-out of a stroke follow one another closer than this, a release comes later: typed
 keys take 5 to 20 ms to go down and are held for 80 or more."""
-
 BESIDE_ratio, CLICK_ratio = 10**-1.5, 10**-2.0
 """Click and bottom are heard beside each other: what ends a press is at most 15 dB below the loudest of it, a
 click at most 20 dB below the bottom; a finger's contact is fainter."""
-
 CLICK_LEAD_s = (0.003, 0.020)
 """How long before the bottom a click can be: half of 4 mm at 640 and at 100 mm/s, as typed keys and
 calm presses go. Earlier is the finger's contact, later the bottom's own."""
@@ -53,7 +47,7 @@ class Burst:
 
 @dataclass(frozen=True)
 class KeyEvents:
-    """What a recording of one keystroke tells.
+    """Events in the recording of one keystroke.
 
     Attributes
     ----------
@@ -83,7 +77,7 @@ def key_events(sound: npt.ArrayLike, rate_Hz: float, release_alone: bool = False
     if signal.ndim != 1 or signal.size < 64 or not np.isfinite(signal).all():
         raise ModelError(f"a recording needs 64 or more finite samples of one channel, got {signal.shape}")
     if not rate_Hz >= 8000:
-        raise ModelError(f"bursts are told apart from 8000 Hz on, got {rate_Hz}")
+        raise ModelError(f"bursts need a rate of at least 8000 Hz, got {rate_Hz}")
     found = bursts(signal, rate_Hz)
     if not found:
         nothing = NotFound("no burst rises 9 dB above what is before it")
@@ -152,7 +146,6 @@ def bursts(signal: FloatArray, rate_Hz: float) -> list[Burst]:
 
 
 def _floor(ahead: FloatArray) -> float:
-    """Give the power of the record's own quiet tenth."""
     return float(np.percentile(ahead, 10))
 
 

@@ -1,22 +1,29 @@
-"""The exciter as its tones tell it: volts to acceleration of the cap, a resonance of second order."""
+"""The exciter identified from tones: volts to acceleration of the cap, a resonance of second order."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Literal
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.errors import FitError, ModelError
+from fdvv.errors import FitError, InputError, ModelError
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
 from fdvv.units import FloatArray
-from fdvv.vibration._tone import Tone
 
+DRIFT = 3
+"""The rest is a parabola: the cap creeps a little while it hums."""
+LEAST = 20
+"""Samples beyond what the fit takes, without which nothing can be said of its error."""
 FULL_SCALE_V = 2.5
 """Volts of the amplifier at full scale of the vibration board's converter; all volts here count by it."""
 LIMIT_V = 2.43
 """The largest amplitude that the paper plays."""
-
 FITTED = ("gain_m_s2_V", "resonance_Hz", "quality", "lag_s", "grip_Hz")
 USUAL = {"gain_m_s2_V": 20.0, "resonance_Hz": 600.0, "quality": 2.0, "lag_s": 6e-4, "grip_Hz": 80.0}
 SPREAD = {"gain_m_s2_V": 3.0, "resonance_Hz": 0.3, "quality": 0.5, "lag_s": 0.5, "grip_Hz": 0.5}
@@ -24,6 +31,79 @@ SPREAD = {"gain_m_s2_V": 3.0, "resonance_Hz": 0.3, "quality": 0.5, "lag_s": 0.5,
 MODEL_ratio = 0.03
 """By how much the second order itself is taken to be wrong."""
 FEWEST = 6
+EXCITER_SUFFIX = ".exciter.json"
+"""How the name of a known exciter's file ends."""
+LIMIT_bytes = 100_000
+_REMEDY = "identify the exciter again"
+_KIND = Kind("fdvv-exciter", 1, "a known exciter", _REMEDY)
+
+
+@dataclass(frozen=True)
+class Tone:
+    """How strongly a sensor answered to one frequency.
+
+    Attributes
+    ----------
+    frequency_Hz : that was played; it may lie above half the sensor's rate.
+    amplitude : of the sine that fits best, in the sensor's unit.
+    error : standard error of each of its two parts.
+    """
+
+    frequency_Hz: float
+    amplitude: float
+    error: float
+
+
+def measure_tone(t_s: FloatArray, samples: FloatArray, frequency_Hz: float) -> Tone:
+    """Fit a sine of known frequency and a slow drift by least squares.
+
+    t_s, samples : (n,) in any steps. The frequency need not lie below half the rate: it is known, so its
+    alias gives its size, if nothing else sounds there. Raises FitError on too few samples, or at a frequency
+    that the sampling cannot separate from drift (multiples of the rate) or one phase (half of the rate).
+    """
+    free = t_s.size - 2 - DRIFT
+    if free < LEAST:
+        raise FitError(f"a tone needs {LEAST + 2 + DRIFT} samples, got {t_s.size}")
+    turns = 2 * np.pi * frequency_Hz * t_s
+    middle = (t_s - t_s.mean()) / np.ptp(t_s)
+    columns = np.column_stack([np.cos(turns), np.sin(turns), *(middle**n for n in range(DRIFT))])
+    solved, _, _, sizes = np.linalg.lstsq(columns, samples)
+    if sizes[-1] < 0.02 * sizes[0]:
+        raise FitError(f"{frequency_Hz:g} Hz cannot be measured at this rate; play another frequency")
+    rest = samples - columns @ solved
+    error = float(np.sqrt(np.sum(rest**2) / free * 2 / t_s.size))
+    return Tone(frequency_Hz, float(np.hypot(solved[0], solved[1])), error)
+
+
+def clock_ratio(
+    records: Sequence[tuple[FloatArray, FloatArray]], frequency_Hz: Sequence[float], most: float = 0.01
+) -> float:
+    """Return how much faster than nominal the tones sound: the player's clock over the sensor's.
+
+    records : times (s) and samples of each tone. A ceramic resonator is off by half a percent, enough to lose
+    a tone of seconds. The ratio within 1 ± most at which all tones together are strongest, to an eighth of a
+    turn over the longest.
+    """
+    pairs = list(zip(records, frequency_Hz, strict=True))
+    turns = max(float(np.ptp(t)) * f for (t, _), f in pairs)
+    count = int(np.ceil(8 * turns * most))
+    ratios = 1 + most * np.arange(-count, count + 1) / max(count, 1)
+    power = np.zeros(ratios.size)
+    for (t_s, samples), f in pairs:
+        middle = (t_s - t_s.mean()) / np.ptp(t_s)
+        drift = np.polynomial.polynomial.polyfit(middle, samples, DRIFT - 1)
+        rest = samples - np.polynomial.polynomial.polyval(middle, drift)
+        power += [abs(np.sum(rest * np.exp(-2j * np.pi * f * ratio * t_s))) ** 2 for ratio in ratios]
+    return float(ratios[np.argmax(power)])
+
+
+def clear_frequencies_Hz(wanted_Hz: FloatArray, rate_Hz: float, apart_Hz: float) -> FloatArray:
+    """Return those of wanted_Hz whose alias at rate_Hz lies apart_Hz or more from 0 and from half the rate.
+
+    Near 0 the rig's own loop follows the alias and adds to it; near half the rate one phase alone is seen.
+    """
+    alias_Hz = np.abs(wanted_Hz - rate_Hz * np.round(wanted_Hz / rate_Hz))
+    return wanted_Hz[(alias_Hz >= apart_Hz) & (np.abs(alias_Hz - rate_Hz / 2) >= apart_Hz / 5)]
 
 
 @dataclass(frozen=True)
@@ -31,7 +111,7 @@ class KnownExciter:
     """An exciter on its cap.
 
     Volts to the cap's acceleration is g s² / (s² + s ω/Q + ω²): the free cap and the magnet, a spring between
-    them (docs/explanation/vibration-rendering.md). Magnitudes do not tell the sign.
+    them (docs/explanation/vibration-rendering.md). Magnitudes do not give the sign.
 
     Attributes
     ----------
@@ -40,7 +120,7 @@ class KnownExciter:
     latency_s : from a command to the first sample, as the rig's settings had it; None if unknown.
     error : standard errors of the logarithms, by the names of the numbers.
     residual_ratio : rms of measured over fitted tones less 1.
-    tones : how many told it; 0 of one that was written down.
+    tones : number of tones fitted; 0 if the numbers were written by hand.
     simulated : they came from the twin.
     """
 
@@ -62,7 +142,7 @@ class KnownExciter:
         object.__setattr__(self, "error", dict(self.error))
 
     def response(self, frequency_Hz: npt.ArrayLike) -> npt.NDArray[np.complex128]:
-        """Give acceleration per volt (m/s²/V) at frequencies of any shape."""
+        """Return acceleration per volt (m/s²/V) at frequencies of any shape."""
         s = 2j * np.pi * np.asarray(frequency_Hz, dtype=np.float64)
         omega = 2 * np.pi * self.resonance_Hz
         below = s**2 + s * omega / self.quality + omega**2
@@ -70,7 +150,7 @@ class KnownExciter:
 
     @property
     def counts_per_m_s2(self) -> float:
-        """Give converter counts per m/s² far above the resonance."""
+        """Return converter counts per m/s² far above the resonance."""
         return 2048 / FULL_SCALE_V / self.gain_m_s2_V
 
 
@@ -82,7 +162,7 @@ class ToneBench:
     ----------
     drive_V : amplitude of each.
     lag_s, lag_ratio : time constant of the position sensor, and the standard deviation of its logarithm;
-        the default is a guess over 100 to 500 Hz that leaves the gain as unsure. A known rig tells better.
+        the default is a guess over 100 to 500 Hz that leaves the gain as unsure. A known rig is better.
     burst_s : over which reads are averaged.
     """
 
@@ -99,8 +179,8 @@ def fit_exciter(
 
     The cap is held by a soft spring without a finger. At rest its bushing grips: below about 300 Hz it moves
     more than a free one, by 1 / (1 - (f_grip / f)²), which is fitted along. Least squares on the amplitudes,
-    weighed by their errors; priors (USUAL, SPREAD) keep what tones cannot tell. Raises FitError on fewer than
-    six tones, or on tones that rise from no noise.
+    weighed by their errors; priors (USUAL, SPREAD) keep what tones cannot determine. Raises FitError on fewer
+    than six tones, or on tones that rise from no noise.
     """
     from scipy.optimize import least_squares
 
@@ -140,7 +220,7 @@ def fit_exciter(
 
 
 def _unbiased(tones: Sequence[Tone]) -> list[tuple[float, float, float]]:
-    """Give frequency, amplitude without what noise adds to it (Rice), and its error with the model's."""
+    """Return frequency, amplitude without what noise adds to it (Rice), and its error with the model's."""
     clean = [np.sqrt(max(t.amplitude**2 - 2 * t.error**2, t.error**2)) for t in tones]
     return [
         (t.frequency_Hz, float(a), float(np.hypot(t.error, MODEL_ratio * a)))
@@ -149,7 +229,6 @@ def _unbiased(tones: Sequence[Tone]) -> list[tuple[float, float, float]]:
 
 
 def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) -> FloatArray:
-    """Give how far the position sensor says that the cap moves."""
     gain, resonance, quality, lag_s, grip_Hz = numbers
     response = np.abs(KnownExciter(gain, resonance, quality).response(frequency_Hz))
     gripped = response / (1 - (grip_Hz / frequency_Hz) ** 2)
@@ -157,3 +236,39 @@ def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) ->
     seen = np.sinc(frequency_Hz * bench.burst_s) / np.hypot(1.0, turn * lag_s)
     moved: FloatArray = bench.drive_V * gripped / turn**2 * seen
     return moved
+
+
+class ExciterRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A known exciter in its file; the names are those of KnownExciter."""
+
+    format: Literal["fdvv-exciter"]
+    version: Literal[1]
+    gain_m_s2_V: float
+    resonance_Hz: float
+    quality: float
+    latency_s: float | None = None
+    error: dict[str, float] = {}
+    residual_ratio: float = 0.0
+    tones: int = 0
+    simulated: bool = False
+
+
+def save_exciter(exciter: KnownExciter, path: Path | str) -> None:
+    """Write a known exciter to an ``*.exciter.json`` file, whole or not at all. Raises OSError."""
+    head = {"format": _KIND.format, "version": _KIND.version}
+    write_atomic(Path(path), pretty({**head, **asdict(exciter)}) + "\n")
+
+
+def load_exciter(path: Path | str) -> KnownExciter:
+    """Read an ``*.exciter.json`` file. InputError names the place in it and the remedy."""
+    text = read_limited(path, LIMIT_bytes, _REMEDY)
+    found = read_document(text, path, _KIND, _decoded, lambda _: None)
+    numbers = {f.name: getattr(found, f.name) for f in fields(KnownExciter)}
+    try:
+        return KnownExciter(**numbers)
+    except ModelError as error:
+        raise InputError(path, "numbers", str(error), _REMEDY) from error
+
+
+def _decoded(data: bytes) -> ExciterRecord:
+    return msgspec.json.decode(data, type=ExciterRecord)

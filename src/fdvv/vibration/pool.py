@@ -7,28 +7,79 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Stroke, Vibration
+from fdvv.model.bump import find_bump
+from fdvv.model.curve import Stroke
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration._damped import DampedMode
-from fdvv.vibration._energy import SnapEnergy
-from fdvv.vibration._ring import Ring, fit_ring
-from fdvv.vibration._snap import HeardPress, NotFound, Snap, find_snap
+from fdvv.vibration.damped import DampedMode
+from fdvv.vibration.ring import Ring, fit_ring
+from fdvv.vibration.snap import HeardPress, NotFound, Snap, find_snap
 
+mJ_PER_cN_mm = 0.01
+"""1 cN mm = 10 mN x 1 mm = 0.01 mJ."""
+BEFORE_ratio, AFTER_ratio = 0.25, 1.25
+"""A leaf lands once the force has fallen, at the valley of a press or past it, and is struck past that of a
+release; in lengths of the fall."""
 LEAST_SHARE = 0.5
 """A snap that fewer presses show is not one of the button's."""
-
-
 ROUNDS = 2
-"""Searches with the modes that the search before told; none where two modes were known beforehand."""
-
+"""Searches with the modes of the search before; none where two modes were known beforehand."""
 SAME_ratio = 0.15
 """Frequencies within this part of each other are one mode of the housing."""
-
 KNOWN_ratio, FREE_ratio, APART_ratio = 0.02, 0.3, 1.4
 """A mode to build on: frequency known to this part, damping below this part of critical (a fading drive is no
 mode), and frequency apart from that of the first."""
+
+
+@dataclass(frozen=True)
+class SnapEnergy:
+    """The fall of force that drives a snap.
+
+    Attributes
+    ----------
+    drop_cN : from peak to valley.
+    energy_mJ : set free between them, the area between the peak's force and the curve.
+    peak_mm, valley_mm : where it falls.
+    """
+
+    drop_cN: float
+    energy_mJ: float
+    peak_mm: float
+    valley_mm: float
+
+    @property
+    def window_mm(self) -> tuple[float, float]:
+        """Where the snap is looked for: from a quarter of the fall before the valley to 1.25 past it."""
+        length = self.valley_mm - self.peak_mm
+        return self.valley_mm - BEFORE_ratio * length, self.valley_mm + AFTER_ratio * length
+
+
+def snap_energy(
+    displacement_mm: npt.ArrayLike, force_cN: npt.ArrayLike, least_drop_cN: float | None = None
+) -> SnapEnergy | None:
+    """Measure the energy that the fall of force sets free; None where it hardly falls.
+
+    displacement_mm, force_cN : (n,) one stroke, displacement strictly rising (turn a release round), contact
+        and stop left out.
+    least_drop_cN : a smaller fall is friction; that of a bump (find_bump) if None.
+
+    A finger that keeps pressing with the force of the peak gains what the button no longer takes: the area
+    between the peak's force and the curve from peak to valley, in mJ.
+    """
+    x, force = (np.asarray(v, dtype=np.float64) for v in (displacement_mm, force_cN))
+    if x.shape != force.shape or x.ndim != 1 or x.size < 3 or np.any(np.diff(x) <= 0):
+        raise ModelError(
+            f"a stroke needs forces at 3 or more rising displacements, got {x.shape}, {force.shape}"
+        )
+    bump = find_bump(x, force) if least_drop_cN is None else find_bump(x, force, least_drop_cN)
+    if bump is None:
+        return None
+    fall = (x >= bump.peak_mm) & (x <= bump.valley_mm)
+    given = np.trapezoid(bump.peak_cN - force[fall], x[fall]) * mJ_PER_cN_mm
+    return SnapEnergy(bump.drop_cN, max(float(given), 0.0), bump.peak_mm, bump.valley_mm)
 
 
 @dataclass(frozen=True)
@@ -41,7 +92,7 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class MeasuredVibration:
-    """What the presses of one stroke at one velocity tell of its snap.
+    """The snap of one stroke at one velocity, measured from its presses.
 
     Attributes
     ----------
@@ -51,7 +102,7 @@ class MeasuredVibration:
     snap_velocity_mm_s : of the cap at the onset: median and spread over presses.
     shown, presses : presses that showed it, and all.
     heard, snaps : the presses that showed it, and where.
-    ring : its modes, or why they could not be told.
+    ring : its modes, or why they could not be identified.
     acceleration : the sensor gives acceleration, not velocity.
     """
 
@@ -69,27 +120,27 @@ class MeasuredVibration:
 
     @property
     def amplitude(self) -> Measured | None:
-        """Get the principal mode's amplitude in the signal's unit, median and spread, or None."""
+        """Return the principal mode's amplitude in the signal's unit, median and spread, or None."""
         return None if isinstance(self.ring, NotFound) else _median(self.ring.amplitudes[:, 0])
 
     @property
     def rings(self) -> tuple[tuple[float, float], ...]:
-        """Get frequency and decay of the modes that measure_vibration() of other presses can build on."""
+        """Return frequency and decay of the modes that measure_vibration() of other presses can build on."""
         return known_rings(self.ring)
 
     def rings_in(self, frequency_Hz: float) -> bool:
-        """Tell whether one of rings lies near a frequency."""
+        """Return whether one of rings lies near a frequency."""
         return any(abs(f / frequency_Hz - 1) <= SAME_ratio for f, _ in self.rings)
 
     @property
     def duration_s(self) -> Measured | None:
-        """Get the time until a tenth of the amplitude is left, with its standard error; None if unknown."""
+        """Return the time to a tenth of the amplitude, with its standard error; None if unknown."""
         if isinstance(self.ring, NotFound):
             return None
         return Measured(self.ring.duration_s, self.ring.duration_sd_s)
 
     def vibration(self, scale: float | None = None) -> Vibration:
-        """Give the vibration as models hold it, its amplitudes as accelerations of the cap.
+        """Return the vibration as models hold it, its amplitudes as accelerations of the cap.
 
         scale : what the sensor gives per m/s (V s/m) or, of an accelerometer, per m/s2. Without it the unit
             of the signal says nothing of the cap: None is refused unless it is an acceleration in m/s2.
@@ -128,13 +179,13 @@ def _mode(mode: DampedMode, amplitude: float, acceleration: bool) -> Mode:
 def _beside(
     own: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]]
 ) -> tuple[tuple[float, float], ...]:
-    """Give two modes at most: own ones, then known ones apart from them."""
+    """Return two modes at most: own ones, then known ones apart from them."""
     more = [k for k in known if all(not 1 / APART_ratio < k[0] / f < APART_ratio for f, _ in own)]
     return tuple([*own, *more][:2])
 
 
 def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
-    """Give frequency and decay of the principal mode and of the surest other, if known well enough."""
+    """Return frequency and decay of the principal mode and of the surest other, if known well enough."""
     if isinstance(ring, NotFound):
         return ()
     sure = [
@@ -163,7 +214,7 @@ def measure_vibration(
     acceleration : the signal is an acceleration, not a velocity.
 
     rings : frequency (Hz) and decay (1/s) of modes that this button is known to ring in, as other velocities
-        or the other stroke told (MeasuredVibration.rings); they sharpen the search.
+        or the other stroke gave (MeasuredVibration.rings); they sharpen the search.
 
     Each press is searched by itself; the modes that the pooled presses ring in then sharpen the search. The
     ring is fitted to all presses together.
@@ -215,6 +266,6 @@ def _shown(
 
 
 def _median(values: FloatArray) -> Measured:
-    """Give the median, and the spread from the median deviation, which a few outliers do not move."""
+    """Return the median, and the spread from the median deviation, which a few outliers do not move."""
     middle = float(np.median(values))
     return Measured(middle, 1.4826 * float(np.median(np.abs(values - middle))))

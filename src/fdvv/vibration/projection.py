@@ -15,14 +15,14 @@ EVEN_ratio = 1e-3
 
 
 def shapes(t_s: FloatArray, frequency_Hz: FloatArray, decay_1_s: FloatArray) -> FloatArray:
-    """Give exp(-d t) sin and exp(-d t) cos of each mode, (n, 2 modes), 0 before t = 0."""
+    """Return exp(-d t) sin and exp(-d t) cos of each mode, (n, 2 modes), 0 before t = 0."""
     t = np.maximum(t_s, 0.0)[:, None]
     turned = np.exp((2j * np.pi * frequency_Hz - decay_1_s) * t) * (t_s >= 0)[:, None]
     return np.stack([turned.imag, turned.real], axis=2).reshape(t_s.size, -1)
 
 
 def polynomial(t_s: FloatArray, degree: int) -> FloatArray:
-    """Give Legendre polynomials over the span of t_s, (n, degree + 1); none for degree -1."""
+    """Return Legendre polynomials over the span of t_s, (n, degree + 1); none for degree -1."""
     if degree < 0 or t_s.size == 0:
         return np.empty((t_s.size, 0))
     middle, half = 0.5 * (t_s[0] + t_s[-1]), 0.5 * max(float(t_s[-1] - t_s[0]), 1e-12)
@@ -102,7 +102,7 @@ class Records:
         return 2 * modes + len(self.signals) * per_record
 
     def at(self, theta: FloatArray) -> Solved:
-        """Solve for the weights of every record. Raises LinAlgError where modes cannot be told apart."""
+        """Solve for the weights of every record. Raises LinAlgError where modes cannot be separated."""
         p = theta.size
         gram, along = self._products(theta)
         m = gram.shape[1] - p
@@ -121,7 +121,7 @@ class Records:
         )
 
     def _products(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give inner products of shapes, background and shapes times t, with each other and the signals."""
+        """Return inner products of shapes, background and shapes times t, with each other and the signals."""
         tables = [table(t, theta, b) for t, b in zip(self.times_s, self.backgrounds, strict=True)]
         if len(tables) == len(self.signals):
             pairs = list(zip(tables, self.signals, strict=True))
@@ -132,7 +132,7 @@ class Records:
         return gram, (tables[0].T @ self._padded).T
 
     def typical(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give what theta leaves of the longer half of evenly sampled records, and what it spans.
+        """Return what theta leaves of the longer half of evenly sampled records, and what it spans.
 
         Cut to one length: residuals (records, n) and an orthonormal basis (n, shapes and background).
         """
@@ -144,13 +144,13 @@ class Records:
 
 
 def table(t_s: FloatArray, theta: FloatArray, background: FloatArray) -> FloatArray:
-    """Give shapes, background and shapes times t beside each other."""
+    """Return shapes, background and shapes times t beside each other."""
     own = shapes(t_s, *np.split(theta, 2))
     return np.hstack([own, background, t_s[:, None] * own])
 
 
 def _grid(times_s: list[FloatArray]) -> FloatArray | None:
-    """Give the even grid from 0 on that all records lie on; None if they do not."""
+    """Return the even grid from 0 on that all records lie on; None if they do not."""
     longest = max(times_s, key=len)
     if longest.size < 2:
         return None
@@ -161,7 +161,7 @@ def _grid(times_s: list[FloatArray]) -> FloatArray | None:
 
 
 def _up_to(x: FloatArray, ends: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Give for each end that occurs which records end there, and the inner products up to it."""
+    """Yield, for each end that occurs, the records that end there and the inner products up to it."""
     total, last = np.zeros((x.shape[1], x.shape[1])), 0
     for end in np.unique(ends):
         total = total + x[last:end].T @ x[last:end]
@@ -170,7 +170,7 @@ def _up_to(x: FloatArray, ends: FloatArray) -> Iterator[tuple[FloatArray, FloatA
 
 
 def _turned(weights: FloatArray) -> FloatArray:
-    """Give how t sin and t cos add up to the slopes by f and by d, (records, 2 modes, 2 modes)."""
+    """Return how t sin and t cos add up to the slopes by f and by d, (records, 2 modes, 2 modes)."""
     records, p = weights.shape
     k = np.arange(p // 2)
     found = np.zeros((records, p, p))

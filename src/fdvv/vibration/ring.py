@@ -1,4 +1,4 @@
-"""How the snap rings on: modes that several presses share, or why they cannot be told."""
+"""Ringing after the snap: modes that several presses share, or why they cannot be identified."""
 
 from __future__ import annotations
 
@@ -9,25 +9,20 @@ import numpy as np
 
 from fdvv.errors import FitError
 from fdvv.units import FloatArray
-from fdvv.vibration._count import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlapped
-from fdvv.vibration._damped import DampedFit, DampedMode, duration_s
-from fdvv.vibration._snap import HeardPress, NotFound, Snap
+from fdvv.vibration.damped import DampedFit, DampedMode, duration_s
+from fdvv.vibration.modes import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlapped
+from fdvv.vibration.snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
 """A snap is over by then (the paper: below 25 ms)."""
-
 DELAYS_s = (0.0, 0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.008)
 """A ring is free once its drive is over: of these delays after the onset the shortest that fits is kept."""
-
 FITS_ratio = 1.1
 """What a free ring leaves is noise, up to this. Above it something keeps driving."""
-
 SURE_ratio = 0.1
 """Standard error of the frequency above which it is not known."""
-
 ENDING_ratio = 0.5
 """Standard error of the decay above which the end of a mode is not known."""
-
 BACK_ratio = 3.0
 """An amplitude at the onset is at most this many times what was seen when the ring was free."""
 
@@ -85,14 +80,14 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
         return NotFound(
             f"no free ring: what modes leave is {ratio:.1f} times the noise, something keeps driving"
         )
-    ring = _told(fit, delay, ratio, acceleration)
+    ring = _ring_of(fit, delay, ratio, acceleration)
     return NotFound(f"{ring} in {len(snaps)} presses") if isinstance(ring, str) else ring
 
 
 def refit_ring(
     presses: Sequence[HeardPress], snaps: Sequence[Snap], known: tuple[float, float]
 ) -> Ring | None:
-    """Tell a ring again, frequency and decay of its principal mode known, as soon after onsets as it fits.
+    """Fit a ring again with known frequency and decay of its principal mode, as early as it fits.
 
     Without any drive beside it if that ever leaves noise alone: a drive takes as much of the amplitude as it
     likes. None where neither does before too little of the ring is left.
@@ -111,8 +106,8 @@ def refit_ring(
     return None
 
 
-def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
-    """Give the ring that a fit tells of, the principal mode first, or why none."""
+def _ring_of(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
+    """Return the ring of a fit, the principal mode first, or why there is none."""
     order = [k for k in _order(fit, delay_s, acceleration) if not drives(fit.modes[k])]
     if not order:
         return "nothing rings freely, only a drive fades"
@@ -123,17 +118,17 @@ def _told(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> R
 
 
 def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
-    """Give the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
+    """Return the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
     first, *side = order
-    told = [k for k in side if not drives(fit.modes[k]) and _unknown(fit.modes[k], 0.0) is None]
-    single = [k for k in told if not overlapped(fit.modes[k], fit.modes)]
+    certain = [k for k in side if not drives(fit.modes[k]) and _unknown(fit.modes[k], 0.0) is None]
+    single = [k for k in certain if not overlapped(fit.modes[k], fit.modes)]
     kept = [first, *(k for k in single if _unknown(fit.modes[k], delay_s) is None)]
-    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *told]))
+    modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *certain]))
     return Ring(modes[0], modes, heard, fit.amplitudes[:, kept], delay_s, ratio)
 
 
 def _unknown(mode: DampedMode, delay_s: float) -> str | None:
-    """Say why a mode is not known well enough to tell of; None if it is."""
+    """Return why a mode is too uncertain to report; None if it is not."""
     if mode.frequency_sd_Hz > SURE_ratio * mode.frequency_Hz:
         return (
             f"the ring is too weak in its noise: {mode.frequency_Hz:.0f} Hz with a standard error of "
@@ -153,7 +148,7 @@ def _unknown(mode: DampedMode, delay_s: float) -> str | None:
 
 
 def _best(presses: Sequence[HeardPress], snaps: Sequence[Snap]) -> tuple[float, DampedFit, float] | None:
-    """Give delay, fit and its noise ratio: of the shortest delay that leaves noise, or of the least left."""
+    """Return delay, fit and noise ratio of the shortest delay that leaves only noise, or of the best."""
     least = None
     for delay in DELAYS_s:
         found = _fit_after(presses, snaps, delay)
@@ -170,7 +165,7 @@ def _order(fit: DampedFit, delay_s: float, acceleration: bool) -> list[int]:
 
 
 def _energy(mode: DampedMode, delay_s: float, acceleration: bool) -> float:
-    """Give the integral of a mode's squared velocity from the delay on, but for a factor."""
+    """Return the integral of a mode's squared velocity from the delay on, but for a factor."""
     velocity = mode.amplitude / (mode.frequency_Hz if acceleration else 1.0)
     return velocity**2 * float(np.exp(-2 * mode.decay_1_s * delay_s)) / max(mode.decay_1_s, 1 / LONGEST_s)
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Mode, Vibration
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
-from fdvv.vibration._exciter import FULL_SCALE_V, LIMIT_V
+from fdvv.vibration.exciter import FULL_SCALE_V, LIMIT_V
 
 PAPER_Hz, PAPER_s = 239.0, 0.016
 PAPER_ENDS_V = (0.0, 0.3, 0.6)
@@ -41,7 +41,7 @@ class Template:
 
     @property
     def decay_1_s(self) -> float:
-        """Give the decay."""
+        """Return the decay."""
         return float(np.log(self.start_V / max(self.end_V, SILENT_ratio * self.start_V)) / self.duration_s)
 
     def volts(self, t_s: FloatArray) -> FloatArray:
@@ -51,7 +51,7 @@ class Template:
         return np.where((t_s >= 0) & (t_s <= self.duration_s), envelope * sine, 0.0)
 
     def vibration(self, like: Vibration, m_s2_V: float) -> Vibration:
-        """Give what a model keeps of it: at the stroke, velocity and onset of another, m_s2_V per volt."""
+        """Return what a model keeps of it: at the stroke, velocity and onset of another, m_s2_V per volt."""
         mode = Mode(self.frequency_Hz, m_s2_V * self.start_V, self.decay_1_s)
         # how the measured one differs between presses is not known of what was made up
         return replace(like, duration_s=self.duration_s, modes=(mode,), spread=None)
@@ -60,7 +60,7 @@ class Template:
 def paper_templates(
     frequency_Hz: float = PAPER_Hz, duration_s: float = PAPER_s, start_V: float = LIMIT_V
 ) -> tuple[Template, ...]:
-    """Give the paper's three: from ±2.43 V to 0, 0.3 and 0.6 V. Source: its figure of vibration templates."""
+    """Return the paper's three: from ±2.43 V to 0, 0.3 and 0.6 V (figure of vibration templates)."""
     return tuple(Template(frequency_Hz, duration_s, start_V, end_V) for end_V in PAPER_ENDS_V)
 
 
@@ -91,7 +91,7 @@ class TemplateGrid:
 def templates_around(
     vibration: Vibration, m_s2_V: float, grid: TemplateGrid | None = None
 ) -> tuple[Template, ...]:
-    """Give templates that share duration and strongest frequency with a vibration, no two alike.
+    """Return templates that share duration and strongest frequency with a vibration, no two alike.
 
     m_s2_V : acceleration of the cap per volt at that frequency. The first has the vibration's own strength.
     """

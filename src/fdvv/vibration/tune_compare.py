@@ -1,4 +1,4 @@
-"""Compare templates in pairs, each chosen to tell the most about which is best: Bradley and Terry's model."""
+"""Compare templates in pairs, each the most informative about the best: Bradley and Terry's model."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration._tune import Answered, Job, Preferred, Question, Standing, standing
+from fdvv.vibration.tune import Answered, Job, Preferred, Question, Ranking, standing
 
 PRIOR = 1.5
 """Standard deviation of the log-odds before any answer: 3 to 1 is usual, 20 to 1 is rare."""
@@ -21,7 +21,7 @@ SHARE = {Preferred.FIRST: 1.0, Preferred.SECOND: 0.0, Preferred.NEITHER: 0.5}
 
 @dataclass(frozen=True)
 class ComparingState:
-    """Where it stands: the answers so far."""
+    """State of the method: the answers so far."""
 
     job: Job
     answers: tuple[Answered, ...] = ()
@@ -35,7 +35,7 @@ class Comparing:
     ----------
     comparisons : per velocity, the most that are asked; None: three for each template.
     sure : a velocity is done earlier once a template is the best with this probability.
-    fewest : comparisons per velocity before that may be believed; None: one for each template.
+    fewest : comparisons per velocity before that counts; None: one for each template.
     seed : of order and choice among equals.
     """
 
@@ -76,11 +76,11 @@ class Comparing:
         return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
 
     def done(self, state: ComparingState) -> bool:
-        """Tell whether every velocity is."""
+        """Return whether every velocity is."""
         return all(self._done(state, place) for place in range(state.job.places))
 
-    def best(self, state: ComparingState) -> tuple[Standing, ...]:
-        """Give log-odds by the posterior; alike is what has 5 % of the likeliest's chance or more."""
+    def best(self, state: ComparingState) -> tuple[Ranking, ...]:
+        """Return log-odds by the posterior; alike is what has 5 % of the likeliest's chance or more."""
         return tuple(self._standing(state, place) for place in range(state.job.places))
 
     def _most(self, job: Job, place: int) -> int:
@@ -94,7 +94,7 @@ class Comparing:
             return False
         return bool(self._chances(state, place).max() >= self.sure)
 
-    def _standing(self, state: ComparingState, place: int) -> Standing:
+    def _standing(self, state: ComparingState, place: int) -> Ranking:
         mean, spread = posterior(wins(state, place))
         chances = self._chances(state, place)
         alike = [i for i in range(mean.size) if chances[i] >= 0.05 * chances.max()]
@@ -102,18 +102,17 @@ class Comparing:
         return standing(mean.tolist(), np.sqrt(np.diag(spread)).tolist(), alike, made)
 
     def _random(self, state: ComparingState, place: int) -> np.random.Generator:
-        """Give chance that depends on what was answered, so that a session gone on with asks the same."""
+        """Return a generator seeded by the answers, so that a resumed session asks the same."""
         return np.random.default_rng([self.seed, place, sum(a.place == place for a in state.answers)])
 
     def _chances(self, state: ComparingState, place: int) -> FloatArray:
-        """Give how likely each template is the best."""
         mean, spread = posterior(wins(state, place))
         drawn = self._random(state, place).multivariate_normal(mean, spread, DRAWS, method="cholesky")
         found: FloatArray = np.bincount(np.argmax(drawn, axis=1), minlength=mean.size) / DRAWS
         return found
 
     def _pair(self, state: ComparingState, place: int) -> tuple[int, int]:
-        """Choose what tells most: spread of the difference times the answer's, where the best may lie."""
+        """Choose the most informative pair by the spreads of difference and answer, near the best."""
         mean, spread = posterior(wins(state, place))
         chances = self._chances(state, place) + 1 / DRAWS
         odds = 1 / (1 + np.exp(mean[None, :] - mean[:, None]))
@@ -149,7 +148,7 @@ def wins(state: ComparingState, place: int) -> FloatArray:
 
 
 def posterior(won: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Give mean and covariance of the log-odds: Newton's steps to the peak, and the curvature there."""
+    """Return mean and covariance of the log-odds: Newton's steps to the peak, and the curvature there."""
     size = won.shape[0]
     mean = np.zeros(size)
     for _ in range(STEPS):

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import InputError, ModelError
-from fdvv.files import read_limited, write_atomic
-from fdvv.model import Vibration
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
 LISTEN_Hz = 48_000
@@ -33,7 +33,7 @@ class Wav:
     Attributes
     ----------
     data : the file.
-    full_scale : what a sample of 32767 stands for, in the unit of what was written.
+    full_scale : value of a sample of 32767, in the unit of what was written.
     """
 
     data: bytes
@@ -53,7 +53,7 @@ class Sound:
 
 
 def vibration_samples(vibration: Vibration, rate_Hz: int = LISTEN_Hz, quiet_s: float = QUIET_s) -> FloatArray:
-    """Give a vibration's acceleration (m/s²) at a rate, with silence before and after."""
+    """Return a vibration's acceleration (m/s²) at a rate, with silence before and after."""
     count = round((vibration.duration_s + 2 * quiet_s) * rate_Hz)
     return vibration.acceleration_m_s2(np.arange(count) / rate_Hz - quiet_s)
 
@@ -82,7 +82,7 @@ def board_wav(counts: npt.NDArray[np.uint16], rate_Hz: int) -> Wav:
 
 
 def board_counts(sound: Sound) -> npt.NDArray[np.uint16]:
-    """Give back the board's samples of a sound that board_wav wrote; ModelError if it is another one."""
+    """Return the board's samples of a sound that board_wav wrote; ModelError if it is another sound."""
     if np.any(sound.samples % COUNT_STEP):
         raise ModelError("not a sound of the vibration board: samples are no multiples of 16")
     return (sound.samples // COUNT_STEP + SILENCE_counts).astype(np.uint16)

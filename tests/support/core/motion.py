@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field
 
-from fdvv.protocol import Settings
-
-from ._arithmetic import Ratio, clamp, inverse, product, ratio_of, scale, slope
+from fdvv.protocol.tables import Settings
+from tests.support.core.arithmetic import Ratio, clamp, inverse, product, ratio_of, scale, slope
 
 PRESS, RELEASE = "press", "release"
 

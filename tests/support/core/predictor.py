@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.protocol import Settings
-
-from ._arithmetic import Ratio, clamp, inverse, product, ratio_of
+from fdvv.protocol.tables import Settings
+from tests.support.core.arithmetic import Ratio, clamp, inverse, product, ratio_of
 
 FURTHEST = 16000
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass, field
 
-from fdvv.protocol import ImageHeader, Record, State, Surface, Transition, Vibration
-
-from ._arithmetic import ONE, blend, part, reciprocal
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import ImageHeader, State, Surface, Transition, Vibration
+from tests.support.core.arithmetic import ONE, blend, part, reciprocal
 
 
 @dataclass

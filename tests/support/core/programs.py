@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.core import Core
-from fdvv.protocol import (
+from fdvv.firmware.core import Core
+from fdvv.protocol.record import Record
+from fdvv.protocol.tables import (
     IMAGE_MAGIC,
     NONE,
     Condition,
     ImageHeader,
-    Record,
     Settings,
     Slot,
     State,

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from fdvv.protocol import NONE, Condition, Mode, Settings, State, Stroke, TickFlag, VelocitySource
-
-from ._arithmetic import ONE, Ratio, blend, clamp, inverse, part, product, ratio_of, scale
-from ._motion import PRESS, RELEASE, Position, Velocity
-from ._predictor import Predictor
-from ._program import Program
+from fdvv.protocol.tables import NONE, Condition, Mode, Settings, State, Stroke, TickFlag, VelocitySource
+from tests.support.core.arithmetic import ONE, Ratio, blend, clamp, inverse, part, product, ratio_of, scale
+from tests.support.core.motion import PRESS, RELEASE, Position, Velocity
+from tests.support.core.predictor import Predictor
+from tests.support.core.program import Program
 
 
 @dataclass
@@ -166,7 +165,7 @@ class Reference:
         self.announced = self.settings.announced_mm_s16
 
     def tick(self, inputs: dict[str, int], mode: int) -> dict[str, int]:
-        """Give what fdvv.core.OUTPUTS holds."""
+        """Give what fdvv.firmware.core.OUTPUTS holds."""
         s, elapsed = self.settings, max(inputs["elapsed_ticks"], 1)
         self.position.tick(inputs["sum"])
         self.velocity.tick(self.position, elapsed)

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fdvv.program import Condition, Program, State, Velocity, When
-from fdvv.protocol import Settings
+from fdvv.program.condition import Condition, When
+from fdvv.program.program import Program, State, Velocity
+from fdvv.protocol.tables import Settings
 
 UM16_PER_MM = 16_000
 

@@ -4,19 +4,10 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from fdvv.model import Mode
-from fdvv.program import (
-    Condition,
-    During,
-    Program,
-    Signal,
-    State,
-    Surface,
-    Transition,
-    Velocity,
-    VibrationEvent,
-    When,
-)
+from fdvv.model.vibration import Mode
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import During, Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program.surface import Surface
 
 PLACES_mm = st.integers(0, 600).map(lambda n: n / 100)
 FORCES_cN = st.floats(-400, 400, allow_nan=False).map(lambda f: round(f, 3))

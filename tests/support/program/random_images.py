@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.program import Condition, Program, State, Surface, Transition, When, line
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import Program, State
+from fdvv.program.surface import Surface, line
 
 TRAVEL_mm = 4.0
 

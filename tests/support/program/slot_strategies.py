@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from fdvv.program import Slot, Waveform
+from fdvv.program.synth import Slot, Waveform
 
 # seldom more than a second, so that a thousand of them stay quick
 SINES = st.builds(

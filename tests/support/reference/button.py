@@ -13,15 +13,15 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.twin._button import ButtonPhysics
-from fdvv.twin._button_noise import ButtonNoise, button_ticks, settle_button_ticks
-from fdvv.twin._cam import identify
-from fdvv.twin._finger import Finger
-from fdvv.twin._flatten_button import BARE, ROW_s, TICK_s
-from fdvv.twin._gesture import Gesture
-from fdvv.twin._reference_plant import _hunt_crossley, _smooth_step
-from fdvv.twin._rig_senses import ForceSensor
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.button_kernel import BARE, ROW_s, TICK_s
+from fdvv.twin.cam import identify
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonNoise, button_ticks, settle_button_ticks
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
+from tests.support.reference.plant import _hunt_crossley, _smooth_step
 
 LONGEST_STEP_s = 2e-4
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.twin._finger import Finger
-from fdvv.twin._gesture import Gesture
-from fdvv.twin._rig import Rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
 
 RELAX_s = 1e-5

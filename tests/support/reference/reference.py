@@ -12,17 +12,18 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.core import INPUTS, Core
-from fdvv.model import ForceSurface
-from fdvv.protocol import TickFlag, UM16_PER_mm
-from fdvv.twin._finger import Finger
-from fdvv.twin._gesture import Gesture
-from fdvv.twin._image import image_of
-from fdvv.twin._noise import Noise, count_ticks, settle_ticks
-from fdvv.twin._reference_plant import STATES, ReferencePlant
-from fdvv.twin._rig import Rig
-from fdvv.twin._settings import settings_of
+from fdvv.firmware.core import INPUTS, Core
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.messages import UM16_PER_mm
+from fdvv.protocol.tables import TickFlag
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import Noise, count_ticks, settle_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
+from tests.support.reference.plant import STATES, ReferencePlant
 
 ROW_s, TINY_s = 1e-4, 1e-12
 LONGEST_STEP_s = 2e-4

@@ -8,16 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.optimize._acquire import LOCAL, even_net, most_wanted
-from fdvv.optimize._avoid import log_success
-from fdvv.optimize._belief import best_of, finished
-from fdvv.optimize._botorch_model import objective_model
-from fdvv.optimize._engine import Problem
-from fdvv.optimize._places import OPEN, generator, tried_places
-from fdvv.optimize._plain import sobol_places
-from fdvv.optimize._torch import tensor, torch_seeded, worth_of
-from fdvv.optimize._trial import Trial
+from fdvv.optimize.engines.gp import log_success
+from fdvv.optimize.engines.gp_model import best_of, finished
+from fdvv.optimize.engines.search import (
+    LOCAL,
+    OPEN,
+    even_net,
+    generator,
+    most_wanted,
+    sobol_places,
+    tried_places,
+)
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
+from fdvv_botorch.models import objective_model, tensor, torch_seeded, worth_of
 
 STARTUP = 5
 SAMPLES, FRONT_SAMPLES = 64, 32
@@ -81,7 +85,7 @@ class _Case:
 
     @property
     def single(self) -> bool:
-        """Tell whether there is one objective."""
+        """Return whether there is one objective."""
         return len(self.problem.objectives) == 1
 
     def acquisition(self, pending: FloatArray) -> Any:
@@ -102,7 +106,6 @@ class _Case:
 
 
 def _chosen(case: _Case, tried: FloatArray, seed: int, count: int) -> FloatArray:
-    """Choose places one by one, each knowing those before it as pending."""
     problem, trials = case.problem, case.trials
     pending = problem.space.to_unit([trial.design for trial in trials if trial.state in OPEN])
     net = even_net(problem, seed)[: None if case.single else FRONT_NET]

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize._engine import Problem
-from fdvv.optimize._places import draw_feasible, fresh, generator
-from fdvv.optimize._preference import Pair, PreferenceEngine, compared_places
-from fdvv.optimize._torch import tensor, torch_seeded
-from fdvv.optimize._trial import Answer, Comparison
+from fdvv.optimize.engines.preference import Pair, PreferenceEngine, compared_places
+from fdvv.optimize.engines.search import draw_feasible, fresh, generator
+from fdvv.optimize.problem import Answer, Comparison, Problem
 from fdvv.units import FloatArray
+from fdvv_botorch.models import tensor, torch_seeded
 
 FEW, DRAWN = 48, 256
 """Designs among which all pairs are weighed, the most promising of so many drawn at random."""
@@ -79,7 +78,6 @@ def _moments(torch: Any, model: Any, places: FloatArray) -> tuple[FloatArray, Fl
 
 
 def _best_pair(torch: Any, model: Any, known: FloatArray, net: FloatArray) -> FloatArray:
-    """Weigh all pairs of promising places, those compared before among them; give the best, (2, d)."""
     from botorch.acquisition.preference import qExpectedUtilityOfBestOption
 
     mean, variance = _moments(torch, model, net)

@@ -4,15 +4,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.device._m0 import M0Emulator, TickInputs, TickOutputs
-from fdvv.device._plant import Inputs, Outputs
-from fdvv.errors import DeviceError
-from fdvv.protocol import NONE, Settings
+from fdvv.device.open import BUILT_ELF
+from fdvv.device.plant import Inputs, Outputs
+from fdvv.errors import DeviceError, InputError
+from fdvv.protocol.tables import NONE, Settings
+from fdvv_m0.emulator import M0Emulator
+from fdvv_m0.records import TickInputs, TickOutputs
 
 BOOT_TICKS = 400
 SHARE_OF_TICK = 0.95  # after which what a tick brought is on the pins
 SUPPLY_mV_counts = 3300 * 122 / 22 / 4096
 PLAY_HEADER = 0x22
+
+
+def open_board(where: str) -> EmulatedBoard:
+    """Emulate the ELF file ``where``, or the built one. Raises InputError if there is no such file."""
+    path = Path(where) if where else BUILT_ELF
+    if not path.is_file():
+        remedy = "run make firmware in the repository, or name the file as emulated:FILE"
+        raise InputError("--device", f"emulated:{path}", "no such file", remedy)
+    return EmulatedBoard(path)
 
 
 class EmulatedBoard:
@@ -49,14 +60,14 @@ class EmulatedBoard:
             supply_counts=min(supply_counts, 4095),
             force_counts=inputs.force_counts,
         )
-        told = len(self.emulator.wire_log)
+        before = len(self.emulator.wire_log)
         self.emulator.run_ticks(inputs.elapsed_ticks)
         self.emulator.run_us(SHARE_OF_TICK * self.emulator.tick_us)
         now = self.emulator.outputs()
-        return Outputs(now.duty_q15, int(now.enable), self._slot(told), round(now.stop_us), int(now.key))
+        return Outputs(now.duty_q15, int(now.enable), self._slot(before), round(now.stop_us), int(now.key))
 
-    def _slot(self, told: int) -> int:
-        for message in self.emulator.wire_log[told:]:
+    def _slot(self, before: int) -> int:
+        for message in self.emulator.wire_log[before:]:
             if message.data[:1] == bytes([PLAY_HEADER]) and message.data[2]:
                 return message.data[1]
         return NONE
@@ -66,7 +77,7 @@ class EmulatedBoard:
         self.emulator.write(data)
 
     def read(self) -> bytes:
-        """Give what the board has put on the link."""
+        """Return what the board has put on the link."""
         return self.emulator.read()
 
     def unplug(self) -> None:

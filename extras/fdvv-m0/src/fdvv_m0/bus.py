@@ -21,7 +21,7 @@ WRITE = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32, ctypes.c_uint32
 
 
 def address_of(memory: bytearray) -> int:
-    """Give where a memory lies; it must not be resized and must be kept."""
+    """Return where a memory lies; it must not be resized and must be kept."""
     return ctypes.addressof((ctypes.c_char * len(memory)).from_buffer(memory))
 
 
@@ -113,7 +113,7 @@ class Bus:
     # -- registers -------------------------------------------------------------------------------------------
 
     def get(self, address: int, size: int) -> int:
-        """Give what a register holds."""
+        """Return what a register holds."""
         base = address & BASE_BITS
         at = address - base
         return int.from_bytes(self.memories[base][at : at + size], "little")
@@ -142,7 +142,7 @@ class Bus:
     # -- memory ----------------------------------------------------------------------------------------------
 
     def ram_read(self, address: int, count: int) -> bytes:
-        """Give bytes of RAM."""
+        """Return bytes of RAM."""
         at = address - RAM_START
         return bytes(self.ram[at : at + count])
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 
-from fdvv.device._m0._bus import POLLED, Bus
-from fdvv.device._m0._records import TickInputs
-from fdvv.device._m0._system import Clocks
+from fdvv_m0.bus import POLLED, Bus
+from fdvv_m0.records import TickInputs
+from fdvv_m0.system import Clocks
 
 ADC_CTRLA, ADC_CTRLB, ADC_SWTRIG, ADC_INPUTCTRL = 0x42004000, 0x42004004, 0x4200400C, 0x42004010
 ADC_EVCTRL, ADC_INTFLAG, ADC_RESULT = 0x42004014, 0x42004018, 0x4200401A
@@ -32,7 +32,7 @@ class Converter:
         bus.mark(CHINTFLAG, POLLED)
 
     def conversion_cycles(self) -> int:
-        """Give the processor cycles that one conversion takes."""
+        """Return the processor cycles that one conversion takes."""
         shift = PRESCALE_SHIFT + (self._bus.get(ADC_CTRLB, 2) >> 8 & 7)
         clock = self._clocks.cycles_per_clock(ADC_PERIPHERAL) * (1 << shift)
         if clock * 2.1 < 48:
@@ -40,7 +40,7 @@ class Converter:
         return round(CONVERSION_CLOCKS * clock)
 
     def reads(self) -> int:
-        """Give how many readings DMA is to store; 0 before the program has set it up."""
+        """Return how many readings DMA is to store; 0 before the program has set it up."""
         base = self._bus.get(BASEADDR, 4)
         return int.from_bytes(self._bus.ram_read(base + 2, 2), "little") if base else 0
 

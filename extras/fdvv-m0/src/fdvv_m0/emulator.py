@@ -5,20 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from fdvv.device._m0._bus import FLASH_BYTES, NEVER, Bus
-from fdvv.device._m0._converter import Converter
-from fdvv.device._m0._elf import read_elf
-from fdvv.device._m0._processor import Processor
-from fdvv.device._m0._records import (
-    CPU_MHZ,
-    KeyChange,
-    PwmChange,
-    TickCost,
-    TickInputs,
-    TickOutputs,
-    WireMessage,
-)
-from fdvv.device._m0._system import (
+from fdvv.errors import DeviceError, InputError
+from fdvv_m0.bus import FLASH_BYTES, NEVER, Bus
+from fdvv_m0.converter import Converter
+from fdvv_m0.elf import read_elf
+from fdvv_m0.processor import Processor
+from fdvv_m0.records import CPU_MHZ, KeyChange, PwmChange, TickCost, TickInputs, TickOutputs, WireMessage
+from fdvv_m0.system import (
     AIRCR,
     AIRCR_RESET,
     BROWN_OUT,
@@ -32,10 +25,9 @@ from fdvv.device._m0._system import (
     Watchdog,
     mark_plain,
 )
-from fdvv.device._m0._timers import USER_ADC_START, Pwm, Tick
-from fdvv.device._m0._usb_host import UsbHost
-from fdvv.device._m0._wire import Wire
-from fdvv.errors import DeviceError, InputError
+from fdvv_m0.timers import USER_ADC_START, Pwm, Tick
+from fdvv_m0.usb_host import UsbHost
+from fdvv_m0.wire import Wire
 
 BOOT_LIMIT_CYCLES = 48_000 * 200  # 200 ms without a tick: the program does not get there
 BUS_WAIT_CYCLES = 2  # assumed for each register access over the peripheral bridges
@@ -86,7 +78,6 @@ class M0Emulator:
             self._bus.flash[load : load + len(data)] = data
 
     def _start(self, cause: str) -> None:
-        """Let the chip come out of reset."""
         bus = self._bus
         bus.forget_events()
         for memory in bus.memories.values():
@@ -117,7 +108,7 @@ class M0Emulator:
         self.reset_cause = cause
         self._reset_wanted: str | None = None
         self._is_watching = False
-        self._messages_told = len(self.wire_log)
+        self._messages_reported = len(self.wire_log)
         self._tick_cycle: int | None = None
         self.pwm.changed()
         stack, entry = (
@@ -160,7 +151,6 @@ class M0Emulator:
             self._start(self._reset_wanted)
 
     def _watch(self) -> None:
-        """See to it that a program without ticks ends."""
         self._is_watching = self._limit != NEVER
         if self._bus.cycles >= self._limit:
             where = self.name_of(self.processor.at())
@@ -175,7 +165,7 @@ class M0Emulator:
         self.tick += 1
         self._limit = self._bus.cycles + BOOT_LIMIT_CYCLES
         self._inputs = self._tick_inputs(self.outputs())
-        self._messages_told = len(self.wire_log)
+        self._messages_reported = len(self.wire_log)
         if USER_ADC_START in self._timer.users:
             self.converter.event()
         if self.usb.outgoing:
@@ -216,7 +206,7 @@ class M0Emulator:
         return self.converter.reads()
 
     def outputs(self) -> TickOutputs:
-        """Give what the pins do now."""
+        """Return what the pins do now."""
         drive = self.pwm_log[-1]
         return TickOutputs(
             self.tick,
@@ -224,7 +214,7 @@ class M0Emulator:
             drive.duty_q15,
             drive.enable,
             self.pwm.stop_us(),
-            tuple(self.wire_log[self._messages_told :]),
+            tuple(self.wire_log[self._messages_reported :]),
             self.port.level(PIN_KEY),
         )
 
@@ -233,7 +223,7 @@ class M0Emulator:
         self.usb.outgoing += data
 
     def read(self) -> bytes:
-        """Give what has come from the board's serial port since the last call."""
+        """Return what has come from the board's serial port since the last call."""
         data = bytes(self.usb.incoming)
         self.usb.incoming.clear()
         return data
@@ -260,7 +250,7 @@ class M0Emulator:
         self._bus.clockwork.waited += round(duration_us * CPU_MHZ)
 
     def name_of(self, address: int) -> str:
-        """Give the function that an address lies in, for messages."""
+        """Return the function that an address lies in, for messages."""
         below = [
             (at, name) for name, at in self._program.symbols.items() if at <= address and name[:1] != "$"
         ]

@@ -7,8 +7,8 @@ from importlib import import_module
 from typing import Any
 
 from fdvv._native import library
-from fdvv.device._m0._bus import FLASH_BYTES, RAM_BYTES, RAM_START, WINDOWS, Bus, address_of
 from fdvv.errors import DeviceError
+from fdvv_m0.bus import FLASH_BYTES, RAM_BYTES, RAM_START, WINDOWS, Bus, address_of
 
 CALIBRATION_START, CALIBRATION_BYTES = 0x00800000, 0x10000
 # DFLL coarse and fine, USB pads; and the serial number
@@ -78,11 +78,11 @@ class Processor:
         self._uc.emu_stop()
 
     def at(self) -> int:
-        """Give the address it has come to."""
+        """Return the address it has come to."""
         return int(self._uc.reg_read(self._arm.UC_ARM_REG_PC))
 
     def register(self, number: int) -> int:
-        """Give a low register, 0 to 7."""
+        """Return a low register, 0 to 7."""
         return int(self._uc.reg_read(self._arm.UC_ARM_REG_R0 + number))
 
     def set_stack(self, address: int) -> None:

@@ -57,7 +57,7 @@ class TickInputs:
 
     @classmethod
     def of_burst(cls, total: int, lowest: int, highest: int, reads: int, **others: int) -> TickInputs:
-        """Give inputs whose `reads` readings have this sum, and these extremes if that is possible.
+        """Return inputs whose `reads` readings have this sum, and these extremes if that is possible.
 
         others are supply_counts and force_counts. Raises ValueError for counts that 12 bits cannot hold.
         """
@@ -68,14 +68,13 @@ class TickInputs:
         return cls(_spread(total, reads), **others)
 
     def reading(self, number: int) -> int:
-        """Give the counts of a conversion of the burst, the last one for all beyond it."""
+        """Return the counts of a conversion of the burst, the last one for all beyond it."""
         if isinstance(self.readings, int):
             return self.readings
         return self.readings[min(number, len(self.readings) - 1)]
 
 
 def _spread(total: int, count: int) -> tuple[int, ...]:
-    """Share a sum out as evenly as whole numbers can."""
     share, more = divmod(total, count)
     return (share + 1,) * more + (share,) * (count - more)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from fdvv.device._m0._bus import WRITE_ONE_CLEARS, Bus
-from fdvv.device._m0._records import CPU_MHZ, KeyChange
 from fdvv.errors import DeviceError
+from fdvv_m0.bus import WRITE_ONE_CLEARS, Bus
+from fdvv_m0.records import CPU_MHZ, KeyChange
 
 RCAUSE, APBCMASK = 0x40000438, 0x40000420
 POWER_ON, WATCHDOG, BROWN_OUT, SOFTWARE = 1, 1 << 5, 1 << 2, 1 << 6
@@ -56,7 +56,7 @@ class Clocks:
         self._bus.put(address, size, value)
 
     def cycles_per_clock(self, peripheral: int) -> float:
-        """Give processor cycles per clock of a peripheral; DeviceError if it is not fed."""
+        """Return processor cycles per clock of a peripheral; DeviceError if it is not fed."""
         generator = self._feeds.get(peripheral)
         if generator is None or generator not in self._sources:
             raise DeviceError(f"peripheral clock {peripheral:#x} is used but not fed")
@@ -131,18 +131,18 @@ class Port:
         self._changed()
 
     def levels(self) -> int:
-        """Give the pins' levels, those that a peripheral drives taken as low."""
+        """Return the pins' levels, those that a peripheral drives taken as low."""
         driven = self._bus.get(DIR, 4)
         return self._bus.get(OUT, 4) & driven | self.pulled & ~driven
 
     def function(self, pin: int) -> int | None:
-        """Give the peripheral function that has the pin, None if the port has it."""
+        """Return the peripheral function that has the pin, None if the port has it."""
         if not self._bus.get(PINCFG + pin, 1) & 1:
             return None
         return self._bus.get(PMUX + pin // 2, 1) >> 4 * (pin & 1) & 15
 
     def level(self, pin: int) -> bool:
-        """Tell whether the port drives the pin high."""
+        """Return whether the port drives the pin high."""
         return bool(self._bus.get(OUT, 4) & self._bus.get(DIR, 4) & 1 << pin)
 
 

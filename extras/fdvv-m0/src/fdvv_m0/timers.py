@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from fdvv.device._m0._bus import COUNTER, Bus
-from fdvv.device._m0._records import CPU_MHZ, PwmChange
-from fdvv.device._m0._system import Clocks, Port
+from fdvv_m0.bus import COUNTER, Bus
+from fdvv_m0.records import CPU_MHZ, PwmChange
+from fdvv_m0.system import Clocks, Port
 
 TC3, TC4 = 0x42002C00, 0x42003000
 CTRLA, EVCTRL, COUNT, CC0 = 0x00, 0x0A, 0x10, 0x18
@@ -103,11 +103,10 @@ class Pwm:
             self.changes.append(PwmChange(cycle / CPU_MHZ, at_bottom / CPU_MHZ, duty_q15, enable))
 
     def is_running(self, timer: int) -> bool:
-        """Tell whether a timer counts."""
+        """Return whether a timer counts."""
         return bool(self._bus.get(timer, 4) & ENABLE)
 
     def _share(self, name: str) -> float:
-        """Give the part of the time that a bridge input is high."""
         pin, channel = PINS[name]
         if self._port().function(pin) != FUNCTION_F:
             return float(self._port().level(pin))
@@ -117,31 +116,31 @@ class Pwm:
         return min(self._bus.get(TCC0 + CC + 4 * channel, 4) / period, 1.0)
 
     def inputs(self) -> tuple[float, float]:
-        """Give the parts of the time that IN1 and IN2 are high."""
+        """Return the parts of the time that IN1 and IN2 are high."""
         return self._share("IN1"), self._share("IN2")
 
     def enable(self) -> bool:
-        """Tell whether the bridge is awake."""
+        """Return whether the bridge is awake."""
         return self._port().level(ENABLE_PIN)
 
     def duty_q15(self) -> int:
-        """Give the mean voltage across the coil in parts of the supply, Q15."""
+        """Return the mean voltage across the coil in parts of the supply, Q15."""
         if not self.enable():
             return 0
         first, second = self.inputs()
         return max(-32768, min(32767, round((first - second) * 32768)))
 
     def frequency_Hz(self) -> float:
-        """Give the bridge's switching frequency: dual slope, up and down."""
+        """Return the bridge's switching frequency: dual slope, up and down."""
         clock_Hz = CPU_MHZ * 1e6 / self._clocks.cycles_per_clock(TCC0_TCC1)
         return clock_Hz / (2 * self._bus.get(TCC0 + PER, 4))
 
     def stop_us(self) -> float:
-        """Give the servo's pulse, 0 without one."""
+        """Return the servo's pulse, 0 without one."""
         return self._stop_clock_us() * self._bus.get(TCC1 + CC + 4 * STOP_CHANNEL, 4)
 
     def stop_period_us(self) -> float:
-        """Give the servo's frame."""
+        """Return the servo's frame."""
         return self._stop_clock_us() * (self._bus.get(TCC1 + PER, 4) + 1)
 
     def _stop_clock_us(self) -> float:

@@ -6,7 +6,7 @@ import struct
 from collections.abc import Callable
 from enum import Enum
 
-from fdvv.device._m0._bus import Bus
+from fdvv_m0.bus import Bus
 
 BASE = 0x41005000
 CTRLA, SYNCBUSY, CTRLB, DADD = BASE, BASE + 2, BASE + 8, BASE + 0xA
@@ -112,7 +112,6 @@ class UsbDevice:
         self.raise_flag(END_OF_RESET)
 
     def _bank(self, endpoint: int, is_in: bool) -> tuple[int, int, int]:
-        """Give the address of the bank's sizes, of its data, and the sizes."""
         at = self._bus.get(DESCADD, 4) + 32 * endpoint + 16 * is_in
         data, sizes = struct.unpack("<II", self._bus.ram_read(at, 8))
         return at + 4, data, sizes

@@ -6,10 +6,10 @@ import struct
 from collections.abc import Callable, Generator
 from typing import TypeVar
 
-from fdvv.device._m0._bus import Bus
-from fdvv.device._m0._records import CPU_MHZ
-from fdvv.device._m0._usb_device import RESUME, SUSPEND, Answer, UsbDevice
 from fdvv.errors import DeviceError
+from fdvv_m0.bus import Bus
+from fdvv_m0.records import CPU_MHZ
+from fdvv_m0.usb_device import RESUME, SUSPEND, Answer, UsbDevice
 
 # shorter than a real computer's 100, 10 and 10 ms
 DEBOUNCE_US, RESET_US, SETTLE_US = 1000, 500, 500
@@ -87,7 +87,6 @@ class UsbHost:
             self._bus.after(round(wait_us * CPU_MHZ), lambda: self._step(this))
 
     def _enumerate(self) -> Steps:
-        """Come to an open port, or give up a device that does not answer, as computers do."""
         try:
             yield from self._introduce()
         except _SilentError:

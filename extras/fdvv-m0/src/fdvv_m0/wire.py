@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fdvv.device._m0._bus import Bus
-from fdvv.device._m0._records import CPU_MHZ, WireMessage
-from fdvv.device._m0._system import Clocks
+from fdvv_m0.bus import Bus
+from fdvv_m0.records import CPU_MHZ, WireMessage
+from fdvv_m0.system import Clocks
 
 CTRLA, CTRLB, BAUD, INTFLAG, STATUS, ADDR, DATA = (
     0x42001400 + at for at in (0, 4, 0xC, 0x18, 0x1A, 0x24, 0x28)
@@ -31,7 +31,7 @@ class Wire:
         bus.on_write(CTRLB, self._command)
 
     def bit_cycles(self) -> float:
-        """Give the processor cycles of one bit."""
+        """Return the processor cycles of one bit."""
         clocks = 10 + 2 * (self._bus.get(BAUD, 4) & 0xFF) + RISE_CLOCKS
         return clocks * self._clocks.cycles_per_clock(PERIPHERAL)
 

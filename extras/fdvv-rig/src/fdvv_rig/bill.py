@@ -11,13 +11,15 @@ from importlib import resources
 from typing import Any, Protocol
 
 from fdvv.errors import InputError, ModelError
-from fdvv.hardware._circuit import Circuit
-from fdvv.hardware._parts import printed_parts
+from fdvv_rig.circuit.circuit import Circuit
+from fdvv_rig.parts import printed_parts
 
 PAPER_USD = 550.0
 """What the paper says the construction of its simulator costs, about."""
+
 GROUPS = ("rig", "vibration", "strip", "capture")
 """The rig itself; what makes it vibrate; the pointing task's strip; the capture bench."""
+
 COLUMNS = (
     "group",
     "role",
@@ -74,7 +76,7 @@ class BillLine:
 
     @property
     def estimated(self) -> bool:
-        """Tell whether nobody quoted this price."""
+        """Return whether nobody quoted this price."""
         return self.price_source == "estimate"
 
 
@@ -90,11 +92,11 @@ class Bill:
         return sum(line.total_USD for line in self.lines)
 
     def of(self, *groups: str) -> Bill:
-        """Give the lines of some groups only."""
+        """Return the lines of some groups only."""
         return Bill(tuple(line for line in self.lines if line.group in groups))
 
     def rows(self) -> list[dict[str, Any]]:
-        """Give every line as plain data with COLUMNS and what else is known."""
+        """Return every line as plain data with COLUMNS and what else is known."""
         keys = [*COLUMNS[:-1], "price_source", "note"]
         return [
             {key: getattr(line, key) for key in keys}
@@ -120,12 +122,12 @@ class Printed(Protocol):
 
 
 def load_bill(circuit: Circuit, printed: Iterable[Printed] | None = None) -> Bill:
-    """Give the rig's bill: counts come from the circuit, the plastic from the printed parts.
+    """Return the rig's bill: counts come from the circuit, the plastic from the printed parts.
 
     printed : the parts; those of the rig if None.
     Raises InputError if the circuit asks for a role that bill.toml does not have, or the other way round.
     """
-    text = resources.files("fdvv.hardware").joinpath("bill.toml").read_text("utf-8")
+    text = resources.files("fdvv_rig").joinpath("bill.toml").read_text("utf-8")
     return read_bill(text, Counter(part.bill for part in circuit.parts.values()), _own(printed))
 
 
@@ -193,7 +195,7 @@ def to_csv(bill: Bill) -> str:
 
 
 def group_totals(bill: Bill) -> dict[str, float]:
-    """Give what every group costs."""
+    """Return what every group costs."""
     return {group: bill.of(group).total_USD for group in GROUPS}
 
 
@@ -201,3 +203,47 @@ def dates(lines: Iterable[BillLine]) -> str:
     """Write the span of the prices' dates."""
     found = sorted({line.priced.isoformat() for line in lines})
     return found[0] if len(found) == 1 else f"{found[0]} to {found[-1]}"
+
+
+ABOUT = {
+    "rig": "the rig: force, position, travel",
+    "vibration": "vibration",
+    "strip": "the pointing task's LED strip",
+    "capture": "the capture bench, without cameras",
+}
+
+
+def bill_page(bill: Bill) -> str:
+    """Write the bill as Markdown: a table per group, totals beside the paper's."""
+    lines = [
+        "# Bill of materials",
+        "",
+        "Made from `bill.toml` of fdvv-rig and the circuit by `tools/make_circuit.py`; do not edit.",
+        "",
+    ]
+    lines += [summary(bill), ""]
+    for group in GROUPS:
+        lines += [
+            "",
+            f"## {ABOUT[group].capitalize()}",
+            "",
+            "| what | part | count | USD | note, alternatives |",
+            "|---|---|---|---|---|",
+        ]
+        for line in bill.of(group).lines:
+            rest = "; ".join([*([line.note] if line.note else []), *(f"or {a}" for a in line.alternatives)])
+            part = f"{line.maker} {line.part_number}"
+            lines.append(f"| {line.role} | {part} | {line.count} | {line.total_USD:.2f} | {rest} |")
+    return "\n".join([*lines, ""])
+
+
+def summary(bill: Bill) -> str:
+    """Return the total in a sentence or two, beside the paper's."""
+    totals = group_totals(bill)
+    estimates = sum(line.estimated for line in bill.lines)
+    built = totals["rig"] + totals["vibration"]
+    return (
+        f"{bill.total_USD:.0f} USD in all; rig and vibration, what the paper built for about "
+        f"{PAPER_USD:.0f} USD, {built:.0f} USD. {estimates} of {len(bill.lines)} prices "
+        f"are estimates of {dates(bill.lines)}, without shipping and tax."
+    )

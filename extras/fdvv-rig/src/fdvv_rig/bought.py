@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._envelope import Block, Envelope, Rod
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._placement import Moves
-from fdvv.hardware._screws import screws
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.envelope import Block, Envelope, Rod
+from fdvv_rig.layout import Layout
+from fdvv_rig.placement import Moves
+from fdvv_rig.screws import screws
 
 
 def bought_parts(d: Dimensions) -> tuple[Envelope, ...]:
-    """Give the bought parts of the rig at travel 0, the limiter's angle 0."""
+    """Return the bought parts of the rig at travel 0, the limiter's angle 0."""
     return (
         _coil(d),
         _bushing(d),
@@ -86,7 +86,6 @@ def _servo(d: Dimensions) -> Envelope:
 
 
 def _horn(d: Dimensions) -> Envelope:
-    """Give the horn at the limiter's angle 0: an arm in the direction of the spiral's large end."""
     layout = Layout(d)
     out_mm, z_mm = layout.limiter_out_mm, layout.servo_axis_mm
     hub = Rod("x", (out_mm - d.horn_thickness_mm, 0.0, z_mm), d.horn_thickness_mm + 2.5, d.horn_hub_mm)

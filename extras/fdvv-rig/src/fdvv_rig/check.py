@@ -1,4 +1,4 @@
-"""Check exported parts: are they closed, as large as they were made, do they meet anywhere in the rig?"""
+"""Check exported parts: are they closed, as large as they were made, do they collide anywhere in the rig?"""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
-from fdvv.hardware._bought import bought_parts
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._envelope import Envelope
-from fdvv.hardware._mesh import Mesh
-from fdvv.hardware._placement import MOVES, RIG, Moves, State, in_rig, moved
-from fdvv.hardware._solids import Body, body_of, body_of_bought, gap_mm, placed, shared_mm3
+from fdvv_rig.bought import bought_parts
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.envelope import Envelope
+from fdvv_rig.mesh import Mesh
+from fdvv_rig.placement import MOVES, RIG, Moves, State, in_rig, moved
+from fdvv_rig.solids import Body, body_of, body_of_bought, gap_mm, placed, shared_mm3
 
 SHARED_mm3 = 0.05
 """Less is the facets of round faces, which are chords."""
@@ -61,24 +61,24 @@ class Assembly:
     envelopes: Mapping[str, Envelope]
 
     def at(self, state: State) -> dict[str, Body]:
-        """Give every body where it is in a state."""
+        """Return every body where it is in a state."""
         found = {name: placed(body, in_rig(name, state, self.d)) for name, body in self.printed.items()}
         for name, body in self.bought.items():
             found[name] = placed(body, moved(self.envelopes[name].moves, state, self.d))
         return found
 
     def may_share(self, one: str, other: str) -> bool:
-        """Tell whether one goes into the other: a thread, or a rod in what is drawn full."""
+        """Return whether one goes into the other: a thread, or a rod in what is drawn full."""
         return other in self._of(one).enters or one in self._of(other).enters
 
     def may_touch(self, one: str, other: str) -> bool:
-        """Tell whether a pair touches by design."""
+        """Return whether a pair touches by design."""
         fastened = other in self._of(one).holds or one in self._of(other).holds
         pair = frozenset((one, other))
         return fastened or self.may_share(one, other) or pair in JOINED or pair == STOP
 
     def moves(self, name: str) -> Moves:
-        """Tell what a part moves with."""
+        """Return what a part moves with."""
         return self._of(name).moves
 
     def _of(self, name: str) -> Envelope:
@@ -98,7 +98,7 @@ def assemble(meshes: Mapping[str, Mesh], d: Dimensions) -> Assembly:
 
 
 def states(d: Dimensions) -> Iterator[State]:
-    """Give the states that are checked: several travels, the stop right below and as deep as it goes."""
+    """Yield the states that are checked: several travels, the stop right below and as deep as it goes."""
     for share in TRAVELS:
         travel_mm = share * d.travel_mm
         for stop_mm in sorted({min(travel_mm + 0.05, d.travel_mm), d.travel_mm}):
@@ -106,7 +106,7 @@ def states(d: Dimensions) -> Iterator[State]:
 
 
 def meetings(assembly: Assembly, state: State) -> list[Meeting]:
-    """Give the pairs that share room in a state though they are not fastened to each other."""
+    """Return the pairs that share room in a state though they are not fastened to each other."""
     bodies, found = assembly.at(state), []
     for one, other in combinations(bodies, 2):
         if assembly.may_share(one, other) or gap_mm(bodies[one], bodies[other], 0.01) > 0:
@@ -121,7 +121,7 @@ def meetings(assembly: Assembly, state: State) -> list[Meeting]:
 def clearances(
     assembly: Assembly, tell: Callable[[int, int], None] = lambda _done, _total: None
 ) -> list[Clearance]:
-    """Give the smallest gap of every pair that moves against each other and does not touch by design.
+    """Return the smallest gap of every pair that moves against each other and does not touch by design.
 
     tell : called with how many states are done, and how many there are.
     """

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.hardware._dimensions import CLASS, NAMES, Dimensions, meaning_of, source_of
-from fdvv.hardware._fits import check_fits
+from fdvv.io.files import read_limited
+from fdvv_rig.dimensions import CLASS, NAMES, Dimensions, meaning_of, source_of
+from fdvv_rig.fits import check_fits
 
 LARGEST_BYTES = 1_000_000
 
@@ -48,7 +48,7 @@ def dimensions_toml(dimensions: Dimensions) -> str:
 
 
 def assumed() -> tuple[str, ...]:
-    """Give the names of the dimensions that were not read from a data sheet: measure these."""
+    """Return the names of the dimensions that were not read from a data sheet: measure these."""
     return tuple(name for name in NAMES if source_of(name) == CLASS)
 
 
@@ -62,7 +62,6 @@ def _of_file(path: Path) -> dict[str, float]:
 
 
 def _number(source: object, name: str, value: Any) -> float:
-    """Give a known dimension's value as a number."""
     if name not in NAMES:
         near = difflib.get_close_matches(name, NAMES, 1)
         remedy = f"did you mean {near[0]}?" if near else "see fdvv hardware parts --dimensions"

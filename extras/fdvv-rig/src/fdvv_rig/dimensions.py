@@ -25,7 +25,6 @@ CHOSEN = "chosen"
 
 
 def _of(default: float, meaning: str, source: str) -> Any:
-    """Declare a dimension with its meaning and source."""
     return field(default=default, metadata={"meaning": meaning, "source": source})
 
 
@@ -146,7 +145,7 @@ class Dimensions:
                 raise InputError("dimensions", name, f"{value!r} is not a positive number", "correct it")
 
     def digest(self) -> str:
-        """Give a fingerprint of all values, by which exported files know what they were made from."""
+        """Return a fingerprint of all values, by which exported files know what they were made from."""
         text = json.dumps(asdict(self), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -155,12 +154,12 @@ NAMES = tuple(found.name for found in fields(Dimensions))
 
 
 def meaning_of(name: str) -> str:
-    """Tell what a dimension means."""
+    """Return what a dimension means."""
     return str(_metadata(name)["meaning"])
 
 
 def source_of(name: str) -> str:
-    """Tell where a dimension's default comes from: PAPER, CLASS or CHOSEN."""
+    """Return where a dimension's default comes from: PAPER, CLASS or CHOSEN."""
     return str(_metadata(name)["source"])
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.hardware._placement import Moves
-from fdvv.hardware._pose import Row
+from fdvv_rig.placement import Moves, Row
 
 
 @dataclass(frozen=True)

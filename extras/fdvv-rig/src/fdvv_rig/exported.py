@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.hardware._check import Clearance, Meeting, assemble, clearances, meetings, states
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._manifest import REMEDY, MadePart, Manifest, fingerprint, read_manifest
-from fdvv.hardware._mesh import LARGEST_BYTES, Mesh, read_stl
-from fdvv.hardware._parts import PARTS
+from fdvv.io.files import read_limited
+from fdvv_rig.check import Clearance, Meeting, assemble, clearances, meetings, states
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.manifest import REMEDY, MadePart, Manifest, fingerprint, read_manifest
+from fdvv_rig.mesh import LARGEST_BYTES, Mesh, read_stl
+from fdvv_rig.parts import PARTS
 
 VOLUME_ratio = 0.01
 """How far facets may make a part's volume differ from its solid's."""
@@ -48,7 +48,7 @@ class FolderCheck:
 
     @property
     def good(self) -> bool:
-        """Tell whether every part is whole and none meets another."""
+        """Return whether every part is whole and none meets another."""
         return not self.meetings and not any(part.wrong for part in self.parts)
 
 
@@ -97,7 +97,6 @@ def _checked(folder: Path, manifest: Manifest, name: str, mesh: Mesh, d: Dimensi
 
 
 def _changed(folder: Path, made: MadePart) -> list[str]:
-    """Name the files whose bytes are not those that were exported."""
     found = []
     for name, wanted in made.files.items():
         data = read_limited(folder / name, LARGEST_BYTES, REMEDY)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fdvv.errors import InputError
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._limiter import HOLD_RATIO, Limiter
-from fdvv.hardware._screws import WASHER_mm
-from fdvv.hardware._tolerance import core_stack
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
+from fdvv_rig.limiter import HOLD_RATIO, Limiter
+from fdvv_rig.screws import WASHER_mm
+from fdvv_rig.tolerance import core_stack
 
 Miss = tuple[str, str, str]
 """The dimension, what is wrong, what to do."""
@@ -25,7 +25,7 @@ def check_fits(d: Dimensions) -> None:
 
 
 def misses(d: Dimensions) -> Iterator[Miss]:
-    """Give everything that does not fit, in the order in which it should be mended."""
+    """Yield everything that does not fit, in the order in which it should be mended."""
     for question in (_bearings, _sensor, _walls, _screws, _limiter, _servo, _printer):
         yield from question(d)
 
@@ -116,7 +116,7 @@ def _limiter(d: Dimensions) -> Iterator[Miss]:
         )
         yield "limiter_large_mm", reason, "let the spiral rise more, or travel less"
     if d.foot_length_mm < rise_mm + d.overtravel_mm:
-        reason = f"{d.foot_length_mm:g} mm lets the yoke meet a limiter that rises {rise_mm:g} mm"
+        reason = f"{d.foot_length_mm:g} mm lets the yoke hit a limiter that rises {rise_mm:g} mm"
         yield "foot_length_mm", reason, "make the foot longer"
     if limiter.torque_ratio > HOLD_RATIO:
         reason = (

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.hardware._dimensions import Dimensions
+from fdvv_rig.dimensions import Dimensions
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
 from fdvv.units import FloatArray
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
 
 STEP_DEG = 2.0
 RETURN_DEG = 60.0
@@ -43,7 +43,7 @@ class Limiter:
         return self.outline(np.arange(0.0, 360.0, STEP_DEG))[::-1]
 
     def outline(self, at_deg: FloatArray) -> FloatArray:
-        """Give points of the arm's outline, (n, 2), at angles from its small end on, clockwise."""
+        """Return points of the arm's outline, (n, 2), at angles from its small end on, clockwise."""
         sweep_deg = self.d.servo_sweep_deg
         rise = np.interp(at_deg, [0.0, sweep_deg, sweep_deg + RETURN_DEG, 360.0], [0.0, 1.0, 0.0, 0.0])
         radius = self.d.limiter_small_mm + rise * (self.d.limiter_large_mm - self.d.limiter_small_mm)
@@ -51,7 +51,7 @@ class Limiter:
         return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
     def foot_mm(self, angle_deg: float) -> float:
-        """Give the height of the foot's lowest line above the servo's axis when it rests on the arm."""
+        """Return the height of the foot's lowest line above the servo's axis when it rests on the arm."""
         y, z = _turned(_dense(self.profile), angle_deg).T
         under = np.abs(y) < self.d.foot_radius_mm
         rests = z[under] + np.sqrt(self.d.foot_radius_mm**2 - y[under] ** 2)
@@ -59,19 +59,19 @@ class Limiter:
 
     @cached_property
     def _table(self) -> tuple[FloatArray, FloatArray]:
-        """Give angles and the travel that each allows."""
+        """Return angles and the travel that each allows."""
         layout = Layout(self.d)
         deg = np.linspace(0.0, self.d.servo_sweep_deg, 151)
         foot = np.array([self.foot_mm(angle) for angle in deg])
         return deg, layout.foot_low_mm - layout.servo_axis_mm - foot
 
     def travel_mm(self, angle_deg: float) -> float:
-        """Give the travel at which an angle within the sweep stops the slider; below 0 it cannot sink."""
+        """Return the travel at which an angle within the sweep stops the slider; below 0 it cannot sink."""
         deg, travel = self._table
         return float(np.interp(angle_deg, deg, travel))
 
     def angle_deg(self, travel_mm: float) -> float:
-        """Give the angle that stops the slider at a travel. Raises InputError outside the range."""
+        """Return the angle that stops the slider at a travel. Raises InputError outside the range."""
         deg, travel = self._table
         if not self.range_mm[0] <= travel_mm <= self.range_mm[1]:
             low_mm, high_mm = self.range_mm
@@ -112,7 +112,6 @@ class Limiter:
 
 
 def _dense(profile: FloatArray) -> FloatArray:
-    """Put points on every edge of the outline, so that the foot finds the highest."""
     after = np.roll(profile, -1, axis=0)
     share = np.linspace(0.0, 1.0, 5)[:-1, None, None]
     points: FloatArray = (profile + share * (after - profile)).reshape(-1, 2)
@@ -120,7 +119,6 @@ def _dense(profile: FloatArray) -> FloatArray:
 
 
 def _turned(points: FloatArray, angle_deg: float) -> FloatArray:
-    """Turn points counter-clockwise."""
     c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
     turned: FloatArray = points @ np.array([[c, s], [-s, c]])
     return turned

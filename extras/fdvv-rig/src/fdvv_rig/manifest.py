@@ -8,10 +8,10 @@ from pathlib import Path
 
 import msgspec
 
-from fdvv.documents import Kind, read_document
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.hardware._dimensions import Dimensions
+from fdvv.io.documents import Kind, read_document
+from fdvv.io.files import read_limited
+from fdvv_rig.dimensions import Dimensions
 
 FORMAT = "fdvv-hardware"
 VERSION = 1
@@ -43,7 +43,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     parts: dict[str, MadePart]
 
     def made_from(self) -> Dimensions:
-        """Give the dimensions that the parts were made from. Raises InputError for unknown ones."""
+        """Return the dimensions that the parts were made from. Raises InputError for unknown ones."""
         known = {found.name for found in dataclasses.fields(Dimensions)}
         if set(self.dimensions) != known:
             other = sorted(set(self.dimensions) ^ known)[0]
@@ -69,5 +69,5 @@ def read_manifest(folder: Path | str) -> Manifest:
 
 
 def fingerprint(data: bytes) -> str:
-    """Give the SHA-256 of a file's bytes."""
+    """Return the SHA-256 of a file's bytes."""
     return hashlib.sha256(data).hexdigest()

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.hardware._pose import Pose
+from fdvv.io.files import read_limited
 from fdvv.units import FloatArray
+from fdvv_rig.placement import Pose
 
 IntArray = npt.NDArray[np.int64]
 LARGEST_BYTES = 100_000_000
@@ -68,7 +68,7 @@ class Mesh:
         return int((np.linalg.norm(np.cross(b - a, c - a), axis=1) < ROUND_mm**2).sum())
 
     def moved(self, pose: Pose) -> Mesh:
-        """Give the mesh at a pose."""
+        """Return the mesh at a pose."""
         return Mesh(pose.of(self.points), self.triangles)
 
 

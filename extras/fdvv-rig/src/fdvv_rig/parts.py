@@ -153,19 +153,19 @@ PARTS = (
 
 
 def printed_parts() -> tuple[Part, ...]:
-    """Give every printed part; their masses and times hold for the default dimensions."""
+    """Return every printed part; their masses and times hold for the default dimensions."""
     return PARTS
 
 
 def part_named(name: str) -> Part:
-    """Give one printed part. KeyError for a name that none has."""
+    """Return one printed part. KeyError for a name that none has."""
     return {part.name: part for part in PARTS}[name]
 
 
 @cache
 def _made() -> dict[str, Made]:
     """Read what the default parts measured when they were exported."""
-    text = resources.files("fdvv.hardware").joinpath("printed.json").read_text(encoding="utf-8")
+    text = resources.files("fdvv_rig").joinpath("printed.json").read_text(encoding="utf-8")
     return {
         name: Made(found["volume_cm3"], found["area_cm2"], tuple(found["box_mm"]))
         for name, found in json.loads(text)["parts"].items()

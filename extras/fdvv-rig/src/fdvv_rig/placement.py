@@ -5,11 +5,68 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from fdvv.errors import InputError
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._limiter import Limiter
-from fdvv.hardware._pose import OVER, X_UP, Pose, about_x
+from fdvv.units import FloatArray
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
+from fdvv_rig.limiter import Limiter
+
+Row = tuple[float, float, float]
+
+Turn = tuple[Row, Row, Row]
+
+STRAIGHT: Turn = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+OVER: Turn = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
+"""Upside down: half a turn about x."""
+
+X_UP: Turn = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
+"""What pointed along x points up."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A turn about the origin, then a shift in mm."""
+
+    turn: Turn = STRAIGHT
+    shift_mm: Row = (0.0, 0.0, 0.0)
+
+    def of(self, points_mm: FloatArray) -> FloatArray:
+        """Return points (n, 3) where this pose puts them."""
+        moved: FloatArray = points_mm @ np.array(self.turn).T + np.array(self.shift_mm)
+        return moved
+
+    @property
+    def inverse(self) -> Pose:
+        """Get the pose that undoes this one."""
+        back = np.array(self.turn).T
+        return _pose(back, -back @ np.array(self.shift_mm))
+
+    def after(self, first: Pose) -> Pose:
+        """Return the pose that does first, then this one."""
+        turn = np.array(self.turn)
+        return _pose(turn @ np.array(first.turn), turn @ np.array(first.shift_mm) + np.array(self.shift_mm))
+
+    @property
+    def rows(self) -> FloatArray:
+        """Get the turn with the shift as fourth column, (3, 4)."""
+        return np.column_stack([np.array(self.turn), np.array(self.shift_mm)])
+
+
+def about_x(angle_deg: float, centre_mm: Row) -> Pose:
+    """Return a turn about a line along x through a point; y turns towards z."""
+    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    centre = np.array(centre_mm)
+    return _pose(turn, centre - turn @ centre)
+
+
+def _pose(turn: FloatArray, shift: FloatArray) -> Pose:
+    rows = tuple((float(a), float(b), float(c)) for a, b, c in turn)
+    x, y, z = (float(value) for value in shift)
+    return Pose((rows[0], rows[1], rows[2]), (x, y, z))
 
 
 class Moves(StrEnum):
@@ -44,7 +101,7 @@ class State:
     stop_mm: float | None = None
 
     def angle_deg(self, d: Dimensions) -> float:
-        """Give the limiter's angle. Raises InputError where the slider could not be there."""
+        """Return the limiter's angle. Raises InputError where the slider could not be there."""
         stop_mm = d.travel_mm if self.stop_mm is None else self.stop_mm
         if not -d.overtravel_mm <= self.travel_mm <= stop_mm:
             reason = f"{self.travel_mm:g} mm is beyond the limiter's stop at {stop_mm:g} mm"
@@ -53,7 +110,7 @@ class State:
 
 
 def on_bed(name: str, d: Dimensions) -> Pose:
-    """Give the pose that lays a part, drawn where it stands, on the bed; its lowest face is then z = 0."""
+    """Return the pose that lays a part, drawn where it stands, on the bed; its lowest face is then z = 0."""
     layout = Layout(d)
     match name:
         case "base" | "capture-jig":
@@ -75,7 +132,7 @@ def on_bed(name: str, d: Dimensions) -> Pose:
 
 
 def moved(moves: Moves, state: State, d: Dimensions) -> Pose:
-    """Give how far a state moves what was drawn at travel 0 with the limiter's angle 0."""
+    """Return how far a state moves what was drawn at travel 0 with the limiter's angle 0."""
     if moves is Moves.SLIDER:
         return Pose(shift_mm=(0.0, 0.0, -state.travel_mm))
     if moves is Moves.LIMITER:
@@ -84,12 +141,12 @@ def moved(moves: Moves, state: State, d: Dimensions) -> Pose:
 
 
 def in_rig(name: str, state: State, d: Dimensions) -> Pose:
-    """Give the pose that puts a printed part from its bed into the rig."""
+    """Return the pose that puts a printed part from its bed into the rig."""
     return moved(MOVES.get(name, Moves.FIXED), state, d).after(on_bed(name, d).inverse)
 
 
 def on_jig(name: str, d: Dimensions) -> tuple[Pose, ...]:
-    """Give the poses that put a printed part from its bed on the capture jig: three of the marker post."""
+    """Return the poses that put a printed part from its bed on the capture jig: three of the marker post."""
     back = on_bed(name, d).inverse
     places = POSTS_mm if name == "marker-post" else ((0.0, 0.0),)
     return tuple(Pose(shift_mm=(x, y, 0.0)).after(back) for x, y in places)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._envelope import Envelope, Rod
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._placement import Moves
-from fdvv.hardware._pose import Row
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.envelope import Envelope, Rod
+from fdvv_rig.layout import Layout
+from fdvv_rig.placement import Moves, Row
 
 M2_HEAD_mm = (3.8, 1.8)
 """Diameter and height."""
@@ -19,14 +18,14 @@ TIP_mm = 0.4
 
 
 def screws(d: Dimensions) -> tuple[Envelope, ...]:
-    """Give the screws of the rig at travel 0."""
+    """Return the screws of the rig at travel 0."""
     return (_pin(d), *_onto_base(d), _mount(d), _clamp(d), _yoke(d), _grub(d), _servo(d))
 
 
 def _screw(
     axis: str, seat: Row, way: int, length_mm: float, thread_mm: float, head: tuple[float, float]
 ) -> tuple[Rod, Rod]:
-    """Give thread and head of a screw: it goes from its seat along an axis, forwards (1) or backwards (-1).
+    """Return thread and head of a screw: it goes from its seat along an axis, forwards (1) or backwards (-1).
 
     head : diameter and height.
     """
@@ -48,7 +47,6 @@ def _m3(d: Dimensions) -> tuple[float, float]:
 
 
 def _pin(d: Dimensions) -> Envelope:
-    """Give the screw that runs in the tongue's slot; its head stays clear of the tongue."""
     layout = Layout(d)
     seat = -(layout.tongue_out_mm + d.tongue_thickness_mm + 2 * d.slide_gap_mm)
     # the longest that one can buy and that does not reach the coil
@@ -60,7 +58,6 @@ def _pin(d: Dimensions) -> Envelope:
 
 
 def _onto_base(d: Dimensions) -> tuple[Envelope, Envelope]:
-    """Give the screws that hold tower and bracket in the base's inserts."""
     layout, made = Layout(d), []
     for name, places, part in (
         ("tower-screws", layout.tower_screws_mm, "coil-mount"),
@@ -74,7 +71,6 @@ def _onto_base(d: Dimensions) -> tuple[Envelope, Envelope]:
 
 
 def _mount(d: Dimensions) -> Envelope:
-    """Give the screws that hold the sensor's mount from below, on washers that cover their wide holes."""
     layout = Layout(d)
     solids: list[Rod] = []
     for side in (-1, 1):
@@ -86,7 +82,6 @@ def _mount(d: Dimensions) -> Envelope:
 
 
 def _clamp(d: Dimensions) -> Envelope:
-    """Give the screw that closes the tower about the coil; its nut is sunk in the other ear."""
     layout = Layout(d)
     seat = (-layout.ear_mm, -layout.tower_radius_mm - 4.5, layout.coil_top_mm - 5.5)
     made = _screw("x", seat, 1, 16.0, 3.0, _m3(d))
@@ -94,7 +89,6 @@ def _clamp(d: Dimensions) -> Envelope:
 
 
 def _yoke(d: Dimensions) -> Envelope:
-    """Give the screws from below through the yoke into the adapter's floor."""
     layout = Layout(d)
     solids: list[Rod] = []
     for side in (-1, 1):
@@ -105,7 +99,6 @@ def _yoke(d: Dimensions) -> Envelope:
 
 
 def _grub(d: Dimensions) -> Envelope:
-    """Give the screw that clamps the rod in the yoke."""
     layout = Layout(d)
     middle_mm = (layout.yoke_low_mm + layout.yoke_top_mm) / 2
     body = Rod("y", (0.0, d.rod_diameter_mm / 2 + 0.02, middle_mm), 6.0, 3.0)
@@ -114,7 +107,6 @@ def _grub(d: Dimensions) -> Envelope:
 
 
 def _servo(d: Dimensions) -> Envelope:
-    """Give the screws through the servo's ears into the bracket."""
     layout = Layout(d)
     solids: list[Rod] = []
     low_mm, top_mm = layout.servo_z_mm

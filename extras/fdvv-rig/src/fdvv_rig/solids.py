@@ -1,4 +1,4 @@
-"""Solids of exported parts and bought ones: do they meet, and how close do they come?"""
+"""Solids of exported parts and bought ones: do they collide, and how close do they come?"""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import BuildError
-from fdvv.hardware._envelope import Block, Envelope, Rod
-from fdvv.hardware._mesh import Mesh
-from fdvv.hardware._pose import Pose
+from fdvv_rig.envelope import Block, Envelope, Rod
+from fdvv_rig.mesh import Mesh
+from fdvv_rig.placement import Pose
 
 Body = Any
 """A solid of manifold3d."""
@@ -25,13 +25,13 @@ def _library() -> ModuleType:
     try:
         import manifold3d
     except ImportError as error:
-        raise BuildError('checking how parts fit needs more: pip install "fdvv[hardware]"') from error
+        raise BuildError("checking how parts fit needs manifold3d: pip install manifold3d") from error
     module: ModuleType = manifold3d
     return module
 
 
 def body_of(mesh: Mesh) -> Body:
-    """Give a mesh as a solid. Raises BuildError without manifold3d; ValueError where it is not closed."""
+    """Return a mesh as a solid. Raises BuildError without manifold3d; ValueError where it is not closed."""
     library = _library()
     found = library.Manifold(library.Mesh(mesh.points.astype(np.float32), mesh.triangles.astype(np.uint32)))
     if found.status() != library.Error.NoError or found.volume() <= 0:
@@ -40,7 +40,7 @@ def body_of(mesh: Mesh) -> Body:
 
 
 def body_of_bought(envelope: Envelope) -> Body:
-    """Give the room a bought part takes as a solid."""
+    """Return the room a bought part takes as a solid."""
     library = _library()
     made = library.Manifold()
     for solid in envelope.solids:
@@ -67,24 +67,24 @@ def _cylinder(library: ModuleType, length_mm: float, diameter_mm: float) -> Body
 
 
 def placed(body: Body, pose: Pose) -> Body:
-    """Give a solid at a pose."""
+    """Return a solid at a pose."""
     return body.transform(pose.rows)
 
 
 def mesh_of(body: Body) -> Mesh:
-    """Give a solid's surface."""
+    """Return a solid's surface."""
     mesh = body.to_mesh64() if hasattr(body, "to_mesh64") else body.to_mesh()
     points = np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3]
     return Mesh(points, np.asarray(mesh.tri_verts, dtype=np.int64))
 
 
 def shared_mm3(one: Body, other: Body) -> float:
-    """Give the volume that two solids share, in mm³."""
+    """Return the volume that two solids share, in mm³."""
     return float((one ^ other).volume())
 
 
 def gap_mm(one: Body, other: Body, far_mm: float = FAR_mm) -> float:
-    """Give how close two solids come, in mm; far_mm where they are further apart."""
+    """Return how close two solids come, in mm; far_mm where they are further apart."""
     a, b = np.array(one.bounding_box()), np.array(other.bounding_box())
     apart = np.maximum(a[:3] - b[3:], b[:3] - a[3:]).max()
     return far_mm if apart >= far_mm else float(one.min_gap(other, far_mm))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fdvv.hardware._dimensions import Dimensions
+from fdvv_rig.dimensions import Dimensions
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Stack:
 
 
 def core_stack(d: Dimensions) -> Stack:
-    """Give what sets the sensor's core off the axis of its bore before the mount is moved."""
+    """Return what sets the sensor's core off the axis of its bore before the mount is moved."""
     play_mm = (d.bushing_bore_mm - d.rod_diameter_mm) / 2
     return Stack(
         (
@@ -54,12 +54,12 @@ def core_stack(d: Dimensions) -> Stack:
 
 
 def tilt_deg(d: Dimensions) -> float:
-    """Give how far the rod may tilt between coil and bushing for their play, in degrees."""
+    """Return how far the rod may tilt between coil and bushing for their play, in degrees."""
     apart_mm = d.coil_length_mm + d.bushing_length_mm
     play_mm = (d.bushing_bore_mm + d.coil_bore_mm) / 2 - d.rod_diameter_mm
     return math.degrees(math.atan2(play_mm, apart_mm))
 
 
 def turn_deg(d: Dimensions, radius_mm: float) -> float:
-    """Give how far the slider may turn either way for the gap beside its tongue, in degrees."""
+    """Return how far the slider may turn either way for the gap beside its tongue, in degrees."""
     return math.degrees(math.atan2(d.slide_gap_mm, radius_mm))

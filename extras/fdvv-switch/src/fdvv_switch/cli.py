@@ -7,68 +7,44 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fdvv.cli._output import (
-    Finite,
-    check_folder,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_wrapped,
-    stages,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.workflow import MechanismResult
+    from fdvv_switch.design_button import MechanismResult
 
 
 @click.command()
 @click.argument("model")
-@click.option(
+@ui.option(
     "--kind",
     type=click.Choice(["auto", "spring", "leaf", "dome"]),
     default="auto",
-    show_default=True,
     help="What to design; auto tries all and takes the simplest of the best.",
 )
-@click.option(
-    "--wire",
-    type=click.Choice(["steel", "stainless"]),
-    default="steel",
-    show_default=True,
-    help="Of the spring.",
-)
-@click.option(
+@ui.option("--wire", type=click.Choice(["steel", "stainless"]), default="steel", help="Of the spring.")
+@ui.option(
     "--strip",
     type=click.Choice(["beryllium-copper", "bronze", "stainless"]),
     default="beryllium-copper",
-    show_default=True,
     help="Of the leaf.",
 )
-@click.option(
+@ui.option(
     "--friction",
     "friction_ratio",
-    type=Finite(min=0.02, max=0.6),
+    type=ui.Finite(min=0.02, max=0.6),
     default=0.2,
-    show_default=True,
     help="Coefficient between leaf and cam.",
 )
-@click.option(
+@ui.option(
     "--speed",
     "speeds_mm_s",
-    type=Finite(min=5, max=500),
+    type=ui.SPEED,
     multiple=True,
     default=(50.0, 100.0, 200.0),
-    show_default=True,
     help="Press the design on the twin at this speed too, mm/s; repeatable.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    help="Write all files into this folder.",
-)
-@json_option
+@ui.option("-o", "--output", type=ui.NEW_FOLDER, help="Write all files into this folder.")
+@ui.json_option
 def mechanism(
     model: str,
     kind: str,
@@ -87,18 +63,20 @@ def mechanism(
     The folder gets sizes, curves, cam and drawings (DXF), a button for fdvv press, and a report. Exit status
     1: nothing that can be made comes within 3 cN rms on both strokes.
     """
-    from fdvv.mechanism import Making
-    from fdvv.workflow import design_mechanism, open_model, write_mechanism
+    from fdvv.button.open import open_button
+    from fdvv_switch.design_button import design_mechanism
+    from fdvv_switch.files import write_mechanism
+    from fdvv_switch.making import Making
 
     if output:
-        check_folder(output)
-    opened = open_model(model)
+        ui.check_folder(output)
+    opened = open_button(model)
     making = Making(wire=wire, strip=strip, friction_ratio=friction_ratio)
-    with stages() as told:
-        result = design_mechanism(opened, kind, making, speeds_mm_s, told)
+    with ui.stages() as progress:
+        result = design_mechanism(opened, kind, making, speeds_mm_s, progress)
     written = write_mechanism(result, output) if output else ()
     if as_json:
-        print_json({**result.to_dict(), "files": [str(path) for path in written]})
+        ui.print_json({**result.to_dict(), "files": [str(path) for path in written]})
     else:
         _print(result)
         if output:
@@ -107,40 +85,41 @@ def mechanism(
 
 
 def _print(result: MechanismResult) -> None:
-    """Print the choice, the sizes, what is missed and why, the tolerances and the twin's word."""
-    from fdvv.mechanism import facts_of
+    from fdvv_switch.facts import facts_of
 
-    print_wrapped(f"{result.model.name}: {result.recommendation}")
+    ui.print_wrapped(f"{result.model.name}: {result.recommendation}")
     for part, facts in facts_of(result.mechanism, result.target).items():
-        told = (v if isinstance(v, str) else f"{name} {v:.4g}" for name, v in facts.items())
-        print_wrapped(f"{part}: {', '.join(told)}")
+        values = (v if isinstance(v, str) else f"{name} {v:.4g}" for name, v in facts.items())
+        ui.print_wrapped(f"{part}: {', '.join(values)}")
     for reason in (*result.residual.reasons, *result.notes):
-        print_wrapped(reason)
+        ui.print_wrapped(reason)
     _print_tolerances(result)
     _print_misses(result)
 
 
 def _print_tolerances(result: MechanismResult) -> None:
     band, worst = result.band, result.band.shares[:3]
-    told = ", ".join(f"{s.tolerance.name} {s.rms_cN:.1f}" for s in worst)
+    most = ", ".join(f"{s.tolerance.name} {s.rms_cN:.1f}" for s in worst)
     bump = ""
     if band.peak_cN and band.snap_ratio:
         bump = (
             f", peak {band.peak_cN[0]:.0f} to {band.peak_cN[1]:.0f} cN, "
             f"snap ratio {band.snap_ratio[0]:.2f} to {band.snap_ratio[1]:.2f}"
         )
-    print_wrapped(
-        f"within tolerance, 5 to 95 %: press ± {band.half_width_cN:.1f} cN{bump}; most from (cN rms): {told}"
+    ui.print_wrapped(
+        f"within tolerance, 5 to 95 %: press ± {band.half_width_cN:.1f} cN{bump}; most from (cN rms): {most}"
     )
 
 
 def _print_misses(result: MechanismResult) -> None:
     residual = result.residual
-    rows = [["design", number(residual.press.rms_cN), number(residual.release.rms_cN), "the slow curves"]]
+    rows = [
+        ["design", ui.number(residual.press.rms_cN), ui.number(residual.release.rms_cN), "the slow curves"]
+    ]
     for p in result.pressed:
         against = "the model at that speed" if p.own_speed else "the slow curves"
         name = f"twin {p.speed_mm_s:g} mm/s (simulated)"
-        rows.append([name, number(p.press.rms_cN), number(p.release.rms_cN), against])
-    print_table(["missed, cN rms", "press", "release", "against"], rows)
+        rows.append([name, ui.number(p.press.rms_cN), ui.number(p.release.rms_cN), against])
+    ui.print_table(["missed, cN rms", "press", "release", "against"], rows)
     if result.twin_refused:
-        print_wrapped(f"the twin cannot take this design: {result.twin_refused}")
+        ui.print_wrapped(f"the twin cannot take this design: {result.twin_refused}")

@@ -6,24 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from fdvv.errors import InputError, ModelError
-from fdvv.mechanism import (
-    KINDS,
-    Band,
-    Making,
-    Mechanism,
-    Residual,
-    Target,
-    WANTED_cN,
-    band_of,
-    design,
-    facts_of,
-    notes_of,
-    residual_of,
-    target_of,
-)
-from fdvv.model import FDVVModel
-from fdvv.twin import ButtonPhysics
-from fdvv.workflow._mechanism_twin import PressedDesign, SPEEDS_mm_s, mechanism_button, press_design
+from fdvv.model.model import FDVVModel
+from fdvv.twin.button import ButtonPhysics
+from fdvv_switch.facts import facts_of, notes_of
+from fdvv_switch.making import Making
+from fdvv_switch.mechanism import KINDS, Mechanism, design
+from fdvv_switch.residual import Residual, WANTED_cN, residual_of
+from fdvv_switch.target import Target, target_of
+from fdvv_switch.tolerance import Band, band_of
+from fdvv_switch.twin import PressedDesign, SPEEDS_mm_s, mechanism_button, press_design
 
 AUTO = "auto"
 AS_GOOD_cN = 0.5
@@ -68,13 +59,13 @@ class MechanismResult:
 
     @property
     def met(self) -> bool:
-        """Tell whether the design, and the twin pressed slowly, give both strokes within WANTED_cN."""
+        """Return whether the design, and the twin pressed slowly, give both strokes within WANTED_cN."""
         if not self.residual.met or not self.pressed:
             return False
         return max(self.pressed[0].press.rms_cN, self.pressed[0].release.rms_cN) <= WANTED_cN
 
     def to_dict(self) -> dict[str, object]:
-        """Give it for JSON, units in the names."""
+        """Return it for JSON, units in the names."""
         band = self.band
         shares = [
             {"tolerance": s.tolerance.name, "half": s.tolerance.half, "of": s.tolerance.path}
@@ -169,7 +160,6 @@ def _designed(target: Target, kind: str, making: Making) -> DesignedKind:
 
 
 def _chosen(kinds: Sequence[DesignedKind], name: str) -> DesignedKind:
-    """Choose the simplest kind that is as good as the best."""
     made = [(k, k.residual.worst_cN) for k in kinds if k.residual is not None]
     if not made:
         reasons = "; ".join(f"{k.kind}: {k.refused}" for k in kinds)
@@ -179,7 +169,6 @@ def _chosen(kinds: Sequence[DesignedKind], name: str) -> DesignedKind:
 
 
 def _why(chosen: DesignedKind, kinds: Sequence[DesignedKind]) -> str:
-    """Say why this kind, beside what the others miss."""
     assert chosen.residual is not None
     others = [
         f"{k.kind} " + ("cannot be made" if k.residual is None else f"{k.residual.worst_cN:.1f} cN")
@@ -197,7 +186,6 @@ def _why(chosen: DesignedKind, kinds: Sequence[DesignedKind]) -> str:
 def _verified(
     mechanism: Mechanism, target: Target, model: FDVVModel, speeds_mm_s: Sequence[float]
 ) -> tuple[ButtonPhysics | None, tuple[PressedDesign, ...], str]:
-    """Hand the design to the twin and press it; the reason if the twin cannot take it."""
     origin = model.provenance
     try:
         button = mechanism_button(mechanism, target, origin.citation or origin.source, origin.licence)

@@ -9,16 +9,15 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._coil import cN_PER_N
-from fdvv.mechanism._dome import Dome, DomeMechanism, Pin, cone_force_N, hinge_force_N, through_pad_cN
-from fdvv.mechanism._guide import Guide
-from fdvv.mechanism._leaf import Leaf
-from fdvv.mechanism._leaf_choice import choose_leaf
-from fdvv.mechanism._making import Making
-from fdvv.mechanism._material import HARDEST_shoreA, SOFTEST_shoreA, hardness_shoreA, rubber_MPa
-from fdvv.mechanism._solve import solve
-from fdvv.mechanism._target import Target
 from fdvv.units import FloatArray
+from fdvv_switch.coil import cN_PER_N
+from fdvv_switch.dome import Dome, DomeMechanism, Pin, cone_force_N, hinge_force_N, through_pad_cN
+from fdvv_switch.guide import Guide
+from fdvv_switch.leaf import Leaf, choose_leaf
+from fdvv_switch.making import Making
+from fdvv_switch.material import HARDEST_shoreA, SOFTEST_shoreA, hardness_shoreA, rubber_MPa
+from fdvv_switch.solve import solve
+from fdvv_switch.target import Target
 
 STRIDE, FINE_STRIDE = 6, 2
 """So many displacements are skipped while looking, and in the last pass."""
@@ -29,7 +28,7 @@ HARDNESS_STEP_shoreA = 5.0
 FOOT_LENGTHS_mm = (1.0, 1.5, 2.0, 3.0)
 LEAST_FOOT_mm = 0.6
 SOFTEST_PAD_mm_cN, LEAST_PAD_mm_cN, LEAST_PAD_mm, PAD_shoreA = 0.02, 0.0005, 0.8, 30.0
-"""Give of the softest pad and of one that is not worth making, its smallest diameter and its rubber."""
+"""Return of the softest pad and of one that is not worth making, its smallest diameter and its rubber."""
 STEEPEST_ratio, STEEP_cN = 1.2, 100.0
 """Height over width of the steepest wall, 50 degrees, and what a steeper one costs: its edges would widen
 and shrink more than sheet and plug let them."""
@@ -81,7 +80,6 @@ def _starts(target: Target) -> Iterator[FloatArray]:
 
 
 def _misser(target: Target, stride: int) -> Callable[[FloatArray], FloatArray]:
-    """Give the function from modulus and sizes to what press and release miss."""
     x = target.displacement_mm[::stride]
     top = np.linspace(0.0, float(x[-1]), 2 * x.size)
     press, release = target.press_cN[::stride], target.release_cN[::stride]
@@ -104,7 +102,6 @@ def _misser(target: Target, stride: int) -> Callable[[FloatArray], FloatArray]:
 
 
 def _made(p: FloatArray, hardness: float, target: Target, making: Making) -> DomeMechanism:
-    """Round every size to what a mould is drawn to."""
     height, wall, hinge, press_in, gap, foot, drag, load, seat, base, slim, give = (float(v) for v in p)
     outer, inner, high, thick, thin = (round(v, 2) for v in (base, slim * base, height, wall, hinge * wall))
     dome = Dome(outer, inner, high, thick, thin, hardness, round(press_in, 2))
@@ -113,7 +110,7 @@ def _made(p: FloatArray, hardness: float, target: Target, making: Making) -> Dom
 
 
 def _pad(give_mm_cN: float) -> Pin | None:
-    """Give the shortest soft pin of that give that can be moulded; None where the key may sit on the dome."""
+    """Find the shortest soft pin of that give that can be moulded; None where the key may sit on the dome."""
     if give_mm_cN < LEAST_PAD_mm_cN:
         return None
     young = cN_PER_N * rubber_MPa(PAD_shoreA)
@@ -125,7 +122,6 @@ def _pad(give_mm_cN: float) -> Pin | None:
 
 
 def _foot(stiffness_cN_mm: float, hardness: float, way_mm: float, making: Making) -> Pin | Leaf:
-    """Give the shortest pin of the dome's rubber that can be moulded; where it would be too thin, a leaf."""
     young = cN_PER_N * rubber_MPa(hardness)
     for length in FOOT_LENGTHS_mm:
         diameter = math.sqrt(4.0 * stiffness_cN_mm * length / (math.pi * young))

@@ -13,15 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._coil_choice import choose_coil
-from fdvv.mechanism._design_spring import GUIDE_HIGH, GUIDE_LOW, coil_bounds, tail_line
-from fdvv.mechanism._guide import Guide
-from fdvv.mechanism._leaf import DEGREE, Cam, LeafMechanism, wedge
-from fdvv.mechanism._leaf_choice import choose_leaf
-from fdvv.mechanism._making import Making
-from fdvv.mechanism._solve import solve
-from fdvv.mechanism._target import SEATED_mm, STEP_mm, Target
 from fdvv.units import FloatArray
+from fdvv_switch.coil import choose_coil
+from fdvv_switch.guide import Guide
+from fdvv_switch.leaf import DEGREE, Cam, LeafMechanism, choose_leaf, wedge
+from fdvv_switch.making import Making
+from fdvv_switch.solve import solve
+from fdvv_switch.spring import GUIDE_HIGH, GUIDE_LOW, coil_bounds, tail_line
+from fdvv_switch.target import SEATED_mm, STEP_mm, Target
 
 REACH_ratio = 0.8
 """The cam ends at this part of the travel; the coil is alone beyond."""
@@ -76,7 +75,6 @@ def _basis(target: Target) -> _Basis:
 
 
 def _level_end() -> FloatArray:
-    """Give the matrix from free heights to control heights: the last three are one, so the cam ends level."""
     return np.vstack([np.eye(FREE), np.tile(np.eye(FREE)[-1], (CONTROLS - FREE, 1))])
 
 
@@ -112,7 +110,6 @@ def _unflat(p: FloatArray) -> _Free:
 
 
 def _begin(target: Target, making: Making, basis: _Basis) -> tuple[_Free, FloatArray]:
-    """Give the start that the leaf's energy tells: coil, guide, leaf and the cam's control heights."""
     x, friction = target.displacement_mm, making.friction_ratio
     preload, rate = tail_line(target)
     given = target.middle_cN - preload - rate * x
@@ -137,7 +134,6 @@ def _begin(target: Target, making: Making, basis: _Basis) -> tuple[_Free, FloatA
 
 
 def _miss(target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray) -> FloatArray:
-    """Give what press and release miss (cN), and what the cam exceeds, weighed."""
     x, ratio = target.displacement_mm, making.contact_ratio
     height, slope, second = (part @ controls for part in (basis.height, basis.slope, basis.second))
     bent = free.leaf_cN + np.where(height >= 0.0, 1.0, 1.0 + ratio) * free.leaf_cN_mm * height
@@ -158,7 +154,6 @@ def _miss(target: Target, making: Making, basis: _Basis, free: _Free, controls: 
 
 
 def _made(target: Target, making: Making, basis: _Basis, free: _Free, controls: FloatArray) -> LeafMechanism:
-    """Choose coil and strip in round sizes, and find guide and cam anew around them."""
     preload = free.pressed_mm * free.rate_cN_mm
     coil = choose_coil(preload, free.rate_cN_mm, target.travel_mm, making.envelope, making.wire)
     height = basis.height @ controls

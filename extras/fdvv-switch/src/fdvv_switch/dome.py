@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._coil import cN_PER_N
-from fdvv.mechanism._guide import Guide
-from fdvv.mechanism._leaf import Leaf
-from fdvv.mechanism._material import RUBBER_POISSON_ratio, rubber_MPa
 from fdvv.units import FloatArray
+from fdvv_switch.coil import cN_PER_N
+from fdvv_switch.guide import Guide
+from fdvv_switch.leaf import Leaf
+from fdvv_switch.material import RUBBER_POISSON_ratio, rubber_MPa
 
 HINGE_LENGTH_ratio = 3.0
 ALONG, ACROSS = 8, 4
@@ -63,7 +63,7 @@ class Dome:
         return math.degrees(math.atan2(self.height_mm, 0.5 * (self.base_mm - self.top_mm)))
 
     def force_cN(self, x: FloatArray) -> FloatArray:
-        """Give the force at displacements of the key (mm); friction, loss and foot left out."""
+        """Return the force at displacements of the key (mm); friction, loss and foot left out."""
         young = rubber_MPa(self.hardness_shoreA)
         radii = (0.5 * self.base_mm, 0.5 * self.top_mm)
         # a key that stands off its dome does not pull at it
@@ -73,7 +73,7 @@ class Dome:
         return np.asarray(cN_PER_N * (wall + hinge))
 
     def strain_ratio(self, x: FloatArray) -> float:
-        """Give the largest strain of the wall's circumference on the way to the last displacement."""
+        """Return the largest strain of the wall's circumference on the way to the last displacement."""
         strains = _section(
             self.press_in_mm + x, 0.5 * self.base_mm, 0.5 * self.top_mm, self.height_mm, self.wall_mm
         )
@@ -109,7 +109,6 @@ def _section(s: FloatArray, outer: float, inner: float, height: float, wall: flo
 
 
 def _angles(s: FloatArray, outer: float, inner: float, height: float) -> tuple[float, FloatArray, FloatArray]:
-    """Give the wall's first angle, and cosine and sine of its angle when pressed in by s."""
     meridian = math.hypot(outer - inner, height)
     sine = np.clip((height - s) / meridian, -0.999, 0.999)
     return math.atan2(height, outer - inner), np.sqrt(1.0 - sine**2), sine
@@ -124,7 +123,7 @@ def cone_force_N(
     young_MPa: float,
     poisson_ratio: float = RUBBER_POISSON_ratio,
 ) -> FloatArray:
-    """Give the force of a truncated cone pressed in by s (mm), edges free to turn and to widen.
+    """Return the force of a truncated cone pressed in by s (mm), edges free to turn and to widen.
 
     outer_mm : radius of the wall's middle line at its foot; inner_mm : at its top; height_mm : of that line;
     wall_mm : thickness of the wall; young_MPa : Young's modulus; poisson_ratio : Poisson's.
@@ -138,7 +137,7 @@ def cone_force_N(
 def hinge_force_N(
     s: FloatArray, outer_mm: float, inner_mm: float, height_mm: float, hinge_mm: float, young_MPa: float
 ) -> FloatArray:
-    """Give the force of two bent rings, E h^3 / (12 (1 - v^2) l) of moment per length and angle."""
+    """Return the force of two bent rings, E h^3 / (12 (1 - v^2) l) of moment per length and angle."""
     first, cosine, sine = _angles(s, outer_mm, inner_mm, height_mm)
     plate = young_MPa * hinge_mm**2 / (12.0 * HINGE_LENGTH_ratio * (1.0 - RUBBER_POISSON_ratio**2))
     turned = first - np.arctan2(sine, cosine)
@@ -199,7 +198,7 @@ class DomeMechanism:
         return max(length - self.tip_mm - 0.5 * self.dome.hinge_mm, 0.0)
 
     def strokes_cN(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give the slow press and release at displacements (mm), each as long as x."""
+        """Return the slow press and release at displacements (mm), each as long as x."""
         top = np.linspace(0.0, max(float(x[-1]), LEAST_WAY_mm), TOPS)
         force = self.dome.force_cN(top) + self.foot.stiffness_cN_mm * np.maximum(top - self.gap_mm, 0.0)
         give = 0.0 if self.pad is None else 1.0 / self.pad.stiffness_cN_mm
@@ -208,7 +207,7 @@ class DomeMechanism:
 
 
 def through_pad_cN(x: FloatArray, top_mm: FloatArray, force_cN: FloatArray, give_mm_cN: float) -> FloatArray:
-    """Give the force on the key at x (mm) from that on the dome's top, a pad of that give between them.
+    """Return the force on the key at x (mm) from that on the dome's top, a pad of that give between them.
 
     Where a soft pad lets the top run ahead of the key, the key jumps to the force beyond.
     """

@@ -1,23 +1,23 @@
-"""A mechanism as numbers with units in their names, and what its maker should be told."""
+"""A mechanism as numbers with units in their names, and what its maker should know."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
 
-from fdvv.mechanism._coil import Coil
-from fdvv.mechanism._dome import DomeMechanism, Pin
-from fdvv.mechanism._leaf import Leaf, LeafMechanism
-from fdvv.mechanism._mechanism import Mechanism
-from fdvv.mechanism._target import Target
 from fdvv.units import FloatArray
+from fdvv_switch.coil import Coil
+from fdvv_switch.dome import DomeMechanism, Pin
+from fdvv_switch.leaf import Leaf, LeafMechanism
+from fdvv_switch.mechanism import Mechanism
+from fdvv_switch.target import Target
 
 MOST_STRAIN_ratio = 0.5
 """Rubber of keys is not strained farther for millions of presses; assumed."""
 
 
 def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float | str]]:
-    """Give every part's sizes and what follows from them, by the part's name."""
+    """Return every part's sizes and what follows from them, by the part's name."""
     x = target.displacement_mm
     found: dict[str, dict[str, float | str]] = {}
     if isinstance(mechanism, DomeMechanism):
@@ -40,7 +40,7 @@ def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float 
 
 
 def largest_leaf_cN(mechanism: LeafMechanism, x: FloatArray) -> float:
-    """Give the largest force between leaf and cam."""
+    """Return the largest force between leaf and cam."""
     return float(mechanism.leaf.force_cN(mechanism.cam.at(x)).max())
 
 
@@ -118,8 +118,8 @@ def _notes(mechanism: Mechanism, target: Target) -> Iterator[str]:
     if isinstance(mechanism, DomeMechanism):
         strain = mechanism.dome.strain_ratio(target.displacement_mm)
         if strain > MOST_STRAIN_ratio:
-            told = f"{100 * strain:.0f} %, more than the {100 * MOST_STRAIN_ratio:.0f} % it bears for long"
-            yield f"the rubber is strained by {told}"
+            limit = f"more than the {100 * MOST_STRAIN_ratio:.0f} % it bears for long"
+            yield f"the rubber is strained by {100 * strain:.0f} %, {limit}"
         if mechanism.rim_mm > 0:
             yield (
                 f"the cone goes on past flat: its base stands on a rim of {mechanism.rim_mm:.2f} mm, "

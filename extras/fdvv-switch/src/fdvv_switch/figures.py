@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import Stroke
-from fdvv.plot import _style as style
+from fdvv.model.curve import Stroke
+from fdvv.report import style
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.documents import finite
-from fdvv.files import write_atomic
-from fdvv.mechanism import LeafMechanism, cam_points_mm, drawing_dxf, drawings_of
-from fdvv.twin import button_to_toml
+from fdvv.io.documents import finite
+from fdvv.io.files import write_atomic
+from fdvv.twin.files import button_to_toml
 from fdvv.units import FloatArray
-from fdvv.workflow._mechanism import MechanismResult
-from fdvv.workflow._mechanism_report import mechanism_report
+from fdvv_switch.design_button import MechanismResult
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.report import mechanism_report
+from fdvv_switch.section import cam_points_mm, drawing_dxf, drawings_of
 
 
 def write_mechanism(result: MechanismResult, folder: Path) -> tuple[Path, ...]:
@@ -43,7 +44,6 @@ def _texts(result: MechanismResult) -> Iterator[tuple[str, str]]:
 
 
 def _curves_csv(result: MechanismResult) -> str:
-    """Give target, design and band of both strokes."""
     x, target, band = result.target.displacement_mm, result.target, result.band
     press, release = result.mechanism.strokes_cN(x)
     return _csv(
@@ -62,7 +62,6 @@ def _curves_csv(result: MechanismResult) -> str:
 
 
 def _cam_csv(mechanism: LeafMechanism) -> str:
-    """Give the path of the nose's centre over the slider's displacement, and the cam's own surface."""
     x, cam = cam_points_mm(mechanism), mechanism.cam
     surface = cam.surface_mm(x)
     return _csv(

@@ -30,7 +30,7 @@ class Guide:
             raise ModelError(f"a guide rubs with 0 or more and its seat gives a little, got {self}")
 
     def rounded(self) -> Guide:
-        """Give it without digits that nobody could make or measure."""
+        """Return it without digits that nobody could make or measure."""
         return Guide(round(self.drag_cN, 2), round(self.load_ratio, 4), max(round(self.seat_mm, 3), 0.001))
 
     def strokes_cN(

@@ -7,18 +7,21 @@ of friction m, the wedge gives P (t + m)/(1 - m t) against a press and P (t - m)
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._coil import Coil, cN_PER_N
-from fdvv.mechanism._guide import Guide
-from fdvv.mechanism._material import STRIPS, Strip
 from fdvv.units import FloatArray
+from fdvv_switch.coil import Coil, cN_PER_N
+from fdvv_switch.guide import Guide
+from fdvv_switch.making import Making
+from fdvv_switch.material import STRIPS, Strip, STRIP_SIZES_mm, STRIP_WIDTHS_mm
 
 TIP_MASS_ratio = 0.243
 """Part of a cantilever's mass that moves with its tip, 33/140 of it with the first mode's shape, rounded."""
+
 DEGREE = 3
 
 
@@ -56,7 +59,7 @@ class Leaf:
         return STRIPS[self.material]
 
     def _stiffness(self, length_mm: float) -> float:
-        """Give E b t^3 / (4 L^3) in cN/mm."""
+        """Return E b t^3 / (4 L^3) in cN/mm."""
         modulus = self.young_ratio * self.strip.young_MPa
         return cN_PER_N * modulus * self.width_mm * self.thickness_mm**3 / (4.0 * length_mm**3)
 
@@ -82,7 +85,7 @@ class Leaf:
         return TIP_MASS_ratio * volume_mm3 * self.strip.density_kg_m3 * 1e-6
 
     def force_cN(self, height_mm: FloatArray) -> FloatArray:
-        """Give the force between leaf and cam; 0 where the cam has left the leaf.
+        """Return the force between leaf and cam; 0 where the cam has left the leaf.
 
         height_mm : of the cam, 0 where the leaf just reaches the fixed contact.
         """
@@ -91,7 +94,7 @@ class Leaf:
         return np.asarray(np.where(height_mm >= 0.0, alone, np.maximum(both, 0.0)))
 
     def stress_MPa(self, force_cN: float) -> float:
-        """Give the bending stress at the clamp, 6 P L / (b t^2)."""
+        """Return the bending stress at the clamp, 6 P L / (b t^2)."""
         return 6.0 * force_cN / cN_PER_N * self.length_mm / (self.width_mm * self.thickness_mm**2)
 
 
@@ -124,7 +127,7 @@ class Cam:
         return float(self.knots_mm[-1])
 
     def at(self, x: FloatArray, derivative: int = 0) -> FloatArray:
-        """Give height, slope or second derivative at slider displacements; level beyond the ends."""
+        """Return height, slope or second derivative at slider displacements; level beyond the ends."""
         from scipy.interpolate import BSpline
 
         inside = np.clip(x, self.start_mm, self.end_mm)
@@ -132,11 +135,11 @@ class Cam:
         return np.asarray(value if derivative == 0 else np.where(inside == x, value, 0.0))
 
     def curvature_1_mm(self, x: FloatArray) -> FloatArray:
-        """Give the curvature of the nose's path, positive in a hollow."""
+        """Return the curvature of the nose's path, positive in a hollow."""
         return np.asarray(self.at(x, 2) / (1.0 + self.at(x, 1) ** 2) ** 1.5)
 
     def surface_mm(self, x: FloatArray) -> FloatArray:
-        """Give the cam's own surface under the path of the nose: (n, 2), along and across the travel."""
+        """Return the cam's own surface under the path of the nose: (n, 2), along and across the travel."""
         slope = self.at(x, 1)
         long = np.sqrt(1.0 + slope**2)
         return np.column_stack([x + self.nose_mm * slope / long, self.at(x) - self.nose_mm / long])
@@ -163,7 +166,7 @@ class LeafMechanism:
     kind = "leaf"
 
     def strokes_cN(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give the slow press and release at displacements (mm), each as long as x."""
+        """Return the slow press and release at displacements (mm), each as long as x."""
         force = self.leaf.force_cN(self.cam.at(x - self.shift_mm) + self.lift_mm)
         slope = self.cam.at(x - self.shift_mm, 1)
         down, up = wedge(force, slope, self.friction_ratio)
@@ -172,7 +175,46 @@ class LeafMechanism:
 
 
 def wedge(force: FloatArray, slope: FloatArray, friction: float) -> tuple[FloatArray, FloatArray]:
-    """Give what a leaf's force becomes along the travel, pressing and releasing."""
+    """Return what a leaf's force becomes along the travel, pressing and releasing."""
     down = force * (slope + friction) / np.maximum(1.0 - friction * slope, 1e-3)
     up = force * (slope - friction) / np.maximum(1.0 + friction * slope, 1e-3)
     return np.asarray(down), np.asarray(up)
+
+
+LENGTH_STEP_mm, OFFSET_STEP_mm = 0.05, 0.01
+
+
+def choose_leaf(preload_cN: float, stiffness_cN_mm: float, largest_cN: float, making: Making) -> Leaf:
+    """Choose the least stressed leaf of a stiffness.
+
+    preload_cN : its force where it just reaches the fixed contact. stiffness_cN_mm : of its tip.
+    largest_cN : the most that the cam asks of it.
+    Raises ModelError if none is short enough, long enough and strong enough.
+    """
+    leaves = list(_candidates(preload_cN, stiffness_cN_mm, making))
+    limit = STRIPS[making.strip].bending_MPa
+    if not leaves:
+        low, high = making.leaf_mm
+        raise ModelError(
+            f"no strip of {making.strip} between {low:g} and {high:g} mm long has {stiffness_cN_mm:.0f} cN/mm"
+        )
+    best = min(leaves, key=lambda leaf: leaf.stress_MPa(largest_cN))
+    if best.stress_MPa(largest_cN) > limit:
+        raise ModelError(
+            f"the least stressed leaf of {making.strip} bears {best.stress_MPa(largest_cN):.0f} MPa, "
+            f"{limit:.0f} are permissible"
+        )
+    return best
+
+
+def _candidates(preload_cN: float, stiffness_cN_mm: float, making: Making) -> Iterator[Leaf]:
+    young = cN_PER_N * STRIPS[making.strip].young_MPa
+    for thickness in STRIP_SIZES_mm:
+        for width in STRIP_WIDTHS_mm:
+            length = (young * width * thickness**3 / (4.0 * stiffness_cN_mm)) ** (1.0 / 3.0)
+            length = round(round(length / LENGTH_STEP_mm) * LENGTH_STEP_mm, 4)
+            if making.leaf_mm[0] <= length <= making.leaf_mm[1]:
+                stiffness = young * width * thickness**3 / (4.0 * length**3)
+                offset = round(round(preload_cN / stiffness / OFFSET_STEP_mm) * OFFSET_STEP_mm, 4)
+                contact = round(length / making.contact_ratio ** (1.0 / 3.0), 2)
+                yield Leaf(thickness, width, length, contact, offset, making.strip)

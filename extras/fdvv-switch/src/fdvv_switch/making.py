@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._coil_choice import Envelope
-from fdvv.mechanism._material import STRIPS, WIRES
+from fdvv_switch.coil import Envelope
+from fdvv_switch.material import STRIPS, WIRES
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ class Wire:
     source: str
 
     def tensile_MPa(self, wire_mm: float) -> float:
-        """Give the least tensile strength of a diameter."""
+        """Return the least tensile strength of a diameter."""
         for most_mm, strength in self.strength_MPa:
             if wire_mm <= most_mm + 1e-9:
                 return strength
@@ -65,12 +65,12 @@ WIRE_SIZES_mm = (0.14, 0.16, 0.18, 0.20, 0.22, 0.25, 0.28, 0.30, 0.32, 0.34, 0.3
 
 
 def wire_tolerance_mm(wire_mm: float) -> float:
-    """Give the permissible deviation of a wire's diameter, EN 10270-1, drawn wire in coils."""
+    """Return the permissible deviation of a wire's diameter, EN 10270-1, drawn wire in coils."""
     return 0.004 if wire_mm < 0.17 else 0.005 if wire_mm < 0.27 else 0.008
 
 
 def coil_tolerance_mm(mean_mm: float, index: float) -> float:
-    """Give the permissible deviation of a mean coil diameter, DIN 2095 grade 1."""
+    """Return the permissible deviation of a mean coil diameter, DIN 2095 grade 1."""
     rows = ((2.5, (0.07, 0.10, 0.10)), (4.0, (0.10, 0.10, 0.15)), (10.0, (0.10, 0.15, 0.15)))
     column = 0 if index <= 8 else 1 if index <= 14 else 2
     for most_mm, values in rows:
@@ -113,7 +113,7 @@ RUBBER_POISSON_ratio = 0.49
 
 
 def rubber_MPa(hardness_shoreA: float) -> float:
-    """Give Young's modulus of a rubber of that hardness.
+    """Return Young's modulus of a rubber of that hardness.
 
     Gent, Rubber Chemistry and Technology 31 (1958): E = 0.0981 (56 + 7.62336 S) / (0.137505 (254 - 2.54 S)).
     """
@@ -123,6 +123,6 @@ def rubber_MPa(hardness_shoreA: float) -> float:
 
 
 def hardness_shoreA(young_MPa: float) -> float:
-    """Give the hardness of a rubber of that modulus, the inverse of rubber_MPa."""
+    """Return the hardness of a rubber of that modulus, the inverse of rubber_MPa."""
     ratio = young_MPa * 0.137505 / 0.0981
     return (254.0 * ratio - 56.0) / (7.62336 + 2.54 * ratio)

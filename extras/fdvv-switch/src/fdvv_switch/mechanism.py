@@ -7,14 +7,13 @@ from dataclasses import replace
 from typing import Any, TypeAlias
 
 from fdvv.errors import ModelError
-from fdvv.mechanism._design_dome import design_dome
-from fdvv.mechanism._design_leaf import design_leaf
-from fdvv.mechanism._design_spring import design_spring
-from fdvv.mechanism._dome import DomeMechanism
-from fdvv.mechanism._leaf import LeafMechanism
-from fdvv.mechanism._making import Making
-from fdvv.mechanism._spring import SpringMechanism
-from fdvv.mechanism._target import Target
+from fdvv_switch.design_dome import design_dome
+from fdvv_switch.design_leaf import design_leaf
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.making import Making
+from fdvv_switch.spring import SpringMechanism, design_spring
+from fdvv_switch.target import Target
 
 Mechanism: TypeAlias = SpringMechanism | LeafMechanism | DomeMechanism
 """A mechanism of any kind."""

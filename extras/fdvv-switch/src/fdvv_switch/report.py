@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fdvv import __version__
-from fdvv.mechanism import STOP_mm, WANTED_cN, drawings_of, facts_of
-from fdvv.model import Stroke
-from fdvv.plot import (
-    DesignedStroke,
-    DrawnLine,
-    DrawnPart,
-    Section,
-    Table,
-    figure_svg,
-    plot_mechanism,
-    plot_parts,
-    render_html,
-)
-from fdvv.workflow._mechanism import MechanismResult
-from fdvv.workflow._mechanism_twin import PressedDesign
+from fdvv.model.curve import Stroke
+from fdvv.report.report import Section, Table, render_html
+from fdvv.report.svg import figure_svg
+from fdvv_switch.design_button import MechanismResult
+from fdvv_switch.facts import facts_of
+from fdvv_switch.figures import DesignedStroke, DrawnLine, DrawnPart, plot_mechanism, plot_parts
+from fdvv_switch.residual import WANTED_cN
+from fdvv_switch.section import drawings_of
+from fdvv_switch.target import STOP_mm
+from fdvv_switch.twin import PressedDesign
 
 
 def mechanism_report(result: MechanismResult) -> str:
@@ -37,7 +32,7 @@ def mechanism_report(result: MechanismResult) -> str:
 
 
 def designed_strokes(result: MechanismResult) -> tuple[DesignedStroke, ...]:
-    """Give both strokes as a figure takes them."""
+    """Return both strokes as a figure takes them."""
     target, band = result.target, result.band
     x = target.displacement_mm
     press, release = result.mechanism.strokes_cN(x)
@@ -56,7 +51,7 @@ def designed_strokes(result: MechanismResult) -> tuple[DesignedStroke, ...]:
 
 
 def drawn_parts(result: MechanismResult) -> tuple[DrawnPart, ...]:
-    """Give the parts as a figure takes them."""
+    """Return the parts as a figure takes them."""
     return tuple(
         DrawnPart(d.title, tuple(DrawnLine(o.layer, o.points_mm, o.closed) for o in d.outlines))
         for d in drawings_of(result.mechanism)

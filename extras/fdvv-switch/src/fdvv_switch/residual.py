@@ -7,14 +7,14 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from fdvv.mechanism._dome import DomeMechanism
-from fdvv.mechanism._leaf import LeafMechanism
-from fdvv.mechanism._making import Making
-from fdvv.mechanism._mechanism import Mechanism
-from fdvv.mechanism._solve import rms
-from fdvv.mechanism._target import SEATED_mm, Target
-from fdvv.mechanism._tolerance import bump_of
 from fdvv.units import FloatArray
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.making import Making
+from fdvv_switch.mechanism import Mechanism
+from fdvv_switch.solve import rms
+from fdvv_switch.target import SEATED_mm, Target
+from fdvv_switch.tolerance import bump_of
 
 WANTED_cN = 3.0
 """A design whose two strokes miss by no more than this, rms, gives the curve."""
@@ -64,11 +64,11 @@ class Residual:
 
     @property
     def met(self) -> bool:
-        """Tell whether both strokes are within WANTED_cN."""
+        """Return whether both strokes are within WANTED_cN."""
         return self.worst_cN <= WANTED_cN
 
     def to_dict(self) -> dict[str, object]:
-        """Give it for JSON, units in the names."""
+        """Return it for JSON, units in the names."""
         return {**asdict(self), "worst_cN": self.worst_cN, "wanted_cN": WANTED_cN, "met": self.met}
 
 
@@ -105,7 +105,6 @@ def _reasons(
 
 
 def _cam_limits(target: Target, mechanism: LeafMechanism, making: Making) -> Iterator[str]:
-    """Say where the curve asks for more than a cam can be."""
     x, cam = target.displacement_mm, mechanism.cam
     slope, curvature = cam.at(x, 1), cam.curvature_1_mm(x)
     outward = 1.0 / (making.nose_mm + making.edge_mm)
@@ -123,7 +122,6 @@ def _cam_limits(target: Target, mechanism: LeafMechanism, making: Making) -> Ite
 
 
 def _shape(target: Target, mechanism: Mechanism, press: FloatArray) -> Iterator[str]:
-    """Say what the elastic part cannot follow."""
     x = target.displacement_mm
     wanted, got = bump_of(x, target.press_cN), bump_of(x, press)
     if isinstance(mechanism, DomeMechanism):
@@ -151,7 +149,6 @@ def _shape(target: Target, mechanism: Mechanism, press: FloatArray) -> Iterator[
 
 
 def _loop(target: Target, half_cN: FloatArray) -> Iterator[str]:
-    """Say what friction cannot follow."""
     inside = target.displacement_mm >= SEATED_mm
     wanted, got = target.half_loop_cN[inside], half_cN[inside]
     if rms(got - wanted) > TELLING_cN:
@@ -163,7 +160,6 @@ def _loop(target: Target, half_cN: FloatArray) -> Iterator[str]:
 
 
 def _start(target: Target, press: FloatArray, release: FloatArray) -> Iterator[str]:
-    """Say what the first tenth of a millimetre adds: a cap on its stop holds no force before it has moved."""
     x = target.displacement_mm
     first = x < SEATED_mm
     error = max(

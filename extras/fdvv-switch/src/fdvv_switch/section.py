@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.mechanism._coil import END_COILS, Coil
-from fdvv.mechanism._dome import Dome, DomeMechanism, Pin
-from fdvv.mechanism._leaf import Leaf, LeafMechanism
-from fdvv.mechanism._mechanism import Mechanism
+from fdvv.errors import BuildError
 from fdvv.units import FloatArray
+from fdvv_switch.coil import END_COILS, Coil
+from fdvv_switch.dome import Dome, DomeMechanism, Pin
+from fdvv_switch.leaf import Leaf, LeafMechanism
+from fdvv_switch.mechanism import Mechanism
 
 POINT_mm = 0.02
 """Distance of the points of a cam."""
+
 BACK_mm = 1.0
 """The cam's body goes on behind its surface by this."""
+
 CLAMP_mm = 3.0
 """Length of a leaf that is held."""
+
 SHEET_mm, PLUG_mm = 2.0, 1.0
 """Width of the sheet around a dome, and height of the solid top that the key presses on."""
+
 ROUND = 24
 """Points of a circle."""
 
@@ -52,7 +58,7 @@ class Drawing:
 
 
 def drawings_of(mechanism: Mechanism) -> tuple[Drawing, ...]:
-    """Give the drawings of every part of a mechanism."""
+    """Return the drawings of every part of a mechanism."""
     return tuple(_drawings(mechanism))
 
 
@@ -69,13 +75,12 @@ def _drawings(mechanism: Mechanism) -> Iterator[Drawing]:
 
 
 def cam_points_mm(mechanism: LeafMechanism) -> FloatArray:
-    """Give the places (mm) at which the cam is written down."""
+    """Return the places (mm) at which the cam is written down."""
     count = math.ceil((mechanism.cam.end_mm - mechanism.cam.start_mm) / POINT_mm) + 1
     return np.linspace(mechanism.cam.start_mm, mechanism.cam.end_mm, count)
 
 
 def _cam(mechanism: LeafMechanism) -> Iterator[Outline]:
-    """Draw the surface with its body, and the path of the nose's centre."""
     x = cam_points_mm(mechanism)
     surface = mechanism.cam.surface_mm(x)
     back = float(surface[:, 1].min()) - BACK_mm
@@ -87,7 +92,6 @@ def _cam(mechanism: LeafMechanism) -> Iterator[Outline]:
 
 
 def _strip(layer: str, leaf: Leaf, contact: bool) -> Iterator[Outline]:
-    """Draw the flat leaf with what is clamped of it, and beside it the fixed contact."""
     yield _rectangle(layer, -CLAMP_mm, 0.0, leaf.length_mm, leaf.width_mm)
     yield Outline(f"{layer}_CLAMP", np.array([[0.0, 0.0], [0.0, leaf.width_mm]]), False)
     if contact:
@@ -101,7 +105,6 @@ def _rectangle(layer: str, left: float, low: float, right: float, high: float) -
 
 
 def _coil(coil: Coil) -> Iterator[Outline]:
-    """Draw the wire where a plane through the axis cuts it: a closed coil at each end, the others between."""
     turns = coil.active + END_COILS
     radius, wire = 0.5 * coil.mean_mm, coil.wire_mm
     for side, phase in ((-1.0, 0.0), (1.0, 0.5)):
@@ -112,7 +115,6 @@ def _coil(coil: Coil) -> Iterator[Outline]:
 
 
 def _along(coil: Coil, turn: float, turns: float) -> float:
-    """Give the height of the wire's centre after so many turns; the end coils lie closed."""
     wire, end = coil.wire_mm, 0.5 * END_COILS
     pitch = (coil.built_mm - wire - 2.0 * end * wire) / (turns - 2.0 * end)
     inner = min(max(turn - end, 0.0), turns - 2.0 * end)
@@ -125,7 +127,6 @@ def _circle(centre: FloatArray, radius: float) -> FloatArray:
 
 
 def _dome(mechanism: DomeMechanism) -> Iterator[Outline]:
-    """Draw both halves of the unloaded dome with its sheet and plug, the foot and the board."""
     right = _dome_half(mechanism.dome)
     yield Outline("DOME", np.vstack([right, (right * [-1.0, 1.0])[::-1]]), True)
     if mechanism.pad:
@@ -135,7 +136,6 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Outline]:
 
 
 def _under(mechanism: DomeMechanism) -> Iterator[Outline]:
-    """Draw the foot on the board, and the rim that the dome's base stands on."""
     dome, foot, tip = mechanism.dome, mechanism.foot, mechanism.tip_mm
     base, wide = -0.5 * dome.hinge_mm, 0.5 * dome.base_mm + SHEET_mm
     floor, inside = base - mechanism.rim_mm, 0.5 * dome.base_mm - 0.5 * dome.hinge_mm
@@ -148,7 +148,7 @@ def _under(mechanism: DomeMechanism) -> Iterator[Outline]:
 
 
 def _dome_half(dome: Dome) -> FloatArray:
-    """Give the right half of the section from the axis outside over the top, and back inside.
+    """Return the right half of the section from the axis outside over the top, and back inside.
 
     The wall's middle line runs from the base's radius at 0 to the top's at the dome's height; the hinges are
     its two ends, thinner over three times their thickness.
@@ -169,3 +169,26 @@ def _dome_half(dome: Dome) -> FloatArray:
     outside = [np.array([0.0, plug]), np.array([float(end[0]), plug]), *over]
     flat = [np.array([wide, sheet]), np.array([wide, -sheet])]
     return np.array([*outside, *flat, *under, np.array([0.0, float((end - hinge)[1])])])
+
+
+VERSION = "R2010"
+
+
+def drawing_dxf(drawing: Drawing) -> str:
+    """Write a drawing as DXF text. Raises BuildError if ezdxf is not installed."""
+    try:
+        from ezdxf import units
+        from ezdxf.filemanagement import new
+    except ImportError as error:
+        raise BuildError("drawings as DXF need ezdxf: pip install ezdxf") from error
+    document = new(VERSION, units=units.MM)
+    for layer in sorted({outline.layer for outline in drawing.outlines}):
+        document.layers.add(layer)
+    space = document.modelspace()
+    for outline in drawing.outlines:
+        space.add_lwpolyline(
+            outline.points_mm.tolist(), close=outline.closed, dxfattribs={"layer": outline.layer}
+        )
+    text = io.StringIO()
+    document.write(text)
+    return text.getvalue()

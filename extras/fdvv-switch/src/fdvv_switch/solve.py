@@ -16,7 +16,7 @@ def solve(
     high: FloatArray,
     evaluations: int = 80,
 ) -> tuple[FloatArray, float]:
-    """Give the parameters of the least sum of squares and that sum, from a start that is put inside.
+    """Return the parameters of the least sum of squares and that sum, from a start that is put inside.
 
     Trust region reflective with numerical derivatives, scaled by them (SciPy); no random numbers.
     """
@@ -29,5 +29,5 @@ def solve(
 
 
 def rms(values: FloatArray) -> float:
-    """Give the root of the mean square."""
+    """Return the root of the mean square."""
     return float(np.sqrt(np.mean(np.square(values))))

@@ -1,26 +1,44 @@
-"""From curves to a coil and the friction of its guide."""
+"""A coil that returns a slider, and nothing else: what a linear key with a contactless sensor is."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from fdvv.mechanism._coil import Coil
-from fdvv.mechanism._coil_choice import choose_coil
-from fdvv.mechanism._guide import Guide
-from fdvv.mechanism._making import Making
-from fdvv.mechanism._solve import solve
-from fdvv.mechanism._spring import SpringMechanism
-from fdvv.mechanism._target import Target
 from fdvv.units import FloatArray
+from fdvv_switch.coil import Coil, choose_coil
+from fdvv_switch.guide import Guide
+from fdvv_switch.making import Making
+from fdvv_switch.solve import solve
+from fdvv_switch.target import Target
+
+
+@dataclass(frozen=True)
+class SpringMechanism:
+    """A coil and the guide of its slider."""
+
+    coil: Coil
+    guide: Guide
+
+    kind = "spring"
+
+    def strokes_cN(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the slow press and release at displacements (mm), each as long as x."""
+        spring = self.coil.preload_cN + self.coil.rate_cN_mm * x
+        return self.guide.strokes_cN(x, spring, spring)
+
 
 TAIL = (0.65, 0.9)
 """Part of the travel where a leaf has left its cam and the coil is alone."""
+
 SOFTEST_cN_mm, STIFFEST_cN_mm = 1.0, 100.0
+
 GUIDE_LOW, GUIDE_START, GUIDE_HIGH = (0.0, 0.0, 0.005), (1.0, 0.01, 0.03), (8.0, 0.15, 0.3)
 
 
 def tail_line(target: Target) -> tuple[float, float]:
-    """Give preload (cN) and rate (cN/mm) of the line through the elastic part near the end of the travel."""
+    """Fit preload (cN) and rate (cN/mm) of a line to the elastic part near the end of the travel."""
     x = target.displacement_mm
     tail = (x >= TAIL[0] * target.travel_mm) & (x <= TAIL[1] * target.travel_mm)
     line = np.polynomial.Polynomial.fit(x[tail], target.middle_cN[tail], 1).convert().coef
@@ -28,7 +46,7 @@ def tail_line(target: Target) -> tuple[float, float]:
 
 
 def coil_bounds(making: Making) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Give the least and the most of how far a coil is pressed in at rest (mm) and of its rate (cN/mm)."""
+    """Return the least and the most of how far a coil is pressed in at rest (mm) and of its rate (cN/mm)."""
     space = making.envelope
     return (0.0, SOFTEST_cN_mm), (space.longest_mm - space.built_mm - 0.1, STIFFEST_cN_mm)
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, Stroke
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 STEP_mm = 0.01

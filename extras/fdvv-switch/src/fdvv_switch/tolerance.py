@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.mechanism._dome import DomeMechanism, Pin
-from fdvv.mechanism._leaf import LeafMechanism
-from fdvv.mechanism._material import coil_tolerance_mm, wire_tolerance_mm
-from fdvv.mechanism._mechanism import Mechanism, varied
-from fdvv.mechanism._solve import rms
-from fdvv.model import find_bump
+from fdvv.model.bump import find_bump
 from fdvv.units import FloatArray
+from fdvv_switch.dome import DomeMechanism, Pin
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.material import coil_tolerance_mm, wire_tolerance_mm
+from fdvv_switch.mechanism import Mechanism, varied
+from fdvv_switch.solve import rms
 
 SIGMAS = 2.0
 """A tolerance is taken as this many standard deviations of a normal distribution."""
@@ -133,7 +133,6 @@ def _dome(mechanism: DomeMechanism) -> Iterator[Tolerance]:
 
 
 def _at_most(half: float, size: float) -> float:
-    """Give a tolerance that leaves something of a small size."""
     return min(half, LEFT_ratio * size)
 
 
@@ -148,9 +147,9 @@ def band_of(mechanism: Mechanism, x: FloatArray, draws: int = DRAWS, seed: int =
     curves = np.array([_curves(mechanism, x, listed, row) for row in deviations])
     low, high = np.percentile(curves, [LOW_percent, HIGH_percent], axis=0)
     bumps = np.array([bump for press in curves[:, 0] if (bump := bump_of(x, press))])
-    told = [_interval(bumps[:, i]) for i in range(3)] if len(bumps) > draws / 2 else [None] * 3
+    intervals = [_interval(bumps[:, i]) for i in range(3)] if len(bumps) > draws / 2 else [None] * 3
     shares = sorted(_shares(mechanism, x, listed), key=lambda share: -share.rms_cN)
-    return Band(low[0], high[0], low[1], high[1], told[0], told[1], told[2], tuple(shares))
+    return Band(low[0], high[0], low[1], high[1], intervals[0], intervals[1], intervals[2], tuple(shares))
 
 
 def _curves(
@@ -166,7 +165,6 @@ def _interval(values: FloatArray) -> tuple[float, float]:
 
 
 def _shares(mechanism: Mechanism, x: FloatArray, listed: tuple[Tolerance, ...]) -> Iterator[Share]:
-    """Turn each tolerance to both its ends, the others at rest; half of the difference is what it does."""
     for i, tolerance in enumerate(listed):
         row = np.zeros(len(listed))
         row[i] = 1.0
@@ -175,7 +173,7 @@ def _shares(mechanism: Mechanism, x: FloatArray, listed: tuple[Tolerance, ...]) 
 
 
 def bump_of(x: FloatArray, press_cN: FloatArray) -> tuple[float, float, float] | None:
-    """Give peak, following valley and snap ratio of a press; None if it falls by less than 1 cN anywhere."""
+    """Return peak, following valley and snap ratio of a press; None if it never falls by 1 cN."""
     bump = find_bump(x, press_cN, LEAST_FALL_cN)
     if bump is None or bump.peak_cN <= 0.0:
         return None

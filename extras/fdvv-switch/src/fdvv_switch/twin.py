@@ -7,31 +7,19 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from fdvv.mechanism import (
-    DomeMechanism,
-    LeafMechanism,
-    Mechanism,
-    Miss,
-    STOP_mm,
-    Target,
-    miss_of,
-)
-from fdvv.model import FDVVModel, Stroke
-from fdvv.twin import (
-    BuiltCam,
-    ButtonPhysics,
-    Curve,
-    Dome,
-    Finger,
-    Leaf,
-    Slider,
-    no_button_noise,
-    plan,
-    probe_button,
-    simulate_button,
-    solve_button_pace,
-)
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.twin.button import BuiltCam, ButtonPhysics, Curve, Dome, Leaf, Slider
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
+from fdvv.twin.pace import solve_button_pace
+from fdvv.twin.simulate_button import no_button_noise, probe_button, simulate_button
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
+from fdvv_switch.dome import DomeMechanism
+from fdvv_switch.leaf import LeafMechanism
+from fdvv_switch.mechanism import Mechanism
+from fdvv_switch.residual import Miss, miss_of
+from fdvv_switch.target import STOP_mm, Target
 
 STEP_mm = 0.02
 SLOW_mm_s = 0.5
@@ -64,13 +52,13 @@ class PressedDesign:
     release_cN: FloatArray
 
     def to_dict(self) -> dict[str, object]:
-        """Give the figures for JSON."""
-        told = {"speed_mm_s": self.speed_mm_s, "own_speed": self.own_speed, "simulated": True}
-        return {**told, "press": asdict(self.press), "release": asdict(self.release)}
+        """Return the figures for JSON."""
+        head = {"speed_mm_s": self.speed_mm_s, "own_speed": self.own_speed, "simulated": True}
+        return {**head, "press": asdict(self.press), "release": asdict(self.release)}
 
 
 def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence: str) -> ButtonPhysics:
-    """Give a design to the twin: its slow curves, and its leaf or rubber.
+    """Return a design to the twin: its slow curves, and its leaf or rubber.
 
     A leaf is given as it is built, coil, cam, strip and friction, so the twin's own equations (contact of
     leaf and cam, friction with its turning, moving masses) make the force; the design's curves only stand
@@ -104,7 +92,6 @@ def mechanism_button(mechanism: Mechanism, target: Target, source: str, licence:
 
 
 def _built(mechanism: Mechanism, x: FloatArray) -> BuiltCam | None:
-    """Give coil, cam and friction at the places of the curves, less what the top stop bears."""
     if not isinstance(mechanism, LeafMechanism):
         return None
     guide, coil = mechanism.guide, mechanism.coil
@@ -123,7 +110,6 @@ def _built(mechanism: Mechanism, x: FloatArray) -> BuiltCam | None:
 
 
 def _closing_mm(mechanism: Mechanism, target: Target) -> float:
-    """Give where the leaf falls on its contact; other circuits close where the model's does."""
     if not isinstance(mechanism, LeafMechanism):
         return target.close_mm
     x = target.displacement_mm
@@ -165,7 +151,6 @@ def press_design(
 
 
 def _fast(button: ButtonPhysics, model: FDVVModel, speed_mm_s: float, stop_mm: float) -> PressedDesign:
-    """Let the default person press once."""
     person = Finger()
     pace_s = solve_button_pace(button, person, speed_mm_s)
     gesture = plan(person, button.curve.travel_m, pace_s)
@@ -179,7 +164,6 @@ def _fast(button: ButtonPhysics, model: FDVVModel, speed_mm_s: float, stop_mm: f
 
 
 def _first_crossing(at_mm: FloatArray, force_cN: FloatArray, x: FloatArray) -> FloatArray:
-    """Read the force where the cap first gets beyond each displacement."""
     reached = np.maximum.accumulate(at_mm)
     fresh = np.append(True, np.diff(reached) > 0.0)
     return np.asarray(np.interp(x, reached[fresh], force_cN[fresh]))

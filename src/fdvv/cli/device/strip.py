@@ -8,41 +8,34 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._device_options import remote
-from fdvv.cli._output import json_option, number, print_json, print_table
+from fdvv.cli import ui
+from fdvv.cli.options import remote
 
 if TYPE_CHECKING:
-    from fdvv.optimize import TaskPress
-    from fdvv.workflow import StripCheck
+    from fdvv.optimize.run.strip import StripCheck
+    from fdvv.optimize.tasks import TaskPress
 
 LEDS = ("each", "together")
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
 
 
 @click.command()
-@click.option("--strip", "spec", required=True, help="serial:PORT of the strip's board, or host (simulated).")
-@click.option(
-    "--level",
-    type=click.Choice(["easy", "hard"]),
-    default="easy",
-    show_default=True,
-    help="100 or 150 pixels per second.",
+@ui.option("--strip", "spec", required=True, help="serial:PORT of the strip's board, or host (simulated).")
+@ui.option(
+    "--level", type=click.Choice(["easy", "hard"]), default="easy", help="100 or 150 pixels per second."
 )
-@click.option("--rounds", type=click.IntRange(1, 100), default=3, show_default=True, help="Presses to make.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the start delays.")
-@click.option(
+@ui.option("--rounds", type=click.IntRange(1, 100), default=3, help="Presses to make.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Of the start delays.")
+@ui.option(
     "--led",
     type=click.Choice(LEDS),
     default="each",
-    show_default=True,
     help="When a pixel shows what it is sent: each at once (APA102) or all after the frame (SK9822).",
 )
-@click.option(
-    "--brightness", type=click.IntRange(1, 31), default=8, show_default=True, help="Of lit pixels, in 31sts."
-)
-@click.option("--device", help="Rig that renders BUTTON meanwhile, as of the other commands of fdvv device.")
-@click.option("--button", default="mx-clear", show_default=True, help="Rendered by --device.")
-@json_option
+@ui.option("--brightness", type=click.IntRange(1, 31), default=8, help="Of lit pixels, in 31sts.")
+@ui.option("--device", help="Rig that renders BUTTON meanwhile, as of the other commands of fdvv device.")
+@ui.option("--button", default="mx-clear", help="Rendered by --device.")
+@ui.json_option
 def strip(
     spec: str,
     level: str,
@@ -56,19 +49,19 @@ def strip(
 ) -> None:
     """Check the LED strip: light its ends and its middle, then play some rounds of the pointing task.
 
-    Press the key of the rig when the white pixel reaches the middle of the green zone; each press is told in
-    ms after that, early ones with a minus. Exit status 1 if the key line never rose.
+    Press the key of the rig when the white pixel reaches the middle of the green zone; each press is shown
+    in ms after that, early ones with a minus. Exit status 1 if the key line never rose.
     """
-    from fdvv.workflow import check_strip
+    from fdvv.optimize.run.strip import check_strip
 
     def heard(index: int, press: TaskPress) -> None:
         if not as_json:
-            click.echo(f"round {index + 1}: {_told(press)}")
+            click.echo(f"round {index + 1}: {_lateness(press)}")
 
     with _rendered(device, button) as feed:
         found = check_strip(spec, level, rounds, seed, led, brightness, heard, feed)
     if as_json:
-        print_json(_document(found))
+        ui.print_json(_document(found))
     else:
         _show(found)
     if not found.edges:
@@ -81,7 +74,8 @@ def strip(
 @contextmanager
 def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | None]:
     """Render a button on a device, if there is one; give what keeps it at that."""
-    from fdvv.workflow import program_image, rendering
+    from fdvv.optimize.run.strip import rendering
+    from fdvv.rendering.tuning import program_image
 
     if device is None:
         yield None
@@ -92,7 +86,7 @@ def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | 
             yield feed
 
 
-def _told(press: TaskPress) -> str:
+def _lateness(press: TaskPress) -> str:
     assert press.target_s is not None
     late_ms = [1e3 * (at_s - press.target_s) for at_s in press.activations_s]
     return ", ".join(f"{late:+.2f} ms" for late in late_ms) or "no press"
@@ -120,7 +114,7 @@ def _show(found: StripCheck) -> None:
         ["last reset by the watchdog", "yes" if found.was_reset else "no"],
         ["edges of the key line", str(found.edges)],
         ["damaged requests", str(found.bad_frames)],
-        ["mean asynchrony, ms", number(found.asynchrony_ms)],
+        ["mean asynchrony, ms", ui.number(found.asynchrony_ms)],
     ]
     click.echo(f"{found.name}{' (simulated)' if found.simulated else ''}")
-    print_table(["what", "value"], rows, left=1)
+    ui.print_table(["what", "value"], rows, left=1)

@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from fdvv.cli._executor_options import check_executor, executor_options, kept_on_interrupt
-from fdvv.cli._output import json_option, print_json, print_table, progress
+from fdvv.cli import ui
+from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
 
 
 def add_population(group: click.Group) -> None:
@@ -17,33 +17,22 @@ def add_population(group: click.Group) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--people", type=click.IntRange(1, 1_000_000), default=100, show_default=True,
-              help="How many are simulated.")  # fmt: skip
-@click.option("--level", type=click.Choice(["easy", "hard"]), default="easy", show_default=True,
-              help="How fast the bullet is.")  # fmt: skip
-@click.option("--engine", default="gp", show_default=True, help="Of every person's run.")
-@click.option(
-    "--budget", type=click.IntRange(1, 1000), default=30, show_default=True, help="Trials of each person."
+@click.argument("folder", type=ui.PATH)
+@ui.option("--people", type=click.IntRange(1, 1_000_000), default=100, help="How many are simulated.")
+@ui.option("--level", type=click.Choice(["easy", "hard"]), default="easy", help="How fast the bullet is.")
+@ui.option("--engine", default="gp", help="Of every person's run.")
+@ui.option("--budget", type=click.IntRange(1, 1000), default=30, help="Trials of each person.")
+@ui.option(
+    "--grid", type=click.IntRange(1, 100_000), help="Score a grid of so many designs instead of optimising."
 )
-@click.option(
-    "--grid",
-    type=click.IntRange(1, 100_000),
-    help="No runs: everybody scores so many designs of an even net.",
-)
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True,
-              help="Of people, engines and presses.")  # fmt: skip
-@click.option(
-    "--shift", "shifts", multiple=True, metavar="NAME=RATIO", help="Other people, as pace_mm_s=1.3."
-)
-@click.option("--rig", default="ideal", show_default=True, help="Shipped rig that is pressed.")
-@click.option(
-    "--prior",
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="Finished --grid run of other people that every engine begins from.",
+@ui.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, help="Of people, engines and presses.")
+@ui.option("--shift", "shifts", multiple=True, metavar="NAME=RATIO", help="Other people, as pace_mm_s=1.3.")
+@ui.option("--rig", default="ideal", help="Shipped rig that is pressed.")
+@ui.option(
+    "--prior", type=ui.FOLDER, help="Finished --grid run of other people that every engine begins from."
 )
 @executor_options
-@json_option
+@ui.json_option
 def population(
     folder: Path,
     people: int,
@@ -65,7 +54,9 @@ def population(
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
-    from fdvv.workflow import open_executor, read_grid, run_population
+    from fdvv.optimize.population.population import run_population
+    from fdvv.optimize.run.begin import read_grid
+    from fdvv.parallel.open import open_executor
 
     check_executor(processes, workers, cluster)
     plan = _plan(people, level, engine, budget, grid, seed, shifts, rig)
@@ -73,7 +64,7 @@ def population(
     with (
         kept_on_interrupt(folder),
         open_executor(processes, workers, cluster) as executor,
-        progress("people" if grid is None else "grid", plan.chunks) as tell,
+        ui.progress("people" if grid is None else "grid", plan.chunks) as tell,
     ):
         result = run_population(folder, plan, executor, trials, tell)
     _show(result.summary(), folder, as_json)
@@ -83,9 +74,11 @@ def _plan(
     people: int, level: str, engine: str, budget: int, grid: int | None, seed: int,
     shifts: tuple[str, ...], rig: str,
 ) -> Any:  # fmt: skip
-    """Make the plan, and refuse at once what no process could work on."""
-    from fdvv.optimize import TemporalPointing, engine_of, paper_model, paper_space
-    from fdvv.workflow import PopulationPlan, play
+    from fdvv.optimize.engines.registry import engine_of
+    from fdvv.optimize.paper_space import paper_model, paper_space
+    from fdvv.optimize.people.simulate import simulate_task
+    from fdvv.optimize.population.plan import PopulationPlan
+    from fdvv.optimize.tasks import TemporalPointing
 
     engine_of(engine)
     found = PopulationPlan(
@@ -100,7 +93,7 @@ def _plan(
         designs=grid or 1,
     )
     middle = paper_model(paper_space().of_unit([[0.5] * 8])[0])
-    play(TemporalPointing(level, rounds=1), middle, found.user(0), seed, rig=rig)
+    simulate_task(TemporalPointing(level, rounds=1), middle, found.user(0), seed, rig=rig)
     return found
 
 
@@ -117,7 +110,7 @@ def _shift(text: str) -> tuple[str, float]:
 
 def _show(summary: dict[str, Any], folder: Path, as_json: bool) -> None:
     if as_json:
-        print_json(summary)
+        ui.print_json(summary)
         return
     plan = summary["plan"]
     click.echo(f"{plan['people']} simulated people, {plan['level']}: {folder}")
@@ -132,4 +125,4 @@ def _show(summary: dict[str, Any], folder: Path, as_json: bool) -> None:
         for key in names
         if key in summary
     ]
-    print_table(["simulated", "median", "5 %", "95 %"], rows)
+    ui.print_table(["simulated", "median", "5 %", "95 %"], rows)

@@ -2,56 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    check_folder,
-    check_output,
-    counted,
-    json_option,
-    number,
-    print_json,
-    print_table,
-    print_warnings,
-    print_wrapped,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.study import Answers, StudyPlan
-    from fdvv.workflow import StudyAnalysis
-
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def table_options(command: Command) -> Command:
-    """Add what a foreign table needs."""
-    options = [
-        click.option("--kind", default="", help="Of the study: realism, abx, 2afc, 2ac, preference, mushra, "
-                     "staircase or timing; a folder's own by default."),
-        click.option("--stimuli", default="", metavar="A,B",
-                     help="Names of what was compared; of two, the second is held against the first."),
-        click.option("--map", "columns", multiple=True, metavar="ROLE=COLUMN",
-                     help="Which column is what: person, item, round, choice, correct, ratio, time_s, "
-                     "excluded, stimulus, RATING:STIMULUS, or RATING. Again for each."),
-        click.option("--code", "codes", multiple=True, metavar="WORD=STIMULUS",
-                     help="What a word in the columns choice and stimulus means; STIMULUS may be equal."),
-        click.option("--missing", multiple=True, metavar="WORD", help="A further word for a missing value."),
-        click.option("--simulated", is_flag=True, help="These are answers of simulated participants."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+    from fdvv.study.analysis.records import StudyAnalysis
+    from fdvv.study.plan.answers import Answers
+    from fdvv.study.plan.plan import StudyPlan
 
 
-source_argument = click.argument("source", type=click.Path(path_type=Path, exists=True))
-plan_option = click.option(
-    "--plan",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="The study's file, for its claim and its rules; of a study's folder its own.",
+table_options = ui.options(
+    click.option(
+        "--kind", default="",
+        help="Of the study: realism, abx, 2afc, 2ac, preference, mushra, staircase or timing; by default "
+             "that of the folder.",
+    ),
+    click.option(
+        "--stimuli", default="", metavar="A,B",
+        help="Names of the compared stimuli; of two, the second is compared with the first.",
+    ),
+    ui.option(
+        "--map", "columns", multiple=True, metavar="ROLE=COLUMN",
+        help="Which column is what: person, item, round, choice, correct, ratio, time_s, excluded, stimulus, "
+             "RATING:STIMULUS, or RATING. Repeatable.",
+    ),
+    ui.option(
+        "--code", "codes", multiple=True, metavar="WORD=STIMULUS",
+        help="What a word in the columns choice and stimulus means; STIMULUS may be equal.",
+    ),
+    ui.option("--missing", multiple=True, metavar="WORD", help="A further word for a missing value."),
+    ui.option("--simulated", is_flag=True, help="These are answers of simulated participants."),
+)  # fmt: skip
+"""How to read a foreign table."""
+
+source_argument = click.argument("source", type=ui.EXISTING)
+plan_option = ui.option(
+    "--plan", type=ui.FILE, help="The study's file, for its claim and its rules; of a study's folder its own."
 )
 
 
@@ -59,8 +49,8 @@ plan_option = click.option(
 @source_argument
 @plan_option
 @table_options
-@click.option("--report", type=click.Path(path_type=Path), help="Write an HTML report here.")
-@json_option
+@ui.option("--report", type=ui.PATH, help="Write an HTML report here.")
+@ui.json_option
 def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool, **table: Any) -> None:
     """Analyse answers: shares, tests, distances felt, thresholds, and the main claim.
 
@@ -68,16 +58,17 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
     Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
     thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
     """
-    check_output(report, ".html")
-    from fdvv.workflow import analyse as analysed
-    from fdvv.workflow import analysis_dict, write_study_report
+    ui.check_output(report, ".html")
+    from fdvv.study.analysis.analyse import analyse as analysed
+    from fdvv.study.analysis.export import analysis_dict
+    from fdvv.study.analysis.report import write_study_report
 
-    answers, declared, told = _opened(source, plan, table)
+    answers, declared, origin = _opened(source, plan, table)
     found = analysed(answers, declared, "" if declared else source.name)
     if report is not None:
-        write_study_report(report, found, declared, told)
+        write_study_report(report, found, declared, origin)
     if as_json:
-        print_json(analysis_dict(found))
+        ui.print_json(analysis_dict(found))
         return
     _print(found)
     if report is not None:
@@ -88,8 +79,8 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
 @source_argument
 @plan_option
 @table_options
-@click.option("--folder", required=True, type=click.Path(path_type=Path), help="Where to write.")
-@json_option
+@ui.option("--folder", required=True, type=ui.PATH, help="Where to write.")
+@ui.json_option
 def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table: Any) -> None:
     """Write answers as plain tables for R, JASP or pandas, and everything the analysis found as JSON.
 
@@ -97,27 +88,29 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
     analysis.json holds every figure.
     """
-    check_folder(folder)
-    from fdvv.workflow import analyse as analysed
-    from fdvv.workflow import write_analysis, write_answers
+    ui.check_folder(folder)
+    from fdvv.study.analysis.analyse import analyse as analysed
+    from fdvv.study.analysis.code_book import write_answers
+    from fdvv.study.analysis.export import write_analysis
 
     answers, declared, _ = _opened(source, plan, table)
     found = analysed(answers, declared, "" if declared else source.name)
     files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
     if as_json:
-        print_json({"rows": len(answers.person), "files": [str(path) for path in files]})
+        ui.print_json({"rows": len(answers.person), "files": [str(path) for path in files]})
         return
     simulated = " of simulated participants: a proxy, no evidence" if answers.simulated else ""
-    click.echo(f"{counted(len(answers.person), 'trial')}{simulated}")
+    click.echo(f"{ui.counted(len(answers.person), 'trial')}{simulated}")
     for path in files:
         click.echo(str(path))
 
 
 def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
-    """Read answers, the plan they come from, if any, and a line that tells where they come from."""
-    from fdvv.files import read_limited
-    from fdvv.study import STUDY_FILE, read_plan_text
-    from fdvv.workflow import ColumnMap, Study, read_answers
+    from fdvv.io.files import read_limited
+    from fdvv.study.admin.study import Study
+    from fdvv.study.analysis.columns import ColumnMap
+    from fdvv.study.analysis.read_answers import read_answers
+    from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
 
     asked = ColumnMap(
         kind=table["kind"],
@@ -152,24 +145,23 @@ def _pairs(option: str, texts: tuple[str, ...]) -> dict[str, str]:
 
 
 def _print(found: StudyAnalysis) -> None:
-    """Print the main claim, choices and tests."""
-    from fdvv.workflow import study_summary
+    from fdvv.study.analysis.report import study_summary
 
     screening = found.screening
     counts = f"{screening.counted} of {screening.planned} trials count, {screening.people_counted} people"
     click.echo(f"{found.title} ({found.kind}): {counts}")
-    print_wrapped(study_summary(found))
+    ui.print_wrapped(study_summary(found))
     if found.tests:
         rows = [
             [
-                one.button, one.rating, str(one.test.n), number(one.test.z),
+                one.button, one.rating, str(one.test.n), ui.number(one.test.z),
                 *(_p(p) for p in (one.test.p_asymptotic, one.test.p_exact, one.p_holm)),
-                number(one.test.effect),
+                ui.number(one.test.effect),
             ]
             for one in found.tests
         ]  # fmt: skip
-        print_table(["button", "rating", "people", "Z", "p", "exact p", "Holm", "r"], rows, left=2)
-    print_warnings(found.notes)
+        ui.print_table(["button", "rating", "people", "Z", "p", "exact p", "Holm", "r"], rows, left=2)
+    ui.print_warnings(found.notes)
 
 
 def _p(p: float) -> str:

@@ -7,37 +7,33 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import (
-    check_folder,
-    check_output,
-    counted,
-    json_option,
-    print_json,
-    print_table,
-    print_wrapped,
-)
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.plot import Section
-    from fdvv.workflow import StudyLook
+    from fdvv.report.report import Section
+    from fdvv.study.admin.review import StudyReview
 
 KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase")
 
-study_argument = click.argument("study", type=click.Path(path_type=Path))
+study_argument = click.argument("study", type=ui.PATH)
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--kind", type=click.Choice(KINDS), default="realism", show_default=True,
-              help="What trials ask; realism is the paper's study.")  # fmt: skip
+@click.argument("folder", type=ui.PATH)
+@ui.option(
+    "--kind",
+    type=click.Choice(KINDS),
+    default="realism",
+    help="What trials ask; realism is the paper's study.",
+)
 def new(folder: Path, kind: str) -> None:
     """Begin a study: a folder with a commented study.toml to edit, and the buttons it names.
 
     The study is called as the folder. It holds the paper's design, or a usual one of its kind; what every
     field means is in docs/reference/study-file.md. Nothing counts before fdvv study freeze.
     """
-    check_folder(folder)
-    from fdvv.study import write_template
+    ui.check_folder(folder)
+    from fdvv.study.plan.plan_file import write_template
 
     path = write_template(kind, folder, folder.absolute().name)
     click.echo(f"written to {path}")
@@ -46,73 +42,73 @@ def new(folder: Path, kind: str) -> None:
 
 @click.command()
 @study_argument
-@json_option
+@ui.json_option
 def check(study: Path, as_json: bool) -> None:
     """Check a study's file, and that everything it names is there and differs. Exit status 1 if not.
 
     STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
     """
-    from fdvv.workflow import look_at_study
+    from fdvv.study.admin.review import review_study
 
-    look = look_at_study(study)
+    look = review_study(study)
     if as_json:
-        from fdvv.study import plan_account
+        from fdvv.study.admin.preview import summarise_plan
 
-        told = {"notes": [*look.notes, *(() if look.problems else plan_account(look.plan).notes)]}
-        print_json({"name": look.plan.name, "ok": not look.problems, "problems": look.problems, **told})
+        notes = {"notes": [*look.notes, *(() if look.problems else summarise_plan(look.plan).notes)]}
+        ui.print_json({"name": look.plan.name, "ok": not look.problems, "problems": look.problems, **notes})
     else:
         _print_check(look)
     if look.problems:
         raise click.exceptions.Exit(1)
 
 
-def _print_check(look: StudyLook) -> None:
-    from fdvv.study import plan_account
+def _print_check(look: StudyReview) -> None:
+    from fdvv.study.admin.preview import summarise_plan
 
     _print_problems(look)
     if look.problems:
         return
-    account = plan_account(look.plan)
+    account = summarise_plan(look.plan)
     for note in (*look.notes, *account.notes):
-        print_wrapped(f"note: {note}")
-    trials = counted(account.trials, "trial")
+        ui.print_wrapped(f"note: {note}")
+    trials = ui.counted(account.trials, "trial")
     click.echo(
         f"{look.plan.name}: can be run; {trials} a person, about {account.minutes:.0f} minutes (assumed), "
         f"{look.plan.people} people"
     )
 
 
-def _print_problems(look: StudyLook) -> None:
+def _print_problems(look: StudyReview) -> None:
     for problem in look.problems:
-        print_wrapped(f"problem: {problem}")
+        ui.print_wrapped(f"problem: {problem}")
     if look.problems:
-        click.echo(f"{look.plan.name}: cannot be run, {counted(len(look.problems), 'problem')}")
+        click.echo(f"{look.plan.name}: cannot be run, {ui.counted(len(look.problems), 'problem')}")
 
 
 @click.command()
 @study_argument
-@click.option("--html", type=click.Path(path_type=Path, dir_okay=False), metavar="OUT.html",
-              help="Write the account as a page.")  # fmt: skip
-@json_option
+@ui.option("--html", type=ui.NEW_FILE, metavar="OUT.html", help="Write the account as a page.")
+@ui.json_option
 def preview(study: Path, html: Path | None, as_json: bool) -> None:
-    """Tell what a study will be: what a person goes through, what is asked, orders, rules and claim.
+    """Show what a study will be: what a person does, what is asked, orders, rules and claim.
 
     STUDY is a study.toml, or the folder of one. Nothing is drawn: what labels will hide, not even this knows.
     Exit status 1 where the study cannot be run.
     """
-    check_output(html, ".html")
-    from fdvv.workflow import look_at_study, preview_dict, preview_html, preview_sections
+    ui.check_output(html, ".html")
+    from fdvv.study.admin.preview import preview_dict, preview_html, preview_sections
+    from fdvv.study.admin.review import review_study
 
-    look = look_at_study(study)
+    look = review_study(study)
     if look.problems:
         _print_problems(look)
         raise click.exceptions.Exit(1)
     if html:
-        from fdvv.plot import write_report
+        from fdvv.report.report import write_report
 
         write_report(html, preview_html(look))
     if as_json:
-        print_json(preview_dict(look))
+        ui.print_json(preview_dict(look))
         return
     _print_head(look)
     for section in preview_sections(look):
@@ -121,18 +117,18 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
         click.echo(f"\nwritten to {html}")
 
 
-def _print_head(look: StudyLook) -> None:
-    from fdvv.workflow import preview_summary, preview_title
+def _print_head(look: StudyReview) -> None:
+    from fdvv.study.admin.preview import preview_summary, preview_title
 
-    print_wrapped(preview_title(look.plan))
-    print_wrapped(preview_summary(look.plan))
+    ui.print_wrapped(preview_title(look.plan))
+    ui.print_wrapped(preview_summary(look.plan))
 
 
 def _print_section(section: Section) -> None:
     click.echo(f"\n{section.title}")
     for text in section.paragraphs:
-        print_wrapped(text)
+        ui.print_wrapped(text)
     for table in section.tables:
         rows: list[Any] = [list(row) for row in table.rows]
-        print_table(table.columns, rows, left=len(table.columns))
-        print_wrapped(table.caption)
+        ui.print_table(table.columns, rows, left=len(table.columns))
+        ui.print_wrapped(table.caption)

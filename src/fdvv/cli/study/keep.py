@@ -10,42 +10,41 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fdvv.cli._output import counted, json_option, print_json, print_table, print_warnings
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.study import Answers
-    from fdvv.workflow import OperatorView, Study
+    from fdvv.study.admin.operator_view import OperatorView
+    from fdvv.study.admin.study import Study
+    from fdvv.study.plan.answers import Answers
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-folder_argument = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
-passphrase_option = click.option(
+folder_argument = click.argument("folder", type=ui.FOLDER)
+passphrase_option = ui.option(
     "--passphrase-file",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Read the keeper's passphrase from the first line of a file; else it is asked for.",
+    type=ui.FILE,
+    help="File whose first line is the keeper's passphrase; else a prompt asks.",
 )
-keeper_option = click.option(
-    "--keeper",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="The keeper's file, if it was moved out of the folder.",
+keeper_option = ui.option(
+    "--keeper", type=ui.FILE, help="The keeper's file, if it was moved out of the folder."
 )
 
 
 @click.command()
 @folder_argument
 @passphrase_option
-@json_option
+@ui.json_option
 def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     """Freeze the study in FOLDER before the first person: from now on every change is noticed.
 
     Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
     hide; nobody can restore it. The fingerprint goes into the preregistration.
     """
-    from fdvv.workflow import Study
+    from fdvv.study.admin.study import Study
 
     study = Study.open(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
     if as_json:
-        print_json({"folder": str(folder), "name": study.plan.name, "fingerprint": fingerprint})
+        ui.print_json({"folder": str(folder), "name": study.plan.name, "fingerprint": fingerprint})
         return
     click.echo(f"{study.plan.name} is frozen")
     click.echo(f"fingerprint: {fingerprint}")
@@ -61,10 +60,10 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
 @folder_argument
 @click.option("--fingerprint", default="", help="That was written down when the study was frozen.")
 @click.option("--record", default="", help="An end of the record that was written down since.")
-@click.option("--marks", is_flag=True, help="Hold the marks of people's lines too; takes the passphrase.")
+@ui.option("--marks", is_flag=True, help="Hold the marks of people's lines too; takes the passphrase.")
 @passphrase_option
 @keeper_option
-@json_option
+@ui.json_option
 def verify(
     folder: Path,
     fingerprint: str,
@@ -74,8 +73,8 @@ def verify(
     keeper: Path | None,
     as_json: bool,
 ) -> None:
-    """Tell whether the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
-    from fdvv.workflow import Study
+    """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
+    from fdvv.study.admin.study import Study
 
     study = Study.open(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
@@ -84,7 +83,7 @@ def verify(
         whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
         # of people whose record was tampered with nothing is sure
         simulated = study.simulated if not problems else None
-        print_json({"folder": str(folder), **whole, "simulated": simulated})
+        ui.print_json({"folder": str(folder), **whole, "simulated": simulated})
     else:
         for problem in problems:
             click.echo(problem)
@@ -93,21 +92,22 @@ def verify(
             click.echo(f"fingerprint: {study.fingerprint}")
             click.echo(f"the record ends in: {study.record_end}")
     if problems:
-        click.echo(f"fdvv: {folder}: {counted(len(problems), 'problem')}", err=True)
+        click.echo(f"fdvv: {folder}: {ui.counted(len(problems), 'problem')}", err=True)
         raise click.exceptions.Exit(1)
 
 
 @click.command()
 @folder_argument
-@json_option
+@ui.json_option
 def status(folder: Path, as_json: bool) -> None:
-    """Tell how far the study in FOLDER is and what was done with it; nothing here tells what a label hid."""
-    from fdvv.workflow import Study, operator_view
+    """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
+    from fdvv.study.admin.operator_view import operator_view
+    from fdvv.study.admin.study import Study
 
     study = Study.open(folder)
     document = _status(study, operator_view(study, time.time()))
     if as_json:
-        print_json(document)
+        ui.print_json(document)
         return
     click.echo(f"{document['name']} ({document['kind']}), {document['state']}")
     if document["fingerprint"]:
@@ -120,40 +120,40 @@ def status(folder: Path, as_json: bool) -> None:
         for p in document["people"]
     ]
     if rows:
-        print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
+        ui.print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
     if document["paused"]:
         click.echo(f"paused: {', '.join(document['paused'])}")
     click.echo(f"people: {len(rows)} of {document['planned']} planned{_simulated(document['simulated'])}")
-    print_warnings([p["problem"] for p in document["people"] if p["problem"]])
+    ui.print_warnings([p["problem"] for p in document["people"] if p["problem"]])
 
 
 @click.command()
 @folder_argument
-@click.option("--who", required=True, help="Your name; it stays on record.")
-@click.option("--why", required=True, help="The reason; it stays on record.")
-@click.option("--despite", is_flag=True, help="Go on where people's files were changed; theirs do not count.")
+@ui.option("--who", required=True, help="Your name; it stays on record.")
+@ui.option("--why", required=True, help="The reason; it stays on record.")
+@ui.option("--despite", is_flag=True, help="Go on where people's files were changed; theirs do not count.")
 @passphrase_option
 @keeper_option
-@json_option
+@ui.json_option
 def unseal(
     folder: Path, who: str, why: str, despite: bool, passphrase_file: Path | None, keeper: Path | None,
     as_json: bool,
 ) -> None:  # fmt: skip
-    """Tell what the labels hid. That is recorded before anything can be read, and nobody can begin any more.
+    """Reveal what the labels hid. This is recorded first, and then nobody can begin any more.
 
     Writes answers.csv, codebook.json, rendered.csv and pages.csv into unsealed/ of the folder; the rules that
     were frozen with the study say in answers.csv what does not count, and why.
     """
-    from fdvv.workflow import Study
+    from fdvv.study.admin.study import Study
 
     study = Study.open(folder)
     answers = study.unseal(_passphrase(passphrase_file), who, why, keeper, despite)
     document = _unsealed(folder, answers)
     if as_json:
-        print_json(document)
+        ui.print_json(document)
         return
     simulated = " (simulated)" if answers.simulated else ""
-    click.echo(f"{counted(document['rows'], 'trial')}{simulated}, {document['counted']} count")
+    click.echo(f"{ui.counted(document['rows'], 'trial')}{simulated}, {document['counted']} count")
     for reason, rows in document["excluded"].items():
         click.echo(f"  {rows} left out: {reason}")
     click.echo(f"written to {document['unsealed']}")
@@ -162,16 +162,16 @@ def unseal(
 @click.command()
 @folder_argument
 @click.argument("person")
-@click.option("--keep", is_flag=True, help="Keep what the person gave until now; only end it.")
-@click.option("--yes", is_flag=True, help="Do not ask.")
-@json_option
+@ui.option("--keep", is_flag=True, help="Keep what the person gave until now; only end it.")
+@ui.option("--yes", is_flag=True, help="Do not ask.")
+@ui.json_option
 def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) -> None:
     """Take a person out and delete all that is kept of them; that they were there stays on record.
 
     FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
-    from fdvv.workflow import Study
+    from fdvv.study.admin.study import Study
 
     study = Study.open(folder)
     person = study.person(person).name
@@ -180,15 +180,14 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
         click.confirm(question, abort=True)
     study.withdraw(person, delete=not keep)
     if as_json:
-        print_json({"person": person, "deleted": not keep})
+        ui.print_json({"person": person, "deleted": not keep})
     else:
         click.echo(f"{person} has withdrawn; " + ("their answers are kept" if keep else "all is deleted"))
 
 
 def _passphrase(file: Path | None, new: bool = False) -> str:
-    """Read the passphrase from a file, or ask for it; a new one twice."""
     if file is not None:
-        from fdvv.files import read_limited
+        from fdvv.io.files import read_limited
 
         text = read_limited(file, 10_000, "name a file with the passphrase in its first line")
         return text.decode(errors="replace").partition("\n")[0].rstrip("\r")
@@ -197,7 +196,6 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
 
 
 def _simulated(simulated: bool) -> str:
-    """Say of simulated people what they are."""
     return ", all simulated: a proxy, no evidence" if simulated else ""
 
 

@@ -7,13 +7,12 @@ import importlib
 import click
 
 MODULES = {
-    "_study_declare": ("new", "check", "preview"),
-    "_study_keep": ("freeze", "verify", "status", "unseal", "withdraw"),
-    "_study_power": ("power",),
-    "_study_simulate": ("simulate",),
-    "_study_analyse": ("analyse", "export"),
+    "declare": ("new", "check", "preview"),
+    "keep": ("freeze", "verify", "status", "unseal", "withdraw"),
+    "simulate": ("power", "simulate"),
+    "analyse": ("analyse", "export"),
 }
-"""Commands by the module below fdvv.cli that holds them, as functions of the command's name."""
+"""Commands by the module below fdvv.cli.study that holds them, as functions of the command's name."""
 COMMANDS = {name: module for module, names in MODULES.items() for name in names}
 
 
@@ -21,14 +20,14 @@ class StudyGroup(click.Group):
     """A group that imports a command when it is asked for."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Give the names of the commands."""
+        """Return the names of the commands."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import and give one command."""
         if cmd_name not in COMMANDS:
             return None
-        found = getattr(importlib.import_module(f"fdvv.cli.{COMMANDS[cmd_name]}"), cmd_name)
+        found = getattr(importlib.import_module(f"fdvv.cli.study.{COMMANDS[cmd_name]}"), cmd_name)
         assert isinstance(found, click.Command)
         return found
 

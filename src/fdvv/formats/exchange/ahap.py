@@ -15,26 +15,28 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._json_in import check_points, read_json, refuse
-from fdvv.exchange._pulse import (
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.pulse import (
     Pulse,
+    check_points,
     clipped,
+    describe_scale,
     frequency_Hz,
     pulse_of,
+    read_json,
     read_scale,
+    refuse,
     scale_of,
     sharpness,
-    told_scale,
 )
-from fdvv.exchange._types import Exported
-from fdvv.model import Vibration
+from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
 WHAT = "an AHAP file with at least one haptic event"
 POINTS_per_curve = 16
 """Longer curves are cut into several. Apple states no limit; writers of AHAP are said to keep to this one."""
 TRANSIENT_s = 0.03
-"""How long a transient is heard: Apple gives none; it is a click of a few tens of milliseconds."""
+"""Length of a transient: Apple gives none; it is a click of a few tens of milliseconds."""
 LONGEST_s = 30.0
 """An event may last this long in Core Haptics."""
 DEFAULT = 1.0
@@ -112,7 +114,7 @@ def ahap(vibration: Vibration, name: str = "vibration") -> Exported:
         pattern += _curves("HapticSharpnessControl", pulse.t_s, pitch - base)
     record = {
         "Version": 1.0,
-        "Metadata": {"Project": name, "Description": told_scale(scale)},
+        "Metadata": {"Project": name, "Description": describe_scale(scale)},
         "Pattern": pattern,
     }
     return Exported(
@@ -125,7 +127,6 @@ def ahap(vibration: Vibration, name: str = "vibration") -> Exported:
 
 
 def _curves(name: str, t_s: FloatArray, values: FloatArray) -> list[dict[str, Any]]:
-    """Cut a curve into pieces of few points; each begins where the last one ended."""
     made = []
     for first in range(0, t_s.size - 1, POINTS_per_curve - 1):
         part = slice(first, first + POINTS_per_curve)
@@ -144,7 +145,7 @@ def read_ahap(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pu
     """Read the haptic events of an AHAP file as one pulse; sounds are left out.
 
     scale_m_s2 : what intensity 1 stands for; by default what the file's description says.
-    Where events overlap the stronger one tells the frequency and their powers add. Raises InputError.
+    Where events overlap the stronger one sets the frequency and their powers add. Raises InputError.
     """
     name = "AHAP" if isinstance(source, bytes) else str(source)
     found = read_json(source, Pattern, name, WHAT)
@@ -171,7 +172,6 @@ def _duration_s(event: Event) -> float:
 
 
 def _joined(events: list[Event], curves: list[Curve], scale: float) -> Pulse:
-    """Sample all events on common times, which count from the first event."""
     start = min(event.time for event in events)
     end = max(event.time + _duration_s(event) for event in events)
     if end - start > LONGEST_s:
@@ -204,7 +204,6 @@ def _value(event: Event, name: str, default: float) -> float:
 
 
 def _control(curves: list[Curve], name: str, t: FloatArray, default: float) -> FloatArray:
-    """Follow all curves of one name; before the first point the default holds, after the last its value."""
     points = sorted((c.time + p.time, p.parameter_value) for c in curves if c.name == name for p in c.points)
     if not points:
         return np.full(t.size, default)

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._types import Exported
-from fdvv.model import FDVVModel, ForceCurve, Stroke
+from fdvv.formats.exchange.exported import Exported
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray, gf_from_cN
 
 STEP_mm = 0.01
@@ -136,7 +137,6 @@ def _label(curve: ForceCurve) -> str:
 
 
 def _plain(value: float) -> str:
-    """Write a number without exponent, as a name can hold it."""
     return np.format_float_positional(value, trim="-")
 
 
@@ -149,7 +149,6 @@ def _cells(values: FloatArray) -> list[str]:
 
 
 def _table(titles: Sequence[str], columns: Sequence[Sequence[str]], blank: str = "") -> bytes:
-    """Lay columns side by side; a shorter one is padded with blanks."""
 
     def rows() -> Iterator[str]:
         yield ",".join(titles)

@@ -1,4 +1,4 @@
-"""What an export gives: the file's bytes, and in words and figures what of the button is in it."""
+"""What an export returns: the file, and what of the button it holds and loses."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fdvv.files import write_atomic
+from fdvv.io.files import write_atomic
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Exported:
 
     @property
     def text(self) -> str:
-        """Get the file as text; all formats but sounds are UTF-8."""
+        """Return the file as text; all formats but sounds are UTF-8."""
         return self.data.decode()
 
     def save(self, path: Path | str) -> None:

@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fdvv.errors import BuildError, ModelError
-from fdvv.model import Press
-from fdvv.recording import UNITS, Recording, Stream, Take
+from fdvv.formats.exchange.exported import Exported
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.recording.types import UNITS, Recording, Stream, Take
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 CF = {"m/s2": "m s-2"}
 """Units as CF's conventions write them, where they differ from ours."""
+
 PRESS_UNITS = {"t_s": "s", "velocity_mm_s": "mm s-1", "displacement_mm": "mm", "force_cN": "cN"}
+
 RIG_UNITS = {"sensed_mm": "mm", "sensed_cN": "cN", "commanded_cN": "cN"}
+
 FLAGS = ("saturated", "tick")
 
 
 def require_frames() -> None:
-    """Raise BuildError that tells how to get pandas and xarray, unless they are there."""
+    """Raise BuildError with the install command unless pandas and xarray are installed."""
     try:
         import pandas  # noqa: F401
         import xarray  # noqa: F401
@@ -34,7 +46,7 @@ def require_frames() -> None:
 
 
 def recording_to_pandas(recording: Recording) -> pd.DataFrame:
-    """Give a recording as one long table, a row for each sample of each stream.
+    """Return a recording as one long table, a row for each sample of each stream.
 
     Columns: take, stage, velocity_mm_s (what was asked for), stream, axis (x, y, z of a marker, else empty),
     quantity, unit, clock, t_s, value in that unit. ``attrs`` hold name, person, licence and whether it is
@@ -91,7 +103,7 @@ def _axes(count: int) -> list[str]:
 
 
 def recording_to_xarray(recording: Recording) -> xr.DataTree:
-    """Give a recording as a tree: a node ``take_1`` … for each take, a variable for each stream.
+    """Return a recording as a tree: a node ``take_1`` … for each take, a variable for each stream.
 
     Streams run on their own clocks, so each has a time dimension of its own, ``t_STREAM`` in s with its
     clock in the attributes; a marker has a second one, ``axis_STREAM``. Values have their units in
@@ -121,9 +133,9 @@ def _take(take: Take) -> xr.Dataset:
             shape = (time, f"axis_{name}")
             coordinates[shape[1]] = _axes(stream.raw.shape[1])
         unit = UNITS[stream.quantity]
-        told: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
-        told |= {"quantity": str(stream.quantity), "clock": stream.clock}
-        variables[name] = (shape, stream.values, {**told, "scale": stream.scale, "zero": stream.zero})
+        attrs: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
+        attrs |= {"quantity": str(stream.quantity), "clock": stream.clock}
+        variables[name] = (shape, stream.values, {**attrs, "scale": stream.scale, "zero": stream.zero})
     if len(variables) < len(take.streams) or set(variables) & set(coordinates):
         names = ", ".join(stream.name for stream in take.streams)
         raise ModelError(f"take {take.number}: rename one of the streams {names}, they would share a name")
@@ -146,7 +158,7 @@ def _about(recording: Recording) -> dict[str, Any]:
 
 
 def presses_to_pandas(presses: Sequence[Press]) -> pd.DataFrame:
-    """Give presses as one table, a row for each sample, the press counted from 0 in column ``press``.
+    """Return presses as one table, a row for each sample, the press counted from 0 in column ``press``.
 
     Columns are those of Press, units in their names and in ``attrs["units"]``; what a press has not (no
     rig) is missing. Raises BuildError without pandas.
@@ -201,3 +213,102 @@ def _press(part: pd.DataFrame) -> Press:
     simulated = "simulated" in part.columns and bool(part["simulated"].iloc[0])
     t_s, x, force = (part[n].to_numpy(dtype=np.float64) for n in ("t_s", "displacement_mm", "force_cN"))
     return Press(t_s, x, force, float(part["velocity_mm_s"].iloc[0]), **optional, simulated=simulated)
+
+
+STEP_mm = 0.01
+
+
+def model_to_xarray(
+    model: FDVVModel, velocities_mm_s: Sequence[float] | None = None, step_mm: float = STEP_mm
+) -> xr.Dataset:
+    """Return a model as a dataset: ``force`` and ``stiffness`` over stroke, velocity and displacement.
+
+    velocities_mm_s : by default those the model has curves at; a model of unknown velocity has the one
+    coordinate NaN.
+    Displacement goes in steps from 0 to the travel, its end included. Units are in ``attrs["units"]`` as CF's
+    conventions write them; travel, contact points and provenance in the dataset's attributes. A stroke
+    without curves is left out. Raises BuildError without xarray, ModelError for a step that is not positive.
+    """
+    require_frames()
+    import xarray as xr
+
+    if not (np.isfinite(step_mm) and step_mm > 0):
+        raise ModelError(f"step_mm must be positive, got {step_mm}")
+    strokes = [stroke for stroke in Stroke if model.of(stroke)]
+    known = sorted({v for stroke in strokes for v in model.velocities_mm_s(stroke)})
+    speeds = np.array(known or [np.nan] if velocities_mm_s is None else velocities_mm_s, dtype=np.float64)
+    x = np.unique(np.append(np.arange(0.0, model.travel_mm, step_mm), model.travel_mm))
+    # a curve of unknown velocity is the same at every speed
+    grid = (x[np.newaxis], np.nan_to_num(speeds, nan=1.0)[:, np.newaxis])
+    dimensions = ("stroke", "velocity", "displacement")
+    force = np.stack([model.force_cN(*grid, stroke) for stroke in strokes])
+    slope = np.stack([model.stiffness_cN_mm(*grid, stroke) for stroke in strokes])
+    return xr.Dataset(
+        {
+            "force": (dimensions, force, {"units": "cN", "long_name": "force against the finger"}),
+            "stiffness": (dimensions, slope, {"units": "cN mm-1", "long_name": "force over displacement"}),
+        },
+        {
+            "stroke": [str(stroke) for stroke in strokes],
+            "velocity": ("velocity", speeds, {"units": "mm s-1", "long_name": "mean speed of the stroke"}),
+            "displacement": (
+                "displacement",
+                x,
+                {"units": "mm", "long_name": "into the button, from contact"},
+            ),
+        },
+        _about_model(model),
+    )
+
+
+def _about_model(model: FDVVModel) -> dict[str, Any]:
+    points = {"travel": model.travel_mm, "actuation": model.actuation_mm, "reset": model.reset_mm}
+    attrs = {f"{name}_mm": np.nan if at is None else at for name, at in points.items()}
+    of = model.provenance
+    return {
+        "name": model.name,
+        **attrs,
+        "interpolation": str(model.interpolation),
+        "source": of.source,
+        "license": of.licence,
+        "references": of.citation,
+        "simulated": int(of.simulated),
+        "Conventions": "CF-1.11",
+    }
+
+
+COLUMNS = ("take", "stage", "velocity_mm_s", "stream", "axis", "quantity", "unit", "clock", "t_s", "value")
+
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""What makes a spreadsheet run a cell; a name that begins so is set off with an apostrophe."""
+
+
+def recording_csv(recording: Recording) -> Exported:
+    """Write a row for each sample of each stream, with its unit; a marker has a row for each axis.
+
+    The columns are those of recording_to_pandas. Times of different clocks cannot be compared; what was not
+    seen is an empty cell.
+    """
+    held = io.StringIO()
+    writer = csv.writer(held, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for take in recording.takes:
+        speed = "" if take.velocity_mm_s is None else repr(float(take.velocity_mm_s))
+        for stream in take.streams:
+            values = stream.values.reshape(stream.t_s.size, -1)
+            axes = [""] if stream.raw.ndim == 1 else "xyz" if values.shape[1] == 3 else range(values.shape[1])
+            fixed = [str(stream.quantity), UNITS[stream.quantity], _plain(stream.clock)]
+            times = [repr(t) for t in stream.t_s.tolist()]
+            for axis, column in zip(axes, values.T.tolist(), strict=True):
+                head = [take.number, str(take.stage), speed, _plain(stream.name), axis, *fixed]
+                writer.writerows(
+                    [*head, t, "" if math.isnan(value) else repr(value)]
+                    for t, value in zip(times, column, strict=True)
+                )
+    kept = ("every sample in its unit, with take, stage, pace and clock",)
+    lost = ("marks, raw counts and calibration", "bench, sources and remarks")
+    return Exported("recording-csv", held.getvalue().encode(), kept, lost)
+
+
+def _plain(text: str) -> str:
+    return f"'{text}" if text.startswith(FORMULA) else text

@@ -15,11 +15,10 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._json_in import check_points, read_json, refuse
-from fdvv.exchange._polyline import polyline
-from fdvv.exchange._pulse import Pulse, mode_of, read_scale
-from fdvv.exchange._types import Exported
-from fdvv.model import Mode, Vibration
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.mjcf import polyline
+from fdvv.formats.exchange.pulse import Pulse, check_points, mode_of, read_json, read_scale, refuse
+from fdvv.model.vibration import Mode, Vibration
 
 WHAT = "an HJIF file with sine effects of a vectorial band"
 TICKS_Hz = 48_000
@@ -127,7 +126,7 @@ def hjif(vibration: Vibration, date: str, name: str = "vibration") -> Exported:
 
 
 def _band(mode: Mode, duration_s: float, scale: float) -> dict[str, Any]:
-    """Draw one mode: whole ticks, the fall as few straight pieces; a negative amplitude is half a turn."""
+    """Draw one mode in whole ticks, its decay as straight pieces; a negative amplitude is half a turn."""
     ticks = np.unique(np.linspace(0, max(1, round(duration_s * TICKS_Hz)), 2000).round())
     fall = abs(mode.amplitude_m_s2) / scale * np.exp(-mode.decay_1_s * ticks / TICKS_Hz)
     at = polyline(ticks, fall, TOLERANCE_ratio)
@@ -185,7 +184,6 @@ def read_hjif(source: Path | str | bytes, scale_m_s2: float | None = None) -> tu
 
 
 def _mode(effect: Effect, scale: float, timescale: int) -> Mode:
-    """Read one mode; corners without an amplitude or frequency take that of the last one that has it."""
     t = np.array([k.relative_position for k in effect.keyframes], dtype=np.float64) / timescale
     if t.size < 2 or t[0] != 0 or np.any(np.diff(t) <= 0) or t[-1] > LONGEST_s:
         raise ModelError(f"an effect needs corners that rise from 0 to at most {LONGEST_s:g} s")

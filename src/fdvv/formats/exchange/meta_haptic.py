@@ -14,19 +14,21 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._json_in import check_points, read_json, refuse
-from fdvv.exchange._pulse import (
+from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.pulse import (
     Pulse,
+    check_points,
     clipped,
+    describe_scale,
     frequency_Hz,
     pulse_of,
+    read_json,
     read_scale,
+    refuse,
     scale_of,
     sharpness,
-    told_scale,
 )
-from fdvv.exchange._types import Exported
-from fdvv.model import Vibration
+from fdvv.model.vibration import Vibration
 
 WHAT = "a .haptic file of major version 1 with an amplitude envelope"
 MIDDLE = 0.5
@@ -114,7 +116,7 @@ def meta_haptic(vibration: Vibration, name: str = "vibration") -> Exported:
             "source": "",
             "project": name,
             "tags": [],
-            "description": told_scale(scale),
+            "description": describe_scale(scale),
         },
         "signals": {"continuous": {"envelopes": envelopes}},
     }
@@ -140,8 +142,8 @@ def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None
     envelopes = found.signals.continuous.envelopes
     place = "$.signals.continuous.envelopes"
     check_points(name, place, len(envelopes.amplitude) + len(envelopes.frequency or []), WHAT)
-    told = found.metadata.description if found.metadata else ""
-    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(told)
+    text = found.metadata.description if found.metadata else ""
+    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(text)
     if scale is None:
         raise refuse(name, "amplitude", "the file does not say what 1 stands for", "the full scale in m/s2")
     try:

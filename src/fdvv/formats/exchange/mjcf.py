@@ -4,7 +4,7 @@ MuJoCo knows no tabulated spring. A fixed tendon whose springlength is a pair of
 force between them, so that tendons of one joint, each with its own dead zone, add up to any broken line;
 the line's straight part is an actuator with affine bias. Both are documented and need positive stiffnesses
 only. What a broken line over displacement cannot hold is the loop and the speed: they become Coulomb
-friction and damping, and what that leaves is told per stroke and velocity.
+friction and damping, and what that leaves is reported per stroke and velocity.
 """
 
 from __future__ import annotations
@@ -16,20 +16,45 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._polyline import polyline
-from fdvv.exchange._types import Exported
-from fdvv.model import FDVVModel, ForceSurface, Stroke
+from fdvv.formats.exchange.exported import Exported
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
+
+def polyline(x: FloatArray, y: FloatArray, tolerance: float) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Choose samples whose straight joints stay within tolerance of all samples (Ramer, Douglas and Peucker).
+
+    x : (n,) strictly rising; y : (n,). Gives the chosen indices, rising, both ends among them. Deviation is
+        measured along y, which is what a force's error is.
+    """
+    chosen = {0, x.size - 1}
+    spans = [(0, x.size - 1)]
+    while spans:
+        first, last = spans.pop()
+        inside = slice(first + 1, last)
+        line = y[first] + (y[last] - y[first]) * (x[inside] - x[first]) / (x[last] - x[first])
+        off = np.abs(y[inside] - line)
+        if off.size and off.max() > tolerance:
+            worst = first + 1 + int(np.argmax(off))
+            chosen.add(worst)
+            spans += [(first, worst), (worst, last)]
+    return np.array(sorted(chosen), dtype=np.intp)
+
+
 TOLERANCE_cN = 0.25
-"""Of the broken line against the curve it follows: under what fingers and the rig tell apart."""
+"""Of the broken line against the curve it follows: below what fingers and the rig can resolve."""
+
 STEP_mm = 0.005
+
 CAP_g = 1.0
 """A keycap with its stem; no model knows it, and a joint of MuJoCo must have a mass."""
+
 FAR_m = 1.0
+
 UNKNOWN_mm_s = 10.0
 """Curves of unknown velocity come from slow benches; every speed gives the same there."""
-
 
 Follow = Literal["press", "both"]
 """What the line draws: the presses, which people feel first, or the middle of both strokes."""
@@ -98,14 +123,12 @@ def _known(model: FDVVModel, stroke: Stroke) -> tuple[float | None, ...]:
 
 
 def _strokes(model: FDVVModel, x: FloatArray, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Sample both strokes, (n speeds, n places); without a release the press is both."""
     grid = (x[np.newaxis], speeds[:, np.newaxis])
     press = model.force_cN(*grid, Stroke.PRESS)
     return press, model.force_cN(*grid, Stroke.RELEASE) if model.of(Stroke.RELEASE) else press
 
 
 def _loop(speeds: FloatArray, half_cN: FloatArray) -> tuple[float, float]:
-    """Fit half = friction + damping speed, both at least 0."""
     from scipy.optimize import nnls
 
     if speeds.size == 1:

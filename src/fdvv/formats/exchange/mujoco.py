@@ -8,8 +8,9 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from fdvv.errors import BuildError, ModelError
-from fdvv.exchange._mjcf import CAP_g, fine_surface, scene_xml
-from fdvv.model import FDVVModel, Stroke
+from fdvv.formats.exchange.mjcf import CAP_g, fine_surface, scene_xml
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
 
 TABLE_mm = 0.002
 TABLE_SPEEDS = 21
@@ -48,7 +49,7 @@ class MujocoButton:
         self._release: list[list[float]] = table.release_cN.tolist()
 
     def force_cN(self, displacement_mm: float, velocity_mm_s: float) -> float:
-        """Give the force against the finger.
+        """Return the force against the finger.
 
         velocity_mm_s : signed, positive on the press.
         From the model's own curves, tabulated every 2 µm; within 2 mm/s of rest press and release are mixed.
@@ -93,14 +94,13 @@ class MujocoButton:
             self._switch(model, data)
 
     def _ask(self, model: Any, data: Any) -> tuple[int, float]:
-        """Give the joint's degree of freedom and what pushes back."""
+        """Return the joint's degree of freedom and the force on it."""
         joint = model.joint(self.joint)
         dof = int(joint.dofadr[0])
         x_mm = 1000.0 * float(data.qpos[joint.qposadr[0]])
         return dof, 0.01 * self.force_cN(x_mm, 1000.0 * float(data.qvel[dof]))
 
     def _switch(self, model: Any, data: Any) -> None:
-        """Close or open the contact, remember it, and tell its sensor if there is one."""
         if self._close_mm is None or self._open_mm is None:
             return
         remembered = data.userdata.size > self.slot
@@ -132,7 +132,6 @@ class MujocoButton:
 
 
 def _both(first: Callable[..., None] | None, then: Callable[..., None]) -> Callable[..., None]:
-    """Call what was there before, if there was something, and then ours."""
 
     def call(*arguments: Any) -> None:
         if first:
@@ -151,7 +150,7 @@ def mujoco_button(model: FDVVModel, cap_mass_g: float = CAP_g) -> MujocoButton:
 
 
 def require_mujoco() -> Any:
-    """Import MuJoCo; BuildError that tells how to get it where it is absent."""
+    """Import MuJoCo; BuildError with the install command where it is absent."""
     try:
         import mujoco
     except ImportError as error:
@@ -160,7 +159,6 @@ def require_mujoco() -> Any:
 
 
 def _read(table: list[list[float]], row: int, down: float, column: int, across: float) -> float:
-    """Interpolate between four neighbours."""
     low, high = table[row], table[row + 1]
     slow = low[column] + across * (low[column + 1] - low[column])
     fast = high[column] + across * (high[column + 1] - high[column])

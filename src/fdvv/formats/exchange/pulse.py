@@ -2,7 +2,7 @@
 
 AHAP and Meta's .haptic know two curves of 0 to 1, joined by straight lines: intensity (amplitude) and
 sharpness (frequency). Neither maker says which frequency a sharpness is. The reference software of MPEG's
-haptics coding reads Apple's 0 to 1 as 65 to 300 Hz, which is what is used here, both ways, and told with
+haptics coding reads Apple's 0 to 1 as 65 to 300 Hz, which is what is used here, both ways, and stated with
 every file.
 """
 
@@ -10,22 +10,32 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
 
+import msgspec
 import numpy as np
 
-from fdvv.errors import ModelError
-from fdvv.exchange._polyline import polyline
-from fdvv.model import Mode, Vibration
+from fdvv.errors import InputError, ModelError
+from fdvv.formats.exchange.mjcf import polyline
+from fdvv.io.files import read_limited
+from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
 
 SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
+
 TOLERANCE_ratio = 0.01
-EXACT, HEARD_ratio = 1e-3, 1e-4
+
+EXACT, AUDIBLE_ratio = 1e-3, 1e-4
+
 PIECE = 16
 """Samples of a straight piece."""
+
 FAINT_ratio = 1e-6
+
 RATE_Hz = 8000.0
+
 _SCALE = re.compile(r"\b1 is (\d[\d.e+-]*) m/s2")
 
 
@@ -70,10 +80,10 @@ def pulse_of(vibration: Vibration) -> Pulse:
         weighted += each**2 * mode.frequency_Hz
     amplitude = np.abs(total)
     mean_Hz = float(np.mean([mode.frequency_Hz for mode in vibration.modes]))
-    # what has died away has no pitch; that of the last that is heard holds
-    heard = max(1, int(np.count_nonzero(power > FAINT_ratio**2 * power[0])))
+    # what has died away has no pitch; that of the last audible one holds
+    audible = max(1, int(np.count_nonzero(power > FAINT_ratio**2 * power[0])))
     frequency = np.divide(weighted, power, out=np.full(t.size, mean_Hz), where=power > 0)
-    frequency[heard:] = frequency[heard - 1]
+    frequency[audible:] = frequency[audible - 1]
     at = polyline(t, amplitude, TOLERANCE_ratio * (float(amplitude.max()) or 1.0))
     return Pulse(t[at], amplitude[at], frequency[at])
 
@@ -96,19 +106,18 @@ def mode_of(pulse: Pulse, phase_rad: float = 0.0) -> Mode:
 
 
 def _times(pulse: Pulse) -> FloatArray:
-    """Give times that follow every piece of the pulse, however short it is beside the others."""
     between = np.linspace(pulse.t_s[:-1], pulse.t_s[1:], PIECE, endpoint=False).T.ravel()
     even = np.linspace(0.0, pulse.t_s[-1], 50)
     return np.unique(np.concatenate([between, pulse.t_s, even]))
 
 
 def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
-    """Give amplitude and decay of the exponential that all corners lie on; None if they do not."""
+    """Return amplitude and decay of the exponential through all corners; None if there is none."""
     amplitude = pulse.amplitude_m_s2
-    heard = amplitude > HEARD_ratio * amplitude.max()
-    if heard.sum() < 3:
+    audible = amplitude > AUDIBLE_ratio * amplitude.max()
+    if audible.sum() < 3:
         return None
-    slope, start = np.polyfit(pulse.t_s[heard], np.log(amplitude[heard]), 1, w=amplitude[heard])
+    slope, start = np.polyfit(pulse.t_s[audible], np.log(amplitude[audible]), 1, w=amplitude[audible])
     off = np.abs(np.exp(start + slope * pulse.t_s) - amplitude)
     return (
         (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
@@ -116,7 +125,6 @@ def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
 
 
 def _nearest(t: FloatArray, amplitude: FloatArray) -> tuple[float, float]:
-    """Give amplitude and decay of the exponential nearest to an amplitude that is sampled at times."""
     from scipy.optimize import minimize_scalar
 
     weight = np.gradient(t)
@@ -151,21 +159,21 @@ def frequency_Hz(of_sharpness: FloatArray) -> FloatArray:
 
 
 def scale_of(pulse: Pulse) -> float:
-    """Give the amplitude that a file's 1 stands for: the pulse's largest."""
+    """Return the amplitude that 1 in the file means: the pulse's largest."""
     largest = float(pulse.amplitude_m_s2.max())
     if not largest > 0:
         raise ModelError("the vibration is silent, there is nothing to write")
     return largest
 
 
-def told_scale(scale_m_s2: float) -> str:
-    """Say in a file's description what its 1 stands for."""
+def describe_scale(scale_m_s2: float) -> str:
+    """Describe the amplitude scale of a file."""
     low, high = SHARPNESS_Hz
     return f"1 is {scale_m_s2!r} m/s2 of the cap; 0 to 1 of sharpness is {low:g} to {high:g} Hz"
 
 
 def read_scale(description: object) -> float | None:
-    """Read what a file's 1 stands for from its description; None if it does not tell."""
+    """Read the amplitude scale from a file's description; None if it states none."""
     found = _SCALE.search(description) if isinstance(description, str) else None
     try:
         value = float(found[1]) if found else 0.0
@@ -175,7 +183,45 @@ def read_scale(description: object) -> float | None:
 
 
 def clipped(vibration: Vibration) -> tuple[str, ...]:
-    """Tell modes whose frequency the range of sharpness does not hold."""
+    """Warn of modes whose frequency is outside the range of sharpness."""
     low, high = SHARPNESS_Hz
     outside = [m.frequency_Hz for m in vibration.modes if not low <= m.frequency_Hz <= high]
     return tuple(f"{f:.0f} Hz lies outside {low:g} to {high:g} Hz and is held at its end" for f in outside)
+
+
+LARGEST_bytes = 4_000_000
+"""A vibration of a button takes a few kB; hours of a film's take more, and are no button."""
+
+MOST_POINTS = 20_000
+
+Record = TypeVar("Record")
+
+
+def read_json(source: Path | str | bytes, record: type[Record], name: str, what: str) -> Record:
+    """Read JSON into a typed record; fields it does not name are ignored, as the formats ask.
+
+    source : a path, or the file's bytes; name : of the source in messages; what : the format with its
+        article. Raises InputError.
+    """
+    remedy = f"give {what}"
+    data = source if isinstance(source, bytes) else read_limited(source, LARGEST_bytes, remedy)
+    if len(data) > LARGEST_bytes:
+        raise InputError(name, "whole file", f"larger than {LARGEST_bytes // 1_000_000} MB", remedy)
+    try:
+        return msgspec.json.decode(data.removeprefix(b"\xef\xbb\xbf"), type=record)
+    except msgspec.ValidationError as error:
+        reason, _, place = str(error).partition(" - at ")
+        raise InputError(name, place.strip("`") or "$", reason, remedy) from error
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        raise InputError(name, "whole file", f"not valid JSON ({error})", remedy) from error
+
+
+def refuse(name: str, place: str, reason: str, what: str) -> InputError:
+    """Return the error for a wrong value of the right type."""
+    return InputError(name, place, reason, f"give {what}")
+
+
+def check_points(name: str, place: str, count: int, what: str) -> None:
+    """Refuse a list that is too long for a button's vibration."""
+    if count > MOST_POINTS:
+        raise refuse(name, place, f"{count} points, at most {MOST_POINTS} are read", what)

@@ -18,8 +18,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.exchange._types import Exported
-from fdvv.model import Bump, FDVVModel, ForceCurve, Stroke, find_bump
+from fdvv.formats.exchange.exported import Exported
+from fdvv.model.bump import Bump, find_bump
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
 
 DEGREES_per_mm = 10.0
@@ -44,7 +46,7 @@ class KnobDetents:
     position_width_radians : from one position to the next.
     detent_strength_unit, endstop_strength_unit : stiffness within the ends and beyond them.
     snap_point, snap_point_bias : where the next position takes over, in widths, and how far that is moved.
-    text : at most 50 bytes, tells this configuration from others.
+    text : at most 50 bytes, the name of this configuration.
     """
 
     position: int
@@ -59,14 +61,14 @@ class KnobDetents:
 
     @property
     def snaps_at_ratio(self) -> tuple[float, float] | None:
-        """Where it snaps when pressed and when released, in widths from the released position."""
+        """Return where it snaps when pressed and when released, in widths from the released position."""
         if self.max_position == self.min_position:
             return None
         bias = self.snap_point_bias if self.position == 0 else -self.snap_point_bias
         return self.snap_point + bias, 1 - self.snap_point + bias
 
     def pull(self, way_ratio: FloatArray, pressed: bool) -> FloatArray:
-        """Give what the knob pushes back, strength times radians, between released (0) and pressed (1)."""
+        """Return the knob's torque, strength times radians, between released (0) and pressed (1)."""
         width = self.position_width_radians
         off = (np.asarray(way_ratio, dtype=np.float64) - float(pressed)) * width
         dead = min(width * DEAD_ratio, math.radians(DEAD_degrees))
@@ -79,7 +81,7 @@ class KnobDetents:
 def smartknob(
     model: FDVVModel, velocity_mm_s: float | None = None, degrees_per_mm: float = DEGREES_per_mm
 ) -> Exported:
-    """Write a button as a SmartKnobConfig in JSON, and tell how much of its force that is.
+    """Write a button as a SmartKnobConfig in JSON, and report how much of its force that is.
 
     Raises ModelError if the model has no press curve or the scale is not positive.
     """
@@ -145,7 +147,6 @@ def _bump(model: FDVVModel, curve: ForceCurve | None) -> Bump | None:
 
 
 def _figures(model: FDVVModel, velocity_mm_s: float | None, detents: KnobDetents) -> dict[str, float | None]:
-    """Compare the press with the knob's law at its best gain and offset."""
     way = np.linspace(0.0, 1.0, 800)
     places = detents.snaps_at_ratio
     out = places[0] if places else np.inf

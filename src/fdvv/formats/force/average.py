@@ -2,6 +2,21 @@
 
 The population is the largest set of cycles that agree with one of them (``_gate`` says when two do). It
 must be more than half of the cycles; otherwise the populations are mixed, and only the first is used.
+
+Whether two cycles are repeats of one another.
+
+Two cycles are of one population when, judged on the stroke that begins them (the press if both have it),
+
+- contact, where the force first carries 10 cN, lies within 0.05 mm;
+- the stop, where the force last passes half of the lesser of the two greatest forces, lies within
+  0.05 mm of contact + travel;
+- no stretch of the active travel of either stroke is missing (a jump of more than 0.5 mm);
+- both cover the same travel from contact on, to 90 %;
+- the median over the active travel of the difference in force, contacts aligned, is within
+  max(1 gf, 2 % of the typical force) for each stroke, typical being the median force over that travel.
+
+Levels of force are used, not the start of the stop: on rubber domes, whose stop is soft, its start
+wavers by 0.2 mm between repeats that otherwise agree to 0.02 mm.
 """
 
 from __future__ import annotations
@@ -11,9 +26,107 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.capture._gate import STEP_mm, how_differs, shape_of
-from fdvv.capture._types import Cycle, ForceFile
-from fdvv.model import MeasuredCurve, Stroke
+from fdvv.formats.force.types import Cycle, ForceFile
+from fdvv.model.bump import first_loaded
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.units import FloatArray, GRAM_FORCE_cN
+
+PLACE_mm = 0.05
+
+FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
+
+FORCE_PART = 0.02
+
+GAP_mm = 0.5
+
+STEP_mm = 0.005
+
+TRAVEL_PART = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """What the gate compares: strictly rising samples of each stroke, and the contact of the first."""
+
+    strokes: dict[Stroke, tuple[FloatArray, FloatArray]]
+    contact_mm: float
+    top_cN: float
+
+    def first(self) -> tuple[FloatArray, FloatArray]:
+        return self.strokes.get(Stroke.PRESS) or self.strokes[Stroke.RELEASE]
+
+    def last_below_mm(self, level_cN: float) -> float:
+        """Return the deepest position where the force is below a level."""
+        x, force = self.first()
+        below = np.flatnonzero(force < level_cN)
+        return float(x[below[-1]]) if below.size else float(x[0])
+
+
+def shape_of(cycle: Cycle) -> Shape:
+    strokes = {
+        stroke: curve.by_displacement()[:2]
+        for stroke in Stroke
+        if (curve := cycle.press if stroke is Stroke.PRESS else cycle.release) is not None
+    }
+    x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
+    return Shape(strokes, float(x[first_loaded(force)]), float(force.max()))
+
+
+def how_differs(a: Shape, b: Shape) -> str:
+    """Describe how b differs from the population of a; empty if it does not."""
+    if a is b:
+        return ""
+    if set(a.strokes) != set(b.strokes):
+        return "it does not hold the same strokes"
+    level = 0.5 * min(a.top_cN, b.top_cN)
+    stops = a.last_below_mm(level), b.last_below_mm(level)
+    contact = min(a.contact_mm, b.contact_mm)
+    gap = _gap(a, contact, stops[0]) or _gap(b, contact, stops[1])
+    if gap:
+        return gap
+    if abs(b.contact_mm - a.contact_mm) > PLACE_mm:
+        return f"contact is shifted by {b.contact_mm - a.contact_mm:+.2f} mm"
+    longer = (stops[1] - b.contact_mm) - (stops[0] - a.contact_mm)
+    if abs(longer) > PLACE_mm:
+        return f"the stop is shifted by {longer:+.2f} mm"
+    apart = next((reason for stroke in a.strokes if (reason := _extent_differs(stroke, a, b))), "")
+    if apart:
+        return apart
+    travel = min(stops[0] - a.contact_mm, stops[1] - b.contact_mm)
+    return next((reason for stroke in a.strokes if (reason := _force_differs(stroke, a, b, travel))), "")
+
+
+def _gap(shape: Shape, contact_mm: float, stop_mm: float) -> str:
+    for stroke, (x, _) in shape.strokes.items():
+        missing = np.minimum(x[1:], stop_mm) - np.maximum(x[:-1], contact_mm)
+        widest = float(missing.max())
+        if widest > max(GAP_mm, 20.0 * float(np.median(np.diff(x)))):
+            return f"{widest:.1f} mm of the {stroke} are missing"
+    return ""
+
+
+def _extent_differs(stroke: Stroke, a: Shape, b: Shape) -> str:
+    ends = [
+        (max(s.strokes[stroke][0][0] - s.contact_mm, 0.0), s.strokes[stroke][0][-1] - s.contact_mm)
+        for s in (a, b)
+    ]
+    common = min(end for _, end in ends) - max(start for start, _ in ends)
+    if common < TRAVEL_PART * max(end - start for start, end in ends) or common <= 2.0 * STEP_mm:
+        return (
+            f"the {stroke} covers {ends[1][0]:.2f} to {ends[1][1]:.2f} mm from contact, not the same travel"
+        )
+    return ""
+
+
+def _force_differs(stroke: Stroke, a: Shape, b: Shape, travel_mm: float) -> str:
+    x = np.arange(0.0, max(travel_mm, STEP_mm), STEP_mm)
+    mine = np.interp(x + a.contact_mm, *a.strokes[stroke])
+    theirs = np.interp(x + b.contact_mm, *b.strokes[stroke])
+    off = float(np.median(np.abs(theirs - mine)))
+    limit = max(FORCE_LEAST_cN, FORCE_PART * float(np.median(np.abs(mine))))
+    if off > limit:
+        return f"force of the {stroke} differs by {off:.2f} cN (median), more than {limit:.2f}"
+    return ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +203,6 @@ def _alike(a: float | None, b: float | None) -> bool:
 
 
 def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:
-    """Gate the cycles and average those that pass."""
     if len(named) == 1:
         cycle, label = named[0]
         return Averaged(cycle.press, cycle.release, cycle.actuation_mm, cycle.reset_mm, (label,))
@@ -101,8 +213,10 @@ def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:
     keep = agreeing[centre]
     warnings: tuple[str, ...] = ()
     if 2 * len(keep) <= len(named):
-        told = f"mixed populations: at most {len(keep)} of {len(named)} cycles agree; only the first was used"
-        keep, centre, warnings = [0], 0, (told,)
+        warning = (
+            f"mixed populations: at most {len(keep)} of {len(named)} cycles agree; only the first was used"
+        )
+        keep, centre, warnings = [0], 0, (warning,)
     left_out = tuple(
         (label, reasons[centre][i] or "mixed populations")
         for i, (_, label) in enumerate(named)
@@ -129,7 +243,6 @@ def _stroke(cycle: Cycle, stroke: Stroke) -> MeasuredCurve | None:
 
 
 def _mean(cycles: Sequence[Cycle], stroke: Stroke) -> MeasuredCurve | None:
-    """Average one stroke over its common extent, cycles aligned at the median of their contacts."""
     if len(cycles) == 1:
         return _stroke(cycles[0], stroke)
     contacts = [shape_of(cycle).contact_mm for cycle in cycles]

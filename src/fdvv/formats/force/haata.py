@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from fdvv.capture._record import Notes, RawCycle, Reading, Track, stroke_name
-from fdvv.capture._text import Table, body, refusal
-from fdvv.model import Stroke
-from fdvv.text import cells
+from fdvv.formats.force.text import Table, body, refusal
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track, stroke_name
+from fdvv.io.text import cells
+from fdvv.model.curve import Stroke
 from fdvv.units import cN_from_gf
 
 _TITLE = re.compile(r"^(.*?)\s*\b(Press|Release)\s*(\d*)\s*,\s*([xy])$", re.IGNORECASE)

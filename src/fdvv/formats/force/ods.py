@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import LARGEST, LEAST_SAMPLES, refusal
+from fdvv.formats.force.text import LARGEST, LEAST_SAMPLES, refusal
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.units import FloatArray, cN_from_gf
 
 LARGEST_CONTENT = 64 * 2**20
@@ -63,7 +63,7 @@ def read_ods(source: Path, content: bytes, notes: Notes) -> Reading:
 
 
 def _check_archive(source: Path, content: bytes) -> None:
-    """Unpack with a limit, so that a bomb or a damaged archive is refused before it is parsed."""
+    """Refuse a bomb or a damaged archive before it is parsed."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             names = archive.namelist()
@@ -109,8 +109,8 @@ def _sheets(source: Path, content: bytes) -> list[tuple[str, Cells]]:
     except (KeyboardInterrupt, SystemExit, MemoryError):
         raise
     except BaseException as error:  # a panic of the parser is no Exception
-        told = str(error)[:80] or type(error).__name__
-        raise refusal(source, "whole file", f"the .ods cannot be parsed ({told})") from None
+        message = str(error)[:80] or type(error).__name__
+        raise refusal(source, "whole file", f"the .ods cannot be parsed ({message})") from None
 
 
 def _why_nothing(rows: Cells) -> str:
@@ -132,13 +132,12 @@ def _raw_cycles(rows: Cells, notes: Notes) -> list[RawCycle]:
             above = rows[at - 1] if at else []
             found = [_group(rows, at + 1, i, titles, _label(above, titles, i), notes) for i in groups]
             cycles = [cycle for cycle in found if cycle is not None]
-            # one group needs no label to tell it from others
+            # a single group needs no label
             return cycles if len(cycles) > 1 else [RawCycle("", run=c.run) for c in cycles]
     return []
 
 
 def _label(above: Sequence[Any], titles: list[str], column: int) -> str:
-    """Join the words that stand above a raw group."""
     words = [str(above[i]).strip() for i in (column, column + 1) if i < len(above) and str(above[i]).strip()]
     return " ".join(word for word in words if word.lower() not in ("raw", "raw data")) or titles[column]
 
@@ -146,7 +145,7 @@ def _label(above: Sequence[Any], titles: list[str], column: int) -> str:
 def _group(
     rows: Cells, start: int, column: int, titles: list[str], label: str, notes: Notes
 ) -> RawCycle | None:
-    """Read one raw group; rows with text among the numbers are left out and told."""
+    """Read one raw group; rows with text among the numbers are left out with a note."""
     contact = column + 2 < len(titles) and bool(_CLOSED.match(titles[column + 2]))
     picks = range(column, column + (3 if contact else 2))
     kept: list[list[float]] = []

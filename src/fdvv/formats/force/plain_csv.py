@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.capture._header import Column, Quantity, describe, guess_length_mm
-from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import Table, body, refusal
-from fdvv.model import Stroke
-from fdvv.text import cells, sniff_separator
+from fdvv.formats.force.text import Column, Quantity, Table, body, describe, guess_length_mm, refusal
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
+from fdvv.io.text import cells, sniff_separator
+from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
 
 FORMATS = {
@@ -63,7 +62,7 @@ def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, no
 
 
 def _name(source: Path, form: str) -> str:
-    # a log is called DataLog_1; its folder tells which dome it is of
+    # a log is called DataLog_1; its folder names the dome
     if form == "buddyog" and re.match(r"(.*-)?DataLog_\d+$", source.stem):
         return f"{source.parent.name.replace('_', ' ')}, {source.stem.split('-')[-1]}".lstrip(", ")
     return source.stem
@@ -77,7 +76,6 @@ def _tell_unread(columns: Sequence[Column], notes: Notes) -> None:
 
 
 def _check_distinct(source: Path, at: int, forces: Sequence[Column]) -> None:
-    """Refuse two force columns that nothing tells apart, and forces without a unit."""
     titles = [c.title for c in forces]
     for column in forces:
         if titles.count(column.title) > 1 and column.stroke is None and column.velocity_mm_s is None:
@@ -100,7 +98,6 @@ def _curve(
     several: bool,
     notes: Notes,
 ) -> RawCycle:
-    """Read one force column with its displacement, and the clock and contact if there are any."""
     travel = _beside(columns, Quantity.DISPLACEMENT, force) or force
     clock, contact = (_beside(columns, q, force) for q in (Quantity.TIME, Quantity.CLOSED))
     clock = clock if clock is not None and clock.scale is not None else None
@@ -146,7 +143,6 @@ def _length_scale(source: Path, column: Column, values: FloatArray, notes: Notes
 
 
 def _as_cycle(track: Track, force: Column, stroke: Stroke | None, label: str) -> RawCycle:
-    """Take a column for a run if it goes down and comes back, else for the one stroke it is."""
     x = track.x_mm
     stroke = force.stroke or stroke
     turns = x.size > 8 and 0.1 * x.size < int(np.argmax(np.abs(x - x[0]))) < 0.9 * x.size
@@ -160,7 +156,6 @@ def _as_cycle(track: Track, force: Column, stroke: Stroke | None, label: str) ->
 
 
 def _pair_up(cycles: list[RawCycle]) -> list[RawCycle]:
-    """Join each press with the release of its velocity and place in the row."""
     presses = [c for c in cycles if c.press is not None]
     releases = [c for c in cycles if c.release is not None]
     joined = [c for c in cycles if c.run is not None]

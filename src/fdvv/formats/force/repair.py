@@ -12,28 +12,36 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
-from fdvv.capture._record import Notes, RawCycle, Track
-from fdvv.model import first_loaded
+from fdvv.formats.force.types import Notes, RawCycle, Track
+from fdvv.model.bump import first_loaded
+from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
 
 FAR_mm, STRONG_cN = 1000.0, 100_000.0
 """No button travels a metre or takes a kilonewton."""
 
 SPIKE_cN = 20.0
+
 SPIKE_HALF = 5
+
 SPIKE_WIDTH_mm = 0.06
 """A spike stands 20 cN off the running median of 11 samples and is back within 60 um; the undershoot
 of a real snap stays below (15 cN in the loudest click bar measured)."""
 
 STUCK_DROP_cN = 15.0
+
 STUCK_RISE_cN_mm = 150.0
+
 STUCK_WIDTH_mm = 0.5
 """A probe that sticks climbs like a stop (450 to 520 cN/mm seen) and falls in one sample back to where
 it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
 
 JUMP_mm = 0.5
+
 PULL_cN = -5.0
+
 AIR_cN = 2.0
+
 SLIP_mm = 0.25
 
 
@@ -103,7 +111,6 @@ def drop_spikes(track: Track, notes: Notes) -> Track:
 
 
 def _runs(mask: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Give first and last index of each run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
@@ -155,7 +162,7 @@ def drop_lost_tare(track: Track, notes: Notes) -> Track:
     return track.take(slice(start, end))
 
 
-def tell_jumps(track: Track, notes: Notes) -> None:
+def warn_of_jumps(track: Track, notes: Notes) -> None:
     """Warn where a stretch of the stroke is missing; it stays missing."""
     step = np.diff(track.x_mm)
     limit = max(JUMP_mm, 20.0 * float(np.median(np.abs(step))))
@@ -166,11 +173,11 @@ def tell_jumps(track: Track, notes: Notes) -> None:
         )
 
 
-def mend_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
+def correct_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
     """Move a press back onto its release where the position counter slipped as the stage turned.
 
     The evidence must be double: the release leaps off the stop while the force still holds, and press
-    and release meet the cap as far apart as that leap.
+    and release touch the cap as far apart as that leap.
     """
     press, release = cycle.press, cycle.release
     if press is None or release is None or release.x_mm.size < 12:
@@ -186,7 +193,7 @@ def mend_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
         return cycle
     notes.say(
         f"{press.where}: the position counter slipped by {apart:.2f} mm as the stage turned (press and "
-        f"release meet the cap that far apart); the press was moved by {-apart:.2f} mm and "
+        f"release touch the cap that far apart); the press was moved by {-apart:.2f} mm and "
         f"{_samples(int(leaps[-1]) + 1)} caught in the slip left out of the release"
     )
     # the turning samples handed over from the release carry the same slip, so the whole press moves
@@ -231,3 +238,41 @@ def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
 
 def _samples(count: int) -> str:
     return "1 sample was" if count == 1 else f"{count} samples were"
+
+
+def switching_mm(track: Track | None, stroke: Stroke, notes: Notes) -> float | None:
+    """Find the first sample after the one edge of the contact; None, with a reason, if there is not one.
+
+    A press closes the contact, a release opens it. A contact that chatters has no single point.
+    """
+    if track is None or track.closed is None:
+        return None
+    closed = track.closed > 0.5
+    edges = np.flatnonzero(np.diff(closed.astype(np.int8)))
+    if edges.size == 1 and closed[-1] == (stroke is Stroke.PRESS):
+        return float(track.x_mm[edges[0] + 1])
+    point = "actuation" if stroke is Stroke.PRESS else "reset"
+    if edges.size > 1:
+        places = f"{track.x_mm[edges].min():.3f} to {track.x_mm[edges].max():.3f} mm"
+        notes.say(f"{track.where}: the contact chatters, {edges.size} edges from {places}; no {point} point")
+    else:
+        notes.say(
+            f"{track.where}: the contact never {'closed' if not closed.any() else 'opened'}; no {point} point"
+        )
+    return None
+
+
+def mean_velocity_mm_s(track: Track) -> float | None:
+    """Compute the mean speed between 10 % and 90 % of the stroke, to three digits; None without a clock."""
+    if track.time_s is None:
+        return None
+    x = track.x_mm
+    low, high = x.min() + 0.1 * np.ptp(x), x.min() + 0.9 * np.ptp(x)
+    inside = np.flatnonzero((x >= low) & (x <= high))
+    if inside.size < 2:
+        return None
+    took = float(track.time_s[inside[-1]] - track.time_s[inside[0]])
+    moved = float(abs(x[inside[-1]] - x[inside[0]]))
+    if took <= 0.0 or moved <= 0.0 or not np.isfinite(moved / took):
+        return None
+    return float(f"{moved / took:.3g}")

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fdvv.capture._record import Notes, RawCycle, Track
+from fdvv.formats.force.types import Notes, RawCycle, Track
 from fdvv.units import FloatArray
 
 LEAST_RETURN = 0.1

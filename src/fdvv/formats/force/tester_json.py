@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import LARGEST, LEAST_SAMPLES, refusal
+from fdvv.formats.force.text import LARGEST, LEAST_SAMPLES, refusal
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.units import FloatArray, cN_from_gf
 
 POINTS = {"press": ("pressPoint", "press_point"), "release": ("releasePoint", "release_point")}
@@ -93,7 +93,6 @@ def _number(value: object) -> float:
 
 
 def _point(record: Mapping[str, Any], name: str, notes: Notes) -> tuple[float, float] | None:
-    """Read a contact point [mm, gf] under either of its two names."""
     key = next((key for key in POINTS[name] if key in record), None)
     value = record.get(key) if key else None
     if isinstance(value, list) and len(value) == 2:
@@ -112,7 +111,7 @@ def _rebuild_release(
     reset: tuple[float, float] | None,
     notes: Notes,
 ) -> Track | None:
-    """Give a release its own displacement where the file only copies that of the press.
+    """Rebuild a release's displacement where the file only copies that of the press.
 
     The forces of the release are in the order of time. The tester steps back by the press's own step
     and notes displacement and force where the contact opened: that sample anchors the release.
@@ -146,7 +145,7 @@ def _rebuild_release(
 def _anchor(
     force_cN: FloatArray, reset: tuple[float, float] | None, press: Track, step: float
 ) -> tuple[int, float] | None:
-    """Find the release sample that carries the noted force where it must be: within 0.1 mm of its place."""
+    """Find the release sample with the stated force within 0.1 mm of its position."""
     if reset is None or step <= 0.0:
         return None
     same = np.flatnonzero(np.abs(force_cN - cN_from_gf(reset[1])) < 1e-6)

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.capture._header import FORCE_cN, LENGTH_mm
-from fdvv.capture._record import Notes, RawCycle, Reading, Track
-from fdvv.capture._text import Table, body, refusal
+from fdvv.formats.force.text import FORCE_cN, LENGTH_mm, Table, body, refusal
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.units import FloatArray, cN_from_gf
 
 _RAW = re.compile(r"^No\.,Force,Unit,Displacement,Unit\b", re.IGNORECASE)
@@ -35,7 +34,7 @@ def is_tidy(lines: Sequence[str]) -> bool:
 
 
 def read_raw(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
-    """Read the raw export; the judge column only tells a force above 200 gf and drops nothing."""
+    """Read the raw export; the judge column only marks a force above 200 gf and drops nothing."""
     at = next(i for i, line in enumerate(lines) if _RAW.match(line))
     table = body(source, lines, at + 1)
     if not table.rows:
@@ -46,7 +45,6 @@ def read_raw(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
 
 
 def _unit(source: Path, table: Table, column: int, known: dict[str, float]) -> float:
-    """Read the unit that stands beside every number; the one most rows give."""
     found = [row[column].strip() for row in table.rows if len(row) > column]
     name = max(sorted(set(found)), key=found.count, default="")
     if name.lower() not in known:

@@ -1,4 +1,4 @@
-"""What readers hand on: samples in the order of the file, in mm and cN, not yet split or repaired."""
+"""What a file of force curves holds once it is read: cycles of press and release, and what was repaired."""
 
 from __future__ import annotations
 
@@ -8,8 +8,45 @@ from typing import Any
 
 import numpy.typing as npt
 
-from fdvv.model import Stroke
+from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """One press with its release, either of which a source may lack.
+
+    Attributes
+    ----------
+    press, release : as measured, in the file's own displacement (mm) and force converted to cN.
+    actuation_mm, reset_mm : where the electrical contact closed and opened, in the same displacement;
+        None if the file does not state it or the contact chattered.
+    label : how the file names it ("Press 3", "run 1").
+    """
+
+    press: MeasuredCurve | None
+    release: MeasuredCurve | None
+    actuation_mm: float | None = None
+    reset_mm: float | None = None
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class ForceFile:
+    """Everything one file holds.
+
+    Attributes
+    ----------
+    name : of the switch, from inside the file or from the file's name.
+    format : which reader took it ("thereminGoat-tidy", "haata", "plain-csv" ...).
+    cycles : at least one, in the file's order.
+    warnings : one sentence per repair, with its place and what was done; empty if the file was clean.
+    """
+
+    name: str
+    format: str
+    cycles: tuple[Cycle, ...]
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +107,6 @@ class Notes:
     tallies: dict[str, list[tuple[str, float]]] = field(default_factory=dict)
 
     def say(self, sentence: str) -> None:
-        """Add one sentence, once."""
         if sentence not in self.sentences:
             self.sentences.append(sentence)
 
@@ -79,17 +115,16 @@ class Notes:
         self.tallies.setdefault(template, []).append((where, amount))
 
     def lines(self) -> tuple[str, ...]:
-        """Give every sentence, tallies last."""
-        told = [
+        """Return every sentence, tallies last."""
+        counted = [
             template.format(
                 places=", ".join(dict.fromkeys(where for where, _ in found)),
                 most=max(amount for _, amount in found),
             )
             for template, found in self.tallies.items()
         ]
-        return (*self.sentences, *told)
+        return (*self.sentences, *counted)
 
 
 def stroke_name(stroke: Stroke, label: str) -> str:
-    """Name one stroke of a cycle for messages."""
     return f"{stroke.value} of {label}" if label else stroke.value

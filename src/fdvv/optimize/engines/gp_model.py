@@ -11,12 +11,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.optimize._places import missing
+from fdvv.errors import ModelError
+from fdvv.optimize.engines.search import missing
+from fdvv.optimize.problem import Objective, Problem, Trial, TrialState
+from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
 
 LENGTH = (0.2, 0.7)
@@ -32,7 +36,6 @@ ROUNDS = 2
 """How often weights and kernel are fitted in turn."""
 TREND = 1.0
 """SD of what a person gains or loses over a run, in standardised scores, before the first."""
-
 Prior = tuple[float, float]
 """Mean and SD of a log variance."""
 
@@ -87,7 +90,7 @@ class Observed:
 
 @dataclass(frozen=True, eq=False)
 class Belief:
-    """What is believed of f after some scores.
+    """The posterior of f after some scores.
 
     Attributes
     ----------
@@ -119,11 +122,11 @@ class Belief:
 
     @property
     def weights(self) -> FloatArray:
-        """Get the weights of the basis functions, (b,), of standardised scores."""
+        """The weights of the basis functions, (b,), of standardised scores."""
         return self._solved["w"]
 
     def predict(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give mean and SD of f, (n,) each, in the scores' unit; noise is not in it."""
+        """Return mean and SD of f, (n,) each, in the scores' unit; noise is not in it."""
         mean, root = self._moments(places)
         prior = self.kernel.diag(places)
         variance = prior - (root[0] ** 2).sum(axis=0) + (root[1] @ self._solved["cov"] * root[1]).sum(axis=1)
@@ -151,7 +154,7 @@ class Belief:
 def believe(
     observed: Observed, basis: Basis | None = None, starts: int = 2, few: npt.NDArray[np.int64] | None = None
 ) -> Belief:
-    """Learn from at least one score. BuildError without scikit-learn.
+    """Learn from at least one score. Raises BuildError without scikit-learn.
 
     few : scores that the kernel's numbers are fitted to, by place; all, unless there are very many.
     """
@@ -176,13 +179,13 @@ def believe(
 
 
 def _functions(basis: Basis | None, places: FloatArray, trend: FloatArray | None, scale: float) -> FloatArray:
-    """Give the values, (n, b), of all that may explain standardised scores beside f."""
+    """Return the values, (n, b), of all that may explain standardised scores beside f."""
     columns = [] if basis is None else [basis.of(places) / scale]
     return np.hstack([np.zeros((len(places), 0)), *columns, *([] if trend is None else [trend[:, None]])])
 
 
 def _weights(basis: Basis | None, trend: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-    """Give mean and SD, (b,), of the weights of these functions before any score."""
+    """Return mean and SD, (b,), of the weights of these functions before any score."""
     weight, spread = (np.zeros(0), np.zeros(0)) if basis is None else (basis.weight, basis.spread)
     return (weight, spread) if trend is None else (np.append(weight, 0.0), np.append(spread, TREND))
 
@@ -198,7 +201,7 @@ def pooled(errors: FloatArray) -> FloatArray:
 def _fitted(
     X: FloatArray, y: FloatArray, fixed: FloatArray, priors: tuple[Prior, Prior], starts: int
 ) -> tuple[Any, float]:
-    """Fit lengths, signal and what is left as noise; give the kernel without the noise, and the noise."""
+    """Fit lengths, signal and what is left as noise; return the kernel without the noise, and the noise."""
     try:
         from sklearn.gaussian_process import GaussianProcessRegressor
         from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
@@ -247,3 +250,88 @@ def _search(mean: FloatArray, spread: FloatArray, starts: int) -> Callable[..., 
         return best.x, float(best.fun)
 
     return search
+
+
+def finished(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
+    """Return the trials that have a score for every objective."""
+    names = [one.name for one in problem.objectives]
+    return [t for t in trials if t.state is TrialState.DONE and all(name in t.scores for name in names)]
+
+
+def observed(space: DesignSpace, objective: Objective, done: Sequence[Trial]) -> Observed:
+    """Gather the scores of finished trials, turned so that smaller is better."""
+    sign = -1.0 if objective.larger_is_better else 1.0
+    scores = [trial.scores[objective.name] for trial in done]
+    return Observed(
+        space.to_unit([trial.design for trial in done]),
+        np.array([sign * score.value for score in scores]),
+        np.array([np.nan if score.error is None else score.error for score in scores]),
+    )
+
+
+def believed_best(problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+    """Recommend the tried design whose posterior mean is best. Raises ModelError."""
+    done = best_of(problem, trials)
+    means, _ = believe(observed(problem.space, problem.objectives[0], done)).predict(
+        problem.space.to_unit([trial.design for trial in done])
+    )
+    return dict(done[int(np.argmin(means))].design)
+
+
+class RecommendsBelievedBest:
+    """An engine without a model of its own: it recommends what a Gaussian process believes best."""
+
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        return believed_best(problem, trials)
+
+
+def best_of(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
+    """Return the finished trials that one is to be recommended of. ModelError if there is no such one."""
+    if len(problem.objectives) != 1:
+        raise ModelError("several objectives have no single best design; choose from the Pareto front")
+    done = finished(problem, trials)
+    if not done:
+        raise ModelError("no trial is done yet, so there is no best design")
+    return done
+
+
+MOST, FITTED = 1000, 150
+"""Trials of others that are learned from, and that lengths are fitted to; of more, as many spread evenly."""
+WEIGHT, SPREAD = 1.0, 0.6
+"""Of the others' differences in a person's scores, before the first of them: the same, and a doubt."""
+
+
+def prior_basis(problem: Problem) -> Basis | None:
+    """Return what others' trials let expect; None without any."""
+    done = finished(problem, problem.prior)
+    if len(done) < 3:
+        return None
+    belief = _learned(*_rows(problem, done))
+    centre = float(np.mean(belief.predict(belief.observed.places)[0]))
+
+    def of(places: FloatArray) -> FloatArray:
+        return np.asarray(belief.predict(places)[0] - centre)[:, None]
+
+    return Basis(of, np.array([WEIGHT]), np.array([SPREAD]))
+
+
+def _rows(problem: Problem, done: Sequence[Trial]) -> tuple[bytes, bytes, bytes, int]:
+    """Write the trials as bytes, by which what was learned of them is kept."""
+    few = [done[i] for i in _spread(len(done), MOST)]
+    scores = observed(problem.space, problem.objectives[0], few)
+    rows = (np.ascontiguousarray(a).tobytes() for a in (scores.places, scores.values, scores.errors))
+    places, values, errors = rows
+    return places, values, errors, len(problem.space.names)
+
+
+@lru_cache(maxsize=64)
+def _learned(places: bytes, values: bytes, errors: bytes, d: int) -> Belief:
+    """Learn of the others once for all suggestions of a run."""
+    X = np.frombuffer(places).reshape(-1, d)
+    scores = Observed(X, np.frombuffer(values), np.frombuffer(errors))
+    return believe(scores, starts=1, few=_spread(len(X), FITTED))
+
+
+def _spread(count: int, most: int) -> npt.NDArray[np.int64]:
+    """Return at most so many places, evenly over count."""
+    return np.unique(np.linspace(0, count - 1, most).astype(np.int64))

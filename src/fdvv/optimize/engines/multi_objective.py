@@ -1,17 +1,62 @@
-"""Several objectives: which designs no other beats, and how to choose one of them."""
+"""Several objectives as one: weights drawn anew for every trial, so that trials spread along the front.
+
+Knowles, ParEGO (2006): the augmented Chebyshev function of normalised objectives.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.optimize._belief import finished
-from fdvv.optimize._engine import Problem
-from fdvv.optimize._trial import Trial
+from fdvv.optimize.engines.gp_model import finished
+from fdvv.optimize.engines.search import generator
+from fdvv.optimize.problem import Objective, Problem, Score, Trial
 from fdvv.units import FloatArray
+
+AUGMENTED = 0.05
+SCALAR = Objective("scalar")
+
+
+def scalar_problem(problem: Problem, trials: Sequence[Trial]) -> tuple[Problem, list[Trial]]:
+    """Return a problem of one objective, and its finished trials; as they are where there is one already."""
+    done = finished(problem, trials)
+    if len(problem.objectives) == 1:
+        return problem, done
+    weights = generator(problem, trials, 7).dirichlet(np.ones(len(problem.objectives)))
+    others = finished(problem, problem.prior)
+    both = [*done, *others]
+    if not both:
+        return replace(problem, objectives=(SCALAR,), prior=()), []
+    values, errors = _table(problem, both)
+    low, span = values.min(axis=0), np.ptp(values, axis=0)
+    span = np.where(span > 0, span, 1.0)
+    one = [
+        replace(trial, scores={SCALAR.name: score})
+        for trial, score in zip(both, _joined((values - low) / span, errors / span, weights), strict=True)
+    ]
+    return replace(problem, objectives=(SCALAR,), prior=tuple(one[len(done) :])), one[: len(done)]
+
+
+def _table(problem: Problem, done: Sequence[Trial]) -> tuple[FloatArray, FloatArray]:
+    """Return scores, turned so that smaller is better, and their errors, (n, m) each; nan where unknown."""
+    signs = np.array([-1.0 if one.larger_is_better else 1.0 for one in problem.objectives])
+    scores = [[trial.scores[one.name] for one in problem.objectives] for trial in done]
+    values = np.array([[score.value for score in row] for row in scores]) * signs
+    errors = [[np.nan if score.error is None else score.error for score in row] for row in scores]
+    return values, np.array(errors)
+
+
+def _joined(values: FloatArray, errors: FloatArray, weights: FloatArray) -> list[Score]:
+    """Join each row by its worst weighted objective and a little of the others; the error of that one."""
+    weighted = values * weights
+    worst = weighted.argmax(axis=1)
+    rows = np.arange(len(values))
+    joined = weighted[rows, worst] + AUGMENTED * weighted.sum(axis=1)
+    error = errors[rows, worst] * weights[worst]
+    return [Score(float(v), float(e) if np.isfinite(e) else None) for v, e in zip(joined, error, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -27,7 +72,7 @@ class ParetoFront:
     trials: tuple[Trial, ...]
 
     def values(self) -> FloatArray:
-        """Give the scores, (n, m), in the order of the problem's objectives."""
+        """Return the scores, (n, m), in the order of the problem's objectives."""
         names = [one.name for one in self.problem.objectives]
         rows = [[trial.scores[name].value for name in names] for trial in self.trials]
         return np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
@@ -78,7 +123,7 @@ class ParetoFront:
         return np.array([-1.0 if one.larger_is_better else 1.0 for one in self.problem.objectives])
 
     def _normal(self) -> FloatArray:
-        """Give scores from 0, best of the front, to 1, worst of it."""
+        """Return scores from 0, best of the front, to 1, worst of it."""
         values = self.values() * self._signs()
         span = np.ptp(values, axis=0)
         return np.asarray((values - values.min(axis=0)) / np.where(span > 0, span, 1.0))

@@ -12,19 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize._belief import believed_best, finished
-from fdvv.optimize._engine import Problem
-from fdvv.optimize._places import (
+from fdvv.optimize.engines.gp_model import RecommendsBelievedBest, believed_best, finished
+from fdvv.optimize.engines.search import (
     OPEN,
     draw_feasible,
     fresh,
     generator,
     missed_by,
     missing,
+    sobol_places,
     tried_places,
 )
-from fdvv.optimize._plain import sobol_places
-from fdvv.optimize._trial import Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
@@ -43,17 +42,16 @@ BROKEN = "held"
 
 
 @dataclass(frozen=True)
-class TPEEngine:
+class TPEEngine(RecommendsBelievedBest):
     """Tree-structured Parzen estimators over all parameters at once.
 
     Trials under way count as bad ones (the constant liar), so that a batch spreads; failed ones and what
-    breaks a constraint are told to the sampler as infeasible.
+    breaks a constraint are infeasible ones for the sampler.
     """
 
     name: str = field(default="tpe", init=False)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
-        """Suggest, see Engine."""
         prior = _weighed_prior(problem, trials)
         if len(finished(problem, trials)) + len(prior) < STARTUP:
             return problem.space.of_unit(sobol_places(problem, tried_places(problem.space, trials), count))
@@ -66,13 +64,9 @@ class TPEEngine:
                 _tell(study, problem, trial)
             return _asked(study, problem, trials, count)
 
-    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
-        """Recommend, see Engine."""
-        return believed_best(problem, trials)
-
 
 @dataclass(frozen=True)
-class CMAESEngine:
+class CMAESEngine(RecommendsBelievedBest):
     """Covariance matrix adaptation: for budgets of hundreds, as simulated users have them.
 
     Its state is made by going through the trials again, those that a person edited as injected ones. Of
@@ -82,7 +76,7 @@ class CMAESEngine:
     name: str = field(default="cmaes", init=False)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
-        """Suggest, see Engine. ModelError on several objectives."""
+        """Suggest, see Engine. Raises ModelError on several objectives."""
         if len(problem.objectives) != 1:
             raise ModelError("cmaes takes one objective; use nsga2, tpe, gp or botorch")
         others = finished(problem, problem.prior)
@@ -98,13 +92,9 @@ class CMAESEngine:
             sampler = optuna.samplers.CmaEsSampler(seed=seed, independent_sampler=independent)
             return _asked(_replayed(problem, trials, sampler), problem, trials, count)
 
-    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
-        """Recommend, see Engine."""
-        return believed_best(problem, trials)
-
 
 @dataclass(frozen=True)
-class NSGA2Engine:
+class NSGA2Engine(RecommendsBelievedBest):
     """Non-dominated sorting: generations that spread along a front, for budgets of hundreds.
 
     Parameters
@@ -116,7 +106,6 @@ class NSGA2Engine:
     name: str = field(default="nsga2", init=False)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
-        """Suggest, see Engine."""
         with _quiet():
             import optuna
 
@@ -124,10 +113,6 @@ class NSGA2Engine:
                 seed=problem.seed & 0x7FFFFFFF, population_size=self.population
             )
             return _asked(_replayed(problem, trials, sampler), problem, trials, count)
-
-    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
-        """Recommend, see Engine."""
-        return believed_best(problem, trials)
 
 
 def _replayed(problem: Problem, trials: Sequence[Trial], sampler: BaseSampler) -> Study:
@@ -154,7 +139,7 @@ def _weighed_prior(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
 
 @contextmanager
 def _quiet(*parts: str) -> Iterator[None]:
-    """Keep Optuna from telling of every study. BuildError without it, or without parts that it needs."""
+    """Keep Optuna from logging every study. BuildError without it, or without parts that it needs."""
     try:
         import optuna
 
@@ -177,13 +162,14 @@ def _seed(problem: Problem, trials: Sequence[Trial]) -> int:
 def _study(problem: Problem, sampler: BaseSampler) -> Study:
     import optuna
 
-    Way = optuna.study.StudyDirection
-    ways = [Way.MAXIMIZE if one.larger_is_better else Way.MINIMIZE for one in problem.objectives]
-    return optuna.create_study(directions=ways, sampler=sampler)
+    direction = optuna.study.StudyDirection
+    directions = [
+        direction.MAXIMIZE if one.larger_is_better else direction.MINIMIZE for one in problem.objectives
+    ]
+    return optuna.create_study(directions=directions, sampler=sampler)
 
 
 def _ranges(problem: Problem) -> dict[str, BaseDistribution]:
-    """Give every parameter the range of the unit cube."""
     import optuna
 
     return {name: optuna.distributions.FloatDistribution(0.0, 1.0) for name in problem.space.names}
@@ -202,8 +188,8 @@ def _tell(study: Study, problem: Problem, trial: Trial) -> None:
     state = optuna.trial.TrialState
     if trial.state is TrialState.DONE and finished(problem, [trial]):
         values = [trial.scores[one.name].value for one in problem.objectives]
-        held = {BROKEN: 0.0}
-        study.add_trial(optuna.trial.create_trial(values=values, constraints=held, **common))
+        feasible = {BROKEN: 0.0}
+        study.add_trial(optuna.trial.create_trial(values=values, constraints=feasible, **common))
     elif trial.state in OPEN:
         study.add_trial(optuna.trial.create_trial(state=state.RUNNING, **common))
     elif trial.state is TrialState.FAILED:
@@ -232,7 +218,7 @@ def _asked(study: Study, problem: Problem, trials: Sequence[Trial], count: int) 
 
 
 def _one(study: Study, problem: Problem, tried: FloatArray) -> FloatArray | None:
-    """Ask for one place; None, and the study is told, where it breaks a constraint or was tried."""
+    """Ask for one place; None where it breaks a constraint or was tried, which the study then knows."""
     import optuna
 
     ranges = _ranges(problem)

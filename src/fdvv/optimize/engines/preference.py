@@ -1,4 +1,6 @@
-"""What comparisons say of designs: a Gaussian process of worth, seen through answers that may err.
+"""Find what a person likes best from comparisons of two designs.
+
+What comparisons say of designs: a Gaussian process of worth, seen through answers that may err.
 
 Chu and Ghahramani, Preference learning with Gaussian processes (2005): an answer is the sign of a
 difference of worths plus noise; Laplace's approximation about the most probable worths. Worth has a variance
@@ -13,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.optimize._places import fresh, missing
-from fdvv.optimize._space import DesignSpace
-from fdvv.optimize._trial import Answer, Comparison
+from fdvv.errors import ModelError
+from fdvv.optimize.engines.search import draw_feasible, fresh, generator, missing
+from fdvv.optimize.problem import Answer, Comparison, Problem
+from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
 
 LENGTH = 0.4
@@ -56,7 +59,7 @@ class PreferenceBelief:
         object.__setattr__(self, "_solved", {"a": slope, "B": 0.5 * (inner + inner.T), "worth": worth})
 
     def _bend(self, worth: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give the gradient (n,) and negative Hessian (n, n) of the log likelihood at worths (n,)."""
+        """Return the gradient (n,) and negative Hessian (n, n) of the log likelihood at worths (n,)."""
         from scipy.special import log_ndtr
 
         first, second = self.pairs.T
@@ -69,18 +72,18 @@ class PreferenceBelief:
         return D.T @ g, D.T @ (h[:, None] * D)
 
     def predict(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give mean (n,) and covariance (n, n) of the worth of places."""
+        """Return mean (n,) and covariance (n, n) of the worth of places."""
         cross = self._kernel(places, self.places)
         cov = self._kernel(places) - cross @ self._solved["B"] @ cross.T
         return cross @ self._solved["a"], np.asarray(cov)
 
     def mean(self, places: FloatArray) -> FloatArray:
-        """Give the mean worth of places, (n,)."""
+        """Return the mean worth of places, (n,)."""
         return np.asarray(self._kernel(places, self.places) @ self._solved["a"])
 
 
 def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> PreferenceBelief | None:
-    """Learn from answered comparisons; None without any. BuildError without scikit-learn."""
+    """Learn from answered comparisons; None without any. Raises BuildError without scikit-learn."""
     answered = [one for one in comparisons if one.answer is not None]
     if not answered:
         return None
@@ -101,3 +104,48 @@ def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> Pr
     kernel = Matern(LENGTH * np.sqrt(both.shape[1]), nu=2.5)
     table = np.array(pairs, dtype=np.intp).reshape(-1, 2)
     return PreferenceBelief(places, table, np.array(counts), kernel)
+
+
+Pair = tuple[dict[str, float], dict[str, float]]
+
+
+@dataclass(frozen=True)
+class PreferenceEngine:
+    """Compare the favourite so far with the most promising of some designs drawn at random.
+
+    A person always compares with what they know; chance in the draw is what explores. In few answers and
+    eight dimensions this found more than looking everywhere for the largest expected worth of the better
+    one, which leads to the corners, where least is known (docs/explanation/optimisation.md).
+
+    Parameters
+    ----------
+    drawn : designs that the challenger is chosen from; more of them trust the belief more.
+    """
+
+    drawn: int = 128
+    name: str = field(default="preference", init=False)
+
+    def pair(self, problem: Problem, comparisons: Sequence[Comparison]) -> Pair:
+        rng, d = generator(problem, comparisons, 9), len(problem.space.names)
+        tried = compared_places(problem, comparisons)
+        belief = believe_answers(problem.space, comparisons)
+        count = 2 if belief is None else self.drawn
+        net = draw_feasible(problem, lambda n: rng.random((n, d)), tried, count)
+        if belief is not None:
+            favourite = belief.places[int(np.argmax(belief.mean(belief.places)))]
+            net = np.vstack([favourite, net[int(np.argmax(belief.mean(net)))]])
+        first, second = problem.space.of_unit(net)
+        # neither place of the two is always the favourite's
+        return (first, second) if rng.random() < 0.5 else (second, first)
+
+    def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
+        """Recommend the most liked design that was compared, see PairEngine."""
+        belief = believe_answers(problem.space, comparisons)
+        if belief is None:
+            raise ModelError("no comparison is answered yet, so there is no favourite")
+        return problem.space.of_unit(belief.places[int(np.argmax(belief.mean(belief.places)))])[0]
+
+
+def compared_places(problem: Problem, comparisons: Sequence[Comparison]) -> FloatArray:
+    """Return the places, (2 n, d), of compared designs, pair by pair."""
+    return problem.space.to_unit([design for one in comparisons for design in (one.first, one.second)])

@@ -7,39 +7,26 @@ from pathlib import Path
 from typing import Any
 
 from fdvv import __version__
-from fdvv.documents import finite
-from fdvv.files import write_atomic
-from fdvv.plot import (
-    DesignPanel,
-    ScoreBars,
-    Section,
-    Table,
-    TrainingScores,
-    figure_svg,
-    plot_designs,
-    plot_rendering,
-    plot_score_bars,
-    plot_training,
-    render_html,
-    write_report,
-)
-from fdvv.workflow._experiment import ExperimentResult
-from fdvv.workflow._experiment_paragraphs import level_title, method_paragraphs, winner_paragraphs
-from fdvv.workflow._experiment_setup import LEVELS
-from fdvv.workflow._experiment_verdict import ExperimentVerdict
-from fdvv.workflow._experiment_winner import RenderedWinner, Winner, rendered_curves
-from fdvv.workflow._experiment_words import (
-    PAIR_COLUMNS,
+from fdvv.io.documents import finite
+from fdvv.io.files import write_atomic
+from fdvv.optimize.experiment.experiment import ExperimentResult, ExperimentVerdict
+from fdvv.optimize.experiment.prose import (
     anova_sentences,
-    button_text,
-    effect_text,
+    level_title,
     means_sentence,
-    pair_cells,
+    method_paragraphs,
     pairs_sentence,
     reductions_sentence,
-    stars,
+    winner_paragraphs,
 )
-from fdvv.workflow._optimize_report import control_points
+from fdvv.optimize.experiment.setup import LEVELS
+from fdvv.optimize.experiment.winner import RenderedWinner, Winner, rendered_curves
+from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
+from fdvv.rendering.figures import plot_rendering
+from fdvv.report.prose import PAIR_COLUMNS, button_text, effect_text, pair_cells, stars
+from fdvv.report.report import Section, Table, render_html, write_report
+from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
+from fdvv.report.svg import figure_svg
 
 EXAMPLES = 3
 """People whose designs are drawn."""
@@ -50,7 +37,7 @@ REPORT_FILE, RESULT_FILE = "report.html", "result.json"
 def experiment_report(
     result: ExperimentResult, verdict: ExperimentVerdict, rendered: RenderedWinner | None = None
 ) -> dict[str, Any]:
-    """Give everything an experiment found, for a file; units are in the names."""
+    """Return everything an experiment found, for a file; units are in the names."""
     winner = {"winner": rendered.to_dict()} if rendered else {}
     return {**result.to_dict(), "statistics": verdict.to_dict(), **winner}
 
@@ -58,7 +45,7 @@ def experiment_report(
 def write_experiment(
     folder: Path, result: ExperimentResult, verdict: ExperimentVerdict, rendered: RenderedWinner | None = None
 ) -> dict[str, Any]:
-    """Write report.html and result.json into a folder, each whole or not at all; give what result.json holds.
+    """Write report.html and result.json into a folder, each atomically; return the content of result.json.
 
     Needs matplotlib (BuildError without it). OSError.
     """
@@ -176,8 +163,8 @@ def _anova_table(verdict: ExperimentVerdict) -> Table:
         for effect in anova.effects if anova else ():
             df = f"{effect.effect_df}, {effect.error_df}"
             cells = (effect.F, effect.p, effect.sphericity.epsilon, effect.corrected_p)
-            told = (f"{v:.3g}" for v in (*cells, effect.partial_eta2, effect.generalized_eta2))
-            rows.append((f"{effect.name}, {counted}", df, *told))
+            figures = (f"{v:.3g}" for v in (*cells, effect.partial_eta2, effect.generalized_eta2))
+            rows.append((f"{effect.name}, {counted}", df, *figures))
     columns = ("effect, what is counted", "df", "F", "p", "ε", "p corrected", "partial η²", "generalized η²")
     return Table(
         columns, tuple(rows), "Simulated. Two-way repeated measures ANOVA; ε of Greenhouse and Geisser."

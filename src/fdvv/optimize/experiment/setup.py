@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta, Struct
 
-from fdvv.documents import Kind, read_document
-from fdvv.errors import InputError
-from fdvv.files import read_limited, write_atomic
-from fdvv.optimize import Trial
-from fdvv.workflow._optimize_setup import LARGEST_bytes, setup_text
-from fdvv.workflow._session_manifest import now, versions
+from fdvv.errors import InputError, ModelError
+from fdvv.io.documents import Kind, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.optimize.people.user import SimulatedUser, draw_user
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.setup import LARGEST_bytes, setup_text
+from fdvv.optimize.space import DesignSpace
+from fdvv.rendering.session import now, versions
+from fdvv.stats.orders import counterbalanced
 
 EXPERIMENT_FILE = "experiment.json"
 KIND = Kind(
@@ -23,7 +29,7 @@ LEVELS = ("easy", "hard")
 OPTIMAL, RANDOM = "optimal", "random"
 MX = ("mx-clear", "mx-brown", "mx-black", "mx-red")
 MADE = ("versions", "created")
-"""What may differ between an experiment and the same one gone on with."""
+"""What may differ when an experiment is continued."""
 
 
 class WeekGap(Struct, frozen=True, forbid_unknown_fields=True):
@@ -74,12 +80,12 @@ class ExperimentSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
 
     @property
     def buttons(self) -> tuple[str, ...]:
-        """Get the conditions of the validation, what was optimised first."""
+        """The conditions of the validation, what was optimised first."""
         return (OPTIMAL, *self.rivals, RANDOM)
 
     @property
     def observations(self) -> int:
-        """Get how many mean scores the validation gives."""
+        """How many mean scores the validation gives."""
         return self.people * len(LEVELS) * self.rounds * len(self.buttons)
 
 
@@ -100,7 +106,7 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
 
 
 def read_experiment_setup(folder: Path) -> ExperimentSetup:
-    """Read the setup of an experiment's folder. InputError."""
+    """Read the setup of an experiment's folder. Raises InputError."""
     path = folder / EXPERIMENT_FILE
     text = read_limited(path, LARGEST_bytes, KIND.remedy)
     return read_document(
@@ -109,10 +115,85 @@ def read_experiment_setup(folder: Path) -> ExperimentSetup:
 
 
 def _check_same(path: Path, there: ExperimentSetup, asked: ExperimentSetup) -> None:
-    """Refuse to go on with an experiment that was begun with other settings."""
+    """Refuse to continue an experiment that was begun with other settings."""
     for name in ExperimentSetup.__struct_fields__:
         if name not in MADE and getattr(there, name) != getattr(asked, name):
             begun = f"was begun with {name} {getattr(there, name)!r}, not {getattr(asked, name)!r}"
             if name == "prior":
                 begun = "was begun from other trials of others"
             raise InputError(path, f"$.{name}", begun, "go on with the same, or name a new folder")
+
+
+WEEK, DESIGN = 1, 2
+"""What else is drawn of a person, each from a stream of its own."""
+TRIES = 1000
+
+
+@dataclass(frozen=True)
+class Block:
+    """One round of one person at one level: every button once, in an order of its own.
+
+    Attributes
+    ----------
+    person, round : from 0. first : place of its first score among all of this person, from 0.
+    """
+
+    person: int
+    level: str
+    round: int
+    buttons: tuple[str, ...]
+    first: int
+
+
+def person_of(setup: ExperimentSetup, number: int) -> SimulatedUser:
+    """Draw a person of the experiment; each is the same however many there are."""
+    return draw_user(number, setup.seed)
+
+
+def level_order(person: int) -> tuple[str, ...]:
+    """Return the order in which a person meets the levels: every second one the other way round."""
+    return LEVELS if person % 2 == 0 else LEVELS[::-1]
+
+
+def blocks_of(setup: ExperimentSetup, person: int) -> tuple[Block, ...]:
+    """Return a person's validation: level after level, round after round, buttons in Williams' orders.
+
+    Orders run through all people's blocks in turn, so that over the experiment every button is in every
+    place, and follows every other, as equally often as the number of blocks allows.
+    """
+    each = len(LEVELS) * setup.rounds
+    orders = counterbalanced(setup.buttons, each * setup.people)[each * person :]
+    places = [(level, round_) for level in level_order(person) for round_ in range(setup.rounds)]
+    return tuple(
+        Block(person, level, round_, orders[i], i * len(setup.buttons))
+        for i, (level, round_) in enumerate(places)
+    )
+
+
+def a_week_later(user: SimulatedUser, gap: WeekGap, practised: int, seed: int) -> SimulatedUser:
+    """Return the same person on another day, with part of the practice forgotten and rested.
+
+    practised : presses made in training. What of them is kept becomes the state of learning that the person
+    comes with; fatigue is gone, adaptation begins anew, and timing, pace and bias are those of the day.
+    """
+    random = np.random.default_rng([seed, user.number, WEEK])
+    bias, anticipated, clock, pace = np.clip(random.standard_normal(4), -2, 2).tolist()
+    kept = math.exp(-gap.kept_ratio * practised / user.learning_presses)
+    return replace(
+        user,
+        bias_ms=user.bias_ms + gap.bias_ms * bias,
+        anticipated_ms=user.anticipated_ms + gap.anticipated_ms * anticipated,
+        clock_ratio=user.clock_ratio * math.exp(gap.clock_ratio * clock),
+        pace_mm_s=user.pace_mm_s * math.exp(gap.pace_ratio * pace),
+        learning_ratio=user.learning_ratio * kept,
+    )
+
+
+def random_design(space: DesignSpace, seed: int, person: int) -> dict[str, float]:
+    """Draw the random design of a person, evenly within the space and its constraints. Raises ModelError."""
+    random = np.random.default_rng([seed, person, DESIGN])
+    for _ in range(TRIES):
+        (design,) = space.of_unit(random.random(len(space.parameters)))
+        if not space.broken(design):
+            return design
+    raise ModelError(f"none of {TRIES} random designs holds the constraints of the space {space.name}")

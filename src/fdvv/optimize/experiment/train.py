@@ -6,21 +6,28 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from fdvv.model import FDVVModel, load_builtin
-from fdvv.optimize import SimulatedUser, TemporalPointing, Trial, paper_model, paper_space
-from fdvv.workflow._experiment_people import (
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.experiment.setup import (
+    LEVELS,
+    OPTIMAL,
+    RANDOM,
     Block,
+    ExperimentSetup,
     a_week_later,
     blocks_of,
     level_order,
     person_of,
     random_design,
 )
-from fdvv.workflow._experiment_setup import LEVELS, OPTIMAL, RANDOM, ExperimentSetup
-from fdvv.workflow._optimize_player import SimulatedPlayer, about_player, play_seed
-from fdvv.workflow._optimize_session import OptimizeSession
-from fdvv.workflow._optimize_setup import SETUP_FILE, OptimizeSetup
-from fdvv.workflow._play import score_design
+from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.player import SimulatedPlayer, about_player, play_seed
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup
+from fdvv.optimize.tasks import TemporalPointing
 
 TRAINING, VALIDATION = 1, 2
 """Phases of an experiment, as seeds know them."""
@@ -71,16 +78,16 @@ class Train:
     folder: Path
 
     def __call__(self, place: tuple[int, str]) -> Training:
-        """Begin the training, or go on with it. InputError, BuildError, OSError."""
+        """Begin or continue the training. Raises InputError, BuildError, OSError."""
         person, level = place
         with self._session(person, level) as session:
             self._player(person, level).play(session)
             return Training(person, level, session.trials, session.best())
 
-    def _session(self, person: int, level: str) -> OptimizeSession:
+    def _session(self, person: int, level: str) -> Optimization:
         folder = self.folder / f"person-{person + 1:02}-{level}"
         if (folder / SETUP_FILE).exists():
-            return OptimizeSession.open(folder)
+            return Optimization.open(folder)
         setup = self.setup
         asked = OptimizeSetup(
             engine=setup.engine,
@@ -92,7 +99,7 @@ class Train:
             simulated=True,
             about={**about_player(person, setup.rig, setup.presses), "drawn_with_seed": setup.seed},
         )
-        return OptimizeSession.create(folder, asked)
+        return Optimization.create(folder, asked)
 
     def _player(self, person: int, level: str) -> SimulatedPlayer:
         setup = self.setup
@@ -104,7 +111,7 @@ class Train:
 
 @dataclass(frozen=True)
 class Validate:
-    """Have one person meet all buttons a week later; called in any process.
+    """One person presses all buttons a week later; called in any process.
 
     Attributes
     ----------
@@ -115,7 +122,7 @@ class Validate:
     best: dict[tuple[int, str], dict[str, float]]
 
     def __call__(self, person: int) -> tuple[Observation, ...]:
-        """Give the person's scores in the order they were made. InputError on an unknown button."""
+        """Return the person's scores in the order they were made. Raises InputError on an unknown button."""
         setup = self.setup
         practised = len(LEVELS) * setup.trials * setup.presses
         user = a_week_later(person_of(setup, person), setup.gap, practised, setup.seed)
@@ -136,8 +143,8 @@ class Validate:
             presses_before=number * setup.presses,
         )
         score = scores["asynchrony_ms"]
-        told = block.person, block.level, block.round, place, block.buttons[place]
-        return Observation(*told, score.value, score.error or 0.0, scores[LOST].value)
+        place_of = block.person, block.level, block.round, place, block.buttons[place]
+        return Observation(*place_of, score.value, score.error or 0.0, scores[LOST].value)
 
     def _model(self, button: str, block: Block) -> FDVVModel:
         if button == OPTIMAL:

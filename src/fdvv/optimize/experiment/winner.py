@@ -7,20 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.compensate import RigAware
-from fdvv.device import Device, open_device
+from fdvv.bench.model import RecordedModel, model_of_recording
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import Device
+from fdvv.device.open import open_device
 from fdvv.errors import DeviceError, FitError, ModelError
-from fdvv.model import FDVVModel, Press, Stroke
-from fdvv.optimize import paper_model
-from fdvv.plot import RenderedBand, RenderedCurve
-from fdvv.recording import Quantity, Recording, Stage, Stream, Take
-from fdvv.twin import Finger, Habit, load_rig
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.optimize.experiment.experiment import ExperimentResult
+from fdvv.optimize.experiment.setup import OPTIMAL, RANDOM
+from fdvv.optimize.paper_space import paper_model
+from fdvv.recording.types import Quantity, Recording, Stage, Stream, Take
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import ProbeResult, probe
+from fdvv.report.records import RenderedBand, RenderedCurve
+from fdvv.twin.files import load_rig
+from fdvv.twin.finger import Finger, PressVariability
 from fdvv.units import FloatArray, N_from_cN
-from fdvv.workflow._capture_model import RecordedModel, model_of_recording
-from fdvv.workflow._compensate import compensate
-from fdvv.workflow._experiment import ExperimentResult
-from fdvv.workflow._experiment_setup import OPTIMAL, RANDOM
-from fdvv.workflow._probe import ProbeResult, probe
 
 WINNER_RIG = "paper"
 """Shipped rig that renders the winner."""
@@ -52,12 +56,12 @@ class Winner:
 
     @property
     def model(self) -> FDVVModel:
-        """Get the button that was designed."""
+        """The button that was designed."""
         return paper_model(self.design, f"optimal of person {self.person + 1}, {self.level}")
 
     @property
     def rendered(self) -> FDVVModel:
-        """Get what is rendered of it: the button with its stop at TRAVEL_mm."""
+        """What is rendered of it: the button with its stop at TRAVEL_mm."""
         return replace(self.model, travel_mm=TRAVEL_mm)
 
 
@@ -79,7 +83,7 @@ class RenderedWinner:
     refused: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the figures for a file."""
+        """Return the figures for a file."""
         return {
             "person": self.winner.person,
             "level": self.winner.level,
@@ -139,7 +143,7 @@ def open_winner_devices(model: FDVVModel, seed: int) -> tuple[Device, Device]:
     """
     x = np.linspace(0.0, model.travel_mm, 200)
     peak_N = float(N_from_cN(model.force_cN(x, PACE_mm_s, Stroke.PRESS).max()))
-    finger = Finger(habit=Habit(push_N=max(Habit().push_N, peak_N + BEYOND_N)))
+    finger = Finger(habit=PressVariability(push_N=max(PressVariability().push_N, peak_N + BEYOND_N)))
     rig = load_rig(WINNER_RIG)
     return open_device("twin", rig, finger, seed), open_device("twin", rig, finger, seed + 1000)
 
@@ -164,7 +168,7 @@ def render_winner(winner: Winner, learn_on: Device, measure_on: Device) -> Rende
 
 
 def rendered_curves(rendered: RenderedWinner) -> list[RenderedCurve]:
-    """Hold the design against fresh presses (median and quartiles) and the captured model, for a figure."""
+    """Return the design, fresh presses (median and quartiles) and the captured model, for a figure."""
     model, curves = rendered.captured.model, []
     for one in rendered.probed.curves:
         low, middle, high = np.percentile(one.rendered_cN, [25, 50, 75], axis=0)

@@ -8,28 +8,22 @@ from functools import lru_cache
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, Stroke
-from fdvv.optimize import SimulatedUser
-from fdvv.program import compile_button
-from fdvv.protocol import Settings
-from fdvv.twin import (
-    Finger,
-    Gesture,
-    Habit,
-    Impedance,
-    LedRig,
-    LedTicks,
-    Noise,
-    Rig,
-    depth_m,
-    draw_ticks,
-    load_rig,
-    settings_of,
-)
+from fdvv.live.press_subject import rig_limits
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.people.user import SimulatedUser
+from fdvv.program.button import compile_button
+from fdvv.protocol.tables import Settings
+from fdvv.twin.files import load_rig
+from fdvv.twin.finger import Finger, Impedance, PressVariability
+from fdvv.twin.gesture import Gesture, depth_m
+from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
+from fdvv.twin.noise import Noise, draw_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray, N_from_cN, m_from_mm, mm_from_m
-from fdvv.workflow._press_subject import rig_limits
 
-PLAY_RIGS = ("ideal", "paper", "light")
+TASK_RIGS = ("ideal", "paper", "light")
 """Shipped rigs that tasks are played on; on all but the ideal one the rig's own forces come on top."""
 KEY_mm = 4.0
 """A stroke lasts as long as on a key of this travel, however deep this one is (isochrony of movements)."""
@@ -44,7 +38,7 @@ POOL_TICKS = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
+class CompiledDesign:
     """What presses of a design on a rig share.
 
     Attributes
@@ -59,7 +53,7 @@ class Stand:
 
 
 @dataclass(frozen=True, eq=False)
-class PlayedPress:
+class PressTrace:
     """One press of a task, its clock at 0 where the movement began.
 
     Attributes
@@ -67,24 +61,24 @@ class PlayedPress:
     ticks : what happened, columns per tick. t_s : (n,) on that clock.
     """
 
-    ticks: LedTicks
+    ticks: InteractiveTicks
     t_s: FloatArray
 
 
 @lru_cache(maxsize=512)
-def stand_of(model: FDVVModel, rig_name: str = "ideal") -> Stand:
-    """Compile a design for a shipped rig. InputError if it cannot be held or there is no such rig."""
+def compile_design(model: FDVVModel, rig_name: str = "ideal") -> CompiledDesign:
+    """Compile a design for a shipped rig. Raises InputError if it cannot be held or there is no such rig."""
     rig, settings = known_rig(rig_name)
     if not model.of(Stroke.PRESS):
         raise InputError(model.name, "curves", "it has no press to feel", "merge one into it")
-    return Stand(rig, settings, compile_button(model, limits=rig_limits(rig)).image, model)
+    return CompiledDesign(rig, settings, compile_button(model, limits=rig_limits(rig)).image, model)
 
 
 def refusal_of(model: FDVVModel, rig_name: str = "ideal") -> str:
-    """Tell why the firmware of a rig cannot hold a design; empty if it can. InputError on an unknown rig."""
+    """Return why the firmware of a rig cannot hold a design, else "". Raises InputError on an unknown rig."""
     known_rig(rig_name)
     try:
-        PlayBench(model, SimulatedUser(), rig_name)
+        PressSimulator(model, SimulatedUser(), rig_name)
     except (InputError, ModelError) as error:
         return str(error)
     return ""
@@ -92,9 +86,9 @@ def refusal_of(model: FDVVModel, rig_name: str = "ideal") -> str:
 
 @lru_cache(maxsize=8)
 def known_rig(rig_name: str) -> tuple[Rig, Settings]:
-    """Load a rig of PLAY_RIGS with its settings. InputError if there is no such rig."""
-    if rig_name not in PLAY_RIGS:
-        raise InputError("rig", "name", f"none is called {rig_name!r}", f"use one of: {', '.join(PLAY_RIGS)}")
+    """Load a rig of TASK_RIGS with its settings. Raises InputError if there is no such rig."""
+    if rig_name not in TASK_RIGS:
+        raise InputError("rig", "name", f"none is called {rig_name!r}", f"use one of: {', '.join(TASK_RIGS)}")
     rig = load_rig(rig_name)
     return rig, settings_of(rig)
 
@@ -107,10 +101,10 @@ def _pool(rig_name: str) -> Noise:
 
 
 def finger_of(user: SimulatedUser) -> Finger:
-    """Give a person's finger."""
+    """Return a person's finger."""
     return Finger(
         Impedance(user.mass_kg, user.stiffness_N_m, user.damping_N_s_m),
-        habit=Habit(
+        habit=PressVariability(
             lift_m=float(m_from_mm(user.lift_mm)),
             rest_N=max(0.0, float(N_from_cN(user.rest_cN))),
             push_N=float(N_from_cN(user.push_cN)),
@@ -118,24 +112,24 @@ def finger_of(user: SimulatedUser) -> Finger:
     )
 
 
-class PlayBench:
+class PressSimulator:
     """A design under one person's finger. The same draws give the same presses.
 
     Attributes
     ----------
-    stand, user, finger : what is pressed, by whom. tick_s : of the controller.
+    compiled, user, finger : what is pressed, by whom. tick_s : of the controller.
     """
 
     def __init__(self, model: FDVVModel, user: SimulatedUser, rig_name: str = "ideal") -> None:
-        self.stand = stand_of(model, rig_name)
+        self.compiled = compile_design(model, rig_name)
         self.user, self.finger = user, finger_of(user)
-        self.tick_s = self.stand.rig.controller.tick_s
+        self.tick_s = self.compiled.rig.controller.tick_s
         self._pool = _pool(rig_name)
         self._settled = self._settle()
 
     def press(
         self, random: np.random.Generator, push_ratio: float = 1.0, pace_ratio: float = 1.0
-    ) -> PlayedPress | None:
+    ) -> PressTrace | None:
         """Press once, in proportion to the person's own push and pace; None if the motion diverged.
 
         Always takes as many draws.
@@ -148,10 +142,10 @@ class PlayBench:
             ticks = self._until_stop(rig, count, self.ticks_in(BEFORE_s + FIRST_ratio * gesture.press_s))
         except ModelError:
             return None
-        return PlayedPress(ticks, self.tick_s * np.arange(ticks.t_s.size, dtype=np.float64) - BEFORE_s)
+        return PressTrace(ticks, self.tick_s * np.arange(ticks.t_s.size, dtype=np.float64) - BEFORE_s)
 
-    def settled(self, random: np.random.Generator, count: int) -> LedRig:
-        """Give the rig with the finger at rest on it, and noise for so many ticks."""
+    def settled(self, random: np.random.Generator, count: int) -> InteractiveRig:
+        """Return the rig with the finger at rest on it, and noise for so many ticks."""
         return self._settled.copy(self.noise(random, count))
 
     def noise(self, random: np.random.Generator, count: int) -> Noise:
@@ -170,14 +164,14 @@ class PlayBench:
         stiffness = user.stiffness_N_m * max(0.1, 1 + user.stiffness_spread_ratio * stiff)
         usual = depth_m(self.finger, float(N_from_cN(user.push_cN)), stiffness)
         pushed_cN = user.push_cN * push_ratio * max(0.1, 1 + user.push_spread_ratio * push)
-        travel_m = float(m_from_mm(self.stand.model.travel_mm))
+        travel_m = float(m_from_mm(self.compiled.model.travel_mm))
         end_m = travel_m + depth_m(self.finger, float(N_from_cN(pushed_cN)), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
         press_s = max(SHORTEST_s, (KEY_mm + float(mm_from_m(usual))) / pace_mm_s)
         return self._gesture(user.rest_cN + user.rest_spread_cN * rest, end_m, press_s, stiffness)
 
     def resting(self, rest_cN: float, more_cN: float, grown_s: float) -> Gesture:
-        """Give a finger whose force on the cap grows within grown_s, were the cap to hold still."""
+        """Return a finger whose force on the cap grows within grown_s, were the cap to hold still."""
         stiffness = self.user.stiffness_N_m
         end_m = depth_m(self.finger, float(N_from_cN(more_cN)), stiffness)
         return self._gesture(rest_cN, end_m, grown_s, stiffness)
@@ -188,20 +182,20 @@ class PlayBench:
             start_m = depth_m(self.finger, max(0.0, float(N_from_cN(rest_cN))), stiffness)
         return Gesture(start_m, end_m, BEFORE_s, press_s, HELD_s, press_s, stiffness, self.user.damping_N_s_m)
 
-    def _until_stop(self, rig: LedRig, count: int, first: int) -> LedTicks:
-        """Let count ticks pass, or fewer once the cap was at the stop and the key is down."""
+    def _until_stop(self, rig: InteractiveRig, count: int, first: int) -> InteractiveTicks:
+        """Advance by count ticks, or fewer once the cap was at the stop and the key is down."""
         parts, done = [rig.advance(first)], first
         while done < count and not self._over(parts[-1]):
             parts.append(rig.advance(min(self.ticks_in(PIECE_s), count - done)))
             done += parts[-1].t_s.size
-        return LedTicks.joined(parts)
+        return InteractiveTicks.joined(parts)
 
-    def _over(self, ticks: LedTicks) -> bool:
-        return bool(ticks.displacement_mm.max() >= self.stand.model.travel_mm and ticks.key[-1])
+    def _over(self, ticks: InteractiveTicks) -> bool:
+        return bool(ticks.displacement_mm.max() >= self.compiled.model.travel_mm and ticks.key[-1])
 
-    def _settle(self) -> LedRig:
-        stand = self.stand
-        rig = LedRig(stand.image, stand.rig, self.finger, stand.settings, seed=None)
+    def _settle(self) -> InteractiveRig:
+        compiled = self.compiled
+        rig = InteractiveRig(compiled.image, compiled.rig, self.finger, compiled.settings, seed=None)
         rig.announce(self.user.pace_mm_s)
         rest = self.resting(self.user.rest_cN, self.user.rest_cN, 1.0)
         rig.press(replace(rest, end_m=rest.start_m))

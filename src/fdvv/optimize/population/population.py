@@ -1,9 +1,9 @@
-"""What a population run found: columns, figures for people, trials for others to begin from. Simulated."""
+"""Run a population in a folder: chunks on an executor, each on the disk before it counts. Simulated."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,13 +11,25 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from fdvv.documents import pretty
 from fdvv.errors import InputError, ModelError
-from fdvv.files import write_atomic
-from fdvv.optimize import Score, TemporalPointing, Trial, TrialState, paper_space
+from fdvv.eventlog import Journal, JournalKind
+from fdvv.io.columns import pack_column, unpack_column
+from fdvv.io.documents import pretty
+from fdvv.io.files import require_new_folder, write_atomic
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.population.plan import (
+    PLAN_FILE,
+    PopulationPlan,
+    PopulationWork,
+    grid_designs,
+    plan_text,
+    read_plan,
+)
+from fdvv.optimize.problem import Score, Trial, TrialState
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.parallel.campaign import EachItem, Progress, run_campaign
+from fdvv.parallel.executor import Executor
 from fdvv.units import FloatArray
-from fdvv.workflow._population_plan import PLAN_FILE, PopulationPlan, read_plan
-from fdvv.workflow._population_work import grid_designs
 
 RESULT_FILE, SUMMARY_FILE = "population.npz", "summary.json"
 
@@ -39,7 +51,7 @@ class PopulationResult:
 
     @classmethod
     def of(cls, plan: PopulationPlan, chunks: Mapping[int, Mapping[str, FloatArray]]) -> PopulationResult:
-        """Join chunks by number. ModelError unless all are there."""
+        """Join chunks by number. Raises ModelError unless all are there."""
         if sorted(chunks) != list(range(plan.chunks)):
             raise ModelError(f"{len(chunks)} of {plan.chunks} chunks are done")
         names = chunks[0].keys()
@@ -47,13 +59,13 @@ class PopulationResult:
         return cls(plan, joined)
 
     def table(self) -> tuple[FloatArray, FloatArray]:
-        """Give scores and errors of a grid, (designs, people) each."""
+        """Return scores and errors of a grid, (designs, people) each."""
         self._must_be("grid")
         shape = self.plan.designs, self.plan.people
         return self.columns["values"].reshape(shape), self.columns["errors"].reshape(shape)
 
     def prior(self) -> tuple[Trial, ...]:
-        """Give what others may begin from: every design of a grid with its mean over the people.
+        """Return what others may begin from: every design of a grid with its mean over the people.
 
         The error of a mean is that between people, each taken without their own mean over all designs: how
         well somebody does altogether says nothing of which design is better.
@@ -71,11 +83,11 @@ class PopulationResult:
 
     @property
     def designs(self) -> tuple[dict[str, float], ...]:
-        """Get the designs of a grid."""
+        """The designs of a grid."""
         return grid_designs(paper_space(), self.plan.designs)
 
     def summary(self) -> dict[str, Any]:
-        """Give figures for people and for programs; everything is simulated."""
+        """Return figures for people and for programs; everything is simulated."""
         head = {"simulated": True, "plan": msgspec.to_builtins(self.plan)}
         return {**head, **(self._of_grid() if self.plan.kind == "grid" else self._of_people())}
 
@@ -100,7 +112,7 @@ class PopulationResult:
 
 
 def spread_of(values: FloatArray) -> dict[str, float]:
-    """Give median and 5 to 95 % over people or designs."""
+    """Return median and 5 to 95 % over people or designs."""
     low, middle, high = np.percentile(values, [5, 50, 95])
     return {"median": float(middle), "low": float(low), "high": float(high)}
 
@@ -114,7 +126,7 @@ def write_result(folder: Path, result: PopulationResult) -> None:
 
 
 def read_population(folder: Path) -> PopulationResult:
-    """Read the result of a finished run. InputError."""
+    """Read the result of a finished run. Raises InputError."""
     folder = Path(folder)
     plan, path = read_plan(folder / PLAN_FILE), folder / RESULT_FILE
     try:
@@ -123,3 +135,73 @@ def read_population(folder: Path) -> PopulationResult:
     except (OSError, ValueError) as error:
         remedy = "finish the run: give its command again"
         raise InputError(path, "whole file", f"cannot be read ({error})", remedy) from error
+
+
+CHUNKS_FILE = "chunks.jsonl"
+PRIOR_FILE = "prior.json"
+REMEDY = "take the folder from a copy, or begin anew in another one"
+
+
+class ChunkRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A chunk's columns on file, see fdvv.io.columns."""
+
+    number: int
+    columns: dict[str, str]
+
+
+KIND = JournalKind({"chunk": ChunkRecord}, REMEDY)
+
+
+def run_population(
+    folder: Path,
+    plan: PopulationPlan,
+    executor: Executor,
+    prior: Sequence[Trial] = (),
+    progress: Progress = lambda _done, _total: None,
+) -> PopulationResult:
+    """Run a plan in a folder that is new or holds the same plan; an interrupted run is continued.
+
+    prior : finished trials that every person's engine begins from, as PopulationResult.prior returns them.
+
+    Writes ``population.npz`` and ``summary.json`` at the end. Raises InputError on a folder of another run,
+    or one in use; WorkerError.
+    """
+    folder = Path(folder)
+    _begin(folder, plan, tuple(prior))
+    chunks: dict[int, dict[str, FloatArray]] = {}
+
+    def replay(_key: str, chunk: ChunkRecord) -> None:
+        if not 0 <= chunk.number < plan.chunks:
+            raise ValueError(f"there is no chunk {chunk.number}")
+        chunks[chunk.number] = {name: unpack_column(text) for name, text in chunk.columns.items()}
+
+    def store(numbers: tuple[int, ...], results: list[dict[str, FloatArray]]) -> None:
+        for number, columns in zip(numbers, results, strict=True):
+            packed = {name: pack_column(np.asarray(column)) for name, column in columns.items()}
+            journal.write({"chunk": msgspec.to_builtins(ChunkRecord(number, packed))})
+            chunks[number] = columns
+
+    busy = InputError(folder, "folder", "another process is at work in it", "wait for it, or end it")
+    work = EachItem(PopulationWork(plan, tuple(prior)))
+    with Journal.resume(folder / CHUNKS_FILE, KIND, busy, replay) as journal:
+        done = set(chunks).__contains__
+        run_campaign(executor, work, range(plan.chunks), store, done=done, progress=progress)
+    result = PopulationResult.of(plan, chunks)
+    write_result(folder, result)
+    return result
+
+
+def _begin(folder: Path, plan: PopulationPlan, prior: tuple[Trial, ...]) -> None:
+    """Write the plan into a new folder, or check that the folder holds the same one."""
+    path, trials = folder / PLAN_FILE, msgspec.json.encode(prior)
+    if not path.exists():
+        require_new_folder(folder, "name a new one, or that of the same run")
+        write_atomic(folder / PRIOR_FILE, trials)
+        write_atomic(path, plan_text(plan))
+        return
+    other = read_plan(path).differs(plan)
+    if other:
+        reason = f"holds a run with other {', '.join(other)}"
+        raise InputError(folder, "folder", reason, "give the same options to go on, or name a new folder")
+    if (folder / PRIOR_FILE).read_bytes() != trials:
+        raise InputError(folder, PRIOR_FILE, "the run began from other trials", "name a new folder")

@@ -1,6 +1,6 @@
 """The ledger of a run: every trial and comparison, on the disk before anybody sees it.
 
-``trials.jsonl`` is a journal (see `fdvv.journal`) with the records ``{"trial": …}`` of a suggestion,
+``trials.jsonl`` is a journal (see `fdvv.eventlog`) with the records ``{"trial": …}`` of a suggestion,
 ``{"edit": …}`` of its design, ``{"state": …}`` of what became of it, ``{"pair": …}`` of two designs to be
 compared and ``{"answer": …}`` of which was preferred.
 """
@@ -10,17 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
-from fdvv.errors import InputError, ModelError
-from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.optimize._space import Design
-from fdvv.optimize._trial import Answer, Comparison, Score, Trial, TrialState
+from fdvv.errors import InputError
+from fdvv.eventlog import Journal, JournalKind, read_bodies
+from fdvv.optimize.problem import Answer, Comparison, Score, Trial, TrialState
+from fdvv.optimize.space import Design
 
 REMEDY = "move the folder away and begin another run"
-KIND = JournalKind(frozenset({"trial", "edit", "state", "pair", "answer"}), REMEDY)
 NEXT = {
     TrialState.SUGGESTED: frozenset(TrialState) - {TrialState.SUGGESTED},
     TrialState.SHOWN: frozenset({TrialState.DONE, TrialState.FAILED, TrialState.ABANDONED}),
@@ -36,7 +35,7 @@ class Edited(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     design: dict[str, float]
 
 
-class Became(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TrialOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What became of a trial."""
 
     number: int
@@ -52,7 +51,9 @@ class Answered(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     answer: Answer
 
 
-Step = tuple[Literal["trial", "edit", "state", "pair", "answer"], Any]
+KIND = JournalKind(
+    {"trial": Trial, "edit": Edited, "state": TrialOutcome, "pair": Comparison, "answer": Answered}, REMEDY
+)
 
 
 class Ledger:
@@ -78,94 +79,83 @@ class Ledger:
         if path is not None:
             reason = "another process is at work on this run"
             busy = InputError(path.parent, "optimisation", reason, "close it first, or name another folder")
-            self._journal = Journal(path, busy)
-            try:
-                self._learn(path, self._journal)
-            except BaseException:
-                self.close()
-                raise
-
-    def _learn(self, path: Path, journal: Journal) -> None:
-        end = 0
-        for count, (record, after) in enumerate(read_records(path, KIND), 1):
-            ((kind, body),) = record.items()
-            try:
-                self._take(step_of(kind, body))
-            except (msgspec.ValidationError, ModelError, InputError) as error:
-                raise InputError(path, f"record {count}", str(error), REMEDY) from error
-            end = after
-        if journal.cut(end):
-            self.warnings.append(f"{path}: the last record is not whole and is left out")
+            self._journal = Journal.resume(path, KIND, busy, self._resume)
+            if self._journal.torn:
+                self.warnings.append(f"{path}: the last record is not whole and is left out")
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """Get all trials, by number."""
+        """All trials, by number."""
         return tuple(self._trials)
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        """Get all comparisons, by number."""
+        """All comparisons, by number."""
         return tuple(self._comparisons)
 
     def suggest(self, design: Design, origin: str) -> Trial:
         """Write down a trial; only then may it be shown."""
         trial = Trial(len(self._trials), dict(design), origin=origin)
-        self._keep(("trial", trial))
+        self._keep("trial", trial)
         return trial
 
     def edit(self, number: int, design: Design) -> Trial:
-        """Put a person's design in the place of a suggestion that nobody has tried yet. InputError."""
-        self._keep(("edit", Edited(number, dict(design))))
+        """Put a person's design in the place of a suggestion that nobody has tried yet. Raises InputError."""
+        self._keep("edit", Edited(number, dict(design)))
         return self._trials[number]
 
     def become(
         self, number: int, state: TrialState, scores: dict[str, Score] | None = None, reason: str = ""
     ) -> Trial:
-        """Write down what became of a trial. InputError where that cannot follow what it was."""
-        self._keep(("state", Became(number, state, scores or {}, reason)))
+        """Write down what became of a trial. Raises InputError where that cannot follow what it was."""
+        self._keep("state", TrialOutcome(number, state, scores or {}, reason))
         return self._trials[number]
 
     def pair(self, first: Design, second: Design) -> Comparison:
         """Write down two designs to be compared."""
         comparison = Comparison(len(self._comparisons), dict(first), dict(second))
-        self._keep(("pair", comparison))
+        self._keep("pair", comparison)
         return comparison
 
     def answer(self, number: int, answer: Answer | str) -> Comparison:
-        """Write down which was preferred. InputError where it was answered before."""
-        self._keep(("answer", Answered(number, Answer(answer))))
+        """Write down which was preferred. Raises InputError where it was answered before."""
+        self._keep("answer", Answered(number, Answer(answer)))
         return self._comparisons[number]
 
-    def _keep(self, step: Step) -> None:
-        """Check a step, bring it to the disk, and only then count it."""
-        changed = self._changed(step)
+    def _keep(self, key: str, body: Any) -> None:
+        changed = self._changed(key, body)
         if self._journal:
-            self._journal.write({step[0]: msgspec.to_builtins(step[1])})
+            self._journal.write({key: msgspec.to_builtins(body)})
         self._put(changed)
 
-    def _take(self, step: Step) -> None:
-        self._put(self._changed(step))
+    def _resume(self, key: str, body: Any) -> None:
+        try:
+            self._replay(key, body)
+        except InputError as error:  # the journal adds the line and what to do about a damaged file
+            raise ValueError(f"{error.place}: {error.reason}") from error
+
+    def _replay(self, key: str, body: Any) -> None:
+        self._put(self._changed(key, body))
 
     def _put(self, changed: Trial | Comparison) -> None:
         rows: list[Any] = self._trials if isinstance(changed, Trial) else self._comparisons
         rows[changed.number : changed.number + 1] = [changed]
 
-    def _changed(self, step: Step) -> Trial | Comparison:
-        """Give the trial or comparison as the step leaves it. InputError where it cannot be taken."""
-        kind, body = step
-        if kind in ("trial", "pair"):
-            rows: list[Any] = self._trials if kind == "trial" else self._comparisons
+    def _changed(self, key: str, body: Any) -> Trial | Comparison:
+        """Return the trial or comparison as a record leaves it. Raises InputError where it cannot follow."""
+        if key in ("trial", "pair"):
+            rows: list[Any] = self._trials if key == "trial" else self._comparisons
             if body.number != len(rows):
                 raise self._refusal(body.number, f"the next number is {len(rows)}")
             return body  # type: ignore[no-any-return]
-        if kind == "answer":
+        if key == "answer":
             pair = self._at(self._comparisons, body.number)
             if pair.answer is not None:
                 raise self._refusal(body.number, f"was answered: {pair.answer}")
             return replace(pair, answer=body.answer)
         return self._changed_trial(self._at(self._trials, body.number), body)
 
-    def _changed_trial(self, trial: Trial, body: Edited | Became) -> Trial:
+    def _changed_trial(self, trial: Trial, body: Edited | TrialOutcome) -> Trial:
         if isinstance(body, Edited):
             if trial.state is not TrialState.SUGGESTED:
                 raise self._refusal(trial.number, f"is {trial.state} and can no longer be edited")
@@ -184,16 +174,9 @@ class Ledger:
         return InputError(self._source, f"trial {number}", reason, "look at the list of trials")
 
     def close(self) -> None:
-        """Let go of the file; a second time does nothing."""
         if self._journal:
             self._journal.close()
             self._journal = None
-
-
-def step_of(kind: str, body: Any) -> Step:
-    """Read a record's body. msgspec.ValidationError."""
-    kinds = {"trial": Trial, "edit": Edited, "state": Became, "pair": Comparison, "answer": Answered}
-    return kind, msgspec.convert(body, kinds[kind])  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)
@@ -205,11 +188,9 @@ class Known:
 
 
 def steps_before(path: Path) -> Iterator[tuple[Known, Trial | Comparison]]:
-    """Give every suggestion with what was known before it, for replay. InputError, OSError."""
+    """Return every suggestion with what was known before it, for replay. Raises InputError, OSError."""
     ledger = Ledger()
-    for record, _ in read_records(path, KIND):
-        ((kind, body),) = record.items()
-        step = step_of(kind, body)
-        if kind in ("trial", "pair"):
-            yield Known(ledger.trials, ledger.comparisons), step[1]
-        ledger._take(step)
+    for key, body, _ in read_bodies(path, KIND):
+        if key in ("trial", "pair"):
+            yield Known(ledger.trials, ledger.comparisons), body
+        ledger._replay(key, body)

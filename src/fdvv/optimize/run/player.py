@@ -9,28 +9,19 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize import (
-    Accuracy,
-    LEVELS_px_s,
-    RapidTapping,
-    SimulatedUser,
-    Task,
-    TemporalPointing,
-    Trial,
-    TrialState,
-    draw_user,
-)
-from fdvv.workflow._optimize_session import OptimizeSession
-from fdvv.workflow._optimize_setup import OptimizeSetup
-from fdvv.workflow._play import score_design
-from fdvv.workflow._play_bench import PLAY_RIGS, refusal_of
+from fdvv.optimize.people.press_simulator import TASK_RIGS, refusal_of
+from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.user import SimulatedUser, draw_user
+from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.tasks import Accuracy, LEVELS_px_s, RapidTapping, Task, TemporalPointing
 
 POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
 """Names of the tasks."""
-PLAYED_TASKS = (POINTING, TAPPING, ACCURACY)
+SIMULATED_TASKS = (POINTING, TAPPING, ACCURACY)
 """Tasks that simulated people can play."""
-
-Told = Callable[[Trial], None]
+TrialDone = Callable[[Trial], None]
 """Called with every trial when it is done or has failed."""
 
 
@@ -51,7 +42,7 @@ class SimulatedPlayer:
     seed: int = 0
     presses_before: int = 0
 
-    def try_next(self, session: OptimizeSession) -> Trial | None:
+    def try_next(self, session: Optimization) -> Trial | None:
         """Try the next trial of a run; None when its budget is spent.
 
         What the rig's firmware cannot hold fails with its reason; nobody presses it.
@@ -70,10 +61,10 @@ class SimulatedPlayer:
         scores = score_design(self.task, model, self.user, seed, rig=self.rig, presses_before=before)
         return session.done(shown.number, scores)
 
-    def play(self, session: OptimizeSession, told: Told = lambda _trial: None) -> None:
-        """Try trials until the budget is spent. A run killed in between goes on with the same trials."""
+    def play(self, session: Optimization, report: TrialDone = lambda _trial: None) -> None:
+        """Try trials until the budget is spent. An interrupted run continues with the same trials."""
         while (trial := self.try_next(session)) is not None:
-            told(trial)
+            report(trial)
 
 
 def play_seed(*path: int) -> int:
@@ -82,12 +73,12 @@ def play_seed(*path: int) -> int:
 
 
 def task_named(name: str, level: str | None, presses: int = 20) -> Task:
-    """Give a task by its name; level only where the task has levels, presses: of a trial.
+    """Return a task by its name; level only where the task has levels, presses: of a trial.
 
     InputError on one that no simulated person plays, an unknown level, and presses too few for the task.
     """
-    if name not in PLAYED_TASKS:
-        known = ", ".join(PLAYED_TASKS)
+    if name not in SIMULATED_TASKS:
+        known = ", ".join(SIMULATED_TASKS)
         raise InputError("task", name, "no simulated person plays it", f"use one of {known}")
     if name == POINTING and level not in LEVELS_px_s:
         raise InputError("level", str(level), "is unknown", f"use one of {', '.join(LEVELS_px_s)}")
@@ -100,19 +91,19 @@ def task_named(name: str, level: str | None, presses: int = 20) -> Task:
 
 
 def about_player(person: int, rig: str, presses: int) -> dict[str, Any]:
-    """Give what a setup keeps of who plays (``about``). InputError on an unknown rig."""
-    if rig not in PLAY_RIGS:
-        raise InputError("rig", rig, "none is called so", f"use one of {', '.join(PLAY_RIGS)}")
+    """Return what a setup keeps of who plays (``about``). Raises InputError on an unknown rig."""
+    if rig not in TASK_RIGS:
+        raise InputError("rig", rig, "none is called so", f"use one of {', '.join(TASK_RIGS)}")
     return {"player": {"person": person, "rig": rig, "presses": presses}}
 
 
 def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
-    """Give the simulated person that a setup names. InputError where it names none: a human plays it."""
-    told = setup.about.get("player")
-    if not isinstance(told, dict) or not isinstance(told.get("person"), int):
+    """Return the simulated person that a setup names. InputError where it names none: a human plays it."""
+    player = setup.about.get("player")
+    if not isinstance(player, dict) or not isinstance(player.get("person"), int):
         remedy = "resume it in the studio, or begin a run with --person"
         raise InputError("run", "$.about.player", "no simulated person plays this run", remedy)
-    presses, rig = int(told.get("presses", 20)), str(told.get("rig", "ideal"))
+    presses, rig = int(player.get("presses", 20)), str(player.get("rig", "ideal"))
     return SimulatedPlayer(
-        draw_user(0, told["person"]), task_named(setup.task, setup.level, presses), rig, setup.seed
+        draw_user(0, player["person"]), task_named(setup.task, setup.level, presses), rig, setup.seed
     )

@@ -6,25 +6,13 @@ from pathlib import Path
 from types import TracebackType
 
 from fdvv.errors import InputError
-from fdvv.files import write_atomic
-from fdvv.model import FDVVModel
-from fdvv.optimize import (
-    Answer,
-    Comparison,
-    Design,
-    Engine,
-    Known,
-    Ledger,
-    ParetoFront,
-    Score,
-    Trial,
-    TrialState,
-    engine_of,
-    pair_engine_of,
-    pareto_front,
-    steps_before,
-)
-from fdvv.workflow._optimize_setup import (
+from fdvv.io.files import require_new_folder, write_atomic
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
+from fdvv.optimize.engines.registry import engine_of, pair_engine_of
+from fdvv.optimize.problem import Answer, Comparison, Engine, Score, Trial, TrialState
+from fdvv.optimize.run.ledger import Known, Ledger, steps_before
+from fdvv.optimize.run.setup import (
     SETUP_FILE,
     OptimizeSetup,
     designer_of,
@@ -33,15 +21,16 @@ from fdvv.workflow._optimize_setup import (
     setup_text,
     space_of,
 )
-from fdvv.workflow._rig_shelf import RigShelf
+from fdvv.optimize.space import Design
+from fdvv.rendering.rig_catalog import RigCatalog
 
 LEDGER_FILE = "trials.jsonl"
 START, PERSON = "start", "person"
 OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
 
 
-class OptimizeSession:
-    """A run that can be killed at any moment and goes on as if nothing had happened.
+class Optimization:
+    """A run that can be killed at any moment and continued without loss.
 
     Made by `create` or `open`, for one process at a time; a context manager.
 
@@ -54,7 +43,7 @@ class OptimizeSession:
 
     def __init__(self, folder: Path, setup: OptimizeSetup, ledger: Ledger) -> None:
         self.folder, self.setup = folder, setup
-        self.space = space_of(setup.space, RigShelf(folder))
+        self.space = space_of(setup.space, RigCatalog(folder))
         self._designer = designer_of(setup.space)
         self.problem = problem_of(setup, self.space)
         self.engine = None if setup.preference else engine_of(setup.engine, setup.options)
@@ -64,23 +53,22 @@ class OptimizeSession:
         self._given: set[int] = set()
 
     @classmethod
-    def create(cls, folder: Path, setup: OptimizeSetup, project: Path | None = None) -> OptimizeSession:
-        """Begin a run in a folder that is new or empty. InputError, BuildError, OSError.
+    def create(cls, folder: Path, setup: OptimizeSetup, project: Path | None = None) -> Optimization:
+        """Begin a run in a folder that is new or empty. Raises InputError, BuildError, OSError.
 
         project : where the rig that the setup names is known; it is copied into the run's folder.
         """
         folder = Path(folder)
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise InputError(folder, "folder", "is not empty", "name a new one, or resume the run in it")
+        require_new_folder(folder, "name a new one, or resume the run in it")
         checked = cls(project or folder, setup, Ledger())
         if setup.space.rig and project:
-            RigShelf(project).lend(setup.space.rig, folder)
+            RigCatalog(project).lend(setup.space.rig, folder)
         write_atomic(folder / SETUP_FILE, setup_text(checked.setup))
         return cls.open(folder)
 
     @classmethod
-    def open(cls, folder: Path) -> OptimizeSession:
-        """Go on with a run. InputError where there is none, where it is damaged or at work elsewhere."""
+    def open(cls, folder: Path) -> Optimization:
+        """Continue a run. Raises InputError where there is none, or it is damaged or in use."""
         folder = Path(folder)
         setup = read_setup(folder / SETUP_FILE)
         ledger = Ledger(folder / LEDGER_FILE)
@@ -92,28 +80,28 @@ class OptimizeSession:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """Get all trials, by number."""
+        """All trials, by number."""
         return self._ledger.trials
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        """Get all comparisons, by number."""
+        """All comparisons, by number."""
         return self._ledger.comparisons
 
     @property
     def left(self) -> int:
-        """Get how many more trials, or comparisons, may be suggested."""
+        """How many more trials, or comparisons, may be suggested."""
         spent = sum(trial.state is not TrialState.ABANDONED for trial in self.trials)
         return max(0, self.setup.budget - (len(self.comparisons) if self.pair_engine else spent))
 
     @property
     def finished(self) -> bool:
-        """Tell whether the budget is spent and nothing is open."""
+        """Whether the budget is spent and nothing is open."""
         unanswered = any(one.answer is None for one in self.comparisons)
         return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
 
     def ask(self, count: int = 1) -> tuple[Trial, ...]:
-        """Give the next trials, at most count: first those left open when the run was closed, then new ones.
+        """Return the next trials, at most count: first those left open by an earlier run, then new ones.
 
         New ones are on the disk when this returns, and each is suggested knowing those before it. Empty once
         the budget is spent. InputError where designs are compared, not scored.
@@ -145,40 +133,40 @@ class OptimizeSession:
         """
         checked = self.space.checked(design)
         for one in self.space.broken(checked):
-            raise InputError("design", one.name, f"it does not hold: {one.told}", "change the design")
+            raise InputError("design", one.name, f"it does not hold: {one.text}", "change the design")
         return self._ledger.edit(number, checked)
 
     def show(self, number: int) -> Trial:
-        """Note that somebody tries a trial now."""
+        """Record that a trial is being tried."""
         return self._ledger.become(number, TrialState.SHOWN)
 
     def done(self, number: int, scores: dict[str, Score]) -> Trial:
-        """Keep the scores of a trial. InputError where one of the run's objectives is missing."""
+        """Record the scores of a trial. Raises InputError where one of the run's objectives is missing."""
         for one in self.problem.objectives:
             if one.name not in scores:
                 raise InputError("scores", one.name, "is missing", f"score trial {number} in every objective")
         return self._ledger.become(number, TrialState.DONE, scores)
 
     def fail(self, number: int, reason: str) -> Trial:
-        """Keep that a trial could not be tried or scored; designs near it are avoided."""
+        """Record that a trial could not be tried or scored; designs near it are avoided."""
         return self._ledger.become(number, TrialState.FAILED, reason=reason)
 
     def abandon(self, number: int, reason: str = "") -> Trial:
-        """Keep that a trial was stopped; it teaches nothing and does not count."""
+        """Record that a trial was stopped; it does not count."""
         return self._ledger.become(number, TrialState.ABANDONED, reason=reason)
 
     def best(self) -> dict[str, float]:
-        """Recommend a design by what the engine believes, not by luck. ModelError if none is done."""
+        """Recommend a design by what the engine believes, not by luck. Raises ModelError if none is done."""
         if self.pair_engine:
             return self.pair_engine.best(self.problem, self.comparisons)
         return self._scored().best(self.problem, self.trials)
 
     def front(self) -> ParetoFront:
-        """Give the compromises that no other trial beats, where there are several objectives."""
+        """Return the compromises that no other trial beats, where there are several objectives."""
         return pareto_front(self.problem, self.trials)
 
     def compare(self) -> Comparison | None:
-        """Give the next two designs to be compared: the unanswered ones first; None once the budget is spent.
+        """Return the next two designs to be compared: the unanswered first; None once the budget is spent.
 
         They are on the disk when this returns. InputError where the run's task is not preference.
         """
@@ -190,7 +178,7 @@ class OptimizeSession:
         return self._ledger.pair(*self.pair_engine.pair(self.problem, self.comparisons))
 
     def answer(self, number: int, answer: Answer | str) -> Comparison:
-        """Keep which of two designs was preferred. InputError where it was answered before."""
+        """Record which of two designs was preferred. Raises InputError where it was answered before."""
         if answer not in tuple(Answer):
             raise InputError("answer", str(number), f"is {answer!r}", f"say {', '.join(Answer)}")
         return self._ledger.answer(number, answer)
@@ -200,10 +188,10 @@ class OptimizeSession:
         return self._designer(design).renamed(name)
 
     def close(self) -> None:
-        """Let go of the folder; a second time does nothing."""
+        """Close the ledger; closing twice is harmless."""
         self._ledger.close()
 
-    def __enter__(self) -> OptimizeSession:
+    def __enter__(self) -> Optimization:
         return self
 
     def __exit__(
@@ -213,17 +201,17 @@ class OptimizeSession:
 
 
 def replay_differences(folder: Path) -> tuple[Trial | Comparison, ...]:
-    """Suggest every trial and comparison of a run anew, from what was known then; give those that differ.
+    """Suggest every trial and comparison of a run anew, from what was known then; return those that differ.
 
     None on the machine and the versions that a run was made with. InputError, OSError.
     """
     path = Path(folder) / LEDGER_FILE
-    replayed = OptimizeSession(Path(folder), read_setup(Path(folder) / SETUP_FILE), Ledger())
+    replayed = Optimization(Path(folder), read_setup(Path(folder) / SETUP_FILE), Ledger())
     return tuple(found for known, found in steps_before(path) if not _agrees(replayed, known, found))
 
 
-def _agrees(run: OptimizeSession, known: Known, found: Trial | Comparison) -> bool:
-    """Tell whether an engine would suggest the same again; what a person brought in always agrees."""
+def _agrees(run: Optimization, known: Known, found: Trial | Comparison) -> bool:
+    """Return whether an engine would suggest the same again; what a person brought in always agrees."""
     if isinstance(found, Comparison):
         pair = run.pair_engine and run.pair_engine.pair(run.problem, known.comparisons)
         return pair == (found.first, found.second)

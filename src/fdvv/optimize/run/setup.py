@@ -1,35 +1,88 @@
-"""What an optimisation is about: written before its first trial, enough to go on with it and to replay it."""
+"""The setup of an optimisation, written before its first trial: enough to continue and replay it."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta, Struct
 
-from fdvv.documents import Kind, pretty, read_document
-from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.model import FDVVModel, model_from_json, model_to_json
-from fdvv.optimize import (
-    Design,
-    DesignSpace,
-    Objective,
-    Problem,
-    TemporalPointing,
-    Trial,
-    model_of,
-    model_space,
-    paper_model,
-    paper_space,
-)
-from fdvv.workflow._optimize_rig import rig_constraints
-from fdvv.workflow._rig_shelf import RigShelf
-from fdvv.workflow._session_manifest import now, versions
+from fdvv.errors import InputError, ModelError
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited
+from fdvv.model.file import model_from_json, model_to_json
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.model_space import model_of, model_space
+from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.problem import Objective, Problem, Trial
+from fdvv.optimize.space import Constraint, Design, DesignSpace
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
+from fdvv.rendering.session import now, versions
+
+MISSED_RATIO = 0.25
+"""Of a curve's mean force; where limits and lag keep more of it, a feasibility report calls it spoilt."""
+KEPT_RATIO = 0.5
+"""Of a bump's drop; a report says that less cannot be followed."""
+MARGIN = 0.5
+"""Of stiffness under a finger; a report says that less buzzes."""
+MOST_MARGIN = 10.0
+"""A flat curve's margin has no end; more than this tells nothing."""
+
+
+def rig_constraints(
+    rig: AvailableRig,
+    designer: Callable[[Design], FDVVModel],
+    velocities_mm_s: Sequence[float] = (100.0,),
+) -> tuple[Constraint, Constraint]:
+    """Return the constraints that a rig puts on designs: what it misses of the force, and whether it buzzes.
+
+    rig : known, of a RigCatalog. designer : turns a design into a button.
+    velocities_mm_s : at which presses and releases are judged.
+
+    Slacks are continuous: parts of the mean force, and a margin of stiffness; they are those of
+    `feasibility`, some 20 ms a speed, kept for designs that were judged. A design that makes no model, or
+    goes deeper than the rig's stop, misses all.
+    """
+    speeds = tuple(velocities_mm_s)
+
+    @lru_cache(maxsize=4096)
+    def judged(key: tuple[tuple[str, float], ...]) -> tuple[float, float]:
+        try:
+            model = designer(dict(key))
+            report = feasibility(model, rig.known, rig.settings, speeds, info=rig.info)
+        except ModelError:
+            return -1.0, -1.0
+        beyond = max(0.0, model.travel_mm - rig.info.travel_limit_mm)
+        felt = min(_felt(curve) for curve in report.curves)
+        margin = min(curve.stable.margin for curve in report.curves)
+        return felt - beyond, min(margin - MARGIN, MOST_MARGIN)
+
+    def slacks(design: Design) -> tuple[float, float]:
+        return judged(tuple(design.items()))
+
+    name = rig.entry.rig_id
+    force = f"{name} gives the force and the bump, as its limits and lag let it"
+    return (
+        Constraint("rig force", force, lambda design: slacks(design)[0]),
+        Constraint("rig stability", f"{name} does not buzz under a finger", lambda design: slacks(design)[1]),
+    )
+
+
+def _felt(curve: CurveFeasibility) -> float:
+    """Return the slack of one curve: of the mean force that is missed, and of the bump that is left."""
+    reached = curve.reached
+    missed = reached.missed_cN / max(1.0, float(np.abs(reached.intended_cN).mean()))
+    kept = 1.0 if reached.kept_ratio is None else reached.kept_ratio
+    return min(MISSED_RATIO - missed, kept - KEPT_RATIO)
+
 
 SETUP_FILE = "optimize.json"
 KIND = Kind("fdvv-optimize", 1, "an optimisation", "name the folder of an optimisation, or one that is new")
@@ -94,18 +147,18 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
     @property
     def preference(self) -> bool:
-        """Tell whether designs are compared, not scored."""
+        """Whether designs are compared, not scored."""
         return self.task == "preference"
 
     @property
     def presses(self) -> int:
-        """Get how many presses of a person make a score; as in the paper unless it was said."""
-        told = self.about.get(self.PRESSES)
-        return told if isinstance(told, int) else TemporalPointing.rounds
+        """How many presses of a person make a score; by default as in the paper."""
+        presses = self.about.get(self.PRESSES)
+        return presses if isinstance(presses, int) else TemporalPointing.rounds
 
 
 def read_setup(path: Path) -> OptimizeSetup:
-    """Read a setup. InputError."""
+    """Read a setup. Raises InputError."""
     text = read_limited(path, LARGEST_bytes, KIND.remedy)
     return read_document(
         text, path, KIND, lambda data: msgspec.json.decode(data, type=OptimizeSetup), lambda _: None
@@ -113,7 +166,7 @@ def read_setup(path: Path) -> OptimizeSetup:
 
 
 def setup_text(setup: Struct) -> str:
-    """Write a setup. InputError if it is too large to be read again."""
+    """Write a setup. Raises InputError if it is too large to be read again."""
     text = pretty(msgspec.to_builtins(setup)) + "\n"
     if len(text) > LARGEST_bytes:
         reason = f"larger than {LARGEST_bytes // 1_000_000} MB"
@@ -121,8 +174,8 @@ def setup_text(setup: Struct) -> str:
     return text
 
 
-def space_of(setup: SpaceSetup, rigs: RigShelf) -> DesignSpace:
-    """Give the space of a setup, its constraints among it. InputError on what the button or shelf lacks."""
+def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
+    """Return the space of a setup with its constraints. Raises InputError."""
     free = _free_space(setup)
     if setup.rig is None:
         return free
@@ -143,7 +196,7 @@ def _base(setup: SpaceSetup) -> FDVVModel:
 
 
 def designer_of(setup: SpaceSetup) -> Callable[[Design], FDVVModel]:
-    """Give what turns a design of the space into a button."""
+    """Return what turns a design of the space into a button."""
     if setup.kind == "paper":
         return paper_model
     base, space = _base(setup), _free_space(setup)
@@ -162,7 +215,7 @@ def model_space_setup(
 
 
 def problem_of(setup: OptimizeSetup, space: DesignSpace) -> Problem:
-    """Give what the engine is asked. ModelError on objectives of one name, InputError on an alien design."""
+    """Return the problem of a setup. Raises ModelError on two objectives of one name, InputError."""
     for trial in setup.prior:
         space.checked(trial.design, "prior")
     if setup.start is not None:

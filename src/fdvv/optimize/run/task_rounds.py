@@ -1,6 +1,6 @@
 """The presses of a person in a task, each on the disk before the next: people cannot repeat them.
 
-``rounds.jsonl`` in an optimisation's folder is a journal (see `fdvv.journal`) with the records
+``rounds.jsonl`` in an optimisation's folder is a journal (see `fdvv.eventlog`) with the records
 ``{"begun": {…}}`` each time a trial is begun and ``{"round": {…}}`` for every round. A trial that was broken
 off and begun again keeps its rounds, but only those of its last beginning count.
 """
@@ -10,17 +10,15 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 import msgspec
 from msgspec import Struct
 
 from fdvv.errors import InputError
-from fdvv.journal import Journal, JournalKind, read_records
-from fdvv.optimize import TaskPress
+from fdvv.eventlog import Journal, JournalKind
+from fdvv.optimize.tasks import TaskPress
 
 ROUNDS = "rounds.jsonl"
-KIND = JournalKind(frozenset({"begun", "round"}), "move the file away; finished trials are in the ledger")
 
 
 class ClockSource(StrEnum):
@@ -37,13 +35,13 @@ class ClockSource(StrEnum):
 
 
 class RoundTiming(Struct, frozen=True, forbid_unknown_fields=True):
-    """How times of a round were told, ms.
+    """How the times of a round were measured, ms.
 
     Attributes
     ----------
     source : whose clock.
     display_ms, input_ms : from drawing to light, from finger to the browser's event; taken into account.
-        A device's key is told on its own clock: 0, and the error is the bound of that clock.
+        A device's key is on its own clock: 0, and the error is the bound of that clock.
     display_error_ms, input_error_ms : how far they may be off, alike in all rounds.
     clock_ms, clock_error_ms : the server's clock less the source's, and its bound; None where not known.
     transport_ms : from the browser's event to the simulated finger; taken out.
@@ -63,7 +61,7 @@ class RoundTiming(Struct, frozen=True, forbid_unknown_fields=True):
     hand: str
 
 
-class PlayedRound(Struct, frozen=True, forbid_unknown_fields=True):
+class TaskRound(Struct, frozen=True, forbid_unknown_fields=True):
     """One round: what counts, how it was timed, when it was (UTC).
 
     Attributes
@@ -82,11 +80,24 @@ class PlayedRound(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def press(self) -> TaskPress:
-        """Give it as tasks score it."""
+        """Return it as tasks score it."""
         return TaskPress(self.target_s, self.activations_s)
 
 
-class PlayedRounds:
+class TrialBegun(Struct, frozen=True):
+    """A trial was begun for the given time, from 1, at a time (UTC)."""
+
+    trial: int
+    attempt: int
+    made: str = ""
+
+
+KIND = JournalKind(
+    {"begun": TrialBegun, "round": TaskRound}, "move the file away; finished trials are in the ledger"
+)
+
+
+class TaskRounds:
     """The rounds of an optimisation, in memory and on file, for one process at a time.
 
     Parameters
@@ -101,14 +112,9 @@ class PlayedRounds:
         busy = InputError(
             self.path.name, "whole file", "another fdvv works on it", "close the other one first"
         )
-        self._journal = Journal(self.path, busy)
         self._attempts: dict[int, int] = {}
-        self._rounds: list[PlayedRound] = []
-        try:
-            self._journal.cut(self._read())
-        except BaseException:
-            self._journal.close()
-            raise
+        self._rounds: list[TaskRound] = []
+        self._journal = Journal.resume(self.path, KIND, busy, self._replay)
 
     def begin(self, trial: int) -> int:
         """Begin a trial, or begin it again; give how often it was."""
@@ -119,45 +125,33 @@ class PlayedRounds:
 
     def add(
         self, trial: int, target_s: float, activations_s: tuple[float, ...], timing: RoundTiming
-    ) -> PlayedRound:
-        """Keep the next round of a trial that was begun; it is on the disk when this is back."""
+    ) -> TaskRound:
+        """Write the next round of a trial that was begun to the disk."""
         number = len(self.counting(trial)) + 1
         attempt = self._attempts[trial]
-        found = PlayedRound(trial, attempt, number, target_s, activations_s, timing, _now())
+        found = TaskRound(trial, attempt, number, target_s, activations_s, timing, _now())
         self._journal.write({"round": msgspec.to_builtins(found)})
         self._rounds.append(found)
         return found
 
-    def counting(self, trial: int) -> tuple[PlayedRound, ...]:
-        """Give the rounds of a trial since it was begun last."""
+    def counting(self, trial: int) -> tuple[TaskRound, ...]:
+        """Return the rounds of a trial since it was begun last."""
         attempt = self._attempts.get(trial, 0)
         return tuple(one for one in self._rounds if one.trial == trial and one.attempt == attempt)
 
     @property
-    def all(self) -> tuple[PlayedRound, ...]:
-        """Give every round there ever was, those that do not count among them."""
+    def all(self) -> tuple[TaskRound, ...]:
+        """Return every round there ever was, those that do not count among them."""
         return tuple(self._rounds)
 
     def close(self) -> None:
-        """Let go of the file."""
         self._journal.close()
 
-    def _read(self) -> int:
-        last = 0
-        for record, end in read_records(self.path, KIND):
-            self._take(record)
-            last = end
-        return last
-
-    def _take(self, record: dict[str, Any]) -> None:
-        try:
-            if "begun" in record:
-                begun = record["begun"]
-                self._attempts[int(begun["trial"])] = int(begun["attempt"])
-            else:
-                self._rounds.append(msgspec.convert(record["round"], PlayedRound))
-        except (KeyError, TypeError, ValueError) as error:
-            raise InputError(self.path, "whole file", f"a record is none: {error}", KIND.remedy) from error
+    def _replay(self, _key: str, body: TrialBegun | TaskRound) -> None:
+        if isinstance(body, TrialBegun):
+            self._attempts[body.trial] = body.attempt
+        else:
+            self._rounds.append(body)
 
 
 def _now() -> str:

@@ -1,4 +1,4 @@
-"""What long work tells on its way, in order; the page draws nothing else."""
+"""The events of a job, in order; the page draws nothing else."""
 
 from __future__ import annotations
 
@@ -6,16 +6,69 @@ from typing import Literal
 
 import msgspec
 
-from fdvv.studio._messages_takes import CueBegun, TakeAsked, TakeTold
+
+class TakeAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="take_asked"):
+    """One take is asked for.
+
+    step : what is recorded. velocity_mm_s : None at rest. number, total : of the steps.
+    again : why once more; empty the first time.
+    contact_s, bottom_s : when the cue announces contact and bottom, from its start; None at rest.
+    length_s : of the cue.
+    """
+
+    step: Literal["rest", "probe", "press"]
+    velocity_mm_s: float | None
+    travel_mm: float
+    number: int
+    total: int
+    again: str
+    contact_s: float | None
+    bottom_s: float | None
+    length_s: float
+
+
+class CueStarted(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="cue"):
+    """The cue of the take asked for last begins now."""
+
+
+class PaceProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How far one pace is; achieved_mm_s of the good presses."""
+
+    velocity_mm_s: float
+    good: int
+    wanted: int
+    made: int
+    missed: int
+    achieved_mm_s: tuple[float, ...]
+
+
+class TakeEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="take"):
+    """A take that is on file.
+
+    reason : why it cannot be used and what to do; empty if it can.
+    achieved_mm_s, travel_mm : None where there is none.
+    missed : it was asked for often enough, the session continues without.
+    """
+
+    number: int
+    step: Literal["rest", "probe", "press"]
+    velocity_mm_s: float | None
+    ok: bool
+    reason: str
+    achieved_mm_s: float | None
+    travel_mm: float | None
+    done: int
+    total: int
+    missed: bool
+    paces: tuple[PaceProgress, ...]
+
 
 StrokeName = Literal["press", "release"]
 
 
-class JobBegun(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="begun"):
-    """The work begins, or goes on.
+class JobStarted(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="begun"):
+    """The work begins, or continues.
 
-    Attributes
-    ----------
     run : counts the starts from 1. simulated : the device is.
     """
 
@@ -24,7 +77,7 @@ class JobBegun(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="beg
     simulated: bool
 
 
-class StageTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="stage"):
+class StageEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="stage"):
     """A part of the work begins."""
 
     stage: Literal["compensate", "probe", "capture", "process", "tune"]
@@ -40,8 +93,6 @@ class JobNoticed(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="n
 class CurveIntended(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="intended"):
     """What a button asks for at one speed, and how much of a difference is just noticeable.
 
-    Attributes
-    ----------
     displacement_mm, press_cN, release_cN : (n,).
     noticeable_press_cN, noticeable_release_cN : 7 % of each stroke's mean force (Pang, Tan, Durlach 1991).
     """
@@ -54,11 +105,9 @@ class CurveIntended(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag
     noticeable_release_cN: float
 
 
-class CurveStanding(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CurveProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How far one curve is.
 
-    Attributes
-    ----------
     error_cN : error_k of every press used, in order.
     mean_error_cN, max_error_cN : of what is kept; None if not known.
     """
@@ -86,14 +135,12 @@ class PressAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="p
     total: int
 
 
-class PressTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press"):
+class PressEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press"):
     """A press that is on file.
 
-    Attributes
-    ----------
     done, total : presses used, and those it takes.
     skipped : why it was not used and what to do; empty if it was.
-    achieved_mm_s : None if it has no speed. told : what the method says that it changed.
+    achieved_mm_s : None if it has no speed. summary : what the method says that it changed.
     made, wanted : presses used at this velocity; wanted None if the method does not say.
     curves : of this velocity, as far as known. felt : None if there is no record.
     """
@@ -104,10 +151,10 @@ class PressTold(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="pr
     total: int
     skipped: str
     achieved_mm_s: float | None
-    told: str
+    summary: str = msgspec.field(name="told")
     made: int
     wanted: int | None
-    curves: tuple[CurveStanding, ...]
+    curves: tuple[CurveProgress, ...]
     felt: FeltCurve | None
 
 
@@ -119,10 +166,8 @@ class PlayedWave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class QuestionAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="asked"):
-    """A question to whoever tunes; what is asked about bears no name.
+    """A question to the observer; the waves are anonymous.
 
-    Attributes
-    ----------
     waves : one to rate, or two to compare, in the order pressed. measured : what they should be like.
     """
 
@@ -167,8 +212,6 @@ class QuestionAnswered(msgspec.Struct, frozen=True, forbid_unknown_fields=True, 
 class JobOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="outcome"):
     """What came out of a part of the work.
 
-    Attributes
-    ----------
     sentence : in words. presses : made in all, or answers. skipped : of them not used.
     curves : error_k as the rig measured it while it learned, or in true displacement as the probe did.
     """
@@ -178,7 +221,7 @@ class JobOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="o
     presses: int
     skipped: int
     simulated: bool
-    curves: tuple[CurveStanding, ...] = ()
+    curves: tuple[CurveProgress, ...] = ()
     rankings: tuple[TuneRanking, ...] = ()
     warnings: tuple[str, ...] = ()
 
@@ -191,15 +234,15 @@ class JobEnded(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="end
 
 
 JobEvent = (
-    JobBegun
-    | StageTold
+    JobStarted
+    | StageEvent
     | JobNoticed
     | CurveIntended
     | PressAsked
-    | PressTold
+    | PressEvent
     | TakeAsked
-    | CueBegun
-    | TakeTold
+    | CueStarted
+    | TakeEvent
     | QuestionAsked
     | QuestionAnswered
     | JobOutcome

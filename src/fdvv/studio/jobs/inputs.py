@@ -1,4 +1,4 @@
-"""Check an order, and collect copies of all that it works on."""
+"""Check an order, and collect copies of everything it works on."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fdvv.device import pressed_by_person
+from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
-from fdvv.model import FDVVModel, model_to_json
-from fdvv.studio._job_file import JobFolder
-from fdvv.studio._job_results import check_name, kept_file
-from fdvv.studio._messages_orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
-from fdvv.twin import PARTICIPANTS, button_names, load_rig, rig_to_toml
-from fdvv.workflow import SHIPPED_RIGS, Shelf
+from fdvv.library.catalog import Catalog
+from fdvv.model.file import model_to_json
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.rig_catalog import SHIPPED_RIGS
+from fdvv.studio.jobs.file import JobFolder, check_name, result_file
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.files import button_names, load_rig, rig_to_toml
 
 RIGS = tuple(sorted(SHIPPED_RIGS))
 SLOWEST_mm_s, FASTEST_mm_s, MOST_SPEEDS = 5.0, 500.0, 12
@@ -27,6 +29,8 @@ MOST = {
     "seed": (0, 2**31),
 }
 """Least and most of what is counted."""
+
+
 BENCH = "the capture bench "
 """Before the name of a simulated bench: it is no rig."""
 
@@ -37,7 +41,7 @@ class Inputs:
 
     Attributes
     ----------
-    title : for people. device : that it uses, as leases know it. simulated : that device is.
+    title : for people. device : that it uses, as the device locks name it. simulated : that device is.
     files : of the job's folder, by name.
     """
 
@@ -47,7 +51,7 @@ class Inputs:
     files: dict[str, str | bytes] = field(default_factory=dict)
 
 
-def inputs_of(order: Order, shelf: Shelf, project: Path, devices: Sequence[str]) -> Inputs:
+def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[str]) -> Inputs:
     """Check an order and collect what it needs. devices : that there are. InputError."""
     check_name(order.name)
     _check_counts(order)
@@ -56,7 +60,7 @@ def inputs_of(order: Order, shelf: Shelf, project: Path, devices: Sequence[str])
         raise InputError("device", "device", f"there is no {order.device[:80]!r}", "choose one of the list")
     if isinstance(order, CaptureOrder):
         return _capture(order)
-    model = shelf.model(order.button)
+    model = catalog.model(order.button)
     check_speeds(order.velocities_mm_s, SLOWEST_mm_s)
     files = _shared_files(order, model, project)
     if isinstance(order, TuneOrder):
@@ -72,9 +76,9 @@ def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float) -> None:
     """Refuse speeds that cannot be pressed at. InputError."""
     good = all(math.isfinite(v) and slowest_mm_s <= v <= FASTEST_mm_s for v in speeds_mm_s)
     if not good or not 0 < len(set(speeds_mm_s)) == len(speeds_mm_s) <= MOST_SPEEDS:
-        told = ", ".join(f"{v:g}" for v in speeds_mm_s[:20]) or "none"
+        speeds = ", ".join(f"{v:g}" for v in speeds_mm_s[:20]) or "none"
         remedy = f"give 1 to {MOST_SPEEDS} different ones of {slowest_mm_s:g} to {FASTEST_mm_s:g} mm/s"
-        raise InputError("velocities", "velocities", f"cannot be {told} mm/s", remedy)
+        raise InputError("velocities", "velocities", f"cannot be {speeds} mm/s", remedy)
 
 
 def _capture(order: CaptureOrder) -> Inputs:
@@ -104,9 +108,9 @@ def _shared_files(
         files[names.rig.name] = rig_to_toml(load_rig(order.rig))
     if isinstance(order, CompensateOrder):
         if order.known_rig:
-            files[names.known_rig.name] = kept_file(project, "rig", order.known_rig).read_bytes()
+            files[names.known_rig.name] = result_file(project, "rig", order.known_rig).read_bytes()
     elif order.actuation:
-        files[names.actuation.name] = kept_file(project, "actuation", order.actuation).read_bytes()
+        files[names.actuation.name] = result_file(project, "actuation", order.actuation).read_bytes()
     return files
 
 
@@ -136,7 +140,7 @@ def _check_tuning(order: TuneOrder, model: FDVVModel) -> None:
     if order.asking == "rate" and order.repeats < 2:
         raise InputError("repeats", "repeats", f"cannot be {order.repeats}", "rate each at least twice")
     if order.observer != "person" and pressed_by_person(order.device):
-        reason = "a person presses this device, and nobody's answers would be kept"
+        reason = "a person presses this device, and a simulated observer would answer for them"
         raise InputError("observer", "observer", reason, "answer yourself")
     if not any(v.stroke == "press" for v in model.vibrations):
         reason = f"{model.name} has no vibration of the press to tune"

@@ -1,4 +1,4 @@
-"""What long work is ordered with; the same words for the page, the job's file and who does it."""
+"""Orders of jobs; the same records for the page, the job's file and the worker."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ import msgspec
 class CompensateOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="compensate"):
     """Learn the actuation that makes a rig feel like a button, and judge it on fresh presses.
 
-    Attributes
-    ----------
     button : id of the model. name : of what comes out.
     device : one of those listed. rig : of a simulated one, by its shipped name.
     rounds : presses per velocity once the rig is known; with the paper's law runs averaged.
@@ -38,8 +36,6 @@ class CompensateOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, t
 class ProbeOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="probe"):
     """Judge a learned table on fresh presses.
 
-    Attributes
-    ----------
     actuation : name of a learned table; empty for the model's own force.
     presses : per velocity. The rest is as in CompensateOrder.
     """
@@ -58,8 +54,6 @@ class ProbeOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="p
 class CaptureOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="capture"):
     """Record a real button under guidance, and make a model of it.
 
-    Attributes
-    ----------
     name : of the button that comes out.
     device : "twin" is the simulated bench. switch, participant : that is on it, and who presses; simulated.
     presses : of each pace. probe : a slow probe first. shuffled : paces mixed.
@@ -84,8 +78,6 @@ class CaptureOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag=
 class TuneOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="tune"):
     """Tune the vibration of a button's press with a person, or with a made-up observer.
 
-    Attributes
-    ----------
     name : of the button that comes out. actuation : name of a learned table; empty for the model's own force.
     observer : who answers; nothing that the simulated one says is evidence of anything.
     asking : two after another, or one by itself from 1 to 7.

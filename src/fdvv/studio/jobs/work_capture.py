@@ -6,25 +6,24 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
-from fdvv.device import open_bench
-from fdvv.model import save_model
-from fdvv.recording import Stage
-from fdvv.studio._drawn import DIGITS, known
-from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
-from fdvv.studio._messages_orders import CaptureOrder
-from fdvv.studio._messages_takes import CueBegun, PaceTold, TakeAsked, TakeTold
-from fdvv.studio._work import Work
-from fdvv.workflow import (
-    CaptureGuide,
-    CapturePlan,
-    PaceStanding,
-    TakeAsk,
-    TakeDone,
-    capture_session,
-    cue_events,
-    cue_length_s,
-    process_recording,
+from fdvv.bench.capture import CaptureGuide, TakeDone, TakeRequest, VelocityProgress, capture_session
+from fdvv.bench.model import process_recording
+from fdvv.bench.plan import CapturePlan, cue_events, cue_length_s
+from fdvv.device.bench import open_bench
+from fdvv.model.file import save_model
+from fdvv.recording.types import Stage
+from fdvv.studio.jobs.events import (
+    CueStarted,
+    JobOutcome,
+    JobStarted,
+    PaceProgress,
+    StageEvent,
+    TakeAsked,
+    TakeEvent,
 )
+from fdvv.studio.jobs.orders import CaptureOrder
+from fdvv.studio.jobs.work import Work
+from fdvv.studio.rounding import DIGITS, finite_or_none
 
 StepName = Literal["rest", "probe", "press"]
 STEPS: dict[Stage, StepName] = {Stage.REST: "rest", Stage.PROBE: "probe", Stage.PRESS: "press"}
@@ -44,8 +43,8 @@ def capture(work: Work, order: CaptureOrder) -> None:
     bench = open_bench(order.device, order.switch, order.participant, order.seed, order.watch)
     try:
         info = bench.facts()
-        work.tell(JobBegun(work.run, info.name, info.simulated))
-        work.tell(StageTold("capture", "recording the button"))
+        work.tell(JobStarted(work.run, info.name, info.simulated))
+        work.tell(StageEvent("capture", "recording the button"))
         paced = order.watch or not info.simulated
         guide = CaptureGuide(_cue(work, paced), lambda done: work.tell(_take(done)), work.notice)
         capture_session(bench, work.folder.recording, order.name, plan, guide)
@@ -55,7 +54,7 @@ def capture(work: Work, order: CaptureOrder) -> None:
 
 
 def _process(work: Work, order: CaptureOrder) -> None:
-    work.tell(StageTold("process", "making a model of the recording"))
+    work.tell(StageEvent("process", "making a model of the recording"))
     found = process_recording(work.folder.recording)
     model = replace(found.model, name=order.name)
     save_model(model, work.folder.result("button"))
@@ -68,26 +67,26 @@ def _process(work: Work, order: CaptureOrder) -> None:
     work.tell(JobOutcome("capture", sentence, presses, presses - used, simulated, warnings=found.warnings))
 
 
-def _cue(work: Work, paced: bool) -> Callable[[TakeAsk], Callable[[float], None]]:
-    """Give what tells of a cue as it begins; nobody follows one that is not paced."""
+def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], None]]:
+    """Return the callback that reports a cue as it begins; only a paced cue is reported."""
 
-    def cue(ask: TakeAsk) -> Callable[[float], None]:
-        begun = not paced
+    def cue(ask: TakeRequest) -> Callable[[float], None]:
+        started = not paced
         if paced:
             work.tell(_asked(ask))
 
         def show(_t_s: float) -> None:
-            nonlocal begun
-            if not begun:
-                begun = True
-                work.tell(CueBegun())
+            nonlocal started
+            if not started:
+                started = True
+                work.tell(CueStarted())
 
         return show
 
     return cue
 
 
-def _asked(ask: TakeAsk) -> TakeAsked:
+def _asked(ask: TakeRequest) -> TakeAsked:
     velocity = ask.step.velocity_mm_s
     moments = dict(cue_events(velocity, ask.travel_mm))
     return TakeAsked(
@@ -103,26 +102,28 @@ def _asked(ask: TakeAsk) -> TakeAsked:
     )
 
 
-def _take(done: TakeDone) -> TakeTold:
-    take, verdict = done.take, done.verdict
-    return TakeTold(
+def _take(done: TakeDone) -> TakeEvent:
+    take, check = done.take, done.check
+    return TakeEvent(
         take.number,
         STEPS[take.stage],
         take.velocity_mm_s,
-        verdict.ok,
-        verdict.reason,
-        known(verdict.achieved_mm_s),
-        known(verdict.travel_mm),
+        check.ok,
+        check.reason,
+        finite_or_none(check.achieved_mm_s),
+        finite_or_none(check.travel_mm),
         done.done,
         done.total,
         done.missed,
-        tuple(_pace(pace) for pace in done.standing),
+        tuple(_pace(pace) for pace in done.progress),
     )
 
 
-def _pace(pace: PaceStanding) -> PaceTold:
-    speeds = tuple(round(v, DIGITS) for v in pace.achieved_mm_s)
-    return PaceTold(pace.velocity_mm_s, pace.good, pace.wanted, pace.made, pace.missed, speeds)
+def _pace(progress: VelocityProgress) -> PaceProgress:
+    speeds = tuple(round(v, DIGITS) for v in progress.achieved_mm_s)
+    return PaceProgress(
+        progress.velocity_mm_s, progress.good, progress.wanted, progress.made, progress.missed, speeds
+    )
 
 
 def _counted(count: int, what: str) -> str:

@@ -5,22 +5,22 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from fdvv.compensate import Acceptance, PaperLaw, RigAware, Tuning, load_memory, save_rig
-from fdvv.device import Device
-from fdvv.files import write_atomic
-from fdvv.model import FDVVModel, load_model
-from fdvv.studio._messages_events import JobBegun, JobOutcome, StageTold
-from fdvv.studio._messages_orders import CompensateOrder, ProbeOrder
-from fdvv.studio._work import Work, curve_standing, let_close
-from fdvv.workflow import (
-    CompensationResult,
-    Session,
-    compensate,
-    load_actuation,
-    probe,
-    save_actuation,
-    uncompensated,
-)
+from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
+from fdvv.compensation.method import Tuning
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.presses import AcceptanceLimits
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import Device
+from fdvv.io.files import write_atomic
+from fdvv.model.file import load_model
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.actuation_file import load_actuation, save_actuation
+from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.probe import probe
+from fdvv.rendering.session import Session
+from fdvv.studio.jobs.events import JobOutcome, JobStarted, StageEvent
+from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder
+from fdvv.studio.jobs.work import Work, curve_progress, let_close
 
 PROBE_SEED = 1
 """Added to the seed that was learned with: what judges is fresh."""
@@ -33,7 +33,7 @@ def learn(work: Work, order: CompensateOrder) -> None:
     device = session.open_device(order.device)
     try:
         _begin(work, device, model, order.velocities_mm_s)
-        work.tell(StageTold("compensate", "learning what makes the rig feel like the button"))
+        work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
         result = compensate(
             device,
             model,
@@ -85,10 +85,10 @@ def _probe(
 ) -> None:
     device, session = pressed
     surface, method, tuning = table
-    work.tell(StageTold("probe", "judging on fresh presses, in true displacement"))
-    told, guide = work.pressed(model.travel_mm), work.guide(order.device)
+    work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
+    report_press, guide = work.pressed(model.travel_mm), work.guide(order.device)
     speeds = order.velocities_mm_s
-    result = probe(device, model, surface, speeds, presses, told, method, session, guide, tuning)
+    result = probe(device, model, surface, speeds, presses, report_press, method, session, guide, tuning)
     report = {**result.to_dict(), "button": order.button}
     write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
     worst = max(result.curves, key=lambda c: c.outcome.mean_error_cN).outcome
@@ -96,7 +96,7 @@ def _probe(
         f"mean error on fresh presses at most {worst.mean_error_cN:.2f} cN "
         f"({worst.stroke} at {worst.velocity_mm_s:g} mm/s)"
     )
-    curves = tuple(curve_standing(curve.outcome) for curve in result.curves)
+    curves = tuple(curve_progress(curve.outcome) for curve in result.curves)
     counts = result.presses, len(result.skipped)
     work.tell(JobOutcome("probe", sentence, *counts, result.simulated, curves))
 
@@ -104,9 +104,9 @@ def _probe(
 def _keep(work: Work, result: CompensationResult) -> None:
     """Keep what was learned in the job's folder, and tell of it."""
     save_actuation(result, work.folder.result("actuation"))
-    if result.memory:
-        save_rig(result.memory, work.folder.result("rig"))
-    curves = tuple(curve_standing(curve) for curve in result.outcome.curves)
+    if result.learned_rig:
+        save_rig(result.learned_rig, work.folder.result("rig"))
+    curves = tuple(curve_progress(curve) for curve in result.outcome.curves)
     counts = result.presses, len(result.skipped)
     work.tell(JobOutcome("compensate", result.outcome.sentence, *counts, result.simulated, curves))
 
@@ -115,16 +115,16 @@ def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
     if order.method == "paper":
         return PaperLaw(rounds=order.rounds, presses_per_round=order.presses)
     known = work.folder.known_rig
-    return RigAware(order.rounds, load_memory(known) if known.exists() else None)
+    return RigAware(order.rounds, load_learned_rig(known) if known.exists() else None)
 
 
 def _session(work: Work, order: CompensateOrder | ProbeOrder, seed: int, probing: bool) -> Session:
     folder = work.folder.probe if probing else work.folder.session
     rig = work.folder.rig if work.folder.rig.exists() else None
-    return Session(folder, seed, rig, None, Acceptance(pace_ratio=order.pace_ratio))
+    return Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio))
 
 
 def _begin(work: Work, device: Device, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
     info = device.info()
-    work.tell(JobBegun(work.run, info.name, info.simulated))
+    work.tell(JobStarted(work.run, info.name, info.simulated))
     work.intended(model, velocities_mm_s)

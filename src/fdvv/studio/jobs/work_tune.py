@@ -1,37 +1,34 @@
-"""The work of a job that tunes a vibration with whoever answers."""
+"""The work of a job that tunes a vibration with an observer's answers."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
 
-from fdvv.compensate import Acceptance
-from fdvv.model import Vibration, load_model, save_model
-from fdvv.studio._drawn import DIGITS, known, rounded
-from fdvv.studio._messages_events import (
-    JobBegun,
+from fdvv.compensation.presses import AcceptanceLimits
+from fdvv.model.file import load_model, save_model
+from fdvv.model.vibration import Vibration
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.session import Session
+from fdvv.rendering.tune_candidates import Candidates, candidates_for, simulated_observer
+from fdvv.rendering.tune_vibration import AnswerEvent, TunedVibration, TuneSetup, tune_vibration
+from fdvv.studio.jobs.events import (
     JobOutcome,
+    JobStarted,
     PlayedWave,
     QuestionAnswered,
     QuestionAsked,
-    StageTold,
+    StageEvent,
     TuneCandidate,
     TuneRanking,
 )
-from fdvv.studio._messages_orders import TuneOrder
-from fdvv.studio._work import Work, let_close
-from fdvv.vibration import Comparing, Preferred, Question, Rating, TemplateGrid, vibration_samples
-from fdvv.workflow import (
-    Candidates,
-    Session,
-    TunedVibration,
-    TuneSetup,
-    TuneTold,
-    candidates_for,
-    load_actuation,
-    simulated_observer,
-    tune_vibration,
-)
+from fdvv.studio.jobs.orders import TuneOrder
+from fdvv.studio.jobs.work import Work, let_close
+from fdvv.studio.rounding import DIGITS, finite_or_none, rounded
+from fdvv.vibration.templates import TemplateGrid
+from fdvv.vibration.tune import Preferred, Question, Rating
+from fdvv.vibration.tune_compare import Comparing
+from fdvv.vibration.wave import vibration_samples
 
 WAVE_Hz, QUIET_s = 8000, 0.005
 """Of what is played on the page; the strongest modes of switches lie below 3 kHz."""
@@ -45,12 +42,14 @@ def tune(work: Work, order: TuneOrder) -> None:
     candidates = candidates_for(model, sorted(order.velocities_mm_s), grid)
     setup = TuneSetup(learned.surface if learned else None, None, grid, order.observer)
     rig = work.folder.rig if work.folder.rig.exists() else None
-    session = Session(work.folder.session, order.seed, rig, None, Acceptance(pace_ratio=order.pace_ratio))
+    session = Session(
+        work.folder.session, order.seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio)
+    )
     device = session.open_device(order.device)
     try:
         info = device.info()
-        work.tell(JobBegun(work.run, info.name, info.simulated))
-        work.tell(StageTold("tune", f"answers of a {order.observer}"))
+        work.tell(JobStarted(work.run, info.name, info.simulated))
+        work.tell(StageEvent("tune", f"answers of a {order.observer}"))
         result = tune_vibration(
             device,
             model,
@@ -60,7 +59,7 @@ def tune(work: Work, order: TuneOrder) -> None:
             setup,
             session,
             work.guide(order.device),
-            lambda told: work.tell(_answered(told)),
+            lambda progress: work.tell(_answered(progress)),
         )
     finally:
         let_close(device)
@@ -77,7 +76,7 @@ def _method(order: TuneOrder) -> Rating | Comparing:
 
 
 def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) -> Any:
-    """Give who answers."""
+    """Return who answers."""
     if order.observer != "person":
         return simulated_observer(candidates, order.seed).answer
 
@@ -86,8 +85,8 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
         waves = tuple(_wave(found.vibrations[template]) for template in question.templates)
         about = question.number, question.total, found.velocity_mm_s
         work.tell(QuestionAsked(*about, waves, _wave(found.vibrations[0])))
-        told = work.ask(question.number)
-        return None if told == "again" else int(told) if told.isdigit() else Preferred(told)
+        said = work.ask(question.number)
+        return None if said == "again" else int(said) if said.isdigit() else Preferred(said)
 
     return answer
 
@@ -97,10 +96,10 @@ def _wave(vibration: Vibration) -> PlayedWave:
     return PlayedWave(WAVE_Hz, rounded(samples))
 
 
-def _answered(told: TuneTold) -> QuestionAnswered:
-    given = told.given
-    rankings = tuple(_ranking(tuned) for tuned in told.tuned if tuned.standing.answers)
-    return QuestionAnswered(given.number, told.total, given.velocity_mm_s, str(given.answer), rankings)
+def _answered(progress: AnswerEvent) -> QuestionAnswered:
+    given = progress.given
+    rankings = tuple(_ranking(tuned) for tuned in progress.tuned if tuned.standing.answers)
+    return QuestionAnswered(given.number, progress.total, given.velocity_mm_s, str(given.answer), rankings)
 
 
 def _ranking(tuned: TunedVibration) -> TuneRanking:
@@ -121,7 +120,7 @@ def _candidate(tuned: TunedVibration, i: int) -> TuneCandidate:
         round(strongest.frequency_Hz, 1),
         round(strongest.amplitude_m_s2, DIGITS),
         round(standing.scores[i], DIGITS),
-        known(standing.errors[i]),
+        finite_or_none(standing.errors[i]),
         i in standing.alike,
         i == standing.best,
     )

@@ -1,6 +1,6 @@
 """What the operator's screen may show of a running study: who is where, and nothing that a label hides.
 
-It is read from plain files only, with no key: whoever shows it cannot know more.
+It is read from plain files only, without a key, so that a screen cannot reveal more.
 """
 
 from __future__ import annotations
@@ -8,20 +8,20 @@ from __future__ import annotations
 from msgspec import Struct, structs
 
 from fdvv.errors import InputError
-from fdvv.study import SessionState, Step, StepKind, next_step
-from fdvv.workflow._participant_log import read_session
-from fdvv.workflow._study_files import PEOPLE, SESSION_FILE
-from fdvv.workflow._study_folder import StudyFolder
-from fdvv.workflow._study_people import Person, PersonState
+from fdvv.study.files.folder import StudyFolder
+from fdvv.study.files.layout import PEOPLE, SESSION_FILE
+from fdvv.study.files.people import Person, PersonState
+from fdvv.study.plan.session import SessionState, Step, StepKind, next_step
+from fdvv.study.session.log import read_session
 
 
 class PersonView(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Where somebody is.
+    """The progress of a person.
 
     Attributes
     ----------
-    person, language, simulated, state : see Person. kind, page, item : of what they meet now; "" where that
-        cannot be told: nothing was begun, or nothing is kept. trial : which, from 0; -1: none.
+    person, language, simulated, state : see Person. kind, page, item : of the step that is due; "" where that
+        is unknown: the session has not started, or was deleted. trial : which, from 0; -1: none.
     left_s : of a break. answered, trials : of those that count; of a staircase trials is the most there can
         be. progress : see Step.
     again : trials that had to be shown again. skipped : that were given up, for the device went away in them
@@ -61,7 +61,7 @@ class OperatorView(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def operator_view(study: StudyFolder, now_s: float) -> OperatorView:
-    """Tell where everybody is, in the order of their enrolment. now_s : wall time.
+    """Return the progress of everybody, in the order of their enrolment. now_s : wall time.
 
     InputError on a study that was changed, OSError.
     """
@@ -83,7 +83,7 @@ def _person_view(study: StudyFolder, person: Person, now_s: float) -> PersonView
 
 
 def _with_state(about: PersonView, state: SessionState, step: Step) -> PersonView:
-    counted = [trial.number for trial in state.began.trials if not trial.practice]
+    counted = [trial.number for trial in state.started.trials if not trial.practice]
     return structs.replace(
         about,
         kind=step.kind,

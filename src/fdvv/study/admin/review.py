@@ -1,31 +1,39 @@
-"""Look at a study before it is frozen: its file, and what the files it names hold."""
+"""Review a study before it is frozen: its file, and whether what it names can be rendered."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
+from msgspec import structs
 
-from fdvv.errors import FdvvError, InputError
-from fdvv.files import read_limited
-from fdvv.model import FDVVModel, Stroke
-from fdvv.study import STUDY_FILE, Item, Stimulus, StudyPlan, plan_problems, read_plan_text
-from fdvv.workflow._study_files import BUTTONS, kept_path, named_files
-from fdvv.workflow._study_stage import stimulus_model
-from fdvv.workflow._study_stage_subject import stimulus_actuation
+from fdvv.errors import DeviceError, FdvvError, InputError
+from fdvv.live.press_subject import PRESS_RIGS
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.program.surface import Limits
+from fdvv.study.files.layout import BUTTONS, kept_path, named_files
+from fdvv.study.plan.plan import Item, Stimulus, StudyPlan
+from fdvv.study.plan.plan_check import plan_problems
+from fdvv.study.plan.plan_file import read_plan
+from fdvv.study.plan.staircase import LARGEST_ratio
+from fdvv.study.stimulus.program import trial_program
+from fdvv.study.stimulus.renderer import prepare_stimulus, stimulus_actuation, stimulus_model
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 """Of presses at which renderings are compared: the paper's."""
+
 STEP_mm = 0.05
 ALIKE_cN = 1.0
 """Below this, rms, nobody is expected to feel a difference of force: 2 % of a light key."""
 
 
 @dataclass(frozen=True)
-class StudyLook:
+class StudyReview:
     """What was found of a study.
 
     Attributes
@@ -45,21 +53,16 @@ class StudyLook:
     models: dict[Stimulus, FDVVModel]
 
 
-def look_at_study(path: Path) -> StudyLook:
+def review_study(path: Path) -> StudyReview:
     """Read a study's file, or that in a folder, and open everything that it names.
 
     InputError where the file itself cannot be read; what is wrong inside is among the problems.
     """
-    path = path / STUDY_FILE if path.is_dir() else path
-    data = read_limited(path, 1_000_000, "name the file of a study")
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(path, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
-    return look_at_plan(read_plan_text(text, path), path.parent)
+    plan, file = read_plan(path)
+    return review_plan(plan, file.parent)
 
 
-def look_at_plan(plan: StudyPlan, folder: Path) -> StudyLook:
+def review_plan(plan: StudyPlan, folder: Path) -> StudyReview:
     """Open everything that a plan names. folder : of the study, where its files are."""
     problems, notes, differences = (
         list(plan_problems(plan)),
@@ -67,9 +70,9 @@ def look_at_plan(plan: StudyPlan, folder: Path) -> StudyLook:
         dict[str, float](),
     )
     opened = dict[Stimulus, FDVVModel]()
-    told = tuple(problems)
+    known = tuple(problems)
     for item in plan.items:
-        if any(problem.startswith(f"items ({item.name!r})") for problem in told):
+        if any(problem.startswith(f"items ({item.name!r})") for problem in known):
             continue
         try:
             models = {s: opened.get(s) or _opened(s, folder) for s in item.rendered}
@@ -81,20 +84,19 @@ def look_at_plan(plan: StudyPlan, folder: Path) -> StudyLook:
             problems += _alike(item, models)
             differences[item.name] = least_difference_cN([models[s] for s in item.stimuli])
         notes += _doubts(item, differences.get(item.name))
-    return StudyLook(plan, folder, tuple(dict.fromkeys(problems)), tuple(notes), differences, opened)
+    return StudyReview(plan, folder, tuple(dict.fromkeys(problems)), tuple(notes), differences, opened)
 
 
 def least_difference_cN(models: list[FDVVModel]) -> float:
-    """Give the rms difference of force of the two models that are nearest to each other."""
+    """Return the rms difference of force of the two models that are nearest to each other."""
     return min((_difference_cN(*pair) for pair in combinations(models, 2)), default=0.0)
 
 
 def _shadowed(plan: StudyPlan, folder: Path) -> Iterator[str]:
-    """Tell of files beside the plan that are not what is rendered: the study keeps others of that name."""
     try:
         names = named_files(plan)
     except InputError:
-        return  # which is told of its item
+        return  # reported with its item
     for name in names:
         beside, kept = folder / name, kept_path(folder, name)
         if (
@@ -115,7 +117,6 @@ def _opened(stimulus: Stimulus, folder: Path) -> FDVVModel:
 
 
 def _alike(item: Item, models: dict[Stimulus, FDVVModel]) -> Iterator[str]:
-    """Refuse renderings that differ in name only: nobody could tell them apart."""
     for one, other in combinations(item.stimuli, 2):
         if models[one].renamed("same") == models[other].renamed("same") and one.actuation == other.actuation:
             why = "its model has one speed and no vibration" if one.button == other.button else "same models"
@@ -133,7 +134,7 @@ def _doubts(item: Item, difference_cN: float | None) -> Iterator[str]:
 
 
 def _difference_cN(one: FDVVModel, other: FDVVModel) -> float:
-    """Give the rms difference of force over both strokes, the paper's speeds and the longer travel."""
+    """Return the rms difference of force over both strokes, the paper's speeds and the longer travel."""
     x = np.arange(0.0, max(one.travel_mm, other.travel_mm), STEP_mm)
     v = np.array(SPEEDS_mm_s)[:, np.newaxis]
     found = [_force_cN(one, x, v, stroke) - _force_cN(other, x, v, stroke) for stroke in Stroke]
@@ -142,3 +143,47 @@ def _difference_cN(one: FDVVModel, other: FDVVModel) -> float:
 
 def _force_cN(model: FDVVModel, x: np.ndarray, v: np.ndarray, stroke: Stroke) -> np.ndarray:
     return np.asarray(model.force_cN(x, v, stroke if model.of(stroke) else Stroke.PRESS))
+
+
+def twin_problems(
+    plan: StudyPlan,
+    folder: Path,
+    rig_name: str = PRESS_RIGS[0],
+    opened: Mapping[Stimulus, FDVVModel] = MappingProxyType({}),
+) -> tuple[str, ...]:
+    """List what of a study the twin cannot render, in one line each; empty if it renders all.
+
+    folder : of the study, where its files are. rig_name : for stimuli with an actuation. opened : models
+        of stimuli that were opened before.
+    """
+    problems: list[str] = []
+    for item in plan.items:
+        for stimulus in _strongest(plan, item):
+            try:
+                prepare_stimulus(stimulus, folder, rig_name, opened.get(stimulus))
+            except (InputError, DeviceError) as error:
+                problems.append(f"item {item.name!r}: {error}")
+    return tuple(problems)
+
+
+def device_problems(plan: StudyPlan, folder: Path, limits: Limits | None = None) -> tuple[str, ...]:
+    """List the items whose labels a device cannot hold side by side, so that it could not hide a change.
+
+    limits : of the rig; those of the paper's if None.
+    """
+    problems: list[str] = []
+    for item in plan.items:
+        labels = {str(place): stimulus for place, stimulus in enumerate(_strongest(plan, item))}
+        try:
+            trial_program(labels, folder, limits or Limits())
+        except (InputError, DeviceError) as error:
+            problems.append(f"item {item.name!r}: {error}")
+    return tuple(problems)
+
+
+def _strongest(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
+    rendered = item.rendered
+    if plan.kind == "staircase" and len(item.stimuli) > 1:
+        force_ratio = rendered[1].force_ratio * (1.0 + LARGEST_ratio)
+        rendered = (rendered[0], structs.replace(rendered[1], force_ratio=force_ratio), *rendered[2:])
+    return rendered

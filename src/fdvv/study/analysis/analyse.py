@@ -5,31 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.study import (
-    Answers,
-    Claim,
-    Multiverse,
-    Screening,
-    StudyPlan,
+from fdvv.stats.rank_tests import signed_rank
+from fdvv.study.analysis.choices import choice_results
+from fdvv.study.analysis.columns import TIMING
+from fdvv.study.analysis.levels import threshold_over_people, threshold_results, timing_results
+from fdvv.study.analysis.multiverse import Multiverse, multiverse
+from fdvv.study.analysis.ratings import button_tests, names_of, rated_results, scale_results
+from fdvv.study.analysis.records import ChoiceResult, ClaimResult, PersonResult, StudyAnalysis
+from fdvv.study.plan.answers import Answers, Screening, is_answered, means_by, screen
+from fdvv.study.plan.claim import (
     choice_claim,
     claim_values,
     is_about_right,
-    is_answered,
-    means_by,
     measure_of,
     measured_by,
-    multiverse,
-    screen,
-    signed_rank,
     usual_claim,
 )
-from fdvv.workflow._study_choice_records import ChoiceResult, ClaimResult
-from fdvv.workflow._study_choices import choice_results
-from fdvv.workflow._study_columns import TIMING
-from fdvv.workflow._study_levels import threshold_over_people, threshold_results, timing_results
-from fdvv.workflow._study_ratings import button_tests, names_of, rated_results
-from fdvv.workflow._study_records import PersonResult, StudyAnalysis
-from fdvv.workflow._study_scale import scale_results
+from fdvv.study.plan.plan import Claim, StudyPlan
 
 FEW_PEOPLE = 6
 """People below which the exact signed-rank test cannot be significant at .05, whatever they say."""
@@ -41,7 +33,7 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
     plan : whose claim is the main one, and whose rules leave people out; without one the kind's usual claim
         and the usual rules. title : of the study; by default the plan's.
 
-    What few or broken answers cannot tell is left out and noted. InputError where nothing was answered.
+    What too few or broken answers do not allow is left out and noted. InputError where nothing was answered.
     """
     screening = screen(answers, plan.exclusion if plan else None)
     found = screening.answers
@@ -74,7 +66,6 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
 
 
 def _two_rated(answers: Answers, claim: Claim) -> bool:
-    """Tell whether a claim is about two renderings that are rated."""
     return bool(answers.ratings) and {claim.more, claim.less} <= set(answers.stimuli)
 
 
@@ -108,16 +99,15 @@ def _multiverse(answers: Answers, claim: Claim | None, notes: list[str]) -> Mult
     try:
         found = multiverse(answers, claim)
     except ModelError:
-        # the claim's own test has told why
+        # the claim's own test has noted why
         return None
     if not any(one.registered for one in found.specifications):
-        notes.append("The main claim has no other ways to be compared with: nothing is left to test.")
+        notes.append("The main claim has no other specifications: nothing is left to test.")
         return None
     return found
 
 
 def _people(screening: Screening, claim: Claim | None) -> tuple[PersonResult, ...]:
-    """Tell of every person what they did, whether they count or not."""
     answers = screening.answers
     answered = is_answered(answers)
     values = np.full(len(answered), np.nan)
@@ -146,7 +136,6 @@ def _people(screening: Screening, claim: Claim | None) -> tuple[PersonResult, ..
 
 
 def _differences(answers: Answers, rows: np.ndarray, claim: Claim | None) -> dict[str, float]:
-    """Give a person's mean difference of every rating."""
     if claim is None or not _two_rated(answers, claim):
         return {}
     found = {}
@@ -158,13 +147,12 @@ def _differences(answers: Answers, rows: np.ndarray, claim: Claim | None) -> dic
 
 
 def _warnings(screening: Screening) -> tuple[str, ...]:
-    """Say what few people mean."""
     people = screening.people_counted
     if people == 0:
         return ("Nobody is left after the rules: nothing is tested.",)
     if people == 1:
-        return ("One person is left: what is told is about that person, and no test speaks of people.",)
+        return ("One person is left: all results are about that person, and no test speaks of people.",)
     if people < FEW_PEOPLE:
-        told = f"With {people} people no exact signed-rank test can be significant at .05, whatever they say"
-        return (f"{told}; look at the people themselves.",)
+        text = f"With {people} people no exact signed-rank test can be significant at .05, whatever they say"
+        return (f"{text}; look at the people themselves.",)
     return ()

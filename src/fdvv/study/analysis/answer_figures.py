@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.plot import _style as style
+from fdvv.report import style
+from fdvv.study.analysis.records import ChoiceResult
+from fdvv.study.analysis.words import button_name
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
@@ -19,7 +21,7 @@ PALE = "#cbd2d9"
 COLOURS = (PALE, style.PALETTE[0], style.PALETTE[2], style.PALETTE[5], style.PALETTE[3], style.PALETTE[4])
 """Of stimuli in order: the first is what the others are held against."""
 ROW_in = 0.42
-LEAST_TOLD = 0.07
+LEAST_LABELLED = 0.07
 """Part of a bar below which its number has no room in it."""
 
 
@@ -38,7 +40,7 @@ class RatingBars:
     ----------
     buttons, stimuli : names. people : (people, buttons, stimuli) means of each person, the dots; nan missing.
     low, high : (buttons, stimuli) interval of each mean; nan where none. scale : ends of the axis.
-    marks : one per button, written above it; empty: nothing is told.
+    marks : one per button, written above it; empty: none.
     """
 
     buttons: tuple[str, ...]
@@ -58,19 +60,6 @@ class RatingBars:
 
 
 @dataclass(frozen=True)
-class ChoiceRow:
-    """Choices about one button: counts, and the share that is told with its interval."""
-
-    name: str
-    less: int
-    equal: int
-    more: int
-    share: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class ForestRow:
     """One value with its interval; main : drawn as a diamond. A bound may be infinite or nan."""
 
@@ -85,7 +74,7 @@ class ForestRow:
 def plot_rating_bars(bars: RatingBars, rating: str, simulated: bool = False) -> Any:
     """Draw mean ratings by button: thin bars are 1 SD between people, thick ones the interval of the mean.
 
-    A dot is a person. Gives the axes.
+    A dot is a person. Returns the axes.
     """
     count = len(bars.stimuli)
     ax = style.new_figure(max(6.4, 1.0 + (0.55 + 0.36 * count) * len(bars.buttons)), 4.4).add_subplot()
@@ -110,7 +99,6 @@ def plot_rating_bars(bars: RatingBars, rating: str, simulated: bool = False) -> 
 
 
 def _draw_stimulus(ax: Axes, bars: RatingBars, number: int, places: FloatArray, width: float) -> None:
-    """Draw one rendering at every button."""
     people = bars.people[:, :, number]
     there = np.isfinite(people).sum(axis=0)
     some = there > 0
@@ -131,35 +119,32 @@ def _draw_stimulus(ax: Axes, bars: RatingBars, number: int, places: FloatArray, 
 
 
 def _ticks(low: float, high: float) -> FloatArray:
-    """Give whole numbers of a short scale, steps of 20 of a long one."""
     return np.arange(low, high + 0.5, 1.0 if high - low <= 12 else (high - low) / 5)
 
 
 @style.in_house_style
-def plot_choices(
-    rows: Sequence[ChoiceRow], less: str, more: str, chance: float = 0.5, simulated: bool = False
-) -> Any:
+def plot_choices(rows: Sequence[ChoiceResult], simulated: bool = False) -> Any:
     """Draw what was chosen as one bar a button, and below it the share of ``more`` with its interval.
 
-    less, more : names of what was chosen. Gives the axes. ModelError without a row.
+    Returns the axes. ModelError without a row.
     """
     if not rows:
         raise ModelError("a figure of choices needs at least one row")
     ax = style.new_figure(7.4, 1.5 + 1.35 * ROW_in * len(rows)).add_subplot()
     places = np.arange(float(len(rows)))[::-1]
-    counts = np.array([(one.more, one.equal, one.less) for one in rows], dtype=np.float64)
+    counts = np.array([(one.more_count, one.equal_count, one.less_count) for one in rows], dtype=np.float64)
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
     left = np.zeros(len(rows))
-    drawn = [(more, style.PALETTE[0]), ("equal", "#eef1f4"), (less, PALE)]
+    drawn = [(rows[0].more, style.PALETTE[0]), ("equal", "#eef1f4"), (rows[0].less, PALE)]
     for column, (name, colour) in enumerate(drawn):
         if column == 1 and not counts[:, 1].any():
             continue
         ax.barh(places, shares[:, column], 0.56, left, color=colour, label=style.name_text(name), zorder=1.0)
         _write_counts(ax, places, left, shares[:, column], counts[:, column], column == 0)
         left = left + shares[:, column]
-    _draw_shares(ax, rows, places - 0.42, more)
-    ax.axvline(chance, color=style.QUIET, linestyle=":", linewidth=1.2, zorder=2.0)
-    ax.set_yticks(places, [style.name_text(one.name) for one in rows])
+    _draw_shares(ax, rows, places - 0.42)
+    ax.axvline(0.5, color=style.QUIET, linestyle=":", linewidth=1.2, zorder=2.0)
+    ax.set_yticks(places, [style.name_text(button_name(one)) for one in rows])
     ax.set_xlim(0.0, 1.0)
     ax.set_ylim(-0.75, len(rows) - 0.6)
     ticks = np.linspace(0.0, 1.0, 5)
@@ -175,22 +160,20 @@ def plot_choices(
 def _write_counts(
     ax: Axes, places: FloatArray, left: FloatArray, shares: FloatArray, counts: FloatArray, dark: bool
 ) -> None:
-    """Write the counts into the bars that have room for them."""
     for place, start, share, count in zip(places, left, shares, counts, strict=True):
-        if share >= LEAST_TOLD:
+        if share >= LEAST_LABELLED:
             colour = "white" if dark else style.INK
             at = (float(start + share / 2), float(place))
             ax.annotate(f"{count:.0f}", at, ha="center", va="center", fontsize=8.5, color=colour)
 
 
-def _draw_shares(ax: Axes, rows: Sequence[ChoiceRow], places: FloatArray, more: str) -> None:
-    """Draw the share that is told, with its interval."""
-    label = f"share of {style.name_text(more)}, 95 % interval"
+def _draw_shares(ax: Axes, rows: Sequence[ChoiceResult], places: FloatArray) -> None:
+    label = f"share of {style.name_text(rows[0].more)}, 95 % interval"
     for place, one in zip(places, rows, strict=True):
-        if np.isfinite(one.share):
-            ax.plot([one.low, one.high], [place, place], color=style.PALETTE[1], linewidth=2.0)
-            ax.plot([one.share], [place], "D", color=style.PALETTE[1], markersize=4.5, label=label)
-            label = "_"
+        ends = [one.interval.low, one.interval.high]
+        ax.plot(ends, [place, place], color=style.PALETTE[1], linewidth=2.0)
+        ax.plot([one.share.share], [place], "D", color=style.PALETTE[1], markersize=4.5, label=label)
+        label = "_"
 
 
 @style.in_house_style
@@ -199,7 +182,7 @@ def plot_forest(
 ) -> Any:
     """Draw values with their intervals, one below the other. none : where there is no difference.
 
-    A bound that is infinite is an arrow. Gives the axes. ModelError without a row.
+    A bound that is infinite is an arrow. Returns the axes. ModelError without a row.
     """
     if not rows:
         raise ModelError("a figure of values needs at least one row")

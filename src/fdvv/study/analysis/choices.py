@@ -6,30 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.study import (
-    Answers,
-    Claim,
-    DPrime,
-    Share,
-    SignedRank,
-    choice_claim,
-    claim_values,
-    clustered_share,
-    d_prime_2afc,
-    d_prime_abx,
-    d_prime_of_people,
-    holm,
-    means_by,
-    share,
-    sign_test,
-    signed_rank,
-    two_ac,
-    two_ac_people,
-)
+from fdvv.stats.post_hoc import holm
+from fdvv.stats.rank_tests import SignedRank, signed_rank
+from fdvv.stats.share import Share, clustered_share, share, sign_test
+from fdvv.stats.thurstone import DPrime, d_prime_2afc, d_prime_abx, d_prime_of_people
+from fdvv.stats.two_ac import two_ac, two_ac_people
+from fdvv.study.analysis.ratings import names_of
+from fdvv.study.analysis.records import ALL_BUTTONS, ChoiceResult
+from fdvv.study.plan.answers import Answers, means_by
+from fdvv.study.plan.claim import choice_claim, claim_values
+from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
-from fdvv.workflow._study_choice_records import ChoiceResult
-from fdvv.workflow._study_ratings import names_of
-from fdvv.workflow._study_records import ALL_BUTTONS
 
 RIGHT, WRONG = "right", "wrong"
 
@@ -59,7 +46,6 @@ def choice_results(answers: Answers, claim: Claim) -> tuple[ChoiceResult, ...]:
 def _result(
     answers: Answers, claim: Claim, button: str, rows: np.ndarray, values: FloatArray
 ) -> ChoiceResult | None:
-    """Count the choices of some rows."""
     found, person = values[rows], answers.person[rows]
     more, equal, less = (int(np.sum(found == one)) for one in (1.0, 0.0, -1.0))
     n = more + equal + less
@@ -91,7 +77,6 @@ def _result(
 
 
 def _people_share(values: FloatArray, person: np.ndarray) -> Share:
-    """Give the share of more with an interval over people."""
     there = np.isfinite(values)
     _, places = np.unique(person[there], return_inverse=True)
     return clustered_share(np.bincount(places, values[there] == 1.0), np.bincount(places))
@@ -104,7 +89,7 @@ def _people_counts(values: FloatArray, person: np.ndarray) -> FloatArray:
 
 
 def _distances(kind: str, right: bool, counts: FloatArray, people: Share | None) -> tuple[DPrime, ...]:
-    """Give d' by every rule that fits the task, people counted as people first. counts : (people, 3)."""
+    """Return d' by every rule that fits the task, people counted as people first. counts : (people, 3)."""
     less, equal, more = (int(one) for one in counts.sum(axis=0))
     n = less + equal + more
     if right and kind == "abx":

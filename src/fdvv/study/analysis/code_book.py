@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from pathlib import Path
 from typing import Literal
 
 import msgspec
+import numpy as np
 
-from fdvv.documents import Kind, pretty, read_document
-from fdvv.files import read_limited
-from fdvv.study import EQUAL, Answers, StudyPlan
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.trial import EQUAL
 
 CODE_BOOK_FILE = "codebook.json"
 KIND = Kind("fdvv-codebook", 1, "a code book", "write it with fdvv study export")
 LARGEST_bytes = 4_000_000
-
 ColumnType = Literal["text", "whole number", "number", "0 or 1"]
+ANSWERS_FILE = "answers.csv"
 
 
 class CodedColumn(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -59,7 +64,7 @@ class CodeBook(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     columns: tuple[CodedColumn, ...]
 
     def rating_columns(self) -> dict[str, tuple[str, str]]:
-        """Give rating and stimulus of every rating's column."""
+        """Return rating and stimulus of every rating's column."""
         return {one.name: (one.rating, one.stimulus) for one in self.columns if one.role == "rating"}
 
 
@@ -96,7 +101,6 @@ def rating_column(rating: str, stimulus: str) -> str:
 
 
 def _fixed(answers: Answers) -> tuple[CodedColumn, ...]:
-    """Describe the columns that every study has."""
     chosen = {name: f"{name} was chosen" for name in answers.stimuli} | {EQUAL: "no difference"}
     right = {"1": "the answer was right", "0": "it was wrong"}
     return (
@@ -137,5 +141,53 @@ def _ratings(answers: Answers, plan: StudyPlan | None) -> tuple[CodedColumn, ...
 
 
 def scale_ends(points: int) -> tuple[float, float]:
-    """Give the ends of a scale: 7 is 1 to 7, 101 a slider from 0 to 100."""
+    """Return the ends of a scale: 7 is 1 to 7, 101 a slider from 0 to 100."""
     return (0.0, 100.0) if points == 101 else (1.0, float(points))
+
+
+def write_answers(folder: Path, answers: Answers, plan: StudyPlan | None = None) -> tuple[Path, Path]:
+    """Write answers.csv and codebook.json into a folder, each whole or not at all; return both. OSError."""
+    table, book = folder / ANSWERS_FILE, folder / CODE_BOOK_FILE
+    write_atomic(table, answers_csv(answers))
+    write_atomic(book, code_book_text(code_book(answers, plan)))
+    return table, book
+
+
+def answers_csv(answers: Answers) -> str:
+    """Write answers as CSV: UTF-8, commas, a point in decimals, an empty cell where there is nothing.
+
+    A row is a trial; columns as `code_book` describes them. Numbers keep every digit.
+    """
+    n = len(answers.person)
+    missing = np.full(n, np.nan)
+    columns: list[list[str]] = [
+        [str(one) for one in answers.person],
+        [str(one) for one in answers.item],
+        [str(int(one)) for one in answers.round],
+        [str(one) for one in answers.choice],
+        _numbers(answers.correct),
+        _numbers(missing if answers.ratio is None else answers.ratio),
+        _numbers(missing if answers.time_s is None else answers.time_s),
+        [""] * n if answers.excluded is None else [str(one) for one in answers.excluded],
+        [str(int(answers.simulated))] * n,
+    ]
+    for rating in answers.ratings.values():
+        columns += [_numbers(column) for column in rating.T]
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(one.name for one in code_book(answers).columns)
+    writer.writerows(zip(*columns, strict=True))
+    return stream.getvalue()
+
+
+def _numbers(column: np.ndarray) -> list[str]:
+    """Write numbers with as many digits as they have; nan is nothing."""
+    return [number_text(float(one)) for one in column]
+
+
+def number_text(value: float) -> str:
+    """Write a number with every digit it has; nothing where it is missing."""
+    value = float(value)
+    if np.isnan(value):
+        return ""
+    return str(int(value)) if value.is_integer() else repr(value)

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import get_args
 
+import numpy as np
+
 from fdvv.errors import InputError
-from fdvv.study import EQUAL, StudyKind
-from fdvv.workflow._study_code_book import CodeBook, rating_column
+from fdvv.study.analysis.code_book import CodeBook, rating_column
+from fdvv.study.plan.plan import StudyKind
+from fdvv.study.plan.trial import EQUAL
 
 TIMING = "timing"
 """A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""
+
 KINDS = (*get_args(StudyKind), TIMING)
 TEXTS = ("person", "item", "choice", "excluded", "stimulus")
 NUMBERS = ("round", "correct", "ratio", "time_s", "simulated")
 ROLES = (*TEXTS, *NUMBERS)
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
 """Words for a missing value, in any case of letters."""
+
+YES, NO = ("1", "true", "yes", "t", "y"), ("0", "false", "no", "f", "n")
 
 
 @dataclass(frozen=True)
@@ -26,7 +33,7 @@ class ColumnMap:
 
     Attributes
     ----------
-    kind : of the study; "": as the code book says, else told by the columns.
+    kind : of the study; "": as the code book says, else by the columns.
     stimuli : names, in order; of two, a preference counts for the second. (): as found.
     columns : the file's heading by role. A role is one of `ROLES`, or RATING:STIMULUS where every rendering
         has its own column, or RATING where a row is one rating (then "stimulus" is a column too).
@@ -51,7 +58,7 @@ class ColumnMap:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where everything stands in one table.
+    """The columns of one table.
 
     Attributes
     ----------
@@ -64,7 +71,7 @@ class Layout:
 
     @property
     def long(self) -> bool:
-        """Tell whether a row is one rating of one rendering, rather than a trial."""
+        """Whether a row is one rating of one rendering, rather than a trial."""
         return "stimulus" in self.roles
 
 
@@ -89,7 +96,6 @@ def layout_of(heads: Sequence[str], asked: ColumnMap, book: CodeBook | None, sou
 
 
 def _by_name(heads: Sequence[str], stimuli: Sequence[str]) -> dict[str, dict[str, int]]:
-    """Find ratings by the names that fdvv writes: rating_stimulus, for every stimulus."""
     found: dict[str, dict[str, int]] = {}
     for head in heads:
         rating = head.removesuffix(f"_{stimuli[0]}") if stimuli else head
@@ -107,7 +113,6 @@ def _place(name: str, heads: Sequence[str], source: object) -> int:
 
 
 def _checked(layout: Layout, heads: Sequence[str], source: object) -> Layout:
-    """Refuse a table that lacks what every analysis needs."""
     there = ", ".join(repr(one) for one in heads)
     if "person" not in layout.roles:
         remedy = f"say which one it is: --map person=COLUMN; there are {there}"
@@ -123,7 +128,7 @@ def _checked(layout: Layout, heads: Sequence[str], source: object) -> Layout:
 
 
 def coded(word: str, asked: ColumnMap) -> str:
-    """Give what a word of the columns choice and stimulus means; "" where it says that there is nothing."""
+    """Return what a word of the columns choice and stimulus means; "" where it says that there is nothing."""
     if word in asked.codes:
         return asked.codes[word]
     if is_missing(word, asked):
@@ -132,5 +137,39 @@ def coded(word: str, asked: ColumnMap) -> str:
 
 
 def is_missing(word: str, asked: ColumnMap) -> bool:
-    """Tell whether a cell says that there is nothing."""
+    """Return whether a cell says that there is nothing."""
     return word in asked.missing or word.lower() in MISSING
+
+
+@dataclass(frozen=True)
+class CellReader:
+    """Reads cells of a file, and names line and column where it cannot."""
+
+    path: Path
+    heads: Sequence[str]
+    asked: ColumnMap
+    decimal_comma: bool
+
+    def wrong(self, line: int, place: int, reason: str, remedy: str) -> InputError:
+        """Make the error that a cell cannot be used."""
+        return InputError(self.path, f"line {line}, column {self.heads[place]!r}", reason, remedy)
+
+    def number(self, line: int, row: Sequence[str], place: int | None) -> float:
+        """Read a number; nan where there is none."""
+        if place is None or is_missing(row[place], self.asked):
+            return np.nan
+        word = row[place].replace(",", ".") if self.decimal_comma else row[place]
+        if word.lower() in (*YES, *NO):
+            return float(word.lower() in YES)
+        try:
+            found = float(word)
+        except ValueError:
+            found = np.inf
+        if not np.isfinite(found):
+            remedy = "correct it, or name a word for a missing value: --missing WORD"
+            raise self.wrong(line, place, f"{row[place]!r} is not a number", remedy)
+        return found
+
+    def word(self, row: Sequence[str], place: int | None) -> str:
+        """Read a name; "" where there is none."""
+        return "" if place is None else coded(row[place], self.asked)

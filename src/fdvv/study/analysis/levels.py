@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.study import (
-    Answers,
-    PairedTest,
-    Staircase,
-    means_by,
-    post_hoc,
-    repeated_measures_anova,
-    threshold,
-)
+from fdvv.stats.anova import repeated_measures_anova
+from fdvv.stats.post_hoc import PairedTest, post_hoc
+from fdvv.study.analysis.ratings import names_of, people_means, spread_of
+from fdvv.study.analysis.records import Spread, ThresholdResult, TimingResult
+from fdvv.study.plan.answers import Answers, means_by
+from fdvv.study.plan.plan import Staircase
+from fdvv.study.plan.staircase import threshold
 from fdvv.units import FloatArray
-from fdvv.workflow._study_ratings import names_of, people_means, spread_of
-from fdvv.workflow._study_records import Spread, ThresholdResult, TimingResult
 
 FACTORS = ("button", "level")
 
@@ -50,15 +46,15 @@ def threshold_over_people(found: tuple[ThresholdResult, ...]) -> Spread | None:
     """
     values = np.log([one.threshold.value for one in found])
     logs = means_by(values, np.array([one.person for one in found])) if found else np.empty(0)
-    told = spread_of(logs)
-    if not told.people:
+    spread = spread_of(logs)
+    if not spread.people:
         return None
-    mean, low, high, median = np.exp([told.mean, told.low, told.high, told.median]).tolist()
-    return Spread(told.people, mean, low, high, told.sd, median)
+    mean, low, high, median = np.exp([spread.mean, spread.low, spread.high, spread.median]).tolist()
+    return Spread(spread.people, mean, low, high, spread.sd, median)
 
 
 def timing_results(answers: Answers, notes: list[str]) -> TimingResult | None:
-    """Test scores by button and level, rounds averaged first; who lacks a cell is left out, and told."""
+    """Test scores by button and level, rounds averaged first; who lacks a cell is left out and noted."""
     if not answers.ratings:
         return None
     measure, columns = next(iter(answers.ratings.items()))
@@ -81,7 +77,6 @@ def timing_results(answers: Answers, notes: list[str]) -> TimingResult | None:
 def _pairs(
     scores: FloatArray, buttons: tuple[str, ...], levels: tuple[str, ...]
 ) -> dict[str, tuple[PairedTest, ...]]:
-    """Test pairs of buttons, over all levels, then at each."""
     found = {"all levels": post_hoc(scores.mean(axis=2), buttons)}
     if len(levels) > 1:
         found |= {level: post_hoc(scores[:, :, i], buttons) for i, level in enumerate(levels)}

@@ -1,4 +1,4 @@
-"""The main claim under every reasonable way to analyse it (Steegen et al. 2016; Simonsohn et al. 2020)."""
+"""Multiverse analysis of the main claim (Steegen et al. 2016; Simonsohn et al. 2020)."""
 
 from __future__ import annotations
 
@@ -7,22 +7,12 @@ from itertools import product
 
 import numpy as np
 
-from fdvv.study._answers import Answers
-from fdvv.study._claim_values import (
-    CHOICE,
-    CORRECT,
-    claim_values,
-    groups_by,
-    is_answered,
-    means_by,
-    measure_of,
-    measured_by,
-)
-from fdvv.study._effect_size import CONFIDENCE
-from fdvv.study._plan import Claim
-from fdvv.study._screening import unscreened
-from fdvv.study._share import sign_test, wilson
-from fdvv.study._signed_rank import signed_ranks
+from fdvv.stats.effect_size import CONFIDENCE
+from fdvv.stats.rank_tests import signed_ranks
+from fdvv.stats.share import sign_test, wilson
+from fdvv.study.plan.answers import Answers, groups_by, is_answered, means_by, unscreened
+from fdvv.study.plan.claim import CHOICE, CORRECT, claim_values, measure_of, measured_by
+from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
 
 PLANNED, EVERYONE, COMPLETE = "by the rules", "nobody left out", "complete people only"
@@ -35,11 +25,11 @@ EXACT_UP_TO = 100
 
 @dataclass(frozen=True)
 class Specification:
-    """One way to analyse the claim.
+    """One specification of the analysis, with its result.
 
     Attributes
     ----------
-    exclusions, measure, unit, ties, test : the choices made. registered : the way that was fixed beforehand,
+    exclusions, measure, unit, ties, test : the choices made. registered : it was fixed beforehand,
         or, where nothing was, the one that fdvv reports.
     share : part that speaks for the claim, ties as halves or dropped; 0.5 is no difference. low, high : its
         95 % interval. n : numbers that were tested. p : two-sided.
@@ -60,35 +50,35 @@ class Specification:
 
 @dataclass(frozen=True)
 class Multiverse:
-    """All ways, by rising share. alpha : level that they are held against."""
+    """All specifications, by rising share. alpha : level of their tests."""
 
     specifications: tuple[Specification, ...]
     alpha: float
 
     @property
     def registered(self) -> Specification:
-        """Get the way fixed beforehand."""
+        """The specification fixed beforehand."""
         return next(one for one in self.specifications if one.registered)
 
     @property
     def agreeing(self) -> int:
-        """Count the ways whose share lies on the same side of one half as the registered one's."""
+        """How many have a share on the same side of one half as the registered one."""
         side = np.sign(self.registered.share - 0.5)
         return sum(bool(np.sign(one.share - 0.5) == side) for one in self.specifications)
 
     @property
     def significant(self) -> int:
-        """Count the ways that agree and are significant."""
+        """How many agree and are significant."""
         side = np.sign(self.registered.share - 0.5)
         agree = [one for one in self.specifications if np.sign(one.share - 0.5) == side]
         return sum(one.p < self.alpha for one in agree)
 
 
 def multiverse(answers: Answers, claim: Claim) -> Multiverse:
-    """Test a claim in every reasonable way.
+    """Test a claim under every reasonable specification.
 
-    answers : screened; what the rules left out is told in `excluded`. Ways that come to the same are counted
-    once. ModelError on a claim that the answers do not hold.
+    answers : screened; `excluded` says what the rules left out. Equivalent specifications are counted once.
+    ModelError on a claim that the answers do not hold.
     """
     first = measure_of(answers, claim)
     found: list[Specification] = []
@@ -97,7 +87,7 @@ def multiverse(answers: Answers, claim: Claim) -> Multiverse:
             values = claim_values(rows, measured_by(claim, measure))[rows.counts]
             keys = rows.person[rows.counts], rows.item[rows.counts]
             for unit, ties in product((PERSON, CELL, TRIAL), (SPLIT, DROPPED)):
-                found += _ways(exclusions, measure, unit, ties, values, keys)
+                found += _tested(exclusions, measure, unit, ties, values, keys)
     chosen = (PLANNED, first, PERSON, SPLIT, RANKS)
     marked = [replace(one, registered=_key(one) == chosen) for one in found]
     return Multiverse(tuple(sorted(marked, key=lambda one: one.share)), claim.alpha)
@@ -108,7 +98,6 @@ def _key(one: Specification) -> tuple[str, ...]:
 
 
 def _exclusions(answers: Answers) -> dict[str, Answers]:
-    """Give the answers that count under each reasonable rule; rules that leave the same count once."""
     everyone = unscreened(answers)
     whole = [
         person
@@ -117,17 +106,16 @@ def _exclusions(answers: Answers) -> dict[str, Answers]:
     ]
     excluded = np.where(answers.counts & np.isin(answers.person, whole), "", "incomplete")
     complete = replace(answers, excluded=excluded)
-    found, met = {}, set()
+    found, seen = {}, set()
     for name, rows in ((PLANNED, answers), (EVERYONE, everyone), (COMPLETE, complete)):
         key = (rows.counts & is_answered(rows)).tobytes()
-        if key not in met and (rows.counts & is_answered(rows)).any():
+        if key not in seen and (rows.counts & is_answered(rows)).any():
             found[name] = rows
-        met.add(key)
+        seen.add(key)
     return found
 
 
 def _measures(answers: Answers, first: str, claim: Claim) -> list[str]:
-    """Give every measure that speaks of the claim, the claim's own first."""
     if first == CORRECT:
         return [CORRECT]
     chosen = [CHOICE] if np.isin(answers.choice, (claim.more, claim.less)).any() else []
@@ -135,10 +123,9 @@ def _measures(answers: Answers, first: str, claim: Claim) -> list[str]:
     return list(dict.fromkeys([first, *chosen, *rated]))
 
 
-def _ways(
+def _tested(
     exclusions: str, measure: str, unit: str, ties: str, values: FloatArray, keys: tuple[np.ndarray, ...]
 ) -> list[Specification]:
-    """Test one set of values in every way that differs."""
     if ties == DROPPED:
         if not np.any(values == 0):
             return []
@@ -159,7 +146,6 @@ def _ways(
 
 
 def _units(values: FloatArray, unit: str, keys: tuple[np.ndarray, ...]) -> tuple[FloatArray, FloatArray]:
-    """Average values and shares over what is counted as one."""
     signs = np.where(np.isfinite(values), (np.sign(values) + 1.0) / 2.0, np.nan)
     if unit == TRIAL or not values.size:
         there = np.isfinite(values)
@@ -172,7 +158,6 @@ def _units(values: FloatArray, unit: str, keys: tuple[np.ndarray, ...]) -> tuple
 
 
 def _interval(shares: FloatArray, unit: str) -> tuple[float, float, float]:
-    """Give the mean share with its interval: Wilson's of trials, else Student's between what is counted."""
     from scipy.stats import t as student
 
     n, share = shares.size, float(shares.mean())
@@ -186,7 +171,6 @@ def _interval(shares: FloatArray, unit: str) -> tuple[float, float, float]:
 
 
 def _p(values: FloatArray, test: str) -> float:
-    """Test that values lie to neither side of 0, two-sided."""
     from scipy.stats import ttest_1samp
 
     if test == SIGNS:

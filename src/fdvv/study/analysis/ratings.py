@@ -7,22 +7,22 @@ from dataclasses import replace
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.study import (
-    Answers,
-    Claim,
-    Friedman,
-    friedman,
-    holm,
-    is_answered,
-    ranked_pairs,
-    signed_rank,
-)
+from fdvv.stats.ordinal import ordinal_model
+from fdvv.stats.post_hoc import holm
+from fdvv.stats.rank_tests import Friedman, friedman, ranked_pairs, signed_rank
+from fdvv.study.analysis.records import ALL_BUTTONS, ButtonTest, RatedResult, ScaleResult, Spread
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
-from fdvv.workflow._study_records import ALL_BUTTONS, ButtonTest, RatedResult, Spread
+
+MOST_CATEGORIES = 21
+"""A slider to 100 is no list of categories."""
+
+FEWEST_PEOPLE = 3
 
 
 def names_of(column: np.ndarray) -> tuple[str, ...]:
-    """Give the names of a column in the order in which they first appear."""
+    """Return the names of a column in the order in which they first appear."""
     return tuple(dict.fromkeys(str(one) for one in column))
 
 
@@ -116,10 +116,26 @@ def _friedman(scores: FloatArray, button: str, notes: list[str]) -> Friedman | N
     try:
         return friedman(complete)
     except ModelError as error:
-        notes.append(f"Friedman's test of {button or 'all buttons'} cannot be told: {error}.")
+        notes.append(f"Friedman's test of {button or 'all buttons'} cannot be computed: {error}.")
         return None
 
 
-def rated_rows(answers: Answers) -> int:
-    """Count rows that hold an answer and count."""
-    return int(np.sum(is_answered(answers) & answers.counts))
+def scale_results(answers: Answers, claim: Claim, notes: list[str]) -> tuple[ScaleResult, ...]:
+    """Fit the ratings of two renderings, people with their own use of the scale and their own difference."""
+    found = []
+    for rating, columns in answers.ratings.items():
+        less, more = (columns[answers.counts, answers.stimuli.index(n)] for n in (claim.less, claim.more))
+        values = np.concatenate([less, more])
+        used = np.unique(values[np.isfinite(values)])
+        person = np.tile(answers.person[answers.counts], 2)
+        people = np.unique(person[np.isfinite(values)]).size
+        if used.size > MOST_CATEGORIES or people < FEWEST_PEOPLE or np.any(used % 1):
+            continue
+        which = np.repeat([0.0, 1.0], less.size)
+        try:
+            model = ordinal_model(values, person, which, [claim.more], slope=claim.more)
+        except ModelError as error:
+            notes.append(f"No ordinal model of {rating}: {error}.")
+            continue
+        found.append(ScaleResult(rating, claim.more, claim.less, model))
+    return tuple(found)

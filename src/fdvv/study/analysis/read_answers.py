@@ -11,19 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.files import read_limited
-from fdvv.study import EQUAL, Answers
-from fdvv.text import decode_lines, sniff_separator
+from fdvv.io.files import read_limited
+from fdvv.io.text import decode_lines, sniff_separator
+from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, CodeBook, read_code_book
+from fdvv.study.analysis.columns import NO, TIMING, YES, CellReader, ColumnMap, Layout, layout_of
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
-from fdvv.workflow._study_cells import NO, YES, Cells
-from fdvv.workflow._study_code_book import CODE_BOOK_FILE, CodeBook, read_code_book
-from fdvv.workflow._study_columns import TIMING, ColumnMap, Layout, layout_of
-from fdvv.workflow._study_export import ANSWERS_FILE
 
 LARGEST_bytes = 200_000_000
 REMEDY = "save the table as CSV with one line of headings"
 ONE_ITEM = "all"
-"""Name of the button where no column tells one."""
+"""Name of the button where there is no column of items."""
 UNSEALED = "unsealed"
 """Folder below a study's where unsealing puts answers."""
 
@@ -46,7 +45,7 @@ class _Trial:
 def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
     """Read answers from answers.csv, the folder that holds it, or a foreign CSV.
 
-    A code book of fdvv beside answers.csv tells what it is; a foreign table needs its kind, and columns whose
+    A code book beside answers.csv describes it; a foreign table needs its kind, and columns whose
     headings are not fdvv's mapped. Raises InputError that names line and column.
     """
     path, asked = _table(Path(path)), columns or ColumnMap()
@@ -69,15 +68,15 @@ def _read(
     rows = _filled(path, reader)
     _, heads = next(rows)
     layout = layout_of(heads, asked, book, path)
-    cells = Cells(path, heads, asked, decimal_comma)
+    cells = CellReader(path, heads, asked, decimal_comma)
     trials: dict[tuple[str, str, int, int], _Trial] = {}
-    met: dict[tuple[str, ...], int] = {}
+    rounds: dict[tuple[str, ...], int] = {}
     simulated = asked.simulated
     for line, row in rows:
         if len(row) != len(heads):
             reason = f"{len(row)} cells under {len(heads)} headings"
             raise InputError(path, f"line {line}", reason, "check separators and quotes")
-        _take(cells, layout, line, row, trials, met)
+        _take(cells, layout, line, row, trials, rounds)
         simulated |= cells.number(line, row, layout.roles.get("simulated")) == 1.0
     if not trials:
         raise InputError(path, "whole file", "it holds headings and no answer", REMEDY)
@@ -87,7 +86,6 @@ def _read(
 
 
 def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list[str]]]:
-    """Give line and stripped cells of every row that says anything."""
     try:
         for line, row in enumerate(reader, start=1):
             if any(cell.strip() for cell in row):
@@ -97,25 +95,24 @@ def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list
 
 
 def _take(
-    cells: Cells,
+    cells: CellReader,
     layout: Layout,
     line: int,
     row: list[str],
     trials: dict[tuple[str, str, int, int], _Trial],
-    met: dict[tuple[str, ...], int],
+    rounds: dict[tuple[str, ...], int],
 ) -> None:
-    """Read one row into its trial."""
     roles = layout.roles
     person = row[roles["person"]]
     if not person:
         raise cells.wrong(line, roles["person"], "nobody is named", "fill it in, or delete the line")
     item = row[roles["item"]] if "item" in roles else ONE_ITEM
     stimulus = cells.word(row, roles.get("stimulus"))
-    seen = met[person, item, stimulus] = met.get((person, item, stimulus), -1) + 1
-    told = cells.number(line, row, roles.get("round"))
+    seen = rounds[person, item, stimulus] = rounds.get((person, item, stimulus), -1) + 1
+    number = cells.number(line, row, roles.get("round"))
     # a round of a staircase has many trials, as many as it takes
     step = not np.isnan(cells.number(line, row, roles.get("ratio")))
-    key = (person, item, seen if np.isnan(told) else int(told), line if step else 0)
+    key = (person, item, seen if np.isnan(number) else int(number), line if step else 0)
     if key in trials and not layout.long:
         reason = f"{person} has a second row of {item}, round {key[2]}"
         raise InputError(cells.path, f"line {line}", reason, "give every trial of a person its own round")
@@ -124,7 +121,7 @@ def _take(
 
 
 def _fill(
-    cells: Cells, layout: Layout, line: int, row: list[str], trial: _Trial, stimulus: str
+    cells: CellReader, layout: Layout, line: int, row: list[str], trial: _Trial, stimulus: str
 ) -> None:  # fmt: skip
     roles = layout.roles
     trial.choice = cells.word(row, roles.get("choice")) or trial.choice
@@ -145,14 +142,12 @@ def _fill(
 
 
 def _reason(word: str) -> str:
-    """Read why a row does not count; a bare yes says only that it does not."""
     if not word or word.lower() in NO:
         return ""
     return "excluded in the file" if word.lower() in YES else word
 
 
 def _stimuli(path: Path, asked: ColumnMap, layout: Layout, trials: Sequence[_Trial]) -> tuple[str, ...]:
-    """Give the names of what is compared, and refuse words that are none of them."""
     rated = dict.fromkeys(key[1] for trial in trials for key in trial.ratings)
     chosen = sorted({trial.choice for trial in trials} - {"", EQUAL})
     found = tuple(sorted(rated) if layout.long else rated) or tuple(chosen)
@@ -160,8 +155,8 @@ def _stimuli(path: Path, asked: ColumnMap, layout: Layout, trials: Sequence[_Tri
     strange = [one for one in (*chosen, *rated) if one not in stimuli]
     if strange:
         remedy = f"name it: --stimuli, or say what it means: --code {strange[0] or 'WORD'}=STIMULUS"
-        told = f"{strange[0]!r} is none of {', '.join(stimuli)}"
-        raise InputError(path, "whole file", told, remedy)
+        reason = f"{strange[0]!r} is none of {', '.join(stimuli)}"
+        raise InputError(path, "whole file", reason, remedy)
     return stimuli
 
 
@@ -196,7 +191,6 @@ def _numbers(trials: Sequence[_Trial], name: str) -> FloatArray:
 
 
 def _kind(ratings: Mapping[str, FloatArray], ratio: FloatArray, path: Path) -> str:
-    """Tell the kind where the columns leave no doubt."""
     if np.isfinite(ratio).any():
         return "staircase"
     if ratings and next(iter(ratings.values())).shape[1] == 2:
@@ -206,7 +200,6 @@ def _kind(ratings: Mapping[str, FloatArray], ratio: FloatArray, path: Path) -> s
 
 
 def _table(path: Path) -> Path:
-    """Find the CSV that a path means."""
     if not path.is_dir():
         return path
     for place in (path / ANSWERS_FILE, path / UNSEALED / ANSWERS_FILE):
@@ -217,6 +210,5 @@ def _table(path: Path) -> Path:
 
 
 def _book_beside(path: Path) -> CodeBook | None:
-    """Read the code book of answers.csv; a foreign table has none."""
     book = path.with_name(CODE_BOOK_FILE)
     return read_code_book(book) if path.name == ANSWERS_FILE and book.is_file() else None

@@ -6,23 +6,106 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from fdvv.study import (
-    Anova,
-    Estimate,
-    Friedman,
-    Multiverse,
-    OrdinalModel,
-    PairedTest,
-    RankPair,
-    Screening,
-    SignedRank,
-)
+from fdvv.stats.anova import Anova
+from fdvv.stats.effect_size import Estimate
+from fdvv.stats.ordinal import OrdinalModel
+from fdvv.stats.post_hoc import PairedTest
+from fdvv.stats.rank_tests import Friedman, RankPair, SignedRank
+from fdvv.stats.share import Share, SignTest
+from fdvv.stats.thurstone import DPrime
+from fdvv.study.analysis.multiverse import Multiverse
+from fdvv.study.plan.answers import Screening
+from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
-from fdvv.workflow._study_choice_records import ChoiceResult, ClaimResult
 
 UNITS = ("s", "ms", "us")
 ALL_BUTTONS = ""
 """Name of the row that counts all buttons together."""
+
+
+@dataclass(frozen=True)
+class ChoiceResult:
+    """What was chosen: more, less or neither; or how often an answer was right and wrong.
+
+    Attributes
+    ----------
+    button : ALL_BUTTONS for all. missing : trials without an answer. share : of more among all answers, every
+        answer counted as independent. people_share : the same, people counted as people; None of one person.
+    split : ties counted as halves. dropped : ties left out; None where nothing else is left.
+    test : of people's share less one half, ties as halves; None of one person. sign : people on each side.
+    p_holm : of test's exact p, for all buttons. d : distance felt, by each rule; the first is reported.
+    """
+
+    button: str
+    more: str
+    less: str
+    more_count: int
+    equal_count: int
+    less_count: int
+    missing: int
+    share: Share
+    people_share: Share | None
+    split: float
+    dropped: Share | None
+    test: SignedRank | None
+    sign: SignTest
+    p_holm: float | None
+    d: tuple[DPrime, ...]
+
+    @property
+    def interval(self) -> Share:
+        """The share with the interval that is reported: that of people where there are some."""
+        return self.people_share or self.share
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every figure, the reported share and interval first."""
+        share = self.interval
+        return {
+            "button": self.button,
+            "share": share.share,
+            "low": share.low,
+            "high": share.high,
+            "method": share.method,
+            "more": {"name": self.more, "count": self.more_count},
+            "less": {"name": self.less, "count": self.less_count},
+            "equal": self.equal_count,
+            "missing": self.missing,
+            "answers": self.share.n,
+            "as_independent": asdict(self.share),
+            "icc": share.icc,
+            "ties_split": self.split,
+            "ties_dropped": self.dropped and asdict(self.dropped),
+            "test": self.test and asdict(self.test),
+            "sign": asdict(self.sign),
+            "p_holm": self.p_holm,
+            "d_prime": [asdict(one) for one in self.d],
+        }
+
+
+@dataclass(frozen=True)
+class ClaimResult:
+    """The main claim.
+
+    Attributes
+    ----------
+    registered : it was fixed in a plan; else it is the kind's usual one. measure : what it was tested on.
+    test : of people's means. p_exact below claim.alpha and an effect above 0 support it.
+    """
+
+    claim: Claim
+    registered: bool
+    measure: str
+    test: SignedRank
+
+    @property
+    def supported(self) -> bool:
+        """Whether the answers support the claim."""
+        return self.test.p_exact < self.claim.alpha and self.test.effect > 0
+
+    @property
+    def opposed(self) -> bool:
+        """Whether they say the opposite."""
+        return self.test.p_exact < self.claim.alpha and self.test.effect < 0
 
 
 @dataclass(frozen=True)
@@ -56,7 +139,7 @@ class ButtonTest:
     p_holm: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Give every figure, those of the test beside the button's name."""
+        """Return every figure, those of the test beside the button's name."""
         return {
             "button": self.button,
             "rating": self.rating,
@@ -69,7 +152,7 @@ class ButtonTest:
 
 @dataclass(frozen=True)
 class ScaleResult:
-    """Ratings of all buttons as ordered categories; model.problem tells where it does not hold."""
+    """Ratings of all buttons as ordered categories; model.problem says where it does not hold."""
 
     rating: str
     more: str
@@ -84,7 +167,7 @@ class RatedResult:
     Attributes
     ----------
     button : ALL_BUTTONS for people's means over buttons. spreads : by stimulus. friedman : None where it
-        cannot be told. pairs : of all stimuli, Holm's correction.
+        cannot be computed. pairs : of all stimuli, Holm's correction.
     """
 
     button: str
@@ -138,7 +221,7 @@ class TimingResult:
 
     @property
     def measure_text(self) -> str:
-        """Get the name of the scores with its unit in brackets: asynchrony_ms is asynchrony (ms)."""
+        """The name of the scores with its unit in brackets: asynchrony_ms is asynchrony (ms)."""
         name, _, unit = self.measure.rpartition("_")
         return f"{name.replace('_', ' ')} ({unit})" if name and unit in UNITS else self.measure
 
@@ -153,7 +236,7 @@ class StudyAnalysis:
     simulated : no person took part: a proxy, no evidence.
     tests : ratings by button. scales : ratings as ordered categories. rated : MUSHRA. preference : all
         buttons. by_button : each. thresholds : of staircases; threshold : over people.
-        timing : by ANOVA. notes : what could not be told, and why.
+        timing : by ANOVA. notes : what could not be computed, and why.
     """
 
     title: str

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import math
 
-from fdvv.plot import Table
-from fdvv.workflow._experiment_words import pair_cells
-from fdvv.workflow._study_records import (
-    ButtonTest,
-    RatedResult,
-    StudyAnalysis,
-    TimingResult,
-)
-from fdvv.workflow._study_sentences import name_rows
-from fdvv.workflow._study_words import button_name, fixed, percent, rule_text, short_p, span
+from fdvv.report.prose import pair_cells
+from fdvv.report.report import Table
+from fdvv.study.analysis.records import ButtonTest, RatedResult, StudyAnalysis, TimingResult
+from fdvv.study.analysis.sentences import name_rows
+from fdvv.study.analysis.words import button_name, fixed, percent, rule_text, short_p, span
 
 
 def ratings_table(tests: tuple[ButtonTest, ...]) -> Table:
@@ -47,9 +42,9 @@ def choices_table(found: StudyAnalysis) -> Table:
     rows = []
     for one in name_rows(found):
         counts = [one.more_count, *([one.equal_count] if ties else []), one.less_count, one.missing]
-        told = f"{percent(one.share.share)} {span(one.interval.low, one.interval.high, 1, 100.0)}"
+        share = f"{percent(one.share.share)} {span(one.interval.low, one.interval.high, 1, 100.0)}"
         exact = short_p(one.test.p_exact if one.test else None)
-        rows.append((button_name(one), *map(str, counts), told, exact, short_p(one.p_holm)))
+        rows.append((button_name(one), *map(str, counts), share, exact, short_p(one.p_holm)))
     names = [whole.more, *(["equal"] if ties else []), whole.less, "missing"]
     columns = ("button", *names, "share, 95 % interval", "p, exact", "p, Holm")
     return Table(
@@ -127,12 +122,12 @@ def timing_tables(found: TimingResult) -> tuple[Table, ...]:
 def people_table(found: StudyAnalysis) -> Table:
     """List every person: what they did and what they say."""
     ratings = list(found.people[0].differences)
-    told = found.preference is not None
+    choices = found.preference is not None
     timed = not all(math.isnan(one.median_s) for one in found.people)
     rows = []
     for one in found.people:
         cells = [one.person, str(one.planned), str(one.answered), str(one.left_out)]
-        cells += [fixed(100 * one.share, 1)] if told else []
+        cells += [fixed(100 * one.share, 1)] if choices else []
         cells += [fixed(one.differences[name]) for name in ratings]
         cells += [fixed(one.median_s, 1)] if timed else []
         cells.append(one.reason or "yes")

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from fdvv.study import DPrime, Share, SignedRank
-from fdvv.workflow._experiment_words import listed, p_text
-from fdvv.workflow._study_choice_records import ChoiceResult
-from fdvv.workflow._study_records import ALL_BUTTONS, Spread
+from fdvv.report.prose import listed, p_text
+from fdvv.stats.rank_tests import SignedRank
+from fdvv.stats.share import Share
+from fdvv.stats.thurstone import DPrime
+from fdvv.study.analysis.records import ALL_BUTTONS, ChoiceResult, Spread
 
 NBSP = "\N{NO-BREAK SPACE}"
 MINUS = "\N{MINUS SIGN}"
@@ -47,7 +48,7 @@ def span(low: float | None, high: float | None, digits: int = 2, scale: float = 
 
 
 def exact_p(p: float) -> str:
-    """Write an exact p: with as many digits as tell it, four at most."""
+    """Return the text of an exact p, with four digits where it is small."""
     if p < 0.0001:
         return "p < .0001"
     return f"p = {p:.4f}".replace("0.", ".", 1) if p < 0.001 else p_text(p)
@@ -62,15 +63,15 @@ def test_text(test: SignedRank) -> str:
     """Write a signed-rank test as the paper does, the exact p beside it."""
     if test.n == test.zeros:
         return "everybody rates both alike" if test.n > 1 else "no difference"
-    told = (
+    text = (
         f"Z = {fixed(test.z)}, {p_text(test.p_asymptotic)}, exact {exact_p(test.p_exact)}, "
         f"r = {fixed(test.effect)}"
     )
-    return unbroken(told)
+    return unbroken(text)
 
 
 def unbroken(text: str) -> str:
-    """Keep signs and what they stand between in one line."""
+    """Keep = and < and what is beside them on one line."""
     for sign in "=<":
         text = text.replace(f" {sign} ", f"{NBSP}{sign}{NBSP}")
     return text
@@ -92,7 +93,7 @@ def interval_of(share: Share) -> str:
 def distance_text(one: DPrime) -> str:
     """Write a d' with its interval and, of three answers, what is still called equal."""
     if math.isnan(one.d):
-        return "no d′ can be told"
+        return "no d′ can be computed"
     tau = "" if one.tau is None or math.isinf(one.tau) else f", τ = {fixed(one.tau)}"
     return f"d′ = {fixed(one.d)} {span(one.low, one.high)}{tau}"
 

@@ -1,4 +1,4 @@
-"""The folder of a study: which files it has, and what is frozen of them."""
+"""The folder of a study: its files, and what is frozen of them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Literal
 import msgspec
 from msgspec import Struct
 
-from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import InputError
-from fdvv.files import read_limited, write_atomic
-from fdvv.model import builtin_names, load_builtin, model_to_json
-from fdvv.study import StudyPlan
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.file import builtin_names, load_builtin, model_to_json
+from fdvv.study.plan.plan import StudyPlan
 
 FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
 BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
@@ -29,7 +29,7 @@ class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
-    files : SHA-256 of the plan, of every file that it names and of the keeper's file, by path in the folder.
+    files : SHA-256 of the plan, of every file that it names and of keeper.json, by path in the folder.
     builtins : SHA-256 of every built-in button that it names, for a new fdvv may ship others.
     seal : the public half of the keys. fdvv : version. when : UTC.
     """
@@ -44,7 +44,7 @@ class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def text(self) -> str:
-        """Get it as its file holds it."""
+        """The text as its file holds it."""
         return pretty(msgspec.to_builtins(self)) + "\n"
 
 
@@ -53,33 +53,38 @@ def read_frozen(folder: Path) -> tuple[Frozen, str] | None:
     path = folder / FROZEN_FILE
     if not path.exists():
         return None
-    data = read_limited(path, LARGEST_bytes, REMEDY)
+    data = content(path)
     decode = msgspec.json.Decoder(Frozen).decode
     return read_document(data, path, FROZEN, decode, lambda _: None), digest(data)
 
 
+def content(path: Path) -> bytes:
+    """Read a file of a study. InputError where it is missing or too large."""
+    return read_limited(path, LARGEST_bytes, REMEDY)
+
+
 def fingerprint_of(sha256: str) -> str:
-    """Give what people write down: the first 16 digits, in groups of four."""
+    """Return what people write down: the first 16 digits, in groups of four."""
     return "-".join(sha256[i : i + 4] for i in range(0, 16, 4))
 
 
 def digest(data: bytes | str) -> str:
-    """Give the SHA-256 of a file's content."""
+    """Return the SHA-256 of a file's content."""
     return hashlib.sha256(data.encode() if isinstance(data, str) else data).hexdigest()
 
 
 def builtin_digest(name: str) -> str:
-    """Give the SHA-256 of a built-in button; empty if there is none of that name."""
+    """Return the SHA-256 of a built-in button; empty if there is none of that name."""
     return digest(model_to_json(load_builtin(name))) if name in builtin_names() else ""
 
 
 def named_builtins(plan: StudyPlan) -> tuple[str, ...]:
-    """List the built-in buttons that a plan names."""
+    """Return the built-in buttons that a plan names, sorted."""
     return tuple(sorted({one.button for item in plan.items for one in item.rendered} & set(builtin_names())))
 
 
 def named_files(plan: StudyPlan) -> tuple[str, ...]:
-    """List the files that a plan names, as it names them. InputError on one outside its folder."""
+    """Return the files that a plan names, as it names them. InputError on one outside its folder."""
     rendered = [one for item in plan.items for one in item.rendered]
     names = {name for one in rendered for name in (one.button, one.actuation) if name}
     found = tuple(sorted(names - set(builtin_names())))
@@ -95,7 +100,7 @@ def _require_inside(name: str) -> None:
 
 
 def kept_path(folder: Path, name: str) -> Path:
-    """Give where a study's folder keeps a file that its plan names: as named, or in buttons/."""
+    """Return where a study's folder keeps a file that its plan names: as named, or in buttons/."""
     return folder / name if Path(name).parts[0] == BUTTONS else folder / BUTTONS / name
 
 
@@ -128,10 +133,9 @@ def copy_files(plan: StudyPlan, beside: Path, folder: Path) -> None:
 def keep_files(plan: StudyPlan, folder: Path) -> None:
     """Copy the files that a plan names and that lie beside it to where the study keeps them.
 
-    What it keeps already stays, for that is what was looked at. InputError, OSError.
+    A file that it keeps already stays, for that is the one that was reviewed. InputError, OSError.
     """
     for name in named_files(plan):
-        if not kept_path(folder, name).is_file():
-            write_atomic(
-                kept_path(folder, name), read_limited(study_file(folder, name), LARGEST_bytes, SMALLER)
-            )
+        kept = kept_path(folder, name)
+        if not kept.is_file():
+            write_atomic(kept, read_limited(study_file(folder, name), LARGEST_bytes, SMALLER))

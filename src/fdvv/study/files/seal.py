@@ -1,8 +1,8 @@
-"""Locks of a study: what is secret is written only so that its keeper, or a person's own code, opens it.
+"""Encryption of what is secret in a study, for its key holder or with a person's own code.
 
-A **seal** locks and cannot unlock (libsodium's sealed box: X25519, XSalsa20-Poly1305). Its other half is the
-keeper's, who has it under a passphrase (Argon2id, then a secret box). A **code** is a person's own key to
-their schedule. Everything is padded before it is locked, so that its length tells nothing.
+A **sealing key** locks and cannot unlock (libsodium's sealed box: X25519, XSalsa20-Poly1305). The private
+half is the key holder's, locked with a passphrase (Argon2id, then a secret box). A **code** is a person's own
+key to their schedule. Everything is padded before it is locked, so that its length reveals nothing.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from fdvv.documents import Kind, pretty, read_document
 from fdvv.errors import BuildError, InputError
+from fdvv.io.documents import Kind, pretty, read_document
 
 ROOM_bytes = 8192
-"""What is locked is padded to a multiple of it, where nothing else is asked."""
+"""Data are padded to a multiple of it by default."""
 ALPHABET = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"
-"""Of codes: digits and letters that are not taken for each other (Crockford's base 32)."""
+"""Of codes: digits and letters that are not confused (Crockford's base 32)."""
 CODE_LETTERS = 12
 SHORTEST_PASSPHRASE = 12
 KEEPER = Kind(
@@ -33,7 +33,7 @@ KEEPER = Kind(
 
 @dataclass(frozen=True)
 class Cost:
-    """What one guess costs: passes of Argon2id over so much memory."""
+    """Cost of one guess: passes of Argon2id over an amount of memory."""
 
     passes: int
     memory_bytes: int
@@ -41,11 +41,11 @@ class Cost:
 
 PASSPHRASE_COST = Cost(3, 128 << 20)
 CODE_COST = Cost(2, 64 << 20)
-"""Half a second, and a quarter, on one core; a code has 60 bits by itself."""
+"""0.5 s, and 0.25 s, on one core; a code has 60 bits by itself."""
 
 
-class KeeperFile(Struct, frozen=True, forbid_unknown_fields=True):
-    """What keeper.json holds: the private half, locked with the passphrase."""
+class KeyHolderFile(Struct, frozen=True, forbid_unknown_fields=True):
+    """Content of keeper.json: the private half, locked with the passphrase."""
 
     format: Literal["fdvv-keeper"]
     version: Literal[1]
@@ -54,7 +54,7 @@ class KeeperFile(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Locked(Struct, frozen=True, forbid_unknown_fields=True):
-    """What is locked with words: cost, salt and box."""
+    """Data locked with a passphrase or code: cost, salt and box."""
 
     passes: Annotated[int, Meta(ge=1, le=20)]
     memory_bytes: Annotated[int, Meta(ge=8192, le=1 << 30)]
@@ -63,8 +63,8 @@ class Locked(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True)
-class Seal:
-    """The public half: it locks, and cannot unlock.
+class SealingKey:
+    """The public key of a study: it locks, and cannot unlock.
 
     Attributes
     ----------
@@ -74,32 +74,32 @@ class Seal:
     text: str
 
     @classmethod
-    def of(cls, text: str, source: object = "seal") -> Seal:
-        """Read a seal. InputError where the text is none."""
+    def of(cls, text: str, source: object = "seal") -> SealingKey:
+        """Read a sealing key. InputError where the text is none."""
         if len(_decoded(text)) != 32:
             raise InputError(source, "seal", f"{text!r:.60} is none", "take it from the study's frozen.json")
         return cls(text)
 
     def lock(self, data: bytes, room_bytes: int = ROOM_bytes) -> str:
-        """Lock data for the keeper, padded to a multiple of the room. BuildError without PyNaCl."""
+        """Lock data for the key holder, padded to a multiple of the room. BuildError without PyNaCl."""
         key = _nacl("public").PublicKey(_decoded(self.text))
         box: bytes = _nacl("public").SealedBox(key).encrypt(_padded(data, room_bytes))
         return base64.b64encode(box).decode()
 
 
-class Keeper:
-    """The private half, held by who knows the passphrase; made by `open`."""
+class KeyHolder:
+    """The private key of a study, opened with the passphrase by `open`."""
 
     def __init__(self, private: bytes) -> None:
         key = _nacl("public").PrivateKey(private)
-        self.seal = Seal(base64.b64encode(bytes(key.public_key)).decode())
+        self.seal = SealingKey(base64.b64encode(bytes(key.public_key)).decode())
         self._box = _nacl("public").SealedBox(key)
 
     @classmethod
-    def open(cls, text: str | bytes, passphrase: str, source: object = "keeper.json") -> Keeper:
-        """Open a keeper's file. InputError on another file, and on a wrong passphrase."""
+    def open(cls, text: str | bytes, passphrase: str, source: object = "keeper.json") -> KeyHolder:
+        """Open keeper.json. InputError on another file, and on a wrong passphrase."""
         file = read_document(
-            text, source, KEEPER, lambda data: msgspec.json.decode(data, type=KeeperFile), lambda _: None
+            text, source, KEEPER, lambda data: msgspec.json.decode(data, type=KeyHolderFile), lambda _: None
         )
         private = _unlocked(file.locked, _words(passphrase), source)
         if private is None:
@@ -112,7 +112,7 @@ class Keeper:
         return keeper
 
     def unlock(self, text: str, source: object = "sealed box") -> bytes:
-        """Give what was locked with the seal. InputError where it was locked with another, or changed."""
+        """Return what was locked with the seal. InputError where it was locked with another, or changed."""
         try:
             found: bytes = self._box.decrypt(_decoded(text))
         except (_nacl("exceptions").CryptoError, ValueError, TypeError):
@@ -121,13 +121,13 @@ class Keeper:
         return _bare(found)
 
 
-def new_keeper(passphrase: str, cost: Cost = PASSPHRASE_COST) -> tuple[Seal, str]:
+def new_key_holder(passphrase: str, cost: Cost = PASSPHRASE_COST) -> tuple[SealingKey, str]:
     """Make a pair of keys: the seal, and the text of keeper.json. InputError on a short passphrase."""
     if len(passphrase) < SHORTEST_PASSPHRASE:
         reason = f"has {len(passphrase)} characters, {SHORTEST_PASSPHRASE} are needed"
         raise InputError("passphrase", "whole", reason, "take four words that do not belong together")
     private = bytes(_nacl("public").PrivateKey.generate())
-    seal = Keeper(private).seal
+    seal = KeyHolder(private).seal
     locked = _locked(private, _words(passphrase), cost)
     record = {"format": KEEPER.format, "version": KEEPER.version, "seal": seal.text, "locked": locked}
     return seal, pretty(record) + "\n"
@@ -154,7 +154,7 @@ def lock_with_code(data: bytes, code: str, room_bytes: int = ROOM_bytes, cost: C
 
 
 def unlock_with_code(text: str, code: str, source: object = "schedule") -> bytes:
-    """Give what was locked with a code. InputError on a wrong one."""
+    """Return what was locked with a code. InputError on a wrong one."""
     found = _unlocked(text, plain_code(code).encode(), source)
     if found is None:
         raise InputError("code", "whole", "is not the code of this person", "type it as the card has it")
@@ -169,7 +169,7 @@ def _locked(data: bytes, words: bytes, cost: Cost) -> str:
 
 
 def _unlocked(text: str, words: bytes, source: object) -> bytes | None:
-    """Give what words lock; None where they are wrong. InputError on a text that nothing locked."""
+    """Return what words lock; None where they are wrong. InputError on a text that nothing locked."""
     try:
         found = msgspec.json.decode(_decoded(text), type=Locked)
         key = _stretched(words, found.salt, Cost(found.passes, found.memory_bytes))
@@ -182,7 +182,7 @@ def _unlocked(text: str, words: bytes, source: object) -> bytes | None:
 
 
 def _words(passphrase: str) -> bytes:
-    """Give the bytes of a passphrase; one letter with an accent may be typed as two on another machine."""
+    """Return the bytes of a passphrase; one letter with an accent may be typed as two on another machine."""
     return unicodedata.normalize("NFC", passphrase).encode()
 
 
@@ -202,7 +202,6 @@ def _bare(padded: bytes) -> bytes:
 
 
 def _decoded(text: str) -> bytes:
-    """Decode base 64; empty where it is none."""
     try:
         return base64.b64decode(text, validate=True)
     except ValueError:

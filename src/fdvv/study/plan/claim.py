@@ -1,4 +1,4 @@
-"""What a claim is tested on: for every trial how far it speaks for it, and the same person by person."""
+"""The main claim of a study as one number a person, and its one test: planning and analysis use the same."""
 
 from __future__ import annotations
 
@@ -6,29 +6,27 @@ import numpy as np
 from msgspec import structs
 
 from fdvv.errors import ModelError
-from fdvv.study._answers import Answers
-from fdvv.study._plan import Claim
-from fdvv.study._trial import EQUAL
+from fdvv.stats.rank_tests import signed_ranks
+from fdvv.study.plan.answers import Answers, means_by
+from fdvv.study.plan.plan import Claim
+from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
 
 CHOICE, CORRECT = "choice", "correct"
 """Measures that are no rating: what was chosen, and whether that was right."""
 
-
-def is_answered(answers: Answers) -> np.ndarray:
-    """Tell which rows hold an answer of any sort, (n,) of bool."""
-    rated = [np.isfinite(columns).any(axis=1) for columns in answers.ratings.values()]
-    return np.asarray(np.any([answers.choice != "", np.isfinite(answers.correct), *rated], axis=0))
+SMALLEST_p = 0.1
+"""Of sums of signed numbers that lie within their standard deviation."""
 
 
 def is_about_right(answers: Answers) -> bool:
-    """Tell whether the answers of a study are right or wrong rather than a liking."""
+    """Return whether the answers of a study are right or wrong rather than a liking."""
     forced = answers.kind in ("abx", "2afc", "staircase")
     return forced and bool(np.isfinite(answers.correct).any())
 
 
 def usual_claim(answers: Answers) -> Claim | None:
-    """Give the claim of a study that declared none: the second stimulus over the first.
+    """Return the claim of a study that declared none: the second stimulus over the first.
 
     None where nothing was compared in that way: staircases, timing, or more than two stimuli.
     """
@@ -42,24 +40,24 @@ def usual_claim(answers: Answers) -> Claim | None:
 
 
 def measured_by(claim: Claim, measure: str) -> Claim:
-    """Give the same claim on another measure."""
+    """Return the same claim on another measure."""
     return structs.replace(claim, measure=measure)
 
 
 def measure_of(answers: Answers, claim: Claim) -> str:
-    """Give what the claim is measured by: in ABX a choice names no stimulus, and counts as right or wrong."""
+    """Return the claim's measure: in ABX a choice names no stimulus, and counts as right or wrong."""
     return CORRECT if claim.measure == CHOICE and answers.kind == "abx" else claim.measure
 
 
 def choice_claim(answers: Answers, claim: Claim) -> Claim:
-    """Give the same claim about what was chosen, or was right."""
+    """Return the same claim about what was chosen, or was right."""
     if claim.measure == CORRECT or answers.kind == "abx":
         return measured_by(claim, CORRECT)
     return measured_by(claim, CHOICE)
 
 
 def claim_values(answers: Answers, claim: Claim) -> FloatArray:
-    """Tell for every row how far it speaks for the claim, (n,).
+    """Return for every row how far it speaks for the claim, (n,).
 
     A choice is 1 for it, -1 against it, 0 for equal; a right answer is 1, a wrong one -1; of ratings it is
     their difference. nan where there is no answer. ModelError on a name that the answers do not hold.
@@ -81,16 +79,34 @@ def claim_values(answers: Answers, claim: Claim) -> FloatArray:
     return np.asarray(columns[:, more] - columns[:, less])
 
 
-def means_by(values: FloatArray, *keys: np.ndarray) -> FloatArray:
-    """Average values over rows that share every key, in order of the keys; nan where all are missing."""
-    places = groups_by(*keys)
-    there = np.isfinite(values)
-    count = np.bincount(places, there)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.bincount(places, np.where(there, values, 0.0)) / np.where(count, count, np.nan))
+def claim_scores(answers: Answers, claim: Claim) -> tuple[tuple[str, ...], FloatArray]:
+    """Return people, sorted, and one score each: the mean of `claim_values` over all trials that count.
+
+    Above 0 speaks for the claim; nan where nothing counts. ModelError on a claim that the answers know
+    nothing of.
+    """
+    values = np.where(answers.counts, claim_values(answers, claim), np.nan)
+    return tuple(np.unique(answers.person).tolist()), means_by(values, answers.person)
 
 
-def groups_by(*keys: np.ndarray) -> np.ndarray:
-    """Number the groups of rows that share every key, 0, 1, … in order of the keys, (n,) of int."""
-    numbers = np.column_stack([np.unique(key, return_inverse=True)[1] for key in keys])
-    return np.asarray(np.unique(numbers, axis=0, return_inverse=True)[1].ravel())
+def claim_p(scores: FloatArray) -> FloatArray:
+    """Return the two-sided p of many studies' scores, (studies, people), nan where missing.
+
+    Wilcoxon's signed-rank test, exact with ties; people without a leaning are left out, as in the paper's
+    own. It counts people, not trials, as independent.
+    """
+    return signed_ranks(scores).p_exact
+
+
+def claim_holds(scores: FloatArray, alpha: float) -> np.ndarray:
+    """Return in which studies claim_p is at most alpha, (studies,) of bool; only close ones are worked out.
+
+    With |z| of the ranks' signs: p is at most 2 exp(-z² / 2) (Hoeffding 1963), and at least 0.1 where |z| is
+    at most 1 (Oleszkiewicz 1996). Both hold for any ranks, ties and zeros.
+    """
+    z = signed_ranks(scores, exact=False).z
+    found = 2 * np.exp(-0.5 * z**2) <= alpha
+    close = ~found & ((np.abs(z) > 0.99) | (alpha >= SMALLEST_p))
+    if close.any():
+        found[close] = claim_p(scores[close]) <= alpha
+    return np.asarray(found)

@@ -10,7 +10,7 @@ StudyKind = Literal["realism", "abx", "2afc", "2ac", "preference", "mushra", "st
 """realism: the paper's task. A reference X is named; which of A and B is closer to it, or neither? abx: X
 *is* A or B. 2afc: which of two holds what is asked for? 2ac: the same, or no difference. preference: which of
 two is liked better. mushra: every rendering is rated beside a named reference, itself and the anchors hidden
-among them. staircase: 2afc whose comparison comes nearer to the standard until it cannot be told apart."""
+among them. staircase: 2afc whose comparison approaches the standard down to the discrimination threshold."""
 
 Count = Annotated[int, Meta(ge=0, le=10_000)]
 Name = Annotated[str, Meta(min_length=1, max_length=60)]
@@ -41,7 +41,7 @@ class Item(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
-    name : what participants are told.
+    name : shown to participants.
     stimuli : what is compared; two, but for mushra, where the first is the reference that is hidden too.
     reference : what X is where it is rendered; None: a real button on the table, or X is one of the stimuli.
     """
@@ -52,7 +52,7 @@ class Item(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def rendered(self) -> tuple[Stimulus, ...]:
-        """Get all that is rendered of it: what is compared, then the reference where that is rendered."""
+        """All that is rendered of it: what is compared, then the reference where that is rendered."""
         return self.stimuli if self.reference is None else (*self.stimuli, self.reference)
 
 
@@ -88,8 +88,8 @@ class Page(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
-    name : unique in the study. when : where it stands. title, text : by language; text has paragraphs only.
-    questions : asked on it; a consent page asks for agreement in any case, and who does not give it is out.
+    name : unique in the study. when : before, after or as consent. title, text : by language, in paragraphs.
+    questions : asked on it; a consent page asks for agreement too, without which the person is out.
     """
 
     name: Name
@@ -145,7 +145,7 @@ class Claim(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     Attributes
     ----------
     more, less : stimuli: the first is chosen, or rated, above the second. measure : "choice" or a rating's
-        name; in abx a choice counts as right or wrong, and the claim is that people tell the two apart.
+        name; in abx a choice counts as right or wrong, and the claim is that people discriminate the two.
     alpha : level of the test, two-sided.
     """
 
@@ -156,7 +156,7 @@ class Claim(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 
 class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A study as it is declared; `check_plan` tells what is wrong with it.
+    """A study as it is declared; `plan_problems` lists what is wrong with it.
 
     Attributes
     ----------

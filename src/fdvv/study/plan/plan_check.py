@@ -4,23 +4,122 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import PurePosixPath
 
 import msgspec
 
-from fdvv.model import SUFFIX, builtin_names
-from fdvv.study._plan import Item, Page, Question, Stimulus, StudyPlan
-from fdvv.study._plan_rules import kind_problems
-from fdvv.study._plan_texts import language_problems
-from fdvv.study._schedule import LABELS
-from fdvv.study._trial import EQUAL
+from fdvv.model.file import MODEL_SUFFIX, builtin_names
+from fdvv.study.plan.plan import Item, Page, Question, Stimulus, StudyPlan
+from fdvv.study.plan.plan_words import word_languages
+from fdvv.study.plan.schedule import LABELS
+from fdvv.study.plan.trial import EQUAL
 
+LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 ACTUATION_SUFFIX = ".actuation.json"
 COLUMN = re.compile(r"[^\W\d]\w{0,39}")
 TAKEN = {"choice", "correct", "excluded", "item", "kind", "number", "person", "ratio", "round", "time_s"}
 """Columns that every file of answers has."""
+
 MOST_TRIALS = 2000
+
+
+def kind_problems(plan: StudyPlan) -> Iterator[str]:
+    """List where a plan does not fit its kind, each as "place: reason"."""
+    yield from _counts(plan)
+    yield from _references(plan)
+    yield from _ratings(plan)
+    yield from _staircase(plan)
+    if plan.kind == "2ac" and not plan.ties:
+        yield 'ties: 2ac asks "or no difference"; without ties it is kind = "2afc"'
+
+
+def _counts(plan: StudyPlan) -> Iterator[str]:
+    low, high = (3, len(LABELS)) if plan.kind == "mushra" else (2, 2)
+    wanted = "exactly 2" if high == 2 else f"{low} to {high}, the reference among them"
+    for item in plan.items:
+        if not low <= len(item.stimuli) <= high:
+            yield f"items ({item.name!r}): {plan.kind} needs {wanted} stimuli, got {len(item.stimuli)}"
+
+
+def _references(plan: StudyPlan) -> Iterator[str]:
+    reasons = {
+        "abx": "X is one of the two stimuli",
+        "mushra": "the first stimulus is the reference, named and hidden",
+    }
+    for item in plan.items:
+        if item.reference and plan.kind != "realism":
+            reason = reasons.get(plan.kind, "nothing is compared with a third")
+            yield f"items ({item.name!r}), reference: {plan.kind} has none: {reason}"
+
+
+def _ratings(plan: StudyPlan) -> Iterator[str]:
+    if plan.kind == "mushra" and not plan.ratings:
+        yield "ratings: mushra only rates; write [[ratings]], with points = 101 for a slider"
+    if plan.kind == "staircase" and plan.ratings:
+        yield "ratings: a staircase asks which one is stronger and nothing else"
+
+
+def _staircase(plan: StudyPlan) -> Iterator[str]:
+    if plan.kind != "staircase":
+        if plan.staircase:
+            yield f"staircase: {plan.kind} has none"
+        return
+    if plan.staircase is None:
+        yield "staircase: there is none; write [staircase]"
+    elif plan.staircase.dropped > plan.staircase.reversals - 2:
+        yield "staircase: dropped must leave at least 2 of the reversals"
+    if plan.claim:
+        yield "claim: a staircase finds a threshold and decides nothing; leave it out"
+    for item in plan.items:
+        same = {msgspec.structs.replace(s, name="same", force_ratio=1.0) for s in item.stimuli}
+        if len(same) > 1 or any(s.force_ratio != 1.0 for s in item.stimuli):
+            reason = "both stimuli must be the same rendering; the staircase makes the second one stronger"
+            yield f"items ({item.name!r}): {reason}"
+
+
+def language_problems(plan: StudyPlan) -> Iterator[str]:
+    """List text that is missing in a language, or there in one that is not declared, as "place: reason"."""
+    if not plan.languages:
+        yield 'languages: there is none; write languages = ["en"]'
+    for language in plan.languages:
+        if not LANGUAGE.fullmatch(language):
+            yield f'languages: {language!r} is not a code as "en" or "pt-BR"'
+        elif language not in word_languages() and language not in plan.question:
+            known = ", ".join(word_languages())
+            yield f"question: fdvv has no words in {language!r} (it has {known}); write question.{language}"
+    for place, said, needed in plan_texts(plan):
+        if said or needed:
+            yield from _missing(place, said, plan.languages)
+
+
+def plan_texts(plan: StudyPlan) -> Iterator[tuple[str, Mapping[str, object], bool]]:
+    """Return every text of a plan: its place, its words by language, and whether it must be there at all."""
+    yield "title", plan.title, True
+    yield "question", plan.question, False
+    for rating in plan.ratings:
+        place = f"ratings ({rating.name!r})"
+        yield f"{place}, question", rating.question, True
+        yield f"{place}, low", rating.low, False
+        yield f"{place}, high", rating.high, False
+    for page in plan.pages:
+        place = f"pages ({page.name!r})"
+        yield f"{place}, title", page.title, True
+        yield f"{place}, text", page.text, False
+        for question in page.questions:
+            yield f"{place}, questions ({question.name!r})", question.question, True
+            yield f"{place}, questions ({question.name!r}), choices", question.choices, False
+
+
+def _missing(place: str, said: Mapping[str, object], languages: tuple[str, ...]) -> Iterator[str]:
+    for language in languages:
+        words = said.get(language)
+        texts = [words] if isinstance(words, str) else list(words) if isinstance(words, tuple) else []
+        if not texts or not all(text.strip() for text in texts):
+            yield f"{place}: there is no text in {language!r}"
+    for language in said:
+        if language not in languages:
+            yield f"{place}: {language!r} is not one of the study's languages ({', '.join(languages)})"
 
 
 def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
@@ -32,7 +131,7 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
         *_numbers(plan, ""),
         *_names(plan),
         *language_problems(plan),
-        *(told for item in plan.items for told in _item(plan, item)),
+        *(problem for item in plan.items for problem in _item(plan, item)),
         *_pages(plan.pages),
         *_kept(plan),
         *_columns(plan),
@@ -43,8 +142,8 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
 
 
 def is_file(button: str) -> bool:
-    """Tell whether a button's name is that of a file beside the study."""
-    return button.endswith(SUFFIX) or "/" in button or "\\" in button
+    """Return whether a button's name is that of a file beside the study."""
+    return button.endswith(MODEL_SUFFIX) or "/" in button or "\\" in button
 
 
 def _numbers(part: object, place: str) -> Iterator[str]:
@@ -60,7 +159,6 @@ def _numbers(part: object, place: str) -> Iterator[str]:
 
 
 def _names(plan: StudyPlan) -> Iterator[str]:
-    """Refuse names that occur twice, cannot be printed, or mean something else."""
     if not plan.items:
         yield "items: there is none; write [[items]]"
     groups: dict[str, Iterable[str]] = {
@@ -83,7 +181,6 @@ def _plain(place: str, name: str) -> Iterator[str]:
 
 
 def _twice(place: str, names: Iterable[str]) -> Iterator[str]:
-    """Names that differ only in case would be mistaken for each other."""
     seen: dict[str, str] = {}
     for name in names:
         if name.casefold() in seen:
@@ -92,7 +189,6 @@ def _twice(place: str, names: Iterable[str]) -> Iterator[str]:
 
 
 def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
-    """Refuse stimuli that cannot be told apart by their name, or are one and the same rendering."""
     place = f"items ({item.name!r})"
     if [s.name for s in item.stimuli] != [s.name for s in plan.items[0].stimuli]:
         yield f"{place}: its stimuli must have the names and the order of the first item's"
@@ -111,8 +207,8 @@ def _stimulus(place: str, stimulus: Stimulus) -> Iterator[str]:
         yield f"{place}: a stimulus may not be called {stimulus.name!r}, which is an answer or a label"
     if not is_file(stimulus.button) and stimulus.button not in builtin_names():
         known = ", ".join(builtin_names())
-        yield f"{place}: {stimulus.button!r} is neither built in ({known}) nor a *{SUFFIX} file"
-    files = [(stimulus.button, SUFFIX)] if is_file(stimulus.button) else []
+        yield f"{place}: {stimulus.button!r} is neither built in ({known}) nor a *{MODEL_SUFFIX} file"
+    files = [(stimulus.button, MODEL_SUFFIX)] if is_file(stimulus.button) else []
     files += [(stimulus.actuation, ACTUATION_SUFFIX)] if stimulus.actuation else []
     for name, suffix in files:
         path = PurePosixPath(name)
@@ -123,7 +219,6 @@ def _stimulus(place: str, stimulus: Stimulus) -> Iterator[str]:
 
 
 def _kept(plan: StudyPlan) -> Iterator[str]:
-    """Refuse two files that a study's folder, which keeps all in buttons/, could not hold side by side."""
     stimuli = [s for item in plan.items for s in (*item.stimuli, item.reference) if s]
     names = {n for s in stimuli for n in (s.button if is_file(s.button) else "", s.actuation) if n}
     for bare in sorted(names):
@@ -151,7 +246,6 @@ def _question(place: str, question: Question) -> Iterator[str]:
 
 
 def _columns(plan: StudyPlan) -> Iterator[str]:
-    """Refuse names that could not head a column of a table of answers."""
     asked = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
     asked += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
     for place, name in asked:
@@ -177,7 +271,6 @@ def _claim(plan: StudyPlan) -> Iterator[str]:
 
 
 def _extent(plan: StudyPlan) -> Iterator[str]:
-    """Refuse what nobody could sit through, and breaks that are none."""
     size = plan.staircase.trials if plan.kind == "staircase" and plan.staircase else 1
     count = len(plan.items) * plan.rounds * size + plan.practice
     if count > MOST_TRIALS:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import functools
+import tomllib
 from collections.abc import Iterator
+from importlib import resources
 
-from fdvv.study._plan import Item, Question, Rating, Stimulus, StudyPlan
-from fdvv.study._schedule import LABELS
-from fdvv.study._staircase import target_share
-from fdvv.study._words import asks_choice, equal_text, question_text
+from fdvv.study.plan.plan import Item, Question, Rating, Stimulus, StudyPlan
+from fdvv.study.plan.schedule import LABELS
+from fdvv.study.plan.staircase import target_share
+
+KINDS_WITH_TIES = ("realism", "2ac", "preference")
+"""In which "equal" may be answered; in the others one must be named, or only ratings are given."""
 
 TASKS = {
     "realism": "X is {x}. A and B hide {names}; which is closer to X?",
@@ -20,8 +25,48 @@ TASKS = {
 }
 
 
+@functools.cache
+def _words() -> dict[str, dict[str, dict[str, str]]]:
+    text = resources.files("fdvv.study").joinpath("words.toml").read_text(encoding="utf-8")
+    found: dict[str, dict[str, dict[str, str]]] = tomllib.loads(text)
+    return found
+
+
+def word_languages() -> tuple[str, ...]:
+    """Return the languages that have words for every kind."""
+    return tuple(sorted(_words()["question"]["realism"]))
+
+
+def question_text(plan: StudyPlan, language: str) -> str:
+    """Return what is asked in a trial: the plan's own words, or those of its kind.
+
+    A plan without words of its own in a language without any gets English ones; `plan_problems` lists it.
+    """
+    return plan.question.get(language) or _said("question", plan.kind, language)
+
+
+def equal_text(plan: StudyPlan, language: str) -> str:
+    """Return the words on the answer "equal"; "" where it is not offered."""
+    return _said("equal", plan.kind, language) if offers_equal(plan) else ""
+
+
+def offers_equal(plan: StudyPlan) -> bool:
+    """Return whether "equal" may be answered."""
+    return plan.kind == "2ac" or (plan.ties and plan.kind in KINDS_WITH_TIES)
+
+
+def asks_choice(plan: StudyPlan) -> bool:
+    """Return whether a label is chosen in a trial; MUSHRA only rates."""
+    return plan.kind != "mushra"
+
+
+def _said(part: str, kind: str, language: str) -> str:
+    words = _words()[part].get(kind, _words()[part].get("realism", {}))
+    return words.get(language) or words["en"]
+
+
 def task_text(plan: StudyPlan) -> str:
-    """Tell what a trial is."""
+    """Return what a trial is."""
     names = [stimulus.name for stimulus in plan.items[0].stimuli]
     rendered = [item.reference is not None for item in plan.items]
     x = "rendered too" if all(rendered) else "rendered for some buttons" if any(rendered) else "a real button"
@@ -35,22 +80,22 @@ def task_text(plan: StudyPlan) -> str:
 
 
 def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
-    """Tell what is asked in a trial, in a language of the study."""
+    """Return what is asked in a trial, in a language of the study."""
     answers = " / ".join(filter(None, ("A", "B", equal_text(plan, language))))
     asked = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
     return (*asked, *(rating_text(rating, language) for rating in plan.ratings))
 
 
 def rating_text(rating: Rating, language: str) -> str:
-    """Tell how each hidden rendering is rated."""
+    """Return how each hidden rendering is rated."""
     low, high = ("0", "100") if rating.points == 101 else ("1", str(rating.points))
     ends = [rating.low.get(language), rating.high.get(language)]
-    told = [f"{end} ({words})" if words else end for end, words in zip((low, high), ends, strict=True)]
-    return f"{rating.question[language]} {told[0]} to {told[1]}"
+    scale = [f"{end} ({words})" if words else end for end, words in zip((low, high), ends, strict=True)]
+    return f"{rating.question[language]} {scale[0]} to {scale[1]}"
 
 
 def question_line(question: Question, language: str) -> str:
-    """Tell what a question of a page asks and which answers it takes."""
+    """Return what a question of a page asks and which answers it takes."""
     if question.choices:
         answers = " / ".join(question.choices[language])
     elif question.low is not None or question.high is not None:
@@ -63,15 +108,15 @@ def question_line(question: Question, language: str) -> str:
 
 
 def stimulus_text(stimulus: Stimulus) -> str:
-    """Tell what a stimulus renders."""
-    told = f"{stimulus.button}, {stimulus.rendered}"
+    """Return what a stimulus renders."""
+    text = f"{stimulus.button}, {stimulus.rendered}"
     if stimulus.force_ratio != 1.0:
-        told += f", {stimulus.force_ratio:g} times the force"
-    return told + (f", compensated by {stimulus.actuation}" if stimulus.actuation else "")
+        text += f", {stimulus.force_ratio:g} times the force"
+    return text + (f", compensated by {stimulus.actuation}" if stimulus.actuation else "")
 
 
 def reference_text(plan: StudyPlan, item: Item) -> str:
-    """Tell what X is for an item; "" where there is none."""
+    """Return what X is for an item; "" where there is none."""
     if item.reference:
         return stimulus_text(item.reference)
     real = {"realism": "the real button", "abx": "one of the two", "mushra": item.stimuli[0].name}
@@ -79,42 +124,42 @@ def reference_text(plan: StudyPlan, item: Item) -> str:
 
 
 def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
-    """Tell what will not count."""
-    rules, told = plan.exclusion, []
-    told.append(f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms")
+    """Return what will not count."""
+    rules = plan.exclusion
+    texts = [f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms"]
     if rules.presses:
-        told.append(f"a trial in which a rendering was pressed less than {_times(rules.presses)}")
+        texts.append(f"a trial in which a rendering was pressed less than {_times(rules.presses)}")
     if rules.fault:
-        told.append("a trial in which the device fell into a fault")
-    told.append(f"a person who then lacks more than {100 * rules.share_missing:g} % of the trials")
+        texts.append("a trial in which the device fell into a fault")
+    texts.append(f"a person who then lacks more than {100 * rules.share_missing:g} % of the trials")
     if asks_choice(plan):
-        told.append(f"a person who gave one label in more than {100 * rules.same_choice:g} % of the trials")
+        texts.append(f"a person who gave one label in more than {100 * rules.same_choice:g} % of the trials")
     else:
-        told.append(
+        texts.append(
             "a person who rated the hidden reference below "
             f"{rules.reference_points:g} in more than 15 % of the trials"
         )
-    return tuple(told)
+    return tuple(texts)
 
 
 def claim_text(plan: StudyPlan) -> str:
-    """Tell what is tested."""
+    """Return what is tested."""
     claim = plan.claim
     if claim is None:
         rule = plan.staircase
         found = f"; thresholds are found at {100 * target_share(rule):.1f} % correct" if rule else ""
         return f"None{found}."
     if claim.measure != "choice":
-        told = f"{claim.more} is rated above {claim.less} in {claim.measure}"
+        text = f"{claim.more} is rated above {claim.less} in {claim.measure}"
     elif plan.kind == "abx":
-        told = f"{claim.more} and {claim.less} are told apart"
+        text = f"{claim.more} and {claim.less} can be discriminated"
     else:
-        told = f"{claim.more} is chosen above {claim.less}"
-    return f"{told}; two-sided, at a level of {claim.alpha:g}."
+        text = f"{claim.more} is chosen above {claim.less}"
+    return f"{text}; two-sided, at a level of {claim.alpha:g}."
 
 
 def staircase_texts(plan: StudyPlan) -> Iterator[str]:
-    """Tell how a staircase goes."""
+    """Return how a staircase goes."""
     rule = plan.staircase
     if rule:
         steps = ", then ".join(f"{step:g}" for step in rule.steps_ratio)

@@ -8,19 +8,22 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from fdvv.study._orders import williams_orders
-from fdvv.study._plan import Item, Staircase, StudyPlan
-from fdvv.study._trial import StudyTrial
+from fdvv.stats.orders import williams_orders
+from fdvv.study.plan.plan import Item, Staircase, StudyPlan
+from fdvv.study.plan.trial import StudyTrial
 
 LABELS = "ABCDEFGHIJKLMNOPQRSTUVW"
 """Of hidden renderings; X is always the reference."""
+
+Assignment = tuple[dict[str, str], str]
+"""What each label hides, and the label that is right."""
 
 
 def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generator) -> tuple[StudyTrial, ...]:
     """Draw all trials of one person, practice first. **Secret.**
 
-    person_index : 0, 1, ... in the order of enrolment; it gives the orders of items, which are no secret.
-    random : gives the labels. It must be made anew for every person from what the operating system holds
+    person_index : 0, 1, ... in the order of enrolment; it sets the orders of items, which are no secret.
+    random : draws the labels. It must be made anew for every person from what the operating system holds
         random (``numpy.random.default_rng()``): drawn on from one person to the next, whoever learns one
         schedule could work out the next.
 
@@ -29,28 +32,28 @@ def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generato
 
     Notes
     -----
-    *What labels tell.* Of two stimuli each hides behind A in half of a person's rounds of an item, or in one
-    more or less, by lot, where the rounds are odd. All sequences so balanced are equally likely, and that is
-    all there is to know: people, items and practice are drawn independently of each other. (A staircase's
+    *What labels reveal.* Of two stimuli each hides behind A in half of a person's rounds of an item, or in
+    one more or less, by lot, where the rounds are odd. All such sequences are equally likely, and that is all
+    there is to know: people, items and practice are drawn independently of each other. (A staircase's
     labels are balanced over all its trials of a person and item, shown or not.)
 
     An operator who watches can therefore learn in one way only, within one person's rounds of one item: where
-    an assignment was seen through, the opposite one is likelier later. With six rounds, who was told the
-    truth after every trial would guess 68 % of the assignments beforehand, the last for certain
-    (Blackwell and Hodges 1957). Nobody is told. From answers that name one rendering in 77 % of the trials,
-    as in the paper, 57 % are guessed beforehand and 63 % of the last ones, where chance is 50 %
+    an assignment was seen through, the opposite one is likelier later. With six rounds, an operator shown the
+    truth after every trial would guess 68 % of the assignments beforehand, the last for certain (Blackwell
+    and Hodges 1957). Nobody is shown it. From answers that name one rendering in 77 % of the trials, as in
+    the paper, 57 % are guessed beforehand and 63 % of the last ones, where chance is 50 %
     (tests/study/test_schedule.py computes all four); with two rounds it is 64 and 77 %. A person's answer
-    tells as much of its own trial, 77 %, and no draw helps against that; but it comes when nothing can be
+    reveals as much of its own trial, 77 %, and no draw helps against that; but it comes when nothing can be
     spoiled any more. Labels drawn independently would leave 50 % beforehand. The price: one person and item
-    in 32 would have felt the same rendering behind A six times of six, and whoever likes A better would then
-    count as preferring what it hid.
+    in 32 would have felt the same rendering behind A six times of six, and a person who likes A better would
+    then count as preferring what it hid.
 
     In ABX, what X is and which label is right are two such sequences, independent of each other. Three and
     more stimuli (MUSHRA) are permuted independently in every trial: to see the hidden reference rated at the
-    top tells nothing of the next trial.
+    top reveals nothing about the next trial.
     """
     names = [item.name for item in plan.items]
-    # orders are seen by all, and must not tell the state that labels are drawn from
+    # orders are seen by all, and must not reveal the state that labels are drawn from
     orders = item_orders(plan, person_index, random.spawn(1)[0])
     drawn = {item.name: _assignments(plan, item, random) for item in plan.items}
     trials = _practice(plan, random)
@@ -61,19 +64,13 @@ def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generato
     return tuple(msgspec.structs.replace(trial, number=i) for i, trial in enumerate(trials))
 
 
-def public_trial(trial: StudyTrial) -> StudyTrial:
-    """Give a trial without what is secret: its labels hide nothing, none is right, there is no ratio."""
-    hidden = dict.fromkeys(sorted(trial.labels), "")
-    return StudyTrial(trial.number, trial.item, trial.round, hidden, trial.practice)
-
-
 def item_orders(
     plan: StudyPlan, person_index: int, random: np.random.Generator | None = None
 ) -> tuple[tuple[int, ...], ...]:
-    """Give the order of items in each round of a person, as indices into plan.items.
+    """Return the order of items in each round of a person, as indices into plan.items.
 
     The rows of Williams' design are dealt so that everything is balanced as early as can be: over any number
-    of people, no row was used more than once more often than another; a person meets all of them where there
+    of people, no row was used more than once more often than another; a person has all of them where there
     are rounds enough; and once there were as many people as rows, each round had each row. random : only
     for plans whose order is "random".
     """
@@ -88,18 +85,12 @@ def item_orders(
 
 
 def _rows(count: int, rounds: int, person: int) -> list[int]:
-    """Deal rows: on and on over people, begun one later whenever the people would repeat."""
     repeat = count // math.gcd(rounds, count)
     begin = person * rounds + person // repeat
     return [(begin + i) % count for i in range(rounds)]
 
 
-Assignment = tuple[dict[str, str], str]
-"""What each label hides, and the label that is right."""
-
-
 def _assignments(plan: StudyPlan, item: Item, random: np.random.Generator) -> list[list[Assignment]]:
-    """Draw the labels of an item: for each round the trials of its block, which is one but for staircases."""
     size = (plan.staircase or Staircase()).trials if plan.kind == "staircase" else 1
     count = size * plan.rounds
     names = [stimulus.name for stimulus in item.stimuli]
@@ -118,7 +109,6 @@ def _permuted(names: Sequence[str], random: np.random.Generator) -> Assignment:
 def _pairs(
     plan: StudyPlan, names: Sequence[str], count: int, random: np.random.Generator
 ) -> list[Assignment]:
-    """Draw the labels of two stimuli for so many trials."""
     second = balanced(count, random)
     if plan.kind != "abx":
         return [_pair(plan, names, "AB"[side]) for side in second]
@@ -127,14 +117,12 @@ def _pairs(
 
 
 def _pair(plan: StudyPlan, names: Sequence[str], label: str) -> Assignment:
-    """Put the second stimulus behind a label; it is what is asked for where one of them is right."""
     first, second = names
     labels = {"A": second, "B": first} if label == "A" else {"A": first, "B": second}
     return labels, label if plan.kind in ("2afc", "2ac", "staircase") else ""
 
 
 def _abx(names: Sequence[str], x: str, right: str) -> Assignment:
-    """Put X's stimulus behind X and behind the label that is right."""
     other = names[1] if x == names[0] else names[0]
     return {"A": x if right == "A" else other, "B": other if right == "A" else x, "X": x}, right
 
@@ -146,7 +134,6 @@ def balanced(count: int, random: np.random.Generator) -> list[int]:
 
 
 def _practice(plan: StudyPlan, random: np.random.Generator) -> list[StudyTrial]:
-    """Draw practice on the first items; independent, so that it takes nothing from the balance."""
     found = []
     for i in range(plan.practice):
         item = plan.items[i % len(plan.items)]

@@ -14,7 +14,7 @@ class StudyTrial(Struct, frozen=True, forbid_unknown_fields=True):
     Attributes
     ----------
     number : 0, 1, ... of the person, practice included. item : name of the item. round : 0, 1, ...
-    labels : what each label hides, by stimulus name; "X" stands in it where X is rendered and hidden.
+    labels : what each label hides, by stimulus name; with "X" where X is rendered and hidden.
     correct : the label that is right where there is one ("A" or "B"), else "".
     ratio : of force added to the comparison of a staircase; 0 elsewhere. Filled in when its turn comes.
     """
@@ -46,11 +46,11 @@ class TrialAnswer(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Rendered(Struct, frozen=True, forbid_unknown_fields=True):
-    """What was physically rendered in a trial, from telemetry. **Secret**: it tells what a label hid.
+    """What was physically rendered in a trial, from telemetry. **Secret**: it reveals what a label hid.
 
     Attributes
     ----------
-    label, stimulus : what was asked for. presses : told by the device.
+    label, stimulus : what was asked for. presses : reported by the device.
     error_cN : rms of rendered against intended force, by press; nan: could not be judged.
     velocity_mm_s : mean speed, by press. vibrations : that were played. faults : names.
     """

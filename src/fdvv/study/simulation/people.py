@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.study._felt_features import FeltDifference, Senses, vibration_steps
+from fdvv.study.simulation.perception import PerceivedDifference, Senses, vibration_steps
 from fdvv.units import FloatArray
 
 NOISE_JND = 1.0 / (math.sqrt(2.0) * 0.6744897501960817)
-"""Spread of one percept: 1 JND is told in 75 % of choices between two (Thurstone 1927)."""
+"""Spread of one percept: 1 JND is discriminated in 75 % of choices between two (Thurstone 1927)."""
 MOST_LAPSES = 0.5
 
 
@@ -92,15 +92,15 @@ class SimulatedPeople:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Get the shape that all of them have."""
+        """The shape that all of them have."""
         return self.sharpness.shape
 
-    def felt_JND(self, difference: FeltDifference) -> FloatArray:
-        """Give how large a difference is for each of them."""
+    def felt_JND(self, difference: PerceivedDifference) -> FloatArray:
+        """Return how large a difference is for each of them."""
         force = self.sharpness**2 * (difference.force_JND**2 + difference.speed_JND**2)
         return np.asarray(np.sqrt(force + self._vibration_squared(difference)))
 
-    def _vibration_squared(self, difference: FeltDifference) -> FloatArray:
+    def _vibration_squared(self, difference: PerceivedDifference) -> FloatArray:
         senses = self.settings.senses
         if not difference.vibration:
             return np.zeros(self.shape)

@@ -9,13 +9,15 @@ from statistics import NormalDist
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import FDVVModel, Stroke, Vibration
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
 BINS = 80
 """Places along the travel at which force is felt."""
 PACES = 5
-"""Speeds that stand for all: the middles of fifths of the presses."""
+"""Speeds that represent all: the medians of fifths of the presses."""
 HEARD_s = 0.2
 """Over which vibration adds up in the skin: some 3 dB per doubling up to there (Verrillo 1965)."""
 LOWEST_Hz, HIGHEST_Hz = 40.0, 1000.0
@@ -29,8 +31,8 @@ class Senses:
     Attributes
     ----------
     weber_ratio : of force. 0.07: 2.5 to 10 N at 25 to 160 mm/s (Pang, Tan and Durlach 1991).
-    floor_cN : force added before the ratio is taken, so that 60 cN are told from 66: below a newton the ratio
-        grows to 0.10 to 0.15. Assumed, within that range.
+    floor_cN : force added before the ratio is taken, so that 60 and 66 cN are discriminated: below a
+        newton the ratio grows to 0.10 to 0.15. Assumed, within that range.
     threshold_um : faintest vibration at 250 Hz under a flat fingertip, amplitude; 0.1 to 0.3 are reported.
     best_Hz : where the threshold is lowest; twelve dB per octave away from it (Verrillo 1963).
     vibration_ratio : just noticeable part of an amplitude well above threshold, 1 to 2 dB.
@@ -61,13 +63,13 @@ class Senses:
 
     @property
     def paces_mm_s(self) -> FloatArray:
-        """Get the speeds at which a button is felt, (PACES,), rising."""
+        """The speeds at which a button is felt, (PACES,), rising."""
         middles = [NormalDist().inv_cdf((one + 0.5) / PACES) for one in range(PACES)]
         return np.asarray(self.pace_mm_s * np.exp(self.pace_spread_ratio * np.asarray(middles)))
 
 
 @dataclass(frozen=True, eq=False)
-class FeltFeatures:
+class HapticFeatures:
     """A button as the senses have it.
 
     Attributes
@@ -81,7 +83,7 @@ class FeltFeatures:
 
 
 @dataclass(frozen=True)
-class FeltDifference:
+class PerceivedDifference:
     """How far two buttons are apart for the middle person, in just noticeable differences.
 
     Attributes
@@ -98,15 +100,17 @@ class FeltDifference:
 
     @property
     def total_JND(self) -> float:
-        """Get the whole difference: the parts are taken to add up by their squares."""
+        """The whole difference: the parts are taken to add up by their squares."""
         return math.sqrt(self.force_JND**2 + self.speed_JND**2 + self.vibration_JND**2)
 
 
-def felt_features(model: FDVVModel, senses: Senses | None = None, force_ratio: float = 1.0) -> FeltFeatures:
-    """Give what could be felt of a model that is rendered ideally, all its forces multiplied by a ratio.
+def haptic_features(
+    model: FDVVModel, senses: Senses | None = None, force_ratio: float = 1.0
+) -> HapticFeatures:
+    """Return what could be felt of a model that is rendered ideally, all its forces multiplied by a ratio.
 
     A force F becomes ln(1 + F / floor) / ratio: steps of the generalised Weber law dF = ratio (F + floor).
-    The place is the part of the travel. A model that tells nothing of a stroke has the press stand for it.
+    The place is the part of the travel. A stroke that the model lacks is replaced by the other one.
     """
     senses = senses or Senses()
     place_mm = (np.arange(BINS) + 0.5) / BINS * model.travel_mm
@@ -115,23 +119,28 @@ def felt_features(model: FDVVModel, senses: Senses | None = None, force_ratio: f
         for stroke in Stroke
     ]
     force_cN = force_ratio * np.clip(np.stack(rows), 0.0, None)
-    return FeltFeatures(
+    return HapticFeatures(
         np.log1p(force_cN / senses.floor_cN) / senses.weber_ratio,
-        np.asarray([felt_vibration(model.vibration(stroke, senses.pace_mm_s), senses) for stroke in Stroke]),
+        np.asarray(
+            [
+                vibration_above_threshold(model.vibration(stroke, senses.pace_mm_s), senses)
+                for stroke in Stroke
+            ]
+        ),
     )
 
 
-def felt_difference(
-    first: FeltFeatures, second: FeltFeatures, senses: Senses | None = None
-) -> FeltDifference:
-    """Give how far two buttons are apart, place by place along their travels."""
+def perceived_difference(
+    first: HapticFeatures, second: HapticFeatures, senses: Senses | None = None
+) -> PerceivedDifference:
+    """Return how far two buttons are apart, place by place along their travels."""
     senses = senses or Senses()
     apart = first.force_JND - second.force_JND  # (strokes, paces, BINS)
     mean = apart.mean(axis=1)
     changing = np.sqrt(np.mean((apart - mean[:, None, :]) ** 2, axis=1))
     pairs = tuple(zip(first.vibration.tolist(), second.vibration.tolist(), strict=True))
     steps = vibration_steps(first.vibration, senses) - vibration_steps(second.vibration, senses)
-    return FeltDifference(
+    return PerceivedDifference(
         _pooled(mean, senses),
         senses.speed_weight * _pooled(changing, senses),
         pairs,
@@ -139,8 +148,8 @@ def felt_difference(
     )
 
 
-def felt_vibration(vibration: Vibration | None, senses: Senses) -> float:
-    """Give the amplitude of a vibration above the faintest of its frequencies, 0 for none.
+def vibration_above_threshold(vibration: Vibration | None, senses: Senses) -> float:
+    """Return the amplitude of a vibration above the faintest of its frequencies, 0 for none.
 
     The displacement of each mode is divided by the threshold at its frequency; energy adds up over 0.2 s.
     """
@@ -155,18 +164,17 @@ def felt_vibration(vibration: Vibration | None, senses: Senses) -> float:
 
 
 def threshold_um(frequency_Hz: float, senses: Senses) -> float:
-    """Give the faintest amplitude that is felt: lowest at best_Hz, 12 dB per octave away from it."""
+    """Return the faintest amplitude that is felt: lowest at best_Hz, 12 dB per octave away from it."""
     ratio = min(max(frequency_Hz, LOWEST_Hz), HIGHEST_Hz) / senses.best_Hz
     return senses.threshold_um * 0.5 * (ratio**2 + ratio**-2)
 
 
 def vibration_steps(above: FloatArray, senses: Senses) -> FloatArray:
-    """Give just noticeable steps of vibration: one at threshold, one per 1.5 dB far above it."""
+    """Return just noticeable steps of vibration: one at threshold, one per 1.5 dB far above it."""
     return np.asarray(np.log1p(senses.vibration_ratio * above) / senses.vibration_ratio)
 
 
 def _lasting_s(decay_1_s: float, duration_s: float) -> float:
-    """Give how long a vibration of constant amplitude would have to last for the same energy."""
     if decay_1_s == 0.0:
         return duration_s
     return -math.expm1(-2 * decay_1_s * duration_s) / (2 * decay_1_s)
@@ -186,6 +194,5 @@ def _pooled(apart: FloatArray, senses: Senses) -> float:
 
 
 def _both_strokes(by_stroke: FloatArray, senses: Senses) -> float:
-    """Give the root of the weighted mean square of press and release."""
     weights = np.asarray([1.0, senses.release_weight])
     return float(np.sqrt(np.average(by_stroke**2, weights=weights)))

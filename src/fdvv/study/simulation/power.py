@@ -8,17 +8,139 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.study._claim import claim_holds
-from fdvv.study._effect_size import Estimate
-from fdvv.study._participant_proxy import ProxySettings
-from fdvv.study._power_scores import PowerDesign, SimulatedScores, simulate_scores
-from fdvv.study._share import wilson
+from fdvv.stats.effect_size import Estimate
+from fdvv.stats.share import wilson
+from fdvv.study.plan.claim import claim_holds
+from fdvv.study.plan.plan import StudyKind
+from fdvv.study.simulation.judgement import EQUAL_INDEX, ProxyTrials, proxy_trials
+from fdvv.study.simulation.people import ProxySettings, SimulatedPeople, draw_people
+from fdvv.study.simulation.perception import PerceivedDifference
 from fdvv.units import FloatArray
 
+Progress = Callable[[int, int], None]
+NOTHING = PerceivedDifference(0.0, 0.0, (), 0.0)
 WANTED_power = 0.8
 SIZES_JND = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
 """Differences that are tried for the smallest that is found."""
+
 Stages = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class ItemEffect:
+    """What the claim compares in one item.
+
+    Attributes
+    ----------
+    item : its name. between : how far the claim's first stimulus is from its second.
+    more, less : how far each of them is from the reference; not used in kinds without one.
+    """
+
+    item: str
+    between: PerceivedDifference
+    more: PerceivedDifference = NOTHING
+    less: PerceivedDifference = NOTHING
+
+    @classmethod
+    def of_size(cls, item: str, difference_JND: float) -> ItemEffect:
+        """Return an effect of one size: the first is the reference, the second so far from it."""
+        apart = PerceivedDifference(difference_JND, 0.0, (), 0.0)
+        return cls(item, apart, NOTHING, apart)
+
+
+@dataclass(frozen=True)
+class PowerDesign:
+    """What of a plan its power hangs on.
+
+    Attributes
+    ----------
+    kind, rounds, ties : of the plan. effects : one per item. alpha : of the claim's test.
+    points : of the rating that the claim is about; None: it is about choices.
+    """
+
+    kind: StudyKind
+    effects: tuple[ItemEffect, ...]
+    rounds: int
+    ties: bool
+    alpha: float
+    points: int | None = None
+
+    def of_size(self, difference_JND: float) -> PowerDesign:
+        """Return the same design with one difference for all items."""
+        effects = tuple(ItemEffect.of_size(one.item, difference_JND) for one in self.effects)
+        return PowerDesign(self.kind, effects, self.rounds, self.ties, self.alpha, self.points)
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedScores:
+    """Scores of simulated people.
+
+    Attributes
+    ----------
+    scores : (studies, people), above 0 for the claim; see claim_scores.
+    shares : (items, 3) parts of all answers that were for the claim, "equal", and against it; nan where
+        nothing was chosen.
+    """
+
+    scores: FloatArray
+    shares: FloatArray
+
+
+def simulate_scores(
+    design: PowerDesign,
+    people: int,
+    studies: int,
+    seed: int = 0,
+    stream: int = 0,
+    settings: ProxySettings | None = None,
+    progress: Progress = lambda _done, _total: None,
+) -> SimulatedScores:
+    """Simulate studies; a person of a study is the same however many people there are.
+
+    stream : 0, 1, ... of independent runs with one seed.
+    """
+    scores = np.empty((studies, people))
+    shares = np.zeros((len(design.effects), 3))
+    for number in range(people):
+        random = np.random.default_rng([seed, stream, number])
+        whole = draw_people(random, (studies,), settings)
+        trials = _answered(design, whole, random)
+        scores[:, number] = _scored(design, trials)
+        shares = shares + _shared(design, trials) / people
+        progress(number + 1, people)
+    return SimulatedScores(scores, shares)
+
+
+def _answered(design: PowerDesign, people: SimulatedPeople, random: np.random.Generator) -> ProxyTrials:
+    """Let one person of every study answer, (studies, items, rounds)."""
+    rounds = (1, 1, design.rounds)
+    between, more, less = (
+        np.stack([people.felt_JND(getattr(one, part)) for one in design.effects], axis=1)[..., None]
+        * np.ones(rounds)
+        for part in ("between", "more", "less")
+    )
+    hidden = random.integers(0, 2, size=between.shape) if design.kind == "abx" else None
+    points = () if design.points is None else (design.points,)
+    to_reference = np.stack([more, less], axis=-1)
+    return proxy_trials(design.kind, people, between, to_reference, random, design.ties, points, hidden)
+
+
+def _scored(design: PowerDesign, trials: ProxyTrials) -> FloatArray:
+    if design.points is not None:
+        return np.asarray((trials.ratings[0][..., 0] - trials.ratings[0][..., 1]).mean(axis=(1, 2)))
+    return np.asarray(_spoken(trials).mean(axis=(1, 2)))
+
+
+def _spoken(trials: ProxyTrials) -> FloatArray:
+    return np.where(trials.chosen == EQUAL_INDEX, 0.0, np.where(trials.correct, 1.0, -1.0))
+
+
+def _shared(design: PowerDesign, trials: ProxyTrials) -> FloatArray:
+    """Return parts of the answers, (items, 3)."""
+    if design.kind == "mushra":
+        return np.full((len(design.effects), 3), np.nan)
+    spoken = _spoken(trials)
+    return np.stack([(spoken == one).mean(axis=(0, 2)) for one in (1.0, 0.0, -1.0)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -63,7 +185,7 @@ class PowerTable:
     simulated: bool = True
 
     def enough(self, power: float = WANTED_power) -> int | None:
-        """Give the fewest people from whom on the whole interval of power stays at that or above."""
+        """Return the fewest people from whom on the whole interval of power stays at that or above."""
         short = [i for i, row in enumerate(self.rows) if (row.power.low or 0.0) < power]
         after = short[-1] + 1 if short else 0
         return self.rows[after].people if after < len(self.rows) else None
@@ -90,10 +212,10 @@ def power_table(
         raise ModelError("power needs at least 2 people and 4 simulated studies")
 
     def simulated(of: PowerDesign, stream: int, repeats: int, label: str) -> SimulatedScores:
-        def told(done: int, total: int) -> None:
+        def report(done: int, total: int) -> None:
             progress(label, done, total)
 
-        return simulate_scores(of, counts[-1], repeats, seed, stream, settings, told)
+        return simulate_scores(of, counts[-1], repeats, seed, stream, settings, report)
 
     felt = simulated(design, 0, studies, "people who feel what the proxy says")
     nothing = simulated(design.of_size(0.0), 1, studies, "people who feel no difference")
@@ -114,7 +236,7 @@ def power_table(
 
 
 def _claims(scores: FloatArray, alpha: float) -> tuple[Estimate, Estimate, Estimate]:
-    """Give the parts of studies, (studies, people), with p at most alpha: upwards, downwards, either."""
+    """Return the parts of studies, (studies, people), with p at most alpha: upwards, downwards, either."""
     found, side = claim_holds(scores, alpha), np.sign(scores.sum(axis=1))
     return _part(found & (side > 0)), _part(found & (side < 0)), _part(found)
 
@@ -127,7 +249,6 @@ def _part(of: np.ndarray) -> Estimate:
 def _detectable(
     sizes_JND: Sequence[float], sized: Sequence[SimulatedScores], people: int, alpha: float
 ) -> tuple[float | None, float | None]:
-    """Give the smallest difference that so many people find, and its share of answers."""
     powers = [_claims(one.scores[:, :people], alpha)[0].value for one in sized]
     reached = [place for place, power in enumerate(powers) if power >= WANTED_power]
     if not reached:

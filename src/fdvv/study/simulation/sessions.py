@@ -8,26 +8,26 @@ from dataclasses import dataclass
 from functools import partial
 
 from fdvv.errors import InputError, ModelError
-from fdvv.study import ENDS, ProxySettings, Step
-from fdvv.workflow._participant import Participant
-from fdvv.workflow._study import Study
-from fdvv.workflow._study_simulated_person import SimulatedParticipant, UnpressedStage
-from fdvv.workflow._study_stage import StudyStage
-from fdvv.workflow._study_stage_finger import SimulatedFingerStage
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.session import ENDS, Step
+from fdvv.study.session.participant import Participant
+from fdvv.study.simulation.participant import NullRenderer, SimulatedParticipant
+from fdvv.study.simulation.people import ProxySettings
+from fdvv.study.stimulus.finger import SimulatedFingerRenderer
 
 Progress = Callable[[int, int], None]
 PAGE_s = 30.0
 """Time that a page takes."""
 
 
-class SkippedClock:
-    """Wall time that passes only when it is told to."""
+class SimulatedClock:
+    """Wall time that passes only by skip()."""
 
     def __init__(self, begin_s: float) -> None:
         self._now_s = begin_s
 
     def __call__(self) -> float:
-        """Tell the time in seconds."""
+        """Return the time in seconds."""
         return self._now_s
 
     def skip(self, by_s: float) -> None:
@@ -88,68 +88,61 @@ def simulate_study(
     sessions: list[SimulatedSession] = []
     total = wanted - len(finished(study))
     for done in range(total):
-        hand = _hand(study, seed, pressed, settings)
-        sessions.append(_session(study, hand, partial(_tell, progress, done, total)))
+        number = len(study.people())
+        renderer = SimulatedFingerRenderer(study.folder, seed=seed + number) if pressed else NullRenderer()
+        simulated = SimulatedParticipant(study.plan, study.folder, renderer, number, seed, settings)
+        report = partial(_report_percent, progress, done, total)
+        sessions.append(_session(study, simulated, report))
     return SimulatedStudy(tuple(sessions), finished(study), pressed)
 
 
-def finished(study: Study) -> tuple[str, ...]:
-    """Give the names of those who are done."""
-    return tuple(person.name for person in study.people() if person.state == "finished")
-
-
-def _tell(progress: Progress, done: int, total: int, part: float) -> None:
-    """Tell progress in hundredths of a person."""
+def _report_percent(progress: Progress, done: int, total: int, part: float) -> None:
     progress(round(100 * (done + part)), 100 * total)
 
 
-def _hand(study: Study, seed: int, pressed: bool, settings: ProxySettings | None) -> SimulatedParticipant:
-    """Make the simulated participant who comes next."""
-    number = len(study.people())
-    finger = SimulatedFingerStage(study.folder, seed=seed + number)
-    stage: StudyStage = finger if pressed else UnpressedStage()
-    return SimulatedParticipant(study.plan, study.folder, stage, number, seed, settings)
+def finished(study: Study) -> tuple[str, ...]:
+    """Return the names of the people who have finished."""
+    return tuple(person.name for person in study.people() if person.state == "finished")
 
 
-def _session(study: Study, hand: SimulatedParticipant, tell: Callable[[float], None]) -> SimulatedSession:
-    """Take one simulated participant through a whole session."""
-    clock = SkippedClock(time.time())
+def _session(
+    study: Study, simulated: SimulatedParticipant, report: Callable[[float], None]
+) -> SimulatedSession:
+    clock, breaks = SimulatedClock(time.time()), 0
+    start_s = clock()
     participant, _ = Participant.enrol(
-        study, study.plan.languages[0], hand.stage, simulated=True, clock=clock
+        study, study.plan.languages[0], simulated.renderer, simulated=True, clock=clock
     )
-    begun_s, breaks = clock(), 0
     try:
         with participant:
             while (step := participant.step()).kind not in ENDS:
-                tell(step.progress)
+                report(step.progress)
                 breaks += step.kind == "break"
-                meet(participant, hand, step, clock)
+                do_step(participant, simulated, step, clock)
             trials = len(participant.state.answers)
     except KeyboardInterrupt:
         study.withdraw(participant.person, delete=True)
         raise
-    return SimulatedSession(participant.person, trials, breaks, (clock() - begun_s) / 60)
+    return SimulatedSession(participant.person, trials, breaks, (clock() - start_s) / 60)
 
 
-def meet(participant: Participant, hand: SimulatedParticipant, step: Step, clock: SkippedClock) -> None:
-    """Do what a step asks for: answer a page or a trial, or sit out a break."""
+def do_step(
+    participant: Participant, simulated: SimulatedParticipant, step: Step, clock: SimulatedClock
+) -> None:
+    """Do what a step asks for: answer a page or a trial, or wait until a break ends."""
     if step.kind == "page":
         page = next(page for page in participant.study.plan.pages if page.name == step.page)
         clock.skip(PAGE_s)
-        participant.answer_page(page.name, hand.fill_in(page, participant.language))
+        participant.answer_page(page.name, simulated.fill_in(page, participant.language))
     elif step.kind == "break":
         clock.skip(step.left_s)
         participant.end_break()
     else:
-        _trial(participant, hand, step, clock)
-
-
-def _trial(participant: Participant, hand: SimulatedParticipant, step: Step, clock: SkippedClock) -> None:
-    participant.shown(step.number)
-    order = hand.order(step.labels)
-    piece_s = hand.takes_s() / (len(order) + 1)
-    for label in order:
-        participant.go_to(label)
+        participant.show_trial(step.number)
+        order = simulated.order(step.labels)
+        piece_s = simulated.takes_s() / (len(order) + 1)
+        for label in order:
+            participant.go_to(label)
+            clock.skip(piece_s)
         clock.skip(piece_s)
-    clock.skip(piece_s)
-    participant.answer(step.number, hand.answer(step.item))
+        participant.answer(step.number, simulated.answer(step.item))

@@ -10,38 +10,42 @@ from threading import Lock
 
 import numpy as np
 
-from fdvv.device import Device, LinkedDevice, PressedDevice, TickColumns
+from fdvv.device.contract import Device
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.remote import PressedDevice
+from fdvv.device.telemetry import TickColumns
 from fdvv.errors import DeviceError, InputError
-from fdvv.program import Limits
-from fdvv.protocol import BoardFlag, Fault, Mode, TickFlag
-from fdvv.study import Rendered, Stimulus
-from fdvv.vibration import KnownExciter
-from fdvv.workflow._device_line import DeviceLine, RealLine, SimulatedLine
-from fdvv.workflow._session_run import clear_latched
-from fdvv.workflow._study_program import TrialProgram, trial_program
-from fdvv.workflow._study_stage import EvenSwitch, check_label
-from fdvv.workflow._study_stage_evidence import StageEvidence, fault_name
-from fdvv.workflow._tuning import tune
+from fdvv.live.device_key import DeviceLine, RealLine, SimulatedLine
+from fdvv.program.surface import Limits
+from fdvv.protocol.tables import BoardFlag, Fault, Mode, TickFlag
+from fdvv.rendering.session_run import clear_latched
+from fdvv.rendering.tuning import tune
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.plan.trial import Rendered
+from fdvv.study.stimulus.evidence import RenderingEvidence, fault_name
+from fdvv.study.stimulus.program import TrialProgram, trial_program
+from fdvv.study.stimulus.renderer import ConstantTimeSwitch, check_label
+from fdvv.vibration.exciter import KnownExciter
 
 RemoteDevice = LinkedDevice | PressedDevice
 PACE_mm_s = 100.0
 """At which a simulated finger presses, as the person of a simulated rig varies."""
 
 
-class DeviceStage:
+class DeviceRenderer:
     """A device that renders the labels of a trial, pressed by a person or, in lockstep, by a simulated one.
 
     Parameters
     ----------
-    device : open; the stage closes it. One in lockstep with a simulated rig, or one on a line.
+    device : open; the renderer closes it. One in lockstep with a simulated rig, or one on a line.
     folder : of the study, where its files are.
     switch_s : every change of labels takes as long. presses : of a simulated finger, each time a label is
         shown. exciter : of the rig's vibration board, if it is known. limits : of the rig; found from its
         settings if None. failed : called once with one line when the device has fallen to zero force, from
-        a thread of the stage.
+        a thread of the renderer.
 
     On a line only what the rig senses is known: true displacement is its position sensor's, and without a
-    force sensor on the cap no error is told. Raises InputError on a device that runs no programs.
+    force sensor on the cap no error is known. Raises InputError on a device that runs no programs.
     """
 
     def __init__(
@@ -58,7 +62,7 @@ class DeviceStage:
         self._folder, self._presses, self._exciter = folder, presses, exciter
         self._limits, self._failed = limits, failed
         self._program: TrialProgram | None = None
-        self._evidence: dict[str, StageEvidence] = {}
+        self._evidence: dict[str, RenderingEvidence] = {}
         self._label, self._fault, self._last_tick = "", "", -1
         self._lock, self._closed = Lock(), False
         self._vibrates = bool(self._device.client.hello.board_flags & BoardFlag.VIBRATION)
@@ -67,40 +71,40 @@ class DeviceStage:
             if self._rig
             else RealLine(self._device, self._heard, self._look, self._lost)
         )
-        self._switch = EvenSwitch(switch_s, self._line.now_s, self._line.wait)
+        self._switch = ConstantTimeSwitch(switch_s, self._line.now_s, self._line.wait)
 
     @property
     def simulated(self) -> bool:
-        """Tell whether the rig is a simulated one."""
+        """Whether the rig is a simulated one."""
         return self._device.info().simulated
 
     @property
     def person(self) -> bool:
-        """Tell whether a person presses."""
+        """Whether a person presses."""
         return self._rig is None
 
     @property
     def device(self) -> RemoteDevice:
-        """Give the device."""
+        """The device."""
         return self._device
 
     @property
     def problem(self) -> str:
-        """Tell in one line why the stage has ended; "" while it has not."""
+        """In one line why the renderer has ended; "" while it has not."""
         return self._fault
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        """Upload what all labels hide at once, and forget what was rendered before; no label is shown."""
+        """Upload the stimuli of all labels at once, and clear the record; no label is shown."""
         self._check()
         program = trial_program(labels, self._folder, self._limits_now(), self._exciter)
         evidence = {
-            name: StageEvidence(name, labels[name].name, model)
+            name: RenderingEvidence(name, labels[name].name, model)
             for name, model in zip(program.labels, program.models, strict=True)
         }
         self._guarded(lambda: self._load(program, evidence))
 
     def show(self, label: str) -> None:
-        """Change to a label by two short messages: to rest, and to the label."""
+        """Switch to a label by two short messages: to rest, and to the label."""
         check_label(label, self._evidence)
         self._check()
         program = self._program
@@ -112,22 +116,22 @@ class DeviceStage:
         self._check()
 
     def rendered(self) -> tuple[Rendered, ...]:
-        """Tell what was rendered since prepare(); never fails, so that a fault is kept as well."""
+        """Return the record since prepare(); never fails, so that a fault is kept as well."""
         with self._lock:
             return tuple(found.rendered() for found in self._evidence.values())
 
     def close(self) -> None:
-        """Fall to zero force and let the device go."""
+        """Fall to zero force and release the device."""
         if self._closed:
             return
         self._closed = True
-        self._fault = self._fault or "the stage is closed; open another"
+        self._fault = self._fault or "the renderer is closed; open another"
         self._line.close()
         self._device.close()
 
     # -- on the line ---------------------------------------------------------------------------------------
 
-    def _load(self, program: TrialProgram, evidence: dict[str, StageEvidence]) -> None:
+    def _load(self, program: TrialProgram, evidence: dict[str, RenderingEvidence]) -> None:
         device = self._device
         device.stop()
         clear_latched(device, lambda _line: None)
@@ -143,7 +147,6 @@ class DeviceStage:
         self._guarded(lambda: self._device.client.event(event))
 
     def _guarded(self, work: Callable[[], None]) -> None:
-        """Do something on the line; what fails ends the stage, with the device at zero force."""
         try:
             self._line.do(work)
         except DeviceError as error:
@@ -151,7 +154,6 @@ class DeviceStage:
             raise DeviceError(self._fault) from error
 
     def _press(self, program: TrialProgram, label: str) -> None:
-        """Have the simulated person press, and judge what truly happened by what the device told."""
         assert self._rig is not None
         try:
             press = self._rig.press_armed(PACE_mm_s)
@@ -159,34 +161,34 @@ class DeviceStage:
             self._look()
             self._lost(error)
             raise DeviceError(self._fault) from error
-        told, evidence = self._rig.client.telemetry.columns(), self._evidence[label]
-        if (program.places(told.state) != program.labels.index(label)).any():
+        telemetry, evidence = self._rig.client.telemetry.columns(), self._evidence[label]
+        if (program.places(telemetry.state) != program.labels.index(label)).any():
             evidence.failed("another label")
         evidence.take(press.t_s, press.displacement_mm, press.force_cN)
         evidence.cut()
-        self._count(evidence, told)
+        self._count(evidence, telemetry)
         self._look()
 
-    def _heard(self, told: TickColumns) -> None:
+    def _heard(self, telemetry: TickColumns) -> None:
         """Sort ticks by the label that the device itself says it renders; in the line's thread."""
         program = self._program
-        if program is None or not told.tick.size:
+        if program is None or not telemetry.tick.size:
             return
         settings = self._device.settings()
-        t_s = np.asarray(told.tick * (settings.tick_us * 1e-6), dtype=np.float64)
-        force_cN = told.force_cN if settings.force_gain_q14 else np.full(t_s.size, np.nan)
-        places = program.places(told.state)
+        t_s = np.asarray(telemetry.tick * (settings.tick_us * 1e-6), dtype=np.float64)
+        force_cN = telemetry.force_cN if settings.force_gain_q14 else np.full(t_s.size, np.nan)
+        places = program.places(telemetry.state)
         with self._lock:
-            if told.tick[0] != self._last_tick + 1:
+            if telemetry.tick[0] != self._last_tick + 1:
                 self._cut_but(program, -1)
-            self._last_tick = int(told.tick[-1])
+            self._last_tick = int(telemetry.tick[-1])
             for rows in np.split(np.arange(t_s.size), np.flatnonzero(np.diff(places)) + 1):
                 place = int(places[rows[0]])
                 self._cut_but(program, place)
                 if place >= 0:
                     evidence = self._evidence[program.labels[place]]
-                    evidence.take(t_s[rows], told.displacement_mm[rows], force_cN[rows])
-                    self._count(evidence, told.part(np.isin(np.arange(t_s.size), rows)))
+                    evidence.take(t_s[rows], telemetry.displacement_mm[rows], force_cN[rows])
+                    self._count(evidence, telemetry.part(np.isin(np.arange(t_s.size), rows)))
         last = self._device.client.telemetry.last
         if last is not None and last.mode == Mode.FAULT:
             self._look()
@@ -196,16 +198,16 @@ class DeviceStage:
             if other != place:
                 self._evidence[name].cut()
 
-    def _count(self, evidence: StageEvidence, told: TickColumns) -> None:
+    def _count(self, evidence: RenderingEvidence, telemetry: TickColumns) -> None:
         if self._vibrates:
-            evidence.played(int(((told.flags & TickFlag.VIBRATED) > 0).sum()))
+            evidence.played(int(((telemetry.flags & TickFlag.VIBRATED) > 0).sum()))
 
     # -- what goes wrong -----------------------------------------------------------------------------------
 
     def _look(self) -> None:
         """Look for a latched fault, a warning among them; end the force and name it, without a number.
 
-        Force and place of a fault could tell which label hid what.
+        Force and place of a fault could reveal what a label hides.
         """
         if self._fault or self._program is None:
             return

@@ -6,33 +6,34 @@ import math
 
 import numpy as np
 
-from fdvv.compensate import FROM_mm, STOP_GUARD_mm, mean_speed_mm_s, split_strokes
-from fdvv.model import FDVVModel, Press
-from fdvv.protocol import Fault
-from fdvv.study import Rendered
+from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, mean_speed_mm_s, split_strokes
+from fdvv.live.press import DEEP_mm, TOP_mm
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.protocol.tables import Fault
+from fdvv.rendering.press_check import felt_press, intended_press
+from fdvv.study.plan.trial import Rendered
 from fdvv.units import FloatArray
-from fdvv.workflow._felt import felt_press, intended_press
-from fdvv.workflow._live_event import DEEP_mm, TOP_mm
 
 REACHED_ratio = 0.5
-"""Part of the judged places that a press must reach on its way down; of a lesser one no error is told."""
+"""Part of the judged places that a press must reach on its way down; a lesser one has no error."""
 LEAD_s, SETTLE_s = 0.25, 0.1
 """Kept of what was before a press; a cap that stays above 0.3 mm for so long came back no further."""
 STILL_mm, STILL_ROWS = 0.005, 20
-"""A stretch in which the cap moved by less is kept in every 20th row: a held button tells nothing new."""
+"""A stretch in which the cap moved by less is kept in every 20th row: a held button adds no information."""
 MOST_ROWS = 100_000
-"""Of a longer press every second row is kept: what is told of it gets coarser, or is not told."""
+"""Of a longer press every second row is kept: its error gets coarser, or is missing."""
 
 
-class StageEvidence:
-    """Gathers what a label's rendering did, as telemetry comes.
+class RenderingEvidence:
+    """Judges the presses of a label from telemetry, as it comes.
 
     Parameters
     ----------
     label, stimulus : names that `Rendered` keeps. model : what was intended.
 
     A press is what went deeper than 0.3 mm, as everywhere in live presses, and came back above it; one that
-    had begun before the label was shown does not count.
+    had started before the label was shown does not count.
     """
 
     def __init__(self, label: str, stimulus: str, model: FDVVModel) -> None:
@@ -46,11 +47,11 @@ class StageEvidence:
 
     @property
     def presses(self) -> int:
-        """Count the presses that are over."""
+        """How many presses are over."""
         return len(self._errors)
 
     def take(self, t_s: FloatArray, displacement_mm: FloatArray, force_cN: FloatArray) -> None:
-        """Go on with a stretch, (n,) each: time, true displacement, force on the finger (nan: not known)."""
+        """Add telemetry, (n,) each: time, true displacement, force on the finger (nan: not known)."""
         if not t_s.size:
             return
         rows = np.stack([t_s, displacement_mm, force_cN])
@@ -72,7 +73,7 @@ class StageEvidence:
         self._vibrations += vibrations
 
     def failed(self, fault: Fault | str) -> None:
-        """Note a fault by its name; of a board that does not answer no vibration can be vouched for."""
+        """Record a fault; with a vibration board that does not answer, no vibration counts as played."""
         if fault is Fault.VIBRATION_BOARD:
             self._vibrations = 0
         self._faults[fault_name(fault)] = None
@@ -86,7 +87,7 @@ class StageEvidence:
         self._kept, self._down = [], False
 
     def rendered(self) -> Rendered:
-        """Tell it as a study keeps it."""
+        """Return the record."""
         return Rendered(
             self._label,
             self._stimulus,
@@ -104,12 +105,11 @@ class StageEvidence:
 
 
 def fault_name(fault: Fault | str) -> str:
-    """Give a fault's name as it is kept and told."""
+    """Return a fault's name as it is recorded and reported."""
     return fault.name.lower() if isinstance(fault, Fault) else fault
 
 
 def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int, bool] | None:
-    """Find the first press that is over: its end, where the next may begin, whether it began within rows."""
     deep = rows[1] > DEEP_mm
     if not deep.any():
         return None
@@ -126,10 +126,10 @@ def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int,
 
 
 def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | None]:
-    """Give rms of felt against intended force (cN) over both strokes, and the speed of the way down (mm/s).
+    """Return rms of felt against intended force (cN) over both strokes, and the speed of the way down (mm/s).
 
     rows : (3, n) time, true displacement and force of one press. Both strokes are binned as a probe bins
-    them, and each is held against the model at its own mean speed. None where that cannot be told.
+    them, and each is compared with the model at its own mean speed. None where it cannot be judged.
     """
     t_s, x_mm, force_cN = rows
     press = Press(t_s, x_mm, force_cN, 0.0)

@@ -9,36 +9,25 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.compensate import UNTUNED, Tuning
+from fdvv.compensation.method import UNTUNED, Tuning
 from fdvv.errors import InputError, ModelError
-from fdvv.model import FDVVModel, Stroke
-from fdvv.program import (
-    Condition,
-    Limits,
-    Program,
-    Signal,
-    State,
-    Surface,
-    Transition,
-    Velocity,
-    VibrationEvent,
-    When,
-    button_program,
-    compile_program,
-    flat,
-)
-from fdvv.study import Stimulus
-from fdvv.vibration import KnownExciter
-from fdvv.workflow._study_stage import stimulus_model
-from fdvv.workflow._study_stage_subject import stimulus_actuation
-from fdvv.workflow._vibration_slots import converter
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import Program, Signal, State, Velocity, VibrationEvent
+from fdvv.program.render_vibration import converter
+from fdvv.program.surface import Limits, Surface, flat
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.stimulus.renderer import stimulus_actuation, stimulus_model
+from fdvv.vibration.exciter import KnownExciter
 
 IntArray = npt.NDArray[np.int64]
-
 REST_cN, REST_FADE_ms = 40.0, 50
-"""Between two labels the cap is brought up by this and nothing else."""
+"""Force that brings the cap up between two labels."""
 LABELS = 7
-"""A device's states and surfaces hold no more of them."""
+"""Most labels that the states and surfaces of a device can hold."""
 REST = "rest"
 GOES_TO_REST = Transition(REST, Condition(When.HOST_EVENT, 0))
 
@@ -59,11 +48,11 @@ class TrialProgram:
     tuning: Tuning
 
     def event(self, label: str) -> int:
-        """Give the number of the host event that leads from rest to a label; 0 leads back."""
+        """Return the number of the host event that leads from rest to a label; 0 leads back."""
         return 1 + self.labels.index(label)
 
     def places(self, state: IntArray) -> IntArray:
-        """Give the label that each state told by the device belongs to, by place; -1 at rest."""
+        """Return the label that each state that the device reports belongs to, by place; -1 at rest."""
         return np.where(state == 0, -1, (state - 1) // 2)
 
 
@@ -99,7 +88,6 @@ class _Part:
 
 
 def _part(stimulus: Stimulus, folder: Path, weight_cN: float, place: int) -> _Part:
-    """Make a label's part; learned forces carry the weight already."""
     model = stimulus_model(stimulus, folder)
     learned = stimulus_actuation(stimulus, folder, model) if stimulus.actuation else None
     program = button_program(model, learned.surface if learned else None)
@@ -130,7 +118,6 @@ def _part(stimulus: Stimulus, folder: Path, weight_cN: float, place: int) -> _Pa
 
 
 def _carried(surface: Surface, name: str, weight_cN: float) -> Surface:
-    """Have a surface carry a weight: a state's bias would escape the check of its forces."""
     rows = tuple(tuple(force + weight_cN for force in row) for row in surface.force_cN)
     return replace(surface, name=name, force_cN=rows)
 
@@ -139,15 +126,15 @@ def _joined(parts: list[_Part], weight_cN: float) -> Program:
     """Put the parts behind a state of rest. ModelError if their travels differ."""
     travels = {part.model.travel_mm for part in parts}
     if len(travels) > 1:
-        told = ", ".join(f"{travel:g}" for travel in sorted(travels))
-        raise ModelError(f"their travels differ ({told} mm): the stop would be heard to move")
+        found = ", ".join(f"{travel:g}" for travel in sorted(travels))
+        raise ModelError(f"their travels differ ({found} mm): the stop would be heard to move")
     if len(parts) > LABELS:
         raise ModelError(f"{len(parts)} of them, a device holds {LABELS} at once")
-    ways = tuple(
+    transitions = tuple(
         Transition(part.states[0].name, Condition(When.HOST_EVENT, 1 + place))
         for place, part in enumerate(parts)
     )
-    rest = State(REST, REST, REST, ways, fade_ms=REST_FADE_ms)
+    rest = State(REST, REST, REST, transitions, fade_ms=REST_FADE_ms)
     return Program(
         "trial",
         travels.pop(),
@@ -160,7 +147,6 @@ def _joined(parts: list[_Part], weight_cN: float) -> Program:
 
 
 def _one_tuning(tunings: list[Tuning]) -> Tuning:
-    """Give the tuning that all share but for their pace, which every label has of its own."""
     bare = {replace(tuning, paced=False) for tuning in tunings}
     if len(bare) > 1:
         reason = "they were learned under different tunings, which a device cannot change between two presses"

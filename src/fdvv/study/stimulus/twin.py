@@ -1,27 +1,37 @@
-"""Labels under a person's hand in the browser, on the twin at real pace."""
+"""Labels pressed by a person in the browser, on the twin in real time."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
 import numpy as np
 
 from fdvv.errors import DeviceError
-from fdvv.program import Signal
-from fdvv.study import Rendered, Stimulus
-from fdvv.twin import NEAR_1_s
-from fdvv.workflow._key_hand import KeyHand
-from fdvv.workflow._live_event import LiveEventKind
-from fdvv.workflow._live_press import LivePress
-from fdvv.workflow._live_run import LiveFrame, LiveRun, SILENT_s
-from fdvv.workflow._press_subject import PRESS_RIGS
-from fdvv.workflow._study_person_frame import PersonFrame, TrialSounds, person_frame
-from fdvv.workflow._study_stage import EvenSwitch, check_label
-from fdvv.workflow._study_stage_evidence import StageEvidence
-from fdvv.workflow._study_stage_subject import StagedStimulus, announce, keep, staged
+from fdvv.live.binary_finger import BinaryFinger
+from fdvv.live.press import LiveEventKind, LivePress
+from fdvv.live.press_subject import PRESS_RIGS
+from fdvv.live.run import LiveFrame, LiveRun, SILENT_s
+from fdvv.program.program import Signal
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.plan.trial import Rendered
+from fdvv.study.stimulus.evidence import RenderingEvidence
+from fdvv.study.stimulus.renderer import (
+    ConstantTimeSwitch,
+    PreparedStimulus,
+    announce,
+    check_label,
+    keep,
+    prepare_stimulus,
+)
+from fdvv.twin.interactive import NEAR_1_s
+from fdvv.units import FloatArray
+
+ROW_s = 0.001
+"""Interval of the rows that a screen is sent."""
 
 BEYOND_mm, LIFTED_mm, PUSH_cN = 10.0, 3.0, 400.0
 FASTEST_mm_s, NEAREST_1_s = 500.0, 200.0
@@ -29,13 +39,90 @@ FASTEST_mm_s, NEAREST_1_s = 500.0, 200.0
 faster than the firmware believes of a cap, and it falls to zero force."""
 
 
-class PersonStage:
-    """What a participant presses in the browser: a simulated rig, led by the hand. Simulated.
+@dataclass(frozen=True)
+class PersonClick:
+    """A vibration that starts: when (as in its frame), which of the trial's sounds, how fast the cap was."""
+
+    t_s: float
+    sound: int
+    velocity_mm_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class PersonFrame:
+    """What happened since the last frame. Simulated.
+
+    Attributes
+    ----------
+    label : that is under the hand.
+    t_s, displacement_mm : (n,) of the cap, every millisecond; seconds since the renderer was opened.
+    key : level that is down, 0: up. clicks : vibrations to be heard. pressed : presses that ended.
+    sequence : number of the last lead that had taken effect. dropped_s : real time that was not simulated.
+    """
+
+    label: str
+    t_s: FloatArray
+    displacement_mm: FloatArray
+    key: int
+    clicks: tuple[PersonClick, ...]
+    pressed: int
+    sequence: int
+    dropped_s: float
+
+
+class TrialSounds:
+    """The vibrations of all labels of a trial in one list, whose order reveals nothing.
+
+    Attributes
+    ----------
+    signals : each once, sorted by what they sound like; clicks name them by place.
+    """
+
+    def __init__(self, of: Iterable[PreparedStimulus] = ()) -> None:
+        shared = {_sound(signal): signal for one in of for signal in one.subject.signals}
+        self.signals: tuple[Signal, ...] = tuple(shared[key] for key in sorted(shared, key=repr))
+        self._places: Mapping[object, int] = {_sound(one): place for place, one in enumerate(self.signals)}
+
+    def place(self, signal: Signal) -> int:
+        """Return the index of a label's signal in the list."""
+        return self._places[_sound(signal)]
+
+
+def person_frame(
+    label: str, seen: LiveFrame, of: PreparedStimulus, sounds: TrialSounds, opened_s: float
+) -> PersonFrame:
+    """Return what a participant may see and hear of a live frame."""
+    columns, later_s = seen.columns, seen.zero_s - opened_s
+    rows = np.diff(np.floor(columns.t_s / ROW_s + 1e-6), prepend=-1.0) > 0
+    rows[-1:] = True
+    clicks = tuple(
+        PersonClick(e.t_s + later_s, sounds.place(of.subject.signals[e.number]), e.velocity_mm_s)
+        for e in seen.events
+        if e.kind is LiveEventKind.VIBRATION and of.audible
+    )
+    return PersonFrame(
+        label,
+        columns.t_s[rows] + later_s,
+        columns.displacement_mm[rows],
+        int(columns.key[-1]) if columns.key.size else 0,
+        clicks,
+        sum(e.kind is LiveEventKind.PRESSED for e in seen.events),
+        seen.sequence,
+        seen.dropped_s,
+    )
+
+
+def _sound(signal: Signal) -> tuple[float, tuple[object, ...]]:
+    return signal.duration_s, signal.modes
+
+
+class TwinRenderer:
+    """A simulated rig that a participant presses in the browser. Simulated.
 
     Parameters
     ----------
     folder : of the study, where its files are.
-    show : called with every frame for the participant's screen, from a thread of the stage.
+    show : called with every frame for the participant's screen, from a thread of the renderer.
     failed : called once with one line when the rig has fallen to zero force.
     switch_s : every change of labels takes as long. rig_name : shipped rig for stimuli with an actuation;
         without one the ideal rig renders. seed : of everything random.
@@ -61,33 +148,33 @@ class PersonStage:
     ) -> None:
         self._folder, self._rig_name, self._silent_s = folder, rig_name, silent_s
         self._show, self._failed, self._clock = show, failed, clock
-        self._switch, self._random = EvenSwitch(switch_s, clock, sleep), np.random.default_rng(seed)
-        self._staged: dict[str, StagedStimulus] = {}
+        self._switch, self._random = ConstantTimeSwitch(switch_s, clock, sleep), np.random.default_rng(seed)
+        self._prepared: dict[str, PreparedStimulus] = {}
         self._live: dict[str, LivePress] = {}
-        self._evidence: dict[str, StageEvidence] = {}
-        self._sounds, self._hand = TrialSounds(), KeyHand(0.0)
+        self._evidence: dict[str, RenderingEvidence] = {}
+        self._sounds, self._hand = TrialSounds(), BinaryFinger(0.0)
         self._run: LiveRun | None = None
         self._label, self._fault, self._pace_mm_s = "", "", 0.0
         self._lock, self._opened_s = Lock(), clock()
 
     @property
     def label(self) -> str:
-        """Tell the label under the hand; "" while it changes, and before the first."""
+        """The label under the hand; "" while it changes, and before the first."""
         return self._label
 
     @property
     def problem(self) -> str:
-        """Tell in one line why the stage has ended; "" while it has not."""
+        """In one line why the renderer has ended; "" while it has not."""
         return self._fault
 
     @property
     def travel_mm(self) -> float:
-        """Give the scale of the trial's drawing: the longest travel of its labels, the same for all."""
-        return max((one.model.travel_mm for one in self._staged.values()), default=0.0)
+        """The scale of the trial's drawing: the longest travel of its labels, the same for all."""
+        return max((one.model.travel_mm for one in self._prepared.values()), default=0.0)
 
     @property
     def sounds(self) -> tuple[Signal, ...]:
-        """Give what clicks of this trial name by place."""
+        """The sounds that the clicks of this trial refer to by index."""
         return self._sounds.signals
 
     def watch(self, show: Callable[[PersonFrame], None]) -> None:
@@ -98,23 +185,25 @@ class PersonStage:
     # -- what a trial asks for -----------------------------------------------------------------------------
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        """Make ready what each label hides, and forget what was rendered before; no label is shown."""
+        """Prepare the stimulus of each label, and clear the record; no label is shown."""
         self._check()
         self._put_away()
-        found = {name: staged(labels[name], self._folder, self._rig_name) for name in sorted(labels)}
+        found = {
+            name: prepare_stimulus(labels[name], self._folder, self._rig_name) for name in sorted(labels)
+        }
         seeds = self._random.integers(2**31, size=len(found)).tolist()
         self._live = {
             name: LivePress(of.subject, seed) for (name, of), seed in zip(found.items(), seeds, strict=True)
         }
-        deepest = max((KeyHand.of(of.subject).bottom_mm for of in found.values()), default=0.0)
+        deepest = max((BinaryFinger.of(of.subject).bottom_mm for of in found.values()), default=0.0)
         with self._lock:
-            self._staged, self._sounds = found, TrialSounds(found.values())
-            self._hand = KeyHand(deepest)  # the same for every label
-            self._evidence = {n: StageEvidence(n, of.name, of.model) for n, of in found.items()}
+            self._prepared, self._sounds = found, TrialSounds(found.values())
+            self._hand = BinaryFinger(deepest)  # the same for every label
+            self._evidence = {n: RenderingEvidence(n, of.name, of.model) for n, of in found.items()}
 
     def show(self, label: str) -> None:
         """Put a label under the hand. Raises InputError on another label, DeviceError after a fault."""
-        check_label(label, self._staged)
+        check_label(label, self._prepared)
         self._check()
         self._label = ""
         self.lift()
@@ -123,14 +212,14 @@ class PersonStage:
         self._check()
 
     def rendered(self) -> tuple[Rendered, ...]:
-        """Tell what was rendered since prepare(); never fails, so that a fault is kept as well."""
+        """Return the record since prepare(); never fails, so that a fault is kept as well."""
         with self._lock:
             return tuple(found.rendered() for found in self._evidence.values())
 
     def close(self) -> None:
-        """Put the button away."""
+        """Stop the simulation; idempotent."""
         self._put_away()
-        self._fault = self._fault or "the stage is closed; open another"
+        self._fault = self._fault or "the renderer is closed; open another"
 
     # -- what the hand does --------------------------------------------------------------------------------
 
@@ -142,34 +231,34 @@ class PersonStage:
         self._lead(lambda press: press.lead(*led), sequence)
 
     def push(self, force_cN: float, sequence: int = 0) -> None:
-        """Lead the force that the finger pushes with."""
+        """Set the force that the finger pushes with."""
         self._lead(lambda press: press.push(min(force_cN, PUSH_cN)), sequence)
 
     def down(self, sequence: int = 0) -> None:
-        """Press to the bottom, as a key is told to: every time and every label alike."""
+        """Press to the bottom, as a key does: the same every time and for every label."""
         self._lead(self._hand.down, sequence)
 
     def up(self, sequence: int = 0) -> None:
-        """Let go of the key."""
+        """Release the key."""
         self._lead(self._hand.up, sequence)
 
     def lift(self, sequence: int | None = None) -> None:
-        """Take the finger off."""
+        """Lift the finger off."""
         if run := self._run:
             run.ask(LivePress.lift, sequence)
 
     def here(self) -> None:
-        """Somebody looks."""
+        """Note that the page is looked at."""
         if run := self._run:
             run.here()
 
     def pause(self) -> None:
-        """Nobody looks."""
+        """Note that the page is not looked at."""
         if run := self._run:
             run.pause()
 
     def fail(self, work: Callable[[LivePress], None]) -> None:
-        """Have something done to the rig under the hand, to see what becomes of it."""
+        """Run a function on the rig, for tests that make it fail."""
         if run := self._run:
             run.ask(work)
 
@@ -181,7 +270,6 @@ class PersonStage:
     # -- what the rig does ---------------------------------------------------------------------------------
 
     def _begin(self, label: str) -> None:
-        """Take the label that is there away, and put another under the hand."""
         self._put_away()
         press = self._live[label]
         announce(press, self._pace_mm_s)
@@ -196,8 +284,8 @@ class PersonStage:
         )
 
     def _seen(self, label: str, press: LivePress, seen: LiveFrame) -> None:
-        """Keep what was rendered and show what may be seen of it; in the run's thread."""
-        of = self._staged[label]
+        """Record what was rendered and show what may be seen of it; in the run's thread."""
+        of = self._prepared[label]
         with self._lock:
             line = keep(self._evidence[label], of, press, seen.columns, seen.events)
             show = self._show
@@ -210,7 +298,6 @@ class PersonStage:
             show(person_frame(label, seen, of, self._sounds, self._opened_s))
 
     def _end(self, label: str, line: str) -> None:
-        """The simulation itself cannot go on."""
         with self._lock:
             self._evidence[label].failed("diverged")
         self._tell(f"the twin fell to zero force: {line}")

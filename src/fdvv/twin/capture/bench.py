@@ -1,4 +1,4 @@
-"""A capture bench with somebody at it, simulated: takes as a real one records them, and the truth beside."""
+"""A simulated capture bench with a participant and a probing stand: takes, and the truth."""
 
 from __future__ import annotations
 
@@ -7,24 +7,72 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.recording import Bench, Stage, Take
-from fdvv.twin._button import ButtonPhysics
-from fdvv.twin._capture_press import Presser
-from fdvv.twin._capture_rig import CaptureRig
-from fdvv.twin._capture_stand import record_probe
-from fdvv.twin._capture_streams import Instruments, Setup, draw_setup
-from fdvv.twin._finger import Finger
-from fdvv.twin._pace_button import solve_button_pace
-from fdvv.twin._participant import Intent, Participant, draw_intent
-from fdvv.twin._probe_button import ProbedCurve
-from fdvv.twin._rig_senses import ForceSensor
-from fdvv.twin._simulate_button import ButtonTrace
-from fdvv.units import cN_from_N
+from fdvv.recording.types import Bench, Mark, Quantity, Stage, Stream, Take
+from fdvv.twin.button import ButtonPhysics
+from fdvv.twin.capture.participant import Intent, Participant, Presser, draw_intent
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.capture.streams import FORCE_ZERO, Instruments, Setup, converted, draw_setup
+from fdvv.twin.finger import Finger
+from fdvv.twin.noise import lsb_of
+from fdvv.twin.pace import solve_button_pace
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import BEYOND_mm, ButtonTrace, ProbedCurve, probe_button, read_force_N
+from fdvv.units import FloatArray, N_from_cN, cN_from_N, mm_from_m
 
+STAND = "stand"
+RATE_Hz = 100.0
+ABOVE_mm = 0.2
+"""The stand begins this far above the cap, and returns there."""
+COUNT_mm = 0.001
+"""Resolution of its displacement."""
+PLACE_mm = 0.1
+"""Spread of where its zero lies off the cap's rest."""
 APART_s = 4.0
 """A take begins this much after the one before it, give or take 0.2 s."""
 REST_s = 1.0
 PROBE_mm_s = 0.5
+
+
+def record_probe(
+    button: ButtonPhysics, sensor: ForceSensor, zero_N: float, speed_mm_s: float, random: np.random.Generator
+) -> tuple[tuple[Stream, ...], tuple[Mark, ...], ProbedCurve]:
+    """Lead the cap down to the bottom and back; streams, marks, and the truth."""
+    curve = probe_button(button, speed_mm_s, speed_mm_s / RATE_Hz)
+    t_s, down_mm, force_cN, bottom = _whole_way(curve, speed_mm_s)
+    place_mm = PLACE_mm * float(random.standard_normal())
+    noise_N = zero_N + sensor.noise_N * random.standard_normal(t_s.size)
+    read_cN = cN_from_N(read_force_N(sensor, N_from_cN(force_cN), noise_N))
+    lsb_cN = float(cN_from_N(lsb_of(sensor.full_scale_N, sensor.converter_bits)))
+    streams = (
+        converted("force", Quantity.FORCE, STAND, t_s, read_cN, lsb_cN, FORCE_ZERO),
+        converted("displacement", Quantity.DISPLACEMENT, STAND, t_s, down_mm + place_mm, COUNT_mm, 0),
+    )
+    leaf = button.curve.kind == "leaf"
+    close_mm, open_mm = (float(mm_from_m(m)) for m in (button.curve.close_m, button.curve.open_m))
+    closed = int(np.argmax(down_mm >= close_mm))
+    opened = bottom + int(np.argmax(down_mm[bottom:] < (close_mm if leaf else open_mm)))
+    marks = (Mark("closed", STAND, float(t_s[closed])), Mark("open", STAND, float(t_s[opened])))
+    return streams, marks, curve
+
+
+def _whole_way(curve: ProbedCurve, speed_mm_s: float) -> tuple[FloatArray, FloatArray, FloatArray, int]:
+    """Join approach, press, release and retreat: time, displacement, force, the row where it turns.
+
+    The rows beyond the bottom, where only the stand bends, are left out.
+    """
+    apart_mm = float(curve.displacement_mm[1] - curve.displacement_mm[0])
+    free_mm = -apart_mm * np.arange(int(ABOVE_mm / apart_mm), 0, -1)
+    down_mm = np.concatenate([free_mm, curve.displacement_mm])
+    forces = np.concatenate([np.zeros(free_mm.size), curve.press_cN])
+    back = np.concatenate([curve.release_cN[::-1], np.zeros(free_mm.size)])
+    t_s = apart_mm / speed_mm_s * np.arange(down_mm.size)
+    turned_s = t_s[-1] + 2 * BEYOND_mm / speed_mm_s
+    return (
+        np.concatenate([t_s, turned_s + t_s]),
+        np.concatenate([down_mm, down_mm[::-1]]),
+        np.concatenate([forces, back]),
+        down_mm.size,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +82,7 @@ class TakeTruth:
     Attributes
     ----------
     trace : what happened; its time runs from begin_s. None for a probe.
-    probed : what the stand led the cap through; None but for a probe.
+    probed : the curve that the stand measured; None but for a probe.
     intent : what the participant did.
     begin_s : when the take began, on the board clock.
     setup : of the session; with it the true relation of the clocks.
@@ -85,7 +133,7 @@ class CaptureBench:
 
     @property
     def setup(self) -> Setup:
-        """How the bench stands in this session: a truth."""
+        """Offsets and poses of the bench in this session: a truth."""
         return self._instruments.setup
 
     def facts(self) -> Bench:

@@ -1,10 +1,10 @@
-"""What a bench that records real presses gets wrong: microphone, cameras, clocks. Simulated."""
+"""Errors of a simulated capture bench: microphone, cameras, clocks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.twin._quantity import check, quantity
+from fdvv.twin.quantity import check, quantity
 
 
 @dataclass(frozen=True)

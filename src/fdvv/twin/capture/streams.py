@@ -1,4 +1,4 @@
-"""From what happened in a press to what the bench's instruments write down of it. Simulated."""
+"""The streams that the instruments of a simulated bench record of a press."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.recording import Mark, Quantity, Stream
-from fdvv.twin._capture_rig import CaptureRig
-from fdvv.twin._noise import lsb_of
-from fdvv.twin._participant import Intent
-from fdvv.twin._rig_senses import ForceSensor
-from fdvv.twin._simulate_button import ButtonTrace
+from fdvv.recording.types import Mark, Quantity, Stream
+from fdvv.twin.capture.participant import Intent
+from fdvv.twin.capture.rig import CaptureRig
+from fdvv.twin.noise import lsb_of
+from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace
 from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
 
 BOARD, CAMERA = "board", "camera"
@@ -23,11 +23,12 @@ FORCE_ZERO = 102
 """Count of the force's converter at no force, as stated."""
 BLINKS_s = ((0.0, 0.009), (0.020, 0.035), (0.048, 0.057), (0.076, 0.088))
 """The light goes on and off, from its first edge: spaced unevenly, each longer than two frames."""
+LIGHTS = ("light on", "light off")
 
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """How the bench stands for one session; drawn once.
+    """Offsets and poses of the bench in one session; drawn once.
 
     Attributes
     ----------
@@ -46,7 +47,7 @@ class Setup:
     force_zero_N: float
 
     def camera_s(self, board_s: FloatArray) -> FloatArray:
-        """Tell what the camera clock reads when the board clock reads board_s."""
+        """Return what the camera clock reads when the board clock reads board_s."""
         return np.asarray(self.camera_offset_s + self.camera_ratio * board_s)
 
 
@@ -163,7 +164,7 @@ class Instruments:
         return (*seen, Stream("light", Quantity.LIGHT, CAMERA, own_s[kept], lit[kept]))
 
     def _frames_s(self, first_s: float, last_s: float) -> FloatArray:
-        """Give the cameras' times of the frames that begin between two times of the board."""
+        """Return the cameras' times of the frames that begin between two times of the board."""
         span = self.setup.camera_s(np.array([first_s, last_s])) - self.setup.phase_s
         first, last = math.ceil(span[0] * self.rig.frame_Hz), math.floor(span[1] * self.rig.frame_Hz)
         return np.asarray(self.setup.phase_s + np.arange(first, last + 1) / self.rig.frame_Hz)
@@ -185,9 +186,6 @@ class Instruments:
         return self.setup.places_mm[:, None, :] + mm_from_m(moved_m)
 
 
-LIGHTS = ("light on", "light off")
-
-
 def converted(
     name: str, quantity: Quantity, clock: str, t_s: FloatArray, values: FloatArray, lsb: float, zero: int
 ) -> Stream:
@@ -199,7 +197,6 @@ def converted(
 
 
 def _event_s(trace: ButtonTrace, intent: Intent) -> float:
-    """Tell when in the stroke down it happens, by the way gone."""
     level_mm = intent.part * float(trace.displacement_mm.max())
     return float(trace.t_s[np.argmax(trace.displacement_mm >= level_mm)])
 
@@ -212,7 +209,6 @@ def _switching(trace: ButtonTrace, begin_s: float) -> list[Mark]:
 
 
 def _exposed(t_s: FloatArray, values: FloatArray, at_s: FloatArray, exposure_s: float) -> FloatArray:
-    """Average a column over exposures that begin at at_s."""
     if exposure_s == 0:
         return np.interp(at_s, t_s, values)
     area = np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(t_s)))
@@ -221,7 +217,6 @@ def _exposed(t_s: FloatArray, values: FloatArray, at_s: FloatArray, exposure_s: 
 
 
 def _part_lit(at_s: FloatArray, blinks_s: FloatArray, exposure_s: float) -> FloatArray:
-    """Tell which part of each exposure the light is on."""
     if exposure_s == 0:
         return np.asarray(sum((at_s >= on) & (at_s < off) for on, off in blinks_s), dtype=np.float64)
     shared = [np.minimum(at_s + exposure_s, off) - np.maximum(at_s, on) for on, off in blinks_s]

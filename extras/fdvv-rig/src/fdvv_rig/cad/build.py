@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._placement import on_bed
-from fdvv.hardware._pose import Pose
-from fdvv.hardware.cad._carrying import base, coil_mount, lvdt_mount
-from fdvv.hardware.cad._moving import keycap_adapter, limiter_arm, limiter_bracket, slider_yoke
-from fdvv.hardware.cad._shapes import Solid, kernel
-from fdvv.hardware.cad._standing import black_box, capture_jig, marker_post, sensor_cone
+from fdvv_rig.cad.carrying import base, coil_mount, lvdt_mount
+from fdvv_rig.cad.moving import keycap_adapter, limiter_arm, limiter_bracket, slider_yoke
+from fdvv_rig.cad.shapes import Solid, kernel
+from fdvv_rig.cad.standing import black_box, capture_jig, marker_post, sensor_cone
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.placement import Pose, on_bed
 
 BUILDERS: dict[str, Callable[[Dimensions], Solid]] = {
     "base": base,
@@ -37,7 +36,6 @@ def build(name: str, d: Dimensions) -> Solid:
 
 
 def _posed(solid: Solid, pose: Pose) -> Solid:
-    """Put a solid at a pose, and take its placement into its geometry."""
     k = kernel()
     right, _, up = zip(*pose.turn, strict=True)
     plane = k.Plane(origin=pose.shift_mm, x_dir=right, z_dir=up)

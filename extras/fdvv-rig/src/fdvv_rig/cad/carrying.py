@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
-from fdvv.hardware.cad._shapes import Solid, block, cone, hexagon, prism, rod
+from fdvv_rig.cad.shapes import Solid, block, cone, hexagon, prism, rod
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
 
 M3_NUT_mm = (5.5, 2.6)
 SLIT_mm = 2.5
@@ -44,7 +44,6 @@ def _board_holes(d: Dimensions) -> Solid:
 
 
 def _cable_ways(d: Dimensions) -> Solid:
-    """Make a hole beside the boards and two notches in the skirt."""
     layout = Layout(d)
     main_y, driver_y = layout.boards_y_mm
     low_mm, high_mm = driver_y + d.driver_length_mm / 2, main_y - d.board_length_mm / 2
@@ -74,7 +73,6 @@ def coil_mount(d: Dimensions) -> Solid:
 
 
 def _bore(d: Dimensions) -> Solid:
-    """Make the room for the sensor, a cone that prints without support, the seat, the coil's pocket."""
     layout = Layout(d)
     wide, seat = layout.tower_bore_mm, d.bushing_diameter_mm + d.hole_excess_mm
     slope = (wide - seat) / 2
@@ -86,7 +84,6 @@ def _bore(d: Dimensions) -> Solid:
 
 
 def _window(d: Dimensions) -> Solid:
-    """Make the opening at the front through which the sensor is clamped; its top is a gable."""
     layout = Layout(d)
     half, low = layout.tower_bore_mm / 2 + 1, layout.foot_plate_mm
     eaves = max(low + 22.0, layout.floor_low_mm - 3.0 - half)
@@ -95,7 +92,6 @@ def _window(d: Dimensions) -> Solid:
 
 
 def _clamp_ears(d: Dimensions) -> Solid:
-    """Make the ears that the coil's clamp screw pulls together, sloping below."""
     layout = Layout(d)
     top, radius = layout.coil_top_mm, layout.tower_radius_mm
     points = [
@@ -107,7 +103,6 @@ def _clamp_ears(d: Dimensions) -> Solid:
 
 
 def _clamp_cut(d: Dimensions) -> Solid:
-    """Make the slit, the clamp screw's hole and its nut's room."""
     layout = Layout(d)
     radius, top = layout.tower_radius_mm, layout.coil_top_mm
     made = block(
@@ -121,7 +116,6 @@ def _clamp_cut(d: Dimensions) -> Solid:
 
 
 def _guide(d: Dimensions) -> Solid:
-    """Make the block that the yoke's tongue slides in, sloping below."""
     layout = Layout(d)
     out = layout.tongue_out_mm + d.tongue_thickness_mm
     inner = layout.tower_radius_mm - 2
@@ -132,7 +126,6 @@ def _guide(d: Dimensions) -> Solid:
 
 
 def _guide_cut(d: Dimensions) -> Solid:
-    """Make the tongue's channel and the hole that its screw cuts a thread in."""
     layout = Layout(d)
     face, half = layout.tower_radius_mm + 3.5, d.tongue_width_mm / 2 + d.slide_gap_mm
     made = block((-face - 20, -half, layout.foot_plate_mm), (-face, half, layout.coil_top_mm + 1))

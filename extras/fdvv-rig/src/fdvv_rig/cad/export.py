@@ -6,16 +6,16 @@ import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
-from fdvv.files import write_atomic
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._fits import check_fits
-from fdvv.hardware._manifest import NAME, MadePart, Manifest, fingerprint, manifest_bytes
-from fdvv.hardware._mesh import stl_bytes
-from fdvv.hardware._parts import PARTS, Part
-from fdvv.hardware.cad._build import build
-from fdvv.hardware.cad._files import mesh_of_solid, step_bytes
-from fdvv.hardware.cad._sheet import sheet
-from fdvv.hardware.cad._view import views
+from fdvv.io.files import write_atomic
+from fdvv_rig.cad.build import build
+from fdvv_rig.cad.files import mesh_of_solid, step_bytes
+from fdvv_rig.cad.sheet import sheet
+from fdvv_rig.cad.view import views
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.fits import check_fits
+from fdvv_rig.manifest import NAME, MadePart, Manifest, fingerprint, manifest_bytes
+from fdvv_rig.mesh import stl_bytes
+from fdvv_rig.parts import PARTS, Part
 
 FIGURES = 6
 
@@ -42,7 +42,6 @@ def export_parts(
 
 
 def _export(folder: Path, part: Part, d: Dimensions) -> MadePart:
-    """Write one part's files."""
     solid = build(part.name, d)
     files = {
         f"parts/{part.name}.stl": stl_bytes(mesh_of_solid(solid)),
@@ -61,5 +60,4 @@ def _export(folder: Path, part: Part, d: Dimensions) -> MadePart:
 
 
 def _figures(value: float) -> float:
-    """Round to what does not depend on the last bits of an integral."""
     return float(f"{value:.{FIGURES}g}")

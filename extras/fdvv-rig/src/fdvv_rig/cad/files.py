@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 
-from fdvv.hardware._mesh import Mesh, joined
-from fdvv.hardware.cad._shapes import Solid, kernel
+from fdvv_rig.cad.shapes import Solid, kernel
+from fdvv_rig.mesh import Mesh, joined
 
 CHORD_mm = 0.02
 """How far a facet may be from the round face it stands for."""
@@ -19,7 +19,7 @@ WRITTEN = "2020-01-01T00:00:00"
 
 
 def mesh_of_solid(solid: Solid) -> Mesh:
-    """Give a solid's surface as triangles."""
+    """Return a solid's surface as triangles."""
     points, triangles = solid.tessellate(CHORD_mm, CHORD_rad)
     places = np.array([(p.X, p.Y, p.Z) for p in points])
     return joined(places[np.array(triangles)])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._limiter import RETURN_DEG, Limiter
-from fdvv.hardware.cad._shapes import Solid, block, kernel, prism, rod
+from fdvv_rig.cad.shapes import Solid, block, kernel, prism, rod
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
+from fdvv_rig.limiter import RETURN_DEG, Limiter
 
 INSERT_DEPTH_mm = 5.8
 HORN_SHARE = 0.9
@@ -34,7 +34,6 @@ def slider_yoke(d: Dimensions) -> Solid:
 
 
 def _foot(d: Dimensions) -> Solid:
-    """Make the foot, round where it meets the limiter."""
     layout, radius = Layout(d), d.foot_radius_mm
     begin, end, low = layout.limiter_in_mm, layout.limiter_out_mm, layout.foot_low_mm
     made = block((begin, -radius, low + radius), (end, radius, layout.yoke_low_mm + 1))
@@ -42,7 +41,6 @@ def _foot(d: Dimensions) -> Solid:
 
 
 def _tongue(d: Dimensions) -> Solid:
-    """Make the tongue with the slot that the stop screw runs in."""
     layout = Layout(d)
     near, half = layout.tongue_out_mm, d.tongue_width_mm / 2
     far = near + d.tongue_thickness_mm
@@ -84,7 +82,6 @@ def limiter_arm(d: Dimensions) -> Solid:
 
 
 def _spiral(d: Dimensions, begin: float, end: float) -> Solid:
-    """Make the arm's body: the spiral, its way back and the round rest, each one smooth face."""
     k, limiter, z = kernel(), Limiter(d), Layout(d).servo_axis_mm
     sweep, back = d.servo_sweep_deg, d.servo_sweep_deg + RETURN_DEG
 
@@ -98,7 +95,6 @@ def _spiral(d: Dimensions, begin: float, end: float) -> Solid:
 
 
 def _horn_pocket(d: Dimensions, face: float, end: float) -> Solid:
-    """Make the room for the horn's arm and the holes of two screws that hold it."""
     k, z = kernel(), Layout(d).servo_axis_mm
     half = d.horn_width_mm / 2 + d.fit_gap_mm + d.hole_excess_mm / 2
     made = block((face, 0, z - half), (end + 1, d.horn_length_mm + d.fit_gap_mm, z + half))

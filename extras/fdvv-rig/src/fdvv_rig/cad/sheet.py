@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
-from fdvv.hardware._dimensions import Dimensions, meaning_of, source_of
-from fdvv.hardware._parts import Part
-from fdvv.hardware.cad._view import Line, View
+from fdvv_rig.cad.view import Line, View
+from fdvv_rig.dimensions import Dimensions, meaning_of, source_of
+from fdvv_rig.parts import Part
 
 SHEET_mm = (297.0, 210.0)
 MARGIN_mm = 8.0
@@ -39,7 +39,7 @@ class Placed:
     scale: float
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """Give a point of the view on the paper."""
+        """Return a point of the view on the paper."""
         left, low, _, _ = self.view.box_mm
         return self.left_mm + (x - left) * self.scale, self.bottom_mm - (y - low) * self.scale
 
@@ -68,12 +68,11 @@ def _size(view: View) -> tuple[float, float]:
 
 
 def _scale(front: View, right: View, above: View) -> float:
-    """Give the largest usual scale at which the views fit beside the title block, or above it."""
     return next((s for s in SCALES if _low(front, right, above, s) is not None), SCALES[-1])
 
 
 def _low(front: View, right: View, above: View, scale: float) -> float | None:
-    """Give where the lower views stand on the paper; None where they do not fit at this scale."""
+    """Return where the lower views stand on the paper; None where they do not fit at this scale."""
     (wide, high), (deep, _), (_, back) = _size(front), _size(right), _size(above)
     end = LEFT_mm + scale * (wide + deep) + AIR_mm + 10
     tall = scale * (high + back) + AIR_mm + 10
@@ -85,7 +84,6 @@ def _low(front: View, right: View, above: View, scale: float) -> float | None:
 
 
 def _arranged(front: View, right: View, above: View, oblique: View, scale: float) -> list[Placed]:
-    """Place the front at the lower left, the side beside it, the top above it, the oblique view apart."""
     left, bottom = LEFT_mm, _low(front, right, above, scale) or SHEET_mm[1] - MARGIN_mm
     (wide, high), (deep, tall) = _size(front), _size(right)
     beside, over = left + wide * scale + AIR_mm, bottom - high * scale - AIR_mm
@@ -99,7 +97,6 @@ def _arranged(front: View, right: View, above: View, oblique: View, scale: float
 
 
 def _filling(view: View, left: float, top: float, right: float, low: float) -> Placed:
-    """Place a view in the middle of a box on the paper, as large as it goes and at most three to one."""
     across, tall = _size(view)
     scale = min((right - left) / across, (low - top) / tall, 3.0)
     x, y = (left + right - across * scale) / 2, (top + low + tall * scale) / 2
@@ -117,7 +114,6 @@ def _lines(placed: Placed, lines: tuple[Line, ...], kind: str) -> list[str]:
 
 
 def _sizes(placed: Placed, width: bool, height: bool) -> list[str]:
-    """Draw the view's width below it and its height to its left, as told."""
     left, low, right, top = placed.view.box_mm
     (x0, y0), (x1, y1) = placed.at(left, low), placed.at(right, top)
     y, x = y0 + 7, x0 - 7
@@ -136,7 +132,6 @@ def _sizes(placed: Placed, width: bool, height: bool) -> list[str]:
 
 
 def _arrow(x: float, y: float, dx: int, dy: int) -> str:
-    """Draw an arrow's head whose tip is at a point and that opens along dx, dy."""
     a, b = (
         (x + 1.6 * dx + 0.5 * dy, y + 1.6 * dy + 0.5 * dx),
         (x + 1.6 * dx - 0.5 * dy, y + 1.6 * dy - 0.5 * dx),
@@ -145,7 +140,6 @@ def _arrow(x: float, y: float, dx: int, dy: int) -> str:
 
 
 def _rounds(placed: Placed) -> list[str]:
-    """Tell each diameter once, from its right-most circle to a column of words beside the view."""
     circles = placed.view.circles
     _, low, right, top = placed.view.box_mm
     (edge, y0), (_, y1) = placed.at(right, low), placed.at(right, top)
@@ -168,7 +162,6 @@ def _frame() -> list[str]:
 
 
 def _title(part: Part, d: Dimensions, scale: float) -> list[str]:
-    """Draw the title block: what it is, how it is printed, the dimensions it follows from."""
     width, height = TITLE_mm
     x, y = SHEET_mm[0] - MARGIN_mm - width, SHEET_mm[1] - MARGIN_mm - height
     ratio = f"{scale:g} : 1" if scale >= 1 else f"1 : {1 / scale:g}"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fdvv.hardware._dimensions import Dimensions
-from fdvv.hardware._layout import Layout
-from fdvv.hardware._placement import POSTS_mm
-from fdvv.hardware.cad._shapes import Solid, ball, block, cone, prism, rod
+from fdvv_rig.cad.shapes import Solid, ball, block, cone, prism, rod
+from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.layout import Layout
+from fdvv_rig.placement import POSTS_mm
 
 JIG_mm = (36.0, 26.0)
 JIG_PLATE_mm = 4.0
@@ -38,14 +38,12 @@ def capture_jig(d: Dimensions) -> Solid:
 
 
 def _switch_hole(d: Dimensions) -> Solid:
-    """Make the switch's hole, and thin the plate about it to what its clips hold."""
     half, room = (d.switch_hole_mm + d.hole_excess_mm / 2) / 2, d.switch_hole_mm / 2 + 3.0
     made = block((-half, -half, -JIG_PLATE_mm - 1), (half, half, 1))
     return made + block((-room, -room, -JIG_PLATE_mm - 1), (room, room, -d.switch_plate_mm))
 
 
 def _jig_holes(d: Dimensions, bottom: float) -> Solid:
-    """Make sockets for posts, inserts for clamps, the lights' holes and a notch for cables."""
     half_y = JIG_mm[1]
     made = block((-6, half_y - 6, bottom - 1), (6, half_y + 1, bottom + 6))
     socket = PEG_mm + 2 * d.fit_gap_mm + d.hole_excess_mm
@@ -84,7 +82,6 @@ def black_box(d: Dimensions) -> Solid:
 
 
 def _hand(d: Dimensions) -> list[tuple[float, float]]:
-    """Give the hand's hole, x and z; its lower edges slope, as they are overhangs when it is printed."""
     key, half = Layout(d).keycap_top_mm, d.box_hand_mm / 2
     flat = 10.0
     low = key - half

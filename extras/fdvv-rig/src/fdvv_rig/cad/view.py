@@ -6,7 +6,7 @@ import math
 from collections import defaultdict
 from dataclasses import dataclass
 
-from fdvv.hardware.cad._shapes import Solid, kernel
+from fdvv_rig.cad.shapes import Solid, kernel
 
 Line = tuple[tuple[float, float], ...]
 Box = tuple[float, float, float, float]
@@ -15,7 +15,7 @@ ROUND = 2
 """Decimals of a millimetre in drawings."""
 
 WHOLE_ratio = 0.6
-"""Share of a full turn from which an arc is told as a circle."""
+"""Share of a full turn from which an arc is drawn as a circle."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ SIDES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float], i
 
 
 def views(solid: Solid) -> tuple[View, ...]:
-    """Give front, right side, top and an oblique view of a solid."""
+    """Return front, right side, top and an oblique view of a solid."""
     return tuple(_view(solid, title) for title in SIDES)
 
 
@@ -67,7 +67,6 @@ def _box(lines: tuple[Line, ...]) -> Box:
 
 
 def _true_box(solid: Solid, title: str) -> Box:
-    """Give the box of a view square to an axis from the solid: a round edge's points lie inside its own."""
     box = solid.bounding_box()
     left, low = _seen((box.min.X, box.min.Y, box.min.Z), title)
     right, top = _seen((box.max.X, box.max.Y, box.max.Z), title)
@@ -75,7 +74,6 @@ def _true_box(solid: Solid, title: str) -> Box:
 
 
 def _lines(edges: list[Solid]) -> tuple[Line, ...]:
-    """Give edges as lines of rounded points, each once, in an order of their own."""
     k = kernel()
     found = set()
     for edge in edges:
@@ -93,7 +91,6 @@ def _rounded(point: Solid) -> tuple[float, float]:
 
 
 def _circles(solid: Solid, title: str) -> tuple[Circle, ...]:
-    """Give the round edges that face the eye, by diameter, the largest first."""
     k = kernel()
     axis = SIDES[title][2]
     turns: dict[tuple[float, tuple[float, float]], float] = defaultdict(float)

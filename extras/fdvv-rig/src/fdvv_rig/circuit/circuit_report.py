@@ -6,15 +6,15 @@ import json
 from dataclasses import asdict
 from typing import Any
 
-from fdvv.hardware._circuit import Circuit
-from fdvv.hardware._diagram import sheet_svgs
-from fdvv.hardware._filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
-from fdvv.hardware._netlist import to_document, to_kicad, wiring_rows
-from fdvv.hardware._power import coil_drive, power_budget
-from fdvv.hardware._rules import check_circuit
-from fdvv.protocol import Settings
+from fdvv.protocol.tables import Settings
+from fdvv_rig.circuit.circuit import Circuit
+from fdvv_rig.circuit.diagram import sheet_svgs
+from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
+from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
+from fdvv_rig.circuit.power import coil_drive, power_budget
+from fdvv_rig.circuit.rules import check_circuit
 
-MADE = "Made from `src/fdvv/hardware/circuit.toml` by `tools/make_circuit.py`; do not edit.\n"
+MADE = "Made from `circuit.toml` of fdvv-rig by `tools/make_circuit.py`; do not edit.\n"
 SETTINGS = Settings()
 
 
@@ -39,7 +39,7 @@ def circuit_report(circuit: Circuit, settings: Settings = SETTINGS) -> dict[str,
 
 
 def circuit_files(circuit: Circuit) -> dict[str, str]:
-    """Give every file of the circuit by its name; BuildError without schemdraw, which draws."""
+    """Return every file of the circuit by its name; BuildError without schemdraw, which draws."""
     return {
         **{f"{name}.svg": svg for name, svg in sheet_svgs(circuit).items()},
         "rig.net": to_kicad(circuit),
@@ -89,13 +89,13 @@ def _filter_lines(circuit: Circuit) -> list[str]:
     head += f" gain at {snap} Hz, dB | phase there, ° | lag at {fast} mm/s, µm |"
     paper = next(f for f in filter_values(circuit) if f.name == "force")
     printed = " and ".join(f"{Hz:g}" for Hz in paper.paper_Hz)
-    told = (
+    note = (
         f"The paper prints {printed} Hz for 333 Ω and 1 µF. Neither is right: these parts make "
         f"{paper_cutoff_Hz():.1f} Hz. The circuit's {circuit.parts['R5'].text}, the nearest that is made, "
         f"gives {paper.cutoff_Hz:.1f} Hz with the sensor's own output and R27; over the tolerance "
         f"of the capacitor both printed numbers are possible."
     )
-    return ["## Filters", "", head, "|---|---|---|---|---|---|---|---|---|", *rows, "", told]
+    return ["## Filters", "", head, "|---|---|---|---|---|---|---|---|---|", *rows, "", note]
 
 
 def _step_lines(circuit: Circuit) -> list[str]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from fdvv.errors import BuildError
-from fdvv.hardware._circuit import TWO, Circuit, Component, Sheet
-from fdvv.hardware._rules import path_nets
+from fdvv_rig.circuit.circuit import TWO, Circuit, Component, Sheet
+from fdvv_rig.circuit.rules import path_nets
 
 STEP, SERIES, SHUNT, TAG = 1.7, 3.0, 2.2, 3.4
 """Widths: of a pin on a line, a part within it, a part that hangs on it, an end's box."""
@@ -17,8 +17,8 @@ ELEMENTS = {"resistor": "ResistorIEC", "coil": "Inductor2", "exciter": "Resistor
 ELEMENTS |= {"switch": "Button", "diode": "Diode", "suppressor": "Zener", "capacitor": "Capacitor"}
 CONTACTS = {"emergency stop": {"nc": True}, "clapper switch": {"nc": False}}
 POLAR_F, LETTER = 1e-5, 0.145
-TOLD = 9
-"""Pins of a ground told in one line."""
+PINS_PER_LINE = 9
+"""Pins of a ground listed in one line."""
 
 
 def sheet_svgs(circuit: Circuit) -> dict[str, str]:
@@ -35,7 +35,7 @@ def _library() -> tuple[Any, Any]:
         import schemdraw
         import schemdraw.elements
     except ImportError as error:
-        raise BuildError('schemdraw is missing; run pip install "fdvv[hardware]"') from error
+        raise BuildError("drawing the circuit needs schemdraw: pip install schemdraw") from error
     return schemdraw, schemdraw.elements
 
 
@@ -79,7 +79,6 @@ class _Drawer:
         return any(self._circuit.pin(pin).type in ("ground", "source") for pin in self._circuit.nets[net])
 
     def _hanging(self, net: str) -> list[tuple[Component, str]]:
-        """List the parts of two pins from a net to a rail that stand in no path, and that rail."""
         found = []
         for kind in TWO:
             for part, a, b in self._circuit.between(kind):
@@ -89,7 +88,6 @@ class _Drawer:
         return found
 
     def _others(self, net: str, path: tuple[str, ...]) -> list[str]:
-        """List the pins of a net that are no ends of the path and no parts of two pins."""
         pins = self._circuit.nets[net]
         return [p for p in pins if p not in path and self._circuit.part_of(p).kind.name not in TWO]
 
@@ -110,7 +108,6 @@ class _Drawer:
             self._box(drawing, path[-1], (x, y))
 
     def _net(self, drawing: Any, net: str, path: tuple[str, ...], at: tuple[float, float]) -> float:
-        """Draw a net's line, with what hangs on it the first time; give where it ends."""
         x, y = at
         fresh = net not in self._seen and not self._is_ground(net)
         hanging = self._hanging(net) if fresh else []
@@ -132,9 +129,8 @@ class _Drawer:
         return end
 
     def _ground(self, drawing: Any, net: str, y: float) -> float:
-        """List what lies at a ground, but parts of two pins, which are drawn where they hang."""
         pins = [p for p in self._circuit.nets[net] if self._circuit.part_of(p).kind.name not in TWO]
-        lines = [pins[i : i + TOLD] for i in range(0, len(pins), TOLD)]
+        lines = [pins[i : i + PINS_PER_LINE] for i in range(0, len(pins), PINS_PER_LINE)]
         for i, line in enumerate(lines):
             text = f"{net}, joined in one star: " if i == 0 else "      "
             self._text(drawing, (0, y - 0.5 * i), text + "  ".join(line), 10, "left")
@@ -153,7 +149,6 @@ class _Drawer:
     def _part(
         self, drawing: Any, part: Component, net: str, a: tuple[float, float], b: tuple[float, float]
     ) -> None:
-        """Draw a part from a, where it meets the net, to b."""
         name = ELEMENTS[part.kind.name]
         if part.kind.name == "capacitor" and (part.value or 0) > POLAR_F:
             name = "CapacitorPolar" if hasattr(self._elements, "CapacitorPolar") else "Capacitor2"
@@ -163,17 +158,16 @@ class _Drawer:
         begin, end = (a, b) if first_is_net else (b, a)
         element = getattr(self._elements, name)(**CONTACTS.get(part.bill, {})).endpoints(begin, end)
         drawing.add(element)
-        told = f"{part.ref} {part.text}".strip()
+        label = f"{part.ref} {part.text}".strip()
         if a[1] == b[1]:
             above = -0.55 if name == "LED" else 0.55  # its arrows point up
-            self._text(drawing, ((a[0] + b[0]) / 2, a[1] + above), told, 10, "center")
+            self._text(drawing, ((a[0] + b[0]) / 2, a[1] + above), label, 10, "center")
         else:
             x, middle = a[0] + 0.42, (a[1] + b[1]) / 2
             self._text(drawing, (x, middle + 0.22), part.ref, 10, "left")
             self._text(drawing, (x, middle - 0.22), part.text, 9, "left", FAINT)
 
     def _box(self, drawing: Any, pin: str, at: tuple[float, float]) -> None:
-        """Draw the end of a path: reference and pin, and what the part is."""
         x, y = at
         part = self._circuit.part_of(pin)
         box = self._elements.Rect(corner1=(0, -0.55), corner2=(TAG, 0.55), fill=BOX_FILL)

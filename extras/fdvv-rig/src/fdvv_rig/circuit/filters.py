@@ -6,9 +6,9 @@ import cmath
 import math
 from dataclasses import dataclass
 
-from fdvv.hardware._circuit import Circuit, Filter
-from fdvv.hardware._levels import PowerState, levels
-from fdvv.protocol import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv_rig.circuit.circuit import Circuit, Filter
+from fdvv_rig.circuit.levels import PowerState, levels
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,6 @@ def _gain(ratio: float, low: bool) -> complex:
 
 
 def _seen_ohm(circuit: Circuit, one: Filter) -> float:
-    """Give the resistance across the capacitor: of its net to ground, or in series with what loads it."""
     if one.kind == "low pass":
         return levels(circuit, PowerState())[one.net].ohm
     loads = [circuit.pin(p).load_ohm for p in circuit.nets[one.net]]
@@ -102,12 +101,12 @@ def _seen_ohm(circuit: Circuit, one: Filter) -> float:
 
 
 def paper_cutoff_Hz() -> float:
-    """Give the cut-off of the parts that the paper names: 333 ohm and 1 uF."""
+    """Return the cut-off of the parts that the paper names: 333 ohm and 1 uF."""
     return 1 / (2 * math.pi * 333.0 * 1e-6)
 
 
 def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
-    """Tell what a step of the controller's converter means on every analog net of it."""
+    """Return what a step of the controller's converter means on every analog net of it."""
     facts = circuit.facts
     count_V = facts["converter_V"] / 2 ** facts["converter_bits"]
     at = levels(circuit, PowerState())
@@ -133,7 +132,7 @@ def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
 
 
 def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
-    """Give the settings of the firmware that follow from the parts, to be refined by calibration.
+    """Return the settings of the firmware that follow from the parts, to be refined by calibration.
 
     reads : readings that a tick sums up.
     """

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.hardware._circuit import Circuit
 from fdvv.units import FloatArray
+from fdvv_rig.circuit.circuit import Circuit
 
 SOURCE_ohm, LINK_ohm = 0.01, 0.02
 """Inside a supply; a closed contact or fuse."""
 LEAK_S = 1e-12
-"""Of every net to ground, so that a net without a path to anywhere can be told: by its resistance."""
+"""Of every net to ground, so that a net without a path to anywhere shows: by its resistance."""
 FLOATS_ohm = 1e9
 LINKS = ("resistor", "coil", "exciter")
 CONTACTS = ("fuse", "switch")
@@ -44,7 +44,7 @@ class Level:
 
     @property
     def floats(self) -> bool:
-        """Tell whether nothing holds the net."""
+        """Return whether nothing holds the net."""
         return self.ohm > FLOATS_ohm
 
 

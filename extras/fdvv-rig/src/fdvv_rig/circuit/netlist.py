@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
-from fdvv.hardware._circuit import Circuit
+from fdvv_rig.circuit.circuit import Circuit
 
 FOOTPRINTS = {
     "resistor": "Resistor_THT:R_Axial_DIN0207_L6.3mm_D2.5mm_P10.16mm_Horizontal",
@@ -40,7 +40,7 @@ def _quoted(text: str) -> str:
 
 
 def to_document(circuit: Circuit) -> dict[str, Any]:
-    """Give parts and nets as plain data; values in SI units, their unit beside."""
+    """Return parts and nets as plain data; values in SI units, their unit beside."""
     parts = [
         {
             "ref": part.ref,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fdvv.hardware._circuit import Circuit
-from fdvv.hardware._levels import CONTACTS
-from fdvv.protocol import CN64_PER_cN, Settings
+from fdvv.protocol.messages import CN64_PER_cN
+from fdvv.protocol.tables import Settings
+from fdvv_rig.circuit.circuit import Circuit
+from fdvv_rig.circuit.levels import CONTACTS
 
 ILIM_V = 64e3
 """DRV8871: the current at which it chops is this over the resistor at ILIM."""
@@ -72,7 +73,7 @@ def _consumer(circuit: Circuit, name: str, V: float) -> tuple[float, float]:
 
 
 def reached(circuit: Circuit, net: str) -> list[str]:
-    """Give the nets that a net feeds through fuses and closed contacts, itself first."""
+    """Return the nets that a net feeds through fuses and closed contacts, itself first."""
     found = [net]
     links = [(a, b) for kind in CONTACTS for _, a, b in circuit.between(kind)]
     for here in found:
@@ -143,7 +144,6 @@ def coil_drive(circuit: Circuit, settings: Settings) -> CoilDrive:
 
 
 def _ripple_A(V: float, ohm: float, henry: float, pwm_Hz: float) -> float:
-    """Give the ripple of a coil that is driven half of each period and shorted in the other, peak to peak."""
     half = math.exp(-ohm / (henry * 2 * pwm_Hz))
     return V / ohm * (1 - half) / (1 + half)
 

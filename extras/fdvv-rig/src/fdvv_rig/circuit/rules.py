@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fdvv.errors import InputError
-from fdvv.hardware._circuit import HEARS, TWO, Circuit
-from fdvv.hardware._levels import Level, PowerState, levels
-from fdvv.hardware._power import power_budget
+from fdvv_rig.circuit.circuit import HEARS, TWO, Circuit
+from fdvv_rig.circuit.levels import Level, PowerState, levels
+from fdvv_rig.circuit.power import power_budget
 
 LOW_V = 0.4
 """At or below it every input reads as low."""
@@ -34,7 +34,7 @@ class Violation:
 
 
 def check_circuit(circuit: Circuit) -> tuple[Violation, ...]:
-    """Tell every broken rule of a circuit; empty if it may be built."""
+    """Return every broken rule of a circuit; empty if it may be built."""
     form = (*_connections(circuit), *_sources(circuit))
     return form or (
         *_supplies(circuit),
@@ -54,7 +54,6 @@ def require_sound(circuit: Circuit, source: object) -> None:
 
 
 def _connections(circuit: Circuit) -> Iterator[Violation]:
-    """Every pin stands in one net, free ones in none; a net has two pins at least."""
     counts = Counter(pin for pins in circuit.nets.values() for pin in pins)
     for name in circuit.pins():
         free = circuit.pin(name).type == "free"
@@ -70,14 +69,13 @@ def _connections(circuit: Circuit) -> Iterator[Violation]:
 
 
 def _sources(circuit: Circuit) -> Iterator[Violation]:
-    """No two drivers on one net, unless they are grounds or sources of the same voltage."""
     for net, pins in circuit.nets.items():
         drives = [p for p in pins if circuit.pin(p).type in ("source", "output", "ground")]
         volts = {0.0 if circuit.pin(p).type == "ground" else circuit.pin(p).V or 0.0 for p in drives}
         outputs = [p for p in drives if circuit.pin(p).type == "output"]
         if drives and max(volts) - min(volts) > SAME_V:
-            told = " and ".join(f"{p} of {circuit.pin(p).V or 0:g} V" for p in drives)
-            yield Violation("short", net, f"joins {told}", "part them")
+            drivers = " and ".join(f"{p} of {circuit.pin(p).V or 0:g} V" for p in drives)
+            yield Violation("short", net, f"joins {drivers}", "part them")
         elif outputs and len(drives) > 1:
             yield Violation("drive", net, f"is driven by {' and '.join(drives)}", "leave one of them")
 
@@ -103,7 +101,6 @@ def _overloads(circuit: Circuit) -> Iterator[Violation]:
 
 
 def _inputs(circuit: Circuit) -> Iterator[Violation]:
-    """Nothing above what an input bears, and what drives it is high enough and strong enough."""
     at = levels(circuit, PowerState())
     for name, net in circuit.net_of.items():
         pin, level = circuit.pin(name), at[net]
@@ -121,7 +118,6 @@ def _inputs(circuit: Circuit) -> Iterator[Violation]:
 
 
 def _driven(circuit: Circuit, net: str) -> bool:
-    """Tell whether a logic level is meant to arrive: some output or pull-up reaches the net."""
     types = {circuit.pin(p).type for p in circuit.nets[net]}
     if "output" in types or "ground" in types:
         return "output" in types
@@ -138,21 +134,20 @@ def _states(circuit: Circuit) -> Iterator[tuple[str, PowerState]]:
 
 
 def _floating(circuit: Circuit) -> Iterator[Violation]:
-    told = set()
+    reported = set()
     for when, state in _states(circuit):
         at = levels(circuit, state)
         for name, net in circuit.net_of.items():
             pin = circuit.pin(name)
             listens = pin.type in HEARS and not pin.bias and circuit.part_of(name).ref not in state.absent
-            if listens and at[net].floats and name not in told:
-                told.add(name)
+            if listens and at[net].floats and name not in reported:
+                reported.add(name)
                 yield Violation(
                     "floats", name, f"floats{when}", "give it a resistor to ground or to its rail"
                 )
 
 
 def _resting(circuit: Circuit) -> Iterator[Violation]:
-    """What must be low while the controllers are in reset is low then."""
     controllers = [p.ref for p in circuit.parts.values() if any(pin.signal for pin in p.kind.pins.values())]
     at: dict[str, Level] = levels(circuit, PowerState(released=controllers))
     for name, net in circuit.net_of.items():
@@ -176,7 +171,7 @@ def undrawn(circuit: Circuit) -> list[str]:
 
 
 def path_nets(circuit: Circuit, path: tuple[str, ...]) -> list[str]:
-    """Give the nets that a drawn path passes; InputError if its steps are not connected."""
+    """Return the nets that a drawn path passes; InputError if its steps are not connected."""
     nets = [circuit.net_of[path[0]]]
     for ref in path[1:-1]:
         ends = [circuit.net_of.get(f"{ref}.1", ""), circuit.net_of.get(f"{ref}.2", "")]

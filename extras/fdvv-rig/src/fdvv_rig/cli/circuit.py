@@ -7,26 +7,20 @@ from typing import Any
 
 import click
 
-from fdvv.cli._output import json_option, print_json, print_table, print_wrapped
+from fdvv.cli import ui
 
 
 @click.command()
-@click.option("--csv", "as_csv", is_flag=True, help="Print the lines as CSV and nothing else.")
-@json_option
+@ui.option("--csv", "as_csv", is_flag=True, help="Print the lines as CSV and nothing else.")
+@ui.json_option
 def bill(as_csv: bool, as_json: bool) -> None:
     """List what to buy: makers, part numbers, alternatives, counts, prices, beside the paper's cost.
 
     Counts come from the circuit and the printed parts. Prices are estimates with their date.
     """
     from fdvv.errors import InputError
-    from fdvv.hardware import (
-        PAPER_USD,
-        group_totals,
-        load_bill,
-        load_circuit,
-        summary,
-        to_csv,
-    )
+    from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, summary, to_csv
+    from fdvv_rig.circuit.circuit import load_circuit
 
     if as_csv and as_json:
         raise InputError("--csv", "with --json", "only one of them can be printed", "leave one out")
@@ -36,70 +30,68 @@ def bill(as_csv: bool, as_json: bool) -> None:
         return
     if as_json:
         totals = {f"{group}_USD": total for group, total in group_totals(found).items()}
-        print_json({"lines": found.rows(), "total_USD": found.total_USD, "paper_USD": PAPER_USD} | totals)
+        ui.print_json({"lines": found.rows(), "total_USD": found.total_USD, "paper_USD": PAPER_USD} | totals)
         return
-    print_table(
+    ui.print_table(
         ["role", "maker", "part number", "count", "USD"],
         [[b.role, b.maker, b.part_number[:34], str(b.count), f"{b.total_USD:.2f}"] for b in found.lines],
         left=3,
     )
-    print_wrapped(summary(found))
+    ui.print_wrapped(summary(found))
 
 
 @click.command()
-@click.option(
-    "--file",
-    "file",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Another circuit's TOML in place of the rig's own.",
-)
-@click.option(
+@ui.option("--file", "file", type=ui.FILE, help="Another circuit's TOML in place of the rig's own.")
+@ui.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=ui.NEW_FOLDER,
     help="Write diagrams (SVG), netlists (KiCad, JSON), wiring table and values into this folder.",
 )
-@json_option
+@ui.json_option
 def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
     """Check the circuit and tell what follows from its values; exit status 1 if a rule is broken.
 
     Cut-offs of the filters, steps of the converters, power of every rail, the coil's current and warmth.
     """
-    from fdvv.hardware import circuit_files, circuit_report, load_circuit, require_sound, to_document
+    from fdvv_rig.circuit.circuit import load_circuit
+    from fdvv_rig.circuit.circuit_report import circuit_files, circuit_report
+    from fdvv_rig.circuit.netlist import to_document
+    from fdvv_rig.circuit.rules import require_sound
 
     found = load_circuit(file)
     if output:
         require_sound(found, file or "circuit.toml")
         _write(output, circuit_files(found))
-    told = circuit_report(found)
+    report = circuit_report(found)
     if as_json:
-        print_json(told | {"netlist": to_document(found)})
+        ui.print_json(report | {"netlist": to_document(found)})
     else:
-        _print(told)
+        _print(report)
         if output:
             click.echo(f"written to {output}")
-    if told["violations"]:
+    if report["violations"]:
         raise click.exceptions.Exit(1)
 
 
 def _write(folder: Path, files: dict[str, str]) -> None:
-    from fdvv.cli._output import check_folder
-    from fdvv.files import write_atomic
+    pass
+    from fdvv.io.files import write_atomic
 
-    check_folder(folder)
+    ui.check_folder(folder)
     for name, text in files.items():
         write_atomic(folder / name, text)
 
 
-def _print(told: dict[str, Any]) -> None:
-    click.echo(f"{told['title']}: {told['parts']} parts, {told['nets']} nets")
-    for one in told["violations"]:
-        print_wrapped(f"{one['place']}: {one['reason']}; {one['remedy']}")
-    if told["violations"]:
+def _print(report: dict[str, Any]) -> None:
+    click.echo(f"{report['title']}: {report['parts']} parts, {report['nets']} nets")
+    for one in report["violations"]:
+        ui.print_wrapped(f"{one['place']}: {one['reason']}; {one['remedy']}")
+    if report["violations"]:
         return
     click.echo("every rule holds: pins, levels, floating inputs, rest levels, power")
     click.echo("")
-    print_table(
+    ui.print_table(
         ["filter", "cut-off Hz", "lowest", "highest", "time ms", "lag um", "paper Hz"],
         [
             [
@@ -108,29 +100,29 @@ def _print(told: dict[str, Any]) -> None:
                 *(f"{f[key]:.3f}" for key in ("time_ms", "lag_um")),
                 ", ".join(f"{value:g}" for value in f["paper_Hz"]) or "–",
             ]
-            for f in told["filters"]
+            for f in report["filters"]
         ],
     )
-    click.echo(f"the paper's 333 ohm and 1 uF make {told['paper_parts_cutoff_Hz']:.1f} Hz")
+    click.echo(f"the paper's 333 ohm and 1 uF make {report['paper_parts_cutoff_Hz']:.1f} Hz")
     click.echo("")
-    print_table(
+    ui.print_table(
         ["step of the converter", "at the pin mV", "value", "unit"],
         [
             [s["name"], f"{s['volts_mV']:.3f}", f"{s['value']:.3f}", s["unit"]]
-            for s in told["converter_steps"]
+            for s in report["converter_steps"]
         ],
     )
     click.echo("")
-    print_table(
+    ui.print_table(
         ["source", "V", "usual mA", "peak mA", "limit mA"],
         [
             [r["source"], *(f"{r[key]:g}" for key in ("V", "usual_mA", "peak_mA", "limit_mA"))]
-            for r in told["rails"]
+            for r in report["rails"]
         ],
     )
-    coil = told["coil"]
+    coil = report["coil"]
     click.echo("")
-    print_wrapped(
+    ui.print_wrapped(
         f"coil at {coil['force_cN']:.0f} cN: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W, "
         f"{coil['rise_K']:.0f} K warmer if held for ever; the bridge chops at {coil['chop_A']:.2f} A"
     )

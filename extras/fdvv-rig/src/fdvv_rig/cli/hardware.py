@@ -7,32 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._hardware_electric import bill, circuit
-from fdvv.cli._hardware_selftest import selftest
-from fdvv.cli._output import (
-    check_folder,
-    json_option,
-    number,
-    one_line,
-    print_json,
-    print_table,
-    print_wrapped,
-    stages,
-)
+from fdvv.cli import ui
+from fdvv_rig.cli.circuit import bill, circuit
+from fdvv_rig.cli.selftest import selftest
 
 if TYPE_CHECKING:
-    from fdvv.hardware import Dimensions, FolderCheck, PartCheck
+    from fdvv_rig.dimensions import Dimensions
+    from fdvv_rig.exported import FolderCheck, PartCheck
 
-GAPS_TOLD = 10
+GAPS_SHOWN = 10
 """Clearances in the table; --json gives all."""
 
-dimensions_option = click.option(
-    "--from",
-    "source",
-    type=click.Path(path_type=Path),
-    help="Dimensions from a TOML file; see parts --dimensions.",
+dimensions_option = ui.option(
+    "--from", "source", type=ui.PATH, help="Dimensions from a TOML file; see parts --dimensions."
 )
-set_option = click.option(
+set_option = ui.option(
     "--set",
     "words",
     multiple=True,
@@ -50,38 +39,39 @@ def hardware() -> None:
 
 
 @hardware.command()
-@click.option("--dimensions", "as_toml", is_flag=True, help="Print every dimension as TOML instead.")
+@ui.option("--dimensions", "as_toml", is_flag=True, help="Print every dimension as TOML instead.")
 @dimensions_option
 @set_option
-@json_option
+@ui.json_option
 def parts(as_toml: bool, source: Path | None, words: tuple[str, ...], as_json: bool) -> None:
     """List the printed parts, or the dimensions they follow from.
 
     Masses and times are estimates for the default dimensions: three lines about every face, a quarter of
     infill.
     """
-    from fdvv.hardware import dimensions_toml, load_dimensions, printed_parts
+    from fdvv_rig.dimension_file import dimensions_toml, load_dimensions
+    from fdvv_rig.parts import printed_parts
 
     if as_toml:
         d = load_dimensions(source, words)
         if as_json:
-            print_json({"dimensions": _described(d)})
+            ui.print_json({"dimensions": _described(d)})
         else:
             click.echo(dimensions_toml(d), nl=False)
         return
     if source or words:
         raise click.UsageError("--from and --set change dimensions: add --dimensions, or use export")
     if as_json:
-        print_json({"parts": [_part(part) for part in printed_parts()]})
+        ui.print_json({"parts": [_part(part) for part in printed_parts()]})
         return
     rows = [
-        [p.name, p.use, str(p.count), number(p.mass_g, 1), number(p.print_h, 1), _size(p.made.box_mm)]
+        [p.name, p.use, str(p.count), ui.number(p.mass_g, 1), ui.number(p.print_h, 1), _size(p.made.box_mm)]
         for p in printed_parts()
     ]
-    print_table(["part", "count", "g", "h", "mm"], [[row[0], *row[2:]] for row in rows])
+    ui.print_table(["part", "count", "g", "h", "mm"], [[row[0], *row[2:]] for row in rows])
     click.echo("")
     for name, use, *_ in rows:
-        print_wrapped(f"{name}: {use}")
+        ui.print_wrapped(f"{name}: {use}")
 
 
 def _part(part: Any) -> dict[str, Any]:
@@ -102,7 +92,7 @@ def _part(part: Any) -> dict[str, Any]:
 def _described(d: Dimensions) -> dict[str, Any]:
     import dataclasses
 
-    from fdvv.hardware import meaning_of, source_of
+    from fdvv_rig.dimensions import meaning_of, source_of
 
     return {
         name: {"value": value, "meaning": meaning_of(name), "source": source_of(name)}
@@ -115,46 +105,46 @@ def _size(box_mm: tuple[float, float, float]) -> str:
 
 
 @hardware.command()
-@click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
+@click.argument("folder", type=ui.NEW_FOLDER)
 @dimensions_option
 @set_option
-@json_option
+@ui.json_option
 def export(folder: Path, source: Path | None, words: tuple[str, ...], as_json: bool) -> None:
     """Make every printed part anew: STL, STEP and drawing into FOLDER.
 
     Equal dimensions give equal bytes. Needs the extra cad; the parts of the default dimensions lie ready in
     the source's hardware/.
     """  # fmt: skip
-    from fdvv.hardware import load_dimensions
-    from fdvv.hardware.cad import export_parts
+    from fdvv_rig.cad.export import export_parts
+    from fdvv_rig.dimension_file import load_dimensions
 
     d = load_dimensions(source, words)
-    check_folder(folder)
-    with stages() as tell:
+    ui.check_folder(folder)
+    with ui.stages() as tell:
         manifest = export_parts(folder, d, lambda name, done, total: tell(f"making {name}", done, total))
     files = [name for made in manifest.parts.values() for name in made.files]
     if as_json:
-        print_json({"folder": str(folder), "digest": manifest.digest, "files": files})
+        ui.print_json({"folder": str(folder), "digest": manifest.digest, "files": files})
         return
     click.echo(f"{len(files)} files of {len(manifest.parts)} parts in {folder}; dimensions {manifest.digest}")
 
 
 @hardware.command()
-@click.argument("folder", type=click.Path(path_type=Path, file_okay=False), default="hardware")
-@json_option
+@click.argument("folder", type=ui.NEW_FOLDER, default="hardware")
+@ui.json_option
 @click.pass_context
 def check(context: click.Context, folder: Path, as_json: bool) -> None:
     """Check exported parts in FOLDER: closed, printable, and nothing meets in the rig at any travel.
 
     Tells the smallest clearances, the limiter's reach, step and play, and what tolerances the sensor's mount
-    takes up. Exit status 1 where a part is wrong or two meet.
+    takes up. Exit status 1 where a part is wrong or two collide.
     """  # fmt: skip
-    from fdvv.hardware import check_exported
+    from fdvv_rig.exported import check_exported
 
-    with stages() as tell:
+    with ui.stages() as tell:
         found = check_exported(folder, tell)
     if as_json:
-        print_json(_document(found))
+        ui.print_json(_document(found))
     else:
         _print(found)
     context.exit(0 if found.good else 1)
@@ -195,7 +185,7 @@ def _checked(part: PartCheck) -> dict[str, Any]:
 
 
 def _limiter(d: Dimensions) -> dict[str, float]:
-    from fdvv.hardware import Limiter
+    from fdvv_rig.limiter import Limiter
 
     limiter = Limiter(d)
     low_mm, high_mm = limiter.range_mm
@@ -210,13 +200,14 @@ def _limiter(d: Dimensions) -> dict[str, float]:
 
 
 def _slider(d: Dimensions) -> dict[str, float]:
-    from fdvv.hardware import Layout, tilt_deg, turn_deg
+    from fdvv_rig.layout import Layout
+    from fdvv_rig.tolerance import tilt_deg, turn_deg
 
     return {"turn_deg": turn_deg(d, Layout(d).tongue_out_mm), "tilt_deg": tilt_deg(d)}
 
 
 def _mount(d: Dimensions) -> dict[str, Any]:
-    from fdvv.hardware import core_stack
+    from fdvv_rig.tolerance import core_stack
 
     stack = core_stack(d)
     causes = {cause.name: cause.either_way_mm for cause in stack.causes}
@@ -234,24 +225,24 @@ def _print(found: FolderCheck) -> None:
     rows = [
         [
             p.name,
-            number(p.volume_cm3),
+            ui.number(p.volume_cm3),
             _size(p.box_mm),
             "closed" if not p.open_edges else f"{p.open_edges} open edges",
         ]
         for p in found.parts
     ]
-    print_table(["part", "cm³", "mm", "surface"], rows)
+    ui.print_table(["part", "cm³", "mm", "surface"], rows)
     for part in found.parts:
         for wrong in part.wrong:
-            click.echo(one_line(f"{part.name}: {wrong}"))
+            click.echo(ui.one_line(f"{part.name}: {wrong}"))
     for m in found.meetings:
         click.echo(f"{m.one} meets {m.other} at travel {m.travel_mm:.2f} mm: {m.shared_mm3:.2f} mm³")
     if found.clearances:
         click.echo("")
-        told = found.clearances[:GAPS_TOLD]
-        print_table(
+        shown = found.clearances[:GAPS_SHOWN]
+        ui.print_table(
             ["closest, moving", "beside", "mm", "at travel mm"],
-            [[c.one, c.other, number(c.gap_mm), number(c.travel_mm)] for c in told],
+            [[c.one, c.other, ui.number(c.gap_mm), ui.number(c.travel_mm)] for c in shown],
             left=2,
         )
     _print_figures(found.dimensions)
@@ -262,14 +253,14 @@ def _print(found: FolderCheck) -> None:
 def _print_figures(d: Dimensions) -> None:
     limiter, mount = _limiter(d), _mount(d)
     click.echo("")
-    print_wrapped(
+    ui.print_wrapped(
         f"limiter: stops from {limiter['from_mm']:.2f} to {limiter['to_mm']:.2f} mm, "
         f"{limiter['step_mm_per_deg']:.3f} mm a degree, play {limiter['play_mm']:.2f} mm, "
         f"{100 * limiter['torque_ratio']:.0f} % of the stall torque under {d.finger_force_N:g} N"
     )
     turn_deg, tilt_deg = _slider(d).values()
-    print_wrapped(f"slider: turns {turn_deg:.2f}° and tilts {tilt_deg:.2f}° at most, either way")
-    print_wrapped(
+    ui.print_wrapped(f"slider: turns {turn_deg:.2f}° and tilts {tilt_deg:.2f}° at most, either way")
+    ui.print_wrapped(
         f"sensor's mount: tolerances {mount['worst_mm']:.2f} mm at worst, {mount['likely_mm']:.2f} mm likely"
         f"; the core has {mount['room_mm']:.2f} mm, the mount moves {mount['float_mm']:.2f} mm"
     )

@@ -9,34 +9,28 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.cli._output import check_output, json_option, print_json, print_table, stages
+from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.device import Remote
-    from fdvv.hardware import Diagnosis, Evidence
+    from fdvv.device.remote import Remote
+    from fdvv_rig.selftest.diagnosis import Diagnosis
+    from fdvv_rig.selftest.evidence import Evidence
 
 
 @click.command()
-@click.option(
+@ui.option(
     "--device",
     "spec",
     default="twin",
-    show_default=True,
     help="twin (the firmware on the simulated rig), host, emulated or serial:PORT.",
 )
-@click.option(
-    "--rig",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="TOML file of a simulated rig.",
-)
-@click.option("--fault", help="Break a simulated rig on purpose; 'list' names what can be broken.")
-@click.option("--no-exciter", is_flag=True, help="None is fitted.")
-@click.option("--apply", "apply", is_flag=True, help="If every part passes, give the device its calibration.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of a simulated rig.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Write a receipt (.json) if every part passes."
-)
-@json_option
+@ui.option("--rig", type=ui.FILE, help="TOML file of a simulated rig.")
+@ui.option("--fault", help="Break a simulated rig on purpose; 'list' names what can be broken.")
+@ui.option("--no-exciter", is_flag=True, help="None is fitted.")
+@ui.option("--apply", "apply", is_flag=True, help="If every part passes, give the device its calibration.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Of a simulated rig.")
+@ui.option("-o", "--output", type=ui.PATH, help="Write a receipt (.json) if every part passes.")
+@ui.json_option
 def selftest(
     spec: str,
     rig: Path | None,
@@ -52,27 +46,29 @@ def selftest(
     Nobody presses: gauges of 4.5 and 2 mm go under the cap and 50 g onto its force sensor, as you are asked.
     Only a test that every part passed leaves a receipt; without --output nothing is written.
     """  # fmt: skip
-    from fdvv.hardware import diagnose
-    from fdvv.workflow import RIG_FAULTS, measure_rig, open_rig
+    from fdvv_rig.selftest.diagnosis import diagnose
+    from fdvv_rig.selftest.faults import RIG_FAULTS
+    from fdvv_rig.selftest.measure import measure_rig
+    from fdvv_rig.selftest.open import open_rig
 
     if fault == "list":
-        print_table(
+        ui.print_table(
             ["fault", "part", "what is wrong"], [[n, f.part, f.about] for n, f in RIG_FAULTS.items()], left=3
         )
         return
-    check_output(output, ".json")
+    ui.check_output(output, ".json")
     _check_person(spec)
     device, hands = open_rig(spec, _ask, rig, seed, fault)
     try:
-        with stages() as advance:
+        with ui.stages() as advance:
             evidence = measure_rig(device, hands, advance, exciter=not no_exciter)
         found = diagnose(evidence)
-        told = _told(device, found, evidence)
+        document = _document(device, found, evidence)
         if found.passed:
-            _finish(device, found, evidence, told, output, apply)
+            _finish(device, found, evidence, document, output, apply)
     finally:
         device.close()
-    _show(told, found, as_json)
+    _show(document, found, as_json)
     if not found.passed:
         raise click.exceptions.Exit(1)
 
@@ -88,14 +84,13 @@ def _check_person(spec: str) -> None:
 
 
 def _ask(text: str) -> None:
-    """Say what to do and wait for Enter."""
     import sys
 
     click.echo(f"{text} Then press Enter.", err=True)
     sys.stdin.readline()
 
 
-def _told(device: Remote, found: Diagnosis, evidence: Evidence) -> dict[str, Any]:
+def _document(device: Remote, found: Diagnosis, evidence: Evidence) -> dict[str, Any]:
     info = device.info()
     return {
         "device": info.name,
@@ -113,49 +108,48 @@ def _finish(
     device: Remote,
     found: Diagnosis,
     evidence: Evidence,
-    told: dict[str, Any],
+    document: dict[str, Any],
     output: Path | None,
     apply: bool,
 ) -> None:
-    """Work the calibration out, give it to the device if asked, and leave a receipt."""
-    from fdvv.workflow import calibrated, changed, write_selftest
+    from fdvv_rig.selftest.receipt import calibrated, changed, write_selftest
 
     before = device.settings()
     after = calibrated(before, evidence)
-    told["settings"] = changed(before, after)
+    document["settings"] = changed(before, after)
     if apply:
         device.configure(after)
     if output:
         head = {
-            "device": told["device"],
+            "device": document["device"],
             "serial": device.client.hello.serial,
-            "simulated": told["simulated"],
+            "simulated": document["simulated"],
             "tested": datetime.now(UTC).isoformat(timespec="seconds"),
-            "settings": told["settings"],
+            "settings": document["settings"],
         }
         write_selftest(output, found, evidence, head)
-        told["receipt"] = str(output)
+        document["receipt"] = str(output)
 
 
-def _show(told: dict[str, Any], found: Diagnosis, as_json: bool) -> None:
-    from fdvv.hardware import Verdict
+def _show(document: dict[str, Any], found: Diagnosis, as_json: bool) -> None:
+    from fdvv_rig.selftest.diagnosis import Verdict
 
     if as_json:
-        print_json(told)
+        ui.print_json(document)
     else:
-        source = f"{told['device']}{' (simulated)' if told['simulated'] else ''}"
+        source = f"{document['device']}{' (simulated)' if document['simulated'] else ''}"
         click.echo(f"{source}: {'every part passed' if found.passed else 'not every part passed'}")
-        print_table(
+        ui.print_table(
             ["part", "verdict", "what was seen"],
             [[one.part, str(one.verdict), one.evidence] for one in found.findings],
             left=3,
         )
-        for name, value in told["settings"].items():
+        for name, value in document["settings"].items():
             click.echo(f"calibration: {name} = {value}")
-        if told["receipt"]:
-            click.echo(f"receipt written to {told['receipt']}")
+        if document["receipt"]:
+            click.echo(f"receipt written to {document['receipt']}")
     if not found.passed and not found.wrong:
         missing = ", ".join(f.part for f in found.findings if f.verdict is Verdict.NOT_TESTED)
-        click.echo(f"fdvv: not tested: {missing}; {'; '.join(told['evidence']['notes'])}", err=True)
+        click.echo(f"fdvv: not tested: {missing}; {'; '.join(document['evidence']['notes'])}", err=True)
     if found.wrong:
         click.echo(f"fdvv: {found.wrong.part}: {found.wrong.evidence}; {found.wrong.remedy}", err=True)

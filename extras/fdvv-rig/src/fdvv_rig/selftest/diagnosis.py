@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fdvv.hardware._evidence import Evidence, GAUGES_mm
+from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm
 
 
 class Verdict(StrEnum):
@@ -27,8 +27,8 @@ class Bounds:
     ----------
     link_ratio : telemetry that may be missing. supply_ratio : supply off its nominal value.
     quiet_um, loud_um : noise of the position at rest; below the one nothing is alive behind the wire.
-    scale_ratio, zero_mm : position on the gauges. stop_mm : travel stop off what it was told.
-    friction_cN : of the slider. gain_low, gain_high : force of the coil over what it was told.
+    scale_ratio, zero_mm : position on the gauges. stop_mm : travel stop off its command.
+    friction_cN : of the slider. gain_low, gain_high : force of the coil over its command.
     force_ratio, force_zero_cN : force sensor with the weight and without.
     tone_ratio : power at the tones over that beside them. pwm_ratio, pwm_um : line of a slow PWM.
     """
@@ -68,12 +68,12 @@ class Diagnosis:
 
     @property
     def passed(self) -> bool:
-        """Tell whether every part that is there was tried and is right."""
+        """Return whether every part that is there was tried and is right."""
         return all(f.verdict in (Verdict.PASSED, Verdict.ABSENT) for f in self.findings)
 
     @property
     def wrong(self) -> Finding | None:
-        """Give the part to look at first; None if none failed."""
+        """Return the part to look at first; None if none failed."""
         return next((f for f in self.findings if f.verdict is Verdict.FAILED), None)
 
 
@@ -106,7 +106,6 @@ def _unknown(part: str) -> Finding:
 
 
 def _latched(evidence: Evidence, *names: str) -> str:
-    """Tell the first of these faults that the firmware latched; nothing if it latched none."""
     for one in evidence.faults:
         if one.fault in names:
             return f"the firmware stopped: {one.fault}, {one.value}, allowed {one.bound}"
@@ -163,7 +162,6 @@ def _position(evidence: Evidence, bounds: Bounds) -> Finding:
 
 
 def _wild(evidence: Evidence, bounds: Bounds) -> bool:
-    """Tell whether readings out of bounds are the sensor's own, not a cap that went too deep."""
     return not evidence.gauge_mm or evidence.rest_sd_um > bounds.loud_um or not evidence.position_ok
 
 
@@ -195,16 +193,16 @@ def _moves(evidence: Evidence) -> bool:
 
 def _stop(evidence: Evidence, bounds: Bounds) -> Finding:
     part = "travel stop"
-    told = [(evidence.free_stop_mm, evidence.fallen_mm), *evidence.stops_mm]
-    if any(not math.isfinite(found) for _, found in told):
+    stops = [(evidence.free_stop_mm, evidence.fallen_mm), *evidence.stops_mm]
+    if any(not math.isfinite(found) for _, found in stops):
         return _unknown(part)
-    seen = ", ".join(f"{found:.2f} for {asked:g} mm" for asked, found in told)
-    found_mm = [found for _, found in told]
+    seen = ", ".join(f"{found:.2f} for {asked:g} mm" for asked, found in stops)
+    found_mm = [found for _, found in stops]
     if max(found_mm) - min(found_mm) < 0.5:
         return _failed(
             part, f"does not move: {seen}", "measure 5 V at M1 and the pulse at U7.2Y; is the arm jammed?"
         )
-    if max(abs(found - asked) for asked, found in told) > bounds.stop_mm:
+    if max(abs(found - asked) for asked, found in stops) > bounds.stop_mm:
         remedy = "put the horn on the tooth that the drawing shows, then set stop_zero_us and stop_us_mm"
         return _failed(part, f"stands elsewhere: {seen}", remedy)
     return _passed(part, seen)
@@ -224,7 +222,7 @@ def _coil(evidence: Evidence, bounds: Bounds) -> Finding:
             part, "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?"
         )
     gain = evidence.gain or 0.0
-    seen = f"force {gain:.2f} of what was told, lifts {lift.weight_cN:.1f} cN"
+    seen = f"force {gain:.2f} of the command, lifts {lift.weight_cN:.1f} cN"
     if not bounds.gain_low <= gain <= bounds.gain_high:
         remedy = "measure the coil's resistance and R8; centre the coil; then set duty_gain_q16"
         return _failed(part, f"wrong force: {seen}", remedy)

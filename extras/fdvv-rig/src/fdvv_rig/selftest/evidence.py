@@ -38,7 +38,7 @@ class Lift:
 
     @property
     def moved(self) -> bool:
-        """Tell whether the cap went up and came down."""
+        """Return whether the cap went up and came down."""
         return math.isfinite(self.lift_cN) and math.isfinite(self.drop_cN)
 
 
@@ -65,7 +65,7 @@ class Evidence:
     rest_sd_um : spread of the displacement from tick to tick, at rest on the last gauge, coil off.
     gauge_mm : displacement on each of GAUGES_mm.
     fallen_mm : where the cap came to rest once nothing but the stop at free_stop_mm held it.
-    stops_mm : displacement on the stop, by the travel that the stop was told.
+    stops_mm : displacement on the stop, by the travel that was commanded.
     empty, loaded : lifting the cap without and with the weight.
     hard_mm : place, pushed as hard as the settings allow.
     weight_cN : of what was laid on the cap.
@@ -108,6 +108,6 @@ class Evidence:
 
     @property
     def gain(self) -> float | None:
-        """Force of the coil over what it was told: the weight over the change of command that it asks for."""
+        """Force of the coil over its command: the weight over the change of command that it asks for."""
         more_cN = self.loaded.weight_cN - self.empty.weight_cN
         return self.weight_cN / more_cN if math.isfinite(more_cN) and more_cN > 0 else None

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fdvv.device import Inputs
-from fdvv.twin import Rig
+from fdvv.device.plant import Inputs
+from fdvv.twin.rig import Rig
 
 SLOW_PWM_Hz = 48e6 / 2**16
 """What the board's core libraries would leave the timer at."""
@@ -55,8 +55,6 @@ def _set(section: str, **values: float) -> Callable[[Rig], Rig]:
 
 
 def _mapped(scale: float, shift: float = 0.0) -> Callable[[Inputs, int, int], Inputs]:
-    """Scale the position's readings about mid scale, and shift them by a part of it."""
-
     def change(inputs: Inputs, reads: int, steps: int) -> Inputs:
         def one(count: float, times: int) -> int:
             middle = times * steps / 2
@@ -78,8 +76,6 @@ def _broken_wire(inputs: Inputs, _reads: int, _steps: int) -> Inputs:
 
 
 def _force(scale: float) -> Callable[[Inputs, int, int], Inputs]:
-    """Scale what the force sensor tells about its zero, which is mid scale on the twin."""
-
     def change(inputs: Inputs, _reads: int, steps: int) -> Inputs:
         return inputs._replace(force_counts=round(steps / 2 + scale * (inputs.force_counts - steps / 2)))
 
@@ -87,7 +83,6 @@ def _force(scale: float) -> Callable[[Inputs, int, int], Inputs]:
 
 
 def _slow_pwm(ratio: float, t_s: float, tick_s: float) -> float:
-    """Give the mean over a tick of a wave of 732 Hz with this share of each period."""
     begin, end, share = t_s * SLOW_PWM_Hz, (t_s + tick_s) * SLOW_PWM_Hz, abs(ratio)
 
     def on(periods: float) -> float:

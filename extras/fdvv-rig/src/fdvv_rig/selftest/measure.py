@@ -9,14 +9,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.device import RefusedError, Remote, TickColumns
+from fdvv.device.remote import Remote
+from fdvv.device.telemetry import TickColumns
+from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError
-from fdvv.hardware import Evidence, GAUGES_mm, Latched, Lift, WEIGHT_g
-from fdvv.protocol import CN64_PER_cN, Fault, Part, Settings, Verdict
+from fdvv.protocol.messages import CN64_PER_cN
+from fdvv.protocol.tables import Fault, Part, SelfTestResult, Settings
 from fdvv.units import FloatArray
-from fdvv.workflow._hardware_faults import SLOW_PWM_Hz
-from fdvv.workflow._hardware_hands import G_cN, Hands
-from fdvv.workflow._hardware_programs import TONE_s, TONES_Hz, force_image, tone_image
+from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm, Latched, Lift, WEIGHT_g
+from fdvv_rig.selftest.faults import SLOW_PWM_Hz
+from fdvv_rig.selftest.operator import G_cN, Operator
+from fdvv_rig.selftest.programs import TONE_s, TONES_Hz, force_image, tone_image
 
 DEEP_mm, STOPS_mm = 5.0, (3.5, 2.0)
 """A stop that is a millimetre off must not leave the range of the position sensor."""
@@ -24,7 +27,7 @@ REST_s, SETTLE_s, LOOK_s = 0.5, 0.5, 0.15
 LOW_cN, HIGH_cN, RAMP_s = -100.0, 240.0, 1.7
 HARD_s = 0.6
 SAG_ratio = 0.94
-"""While the coil pushes hard, the firmware is told to stop at this part of the nominal supply."""
+"""While the coil pushes hard, the firmware stops at this part of the nominal supply."""
 LEFT_mm = 0.3
 """A cap has moved once it is so far from where it lay."""
 BESIDE_Hz = (-45.0, -37.0, -29.0, -21.0, -14.0, 14.0, 21.0, 29.0, 37.0, 45.0)
@@ -35,11 +38,13 @@ Say = Callable[[str, int, int], None]
 
 
 def measure_rig(
-    device: Remote, hands: Hands, say: Say = lambda _text, _done, _total: None, exciter: bool = True
+    device: Remote, hands: Operator, say: Say = lambda _text, _done, _total: None, exciter: bool = True
 ) -> Evidence:
-    """Measure every part of a rig that nobody presses; fdvv.hardware.diagnose tells what follows from it.
+    """Measure every part of a rig that nobody presses.
 
-    hands : lays gauges and the weight. say : told of every step, its number and how many there are.
+    Fdvv.hardware.diagnosis.diagnose tells what follows from it.
+
+    hands : lays gauges and the weight. say : called with every step, its number and how many there are.
     exciter : one is expected. A fault that the firmware latches is evidence: it is kept, cleared and gone on
     from; one whose cause lasts ends the test. The device is left without force, its settings as they were.
     Raises DeviceError if the device is gone.
@@ -50,7 +55,7 @@ def measure_rig(
 class _Measuring:
     """One self-test on one device; every step adds to the evidence."""
 
-    def __init__(self, device: Remote, hands: Hands, say: Say, exciter: bool) -> None:
+    def __init__(self, device: Remote, hands: Operator, say: Say, exciter: bool) -> None:
         self._device, self._hands, self._say = device, hands, say
         self._settings: Settings = device.settings()
         self._faults: list[Latched] = []
@@ -98,11 +103,15 @@ class _Measuring:
             self._notes.append(str(error))
             return
         values = struct.unpack("<8h", reply.values)
-        board = Verdict(reply.verdicts[Part.VIBRATION_BOARD])
-        answers = None if board in (Verdict.NOT_TESTED, Verdict.ABSENT) else board is Verdict.PASSED
+        board = SelfTestResult(reply.verdicts[Part.VIBRATION_BOARD])
+        answers = (
+            None
+            if board in (SelfTestResult.NOT_TESTED, SelfTestResult.ABSENT)
+            else board is SelfTestResult.PASSED
+        )
         self._add(
             supply_mV=float(values[Part.SUPPLY]),
-            position_ok=Verdict(reply.verdicts[Part.POSITION_SENSOR]) is not Verdict.FAILED,
+            position_ok=SelfTestResult(reply.verdicts[Part.POSITION_SENSOR]) is not SelfTestResult.FAILED,
             vibration_answers=answers,
         )
 
@@ -140,19 +149,18 @@ class _Measuring:
         self._settled()
 
     def _hard(self) -> None:
-        """Push the cap against its top as hard as may be; the firmware watches the supply closely."""
         low_mV = round(SAG_ratio * self._settings.nominal_supply_mV)
         self._device.configure(replace(self._settings, supply_low_mV=low_mV))
         try:
             hard_cN = self._settings.force_limit_cN64 / CN64_PER_cN
-            told = self._armed(force_image(self._settings, DEEP_mm, 0.0, hard_cN, 0.3), 0.3 + HARD_s)
+            columns = self._armed(force_image(self._settings, DEEP_mm, 0.0, hard_cN, 0.3), 0.3 + HARD_s)
             found = self._device.fault()
             sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else math.nan
             self._add(sag_mV=sag)
             late = (
-                told.part(told.tick > told.tick[-1] - round(HARD_s / self._tick_s))
-                if told.tick.size
-                else told
+                columns.part(columns.tick > columns.tick[-1] - round(HARD_s / self._tick_s))
+                if columns.tick.size
+                else columns
             )
             line, beside = _line_and_floor(late, self._tick_s, SLOW_PWM_Hz)
             self._add(pwm_um=line, pwm_floor_um=beside)
@@ -162,7 +170,6 @@ class _Measuring:
             self._device.configure(self._settings)
 
     def _tones(self) -> None:
-        """Play tones while the cap lies on its stop and the coil pushes nothing."""
         self._load(tone_image(self._settings, DEEP_mm))
         client, port = self._device.client, self._device.client.port
         if not self._arm():
@@ -226,13 +233,13 @@ class _Measuring:
         client.telemetry.clear()
         client.stream(1)
         client.listen(port.now_s() + span_s)
-        told = client.telemetry.columns()
+        columns = client.telemetry.columns()
         client.stream(0)
-        return told
+        return columns
 
-    def _missing(self, told: TickColumns, span_s: float) -> float:
+    def _missing(self, columns: TickColumns, span_s: float) -> float:
         due = span_s / self._tick_s
-        return max(0.0, 1 - told.tick.size / due)
+        return max(0.0, 1 - columns.tick.size / due)
 
     def _settled(self) -> float:
         port = self._device.client.port
@@ -243,7 +250,6 @@ class _Measuring:
         return _mean(self._listened(LOOK_s).force_cN)
 
     def _armed(self, image: bytes, span_s: float) -> TickColumns:
-        """Run a program for a while and give what was told of it."""
         self._load(image)
         if not self._arm():
             return self._listened(LOOK_s)
@@ -253,7 +259,6 @@ class _Measuring:
             self._device.stop()
 
     def _lifted(self) -> Lift:
-        """Let the force grow until the cap is up, and fall until it is down."""
         up = self._armed(force_image(self._settings, DEEP_mm, LOW_cN, HIGH_cN, RAMP_s), RAMP_s)
         self._device.stop()
         down = self._armed(force_image(self._settings, DEEP_mm, HIGH_cN, LOW_cN, RAMP_s), RAMP_s)
@@ -269,9 +274,9 @@ def lift_of(up: TickColumns, down: TickColumns) -> Lift:
     return Lift(grown[0], fallen[0], reversed=grown[1] > 0 and fallen[1] < 0)
 
 
-def _left(told: TickColumns) -> tuple[float, float] | None:
-    """Give the command at which the cap left its place for good, and the way it went, mm."""
-    command, place = told.commanded_cN, told.displacement_mm
+def _left(columns: TickColumns) -> tuple[float, float] | None:
+    """Return the command at which the cap left its place for good, and the way it went, mm."""
+    command, place = columns.commanded_cN, columns.displacement_mm
     if place.size < 200:
         return None
     skip = place.size // 17  # it comes to where the first command wants it
@@ -288,14 +293,13 @@ def _mean(values: FloatArray) -> float:
     return float(np.mean(values)) if values.size else math.nan
 
 
-def _spread_um(told: TickColumns) -> float:
-    """Give the spread from tick to tick, free of slow motion."""
-    place = told.displacement_mm
+def _spread_um(columns: TickColumns) -> float:
+    place = columns.displacement_mm
     return 1e3 * float(np.std(np.diff(place)) / np.sqrt(2)) if place.size > 20 else math.nan
 
 
 def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, float, float]:
-    """Give the cap's motion at the tones, um, that beside them, and how far their power stands out of it.
+    """Return the cap's motion at the tones, um, that beside them, and how far their power stands out of it.
 
     The board that plays has a clock of its own, up to CLOCK_ratio off: the one at which they stand out most
     counts. Without an exciter the last number, a mean of power over power beside, is about 1.
@@ -303,7 +307,7 @@ def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, fl
     found = []
     for off in np.linspace(-CLOCK_ratio, CLOCK_ratio, 11):
         lines = [
-            _line_and_floor(told, tick_s, f * (1 + off)) for told, f in zip(played, TONES_Hz, strict=True)
+            _line_and_floor(tone, tick_s, f * (1 + off)) for tone, f in zip(played, TONES_Hz, strict=True)
         ]
         loud, quiet = np.array(lines).T
         ratio = float(np.mean(np.square(loud / np.maximum(quiet, LEAST_um))))
@@ -311,21 +315,21 @@ def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, fl
     return max(found, key=lambda one: one[2])
 
 
-def _line_and_floor(told: TickColumns, tick_s: float, frequency_Hz: float) -> tuple[float, float]:
-    beside = [line_um(told, tick_s, frequency_Hz + by) for by in BESIDE_Hz]
-    return line_um(told, tick_s, frequency_Hz), _rms(np.array(beside))
+def _line_and_floor(columns: TickColumns, tick_s: float, frequency_Hz: float) -> tuple[float, float]:
+    beside = [line_um(columns, tick_s, frequency_Hz + by) for by in BESIDE_Hz]
+    return line_um(columns, tick_s, frequency_Hz), _rms(np.array(beside))
 
 
 def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def line_um(told: TickColumns, tick_s: float, frequency_Hz: float) -> float:
-    """Give the amplitude of the displacement at a frequency, as ticks fold it; a slow trend is taken off."""
-    place = told.displacement_mm
+def line_um(columns: TickColumns, tick_s: float, frequency_Hz: float) -> float:
+    """Return the amplitude of the displacement at a frequency, as ticks fold it, without its slow trend."""
+    place = columns.displacement_mm
     if place.size < 100:
         return float("nan")
-    t_s = (told.tick - told.tick[0]) * tick_s
+    t_s = (columns.tick - columns.tick[0]) * tick_s
     free = place - np.polyval(np.polyfit(t_s, place, 3), t_s)
     window = np.hanning(place.size)
     return 1e3 * float(

@@ -6,20 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from fdvv.device import (
-    BUILT_ELF,
-    Board,
-    EmulatedBoard,
-    HostBoard,
-    LibraryBoard,
-    LinkedDevice,
-    Remote,
-    open_device,
-)
+from fdvv.device.boards import HostBoard, LibraryBoard
+from fdvv.device.linked import Board, LinkedDevice
+from fdvv.device.open import open_board, open_device
+from fdvv.device.remote import Remote
 from fdvv.errors import InputError
-from fdvv.twin import Rig, load_rig
-from fdvv.workflow._hardware_faults import RIG_FAULTS, RigFault
-from fdvv.workflow._hardware_hands import SOUND, AskedHands, Hands, SimulatedHands
+from fdvv.twin.files import load_rig
+from fdvv.twin.rig import Rig
+from fdvv_rig.selftest.faults import RIG_FAULTS, RigFault
+from fdvv_rig.selftest.operator import SOUND, Operator, PromptedOperator, SimulatedOperator
 
 KINDS = "twin, host, emulated or serial:PORT"
 
@@ -30,7 +25,7 @@ def open_rig(
     rig: Path | None = None,
     seed: int = 0,
     fault: str | None = None,
-) -> tuple[Remote, Hands]:
+) -> tuple[Remote, Operator]:
     """Open the device that spec names, and who stands at it; a simulated rig gets a force sensor in its cap.
 
     ask : says what a person at a real rig is to do, and waits. rig, seed, fault : of a simulated one.
@@ -43,13 +38,13 @@ def open_rig(
         device = open_device(spec)
         if not isinstance(device, Remote):
             raise InputError("--device", spec, "there is no firmware in it", f"use {KINDS}")
-        return device, AskedHands(ask)
-    hands = SimulatedHands(with_sensor(load_rig(rig) if rig else Rig()), seed, _fault(fault))
+        return device, PromptedOperator(ask)
+    hands = SimulatedOperator(with_sensor(load_rig(rig) if rig else Rig()), seed, _fault(fault))
     return LinkedDevice(_board(spec), hands), hands
 
 
 def with_sensor(rig: Rig) -> Rig:
-    """Give a rig the force sensor that the circuit has."""
+    """Return a rig the force sensor that the circuit has."""
     return replace(rig, keycap_sensor=replace(rig.keycap_sensor, kind="force"))
 
 
@@ -62,16 +57,10 @@ def _fault(name: str | None) -> RigFault:
 
 
 def _board(spec: str) -> Board:
-    kind, _, where = spec.partition(":")
     if spec == "twin":
         return LibraryBoard()
     if spec == "host":
         return HostBoard()
-    if kind == "emulated":
-        path = Path(where) if where else BUILT_ELF
-        if not path.is_file():
-            raise InputError(
-                "--device", f"emulated:{path}", "no such file", "run make firmware, or name the file"
-            )
-        return EmulatedBoard(path)
+    if spec.partition(":")[0] == "emulated":
+        return open_board(spec)
     raise InputError("--device", spec, "names no device with the firmware in it", f"use {KINDS}")

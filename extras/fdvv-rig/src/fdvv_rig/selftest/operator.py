@@ -6,12 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
-from fdvv.device import Inputs, PressedPlant
+from fdvv.device.plant import Inputs, PressedPlant
 from fdvv.errors import DeviceError
-from fdvv.protocol import NONE, Settings
-from fdvv.twin import Finger, Rig, RigPlant, settings_of
+from fdvv.protocol.tables import NONE, Settings
+from fdvv.twin.finger import Finger
+from fdvv.twin.plant import RigPlant
+from fdvv.twin.rig import Rig
+from fdvv.twin.settings import settings_of
 from fdvv.units import mm_from_m
-from fdvv.workflow._hardware_faults import FULL, RigFault
+from fdvv_rig.selftest.faults import FULL, RigFault
 
 HOVER_m = 0.008
 LAY_s, LAY_mm = 0.2, 0.7
@@ -23,7 +26,7 @@ G_cN = 0.980665
 """Weight of a gram."""
 
 
-class Hands(Protocol):
+class Operator(Protocol):
     """Someone at the rig."""
 
     def gauge(self, size_mm: float | None) -> None:
@@ -39,7 +42,7 @@ class Hands(Protocol):
         ...
 
 
-class AskedHands:
+class PromptedOperator:
     """A person at a real rig: every step is said, and waited for."""
 
     def __init__(self, ask: Callable[[str], None]) -> None:
@@ -63,7 +66,7 @@ class AskedHands:
             self._ask(f"Lay the weight of {mass_g:g} g onto the force sensor on the cap, and let go.")
 
 
-class SimulatedHands:
+class SimulatedOperator:
     """A simulated rig with one fault, or none, upright, that nobody presses. Simulated.
 
     Parameters
@@ -98,17 +101,16 @@ class SimulatedHands:
         ratio = self._fault.duty(duty_q15 / (FULL + 1), self._tick * tick_s, tick_s)
         self._tick += 1
         duty = 0 if ratio is None else max(-FULL, min(FULL, round(ratio * (FULL + 1))))
-        told = self._plant.step(
+        sensed = self._plant.step(
             duty,
             bool(enable) and ratio is not None,
             self._pulse_us(stop_us),
             NONE if self._fault.silent else slot,
         )
         sensor = self._rig.position_sensor
-        return self._fault.inputs(Inputs(*told.item()), sensor.reads, 2**sensor.converter_bits)
+        return self._fault.inputs(Inputs(*sensed.item()), sensor.reads, 2**sensor.converter_bits)
 
     def _pulse_us(self, stop_us: int) -> int:
-        """Give the pulse that brings the stop where gauge, fault and firmware have it."""
         if self._gauge_mm is not None:
             return self._gauge_us(self._gauge_mm)
         if self._fault.stop_mm is not None:
@@ -116,7 +118,6 @@ class SimulatedHands:
         return stop_us + self._fault.stop_us if stop_us else 0
 
     def _gauge_us(self, size_mm: float) -> int:
-        """Come to the gauge from below: the servo's play then lies above the stop, and a gauge has none."""
         servo, tick_s = self._rig.servo, self._rig.controller.tick_s
         deep = self._tick * tick_s - self._laid_s < LAY_s
         return self._pulse_for(size_mm + LAY_mm if deep else size_mm - float(mm_from_m(servo.play_m)))
@@ -147,9 +148,9 @@ class SimulatedHands:
         raise DeviceError("nobody presses a rig under test; open it without one")
 
     def load(self, image: bytes) -> None:
-        """Give the vibration board the waveforms of a program."""
+        """Return the vibration board the waveforms of a program."""
         self._plant.load(image)
 
-    def rest(self, settings: Settings) -> SimulatedHands:
+    def rest(self, settings: Settings) -> SimulatedOperator:
         """Leave the button alone."""
         return self

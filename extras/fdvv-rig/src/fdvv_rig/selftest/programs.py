@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fdvv.model import Mode
-from fdvv.program import Limits, Program, Signal, State, Surface, compile_program
-from fdvv.protocol import Settings
+from fdvv.model.vibration import Mode
+from fdvv.program.compile import compile_program
+from fdvv.program.program import Program, Signal, State
+from fdvv.program.surface import Limits, Surface
+from fdvv.protocol.tables import Settings
 
 TONES_Hz = (310.0, 430.0, 550.0, 670.0)
 """About the exciter's resonance, wherever it is; none folds onto another at 1 kHz."""
@@ -15,7 +17,7 @@ COUNTS = 2047.0
 
 
 def force_image(settings: Settings, travel_mm: float, start_cN: float, end_cN: float, span_s: float) -> bytes:
-    """Give a program whose force goes from one to the other in that time, wherever the cap is."""
+    """Return a program whose force goes from one to the other in that time, wherever the cap is."""
     flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
     span_ms = round(1e3 * span_s)
     state = State(
@@ -25,7 +27,7 @@ def force_image(settings: Settings, travel_mm: float, start_cN: float, end_cN: f
 
 
 def tone_image(settings: Settings, travel_mm: float) -> bytes:
-    """Give a program without force, with the tones as waveforms."""
+    """Return a program without force, with the tones as waveforms."""
     flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
     tones = tuple(Signal(f"{f:g} Hz", TONE_s, (Mode(f, COUNTS, 0.0),)) for f in TONES_Hz)
     state = State("lie", "flat", "flat")

@@ -9,11 +9,13 @@ from typing import Any, Literal
 
 import msgspec
 
-from fdvv.documents import Kind, finite, pretty, read_document
 from fdvv.errors import DeviceError, InputError
-from fdvv.files import read_limited, write_atomic
-from fdvv.hardware import Diagnosis, Evidence, GAUGES_mm, Latched, Lift, diagnose
-from fdvv.protocol import CN64_PER_cN, Settings, UM16_PER_mm
+from fdvv.io.documents import Kind, finite, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import Settings
+from fdvv_rig.selftest.diagnosis import Diagnosis, diagnose
+from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm, Latched, Lift
 
 KIND = Kind("fdvv-selftest", 1, "a receipt of a self-test", "run fdvv hardware selftest again")
 LARGEST_bytes = 1_000_000
@@ -25,7 +27,7 @@ class SelftestReceipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes
     ----------
     device, serial, simulated : what was tested. tested : UTC.
-    evidence : as fdvv.hardware.Evidence has it; from it alone the verdict is drawn again on reading.
+    evidence : the fields of Evidence; the verdict is drawn from it again on reading.
     settings : fields of the firmware's settings that the measurement changes, as they ought to be.
     """
 
@@ -40,7 +42,7 @@ class SelftestReceipt(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def calibrated(settings: Settings, evidence: Evidence) -> Settings:
-    """Give settings with the scales and zeros that gauges and weight have shown.
+    """Return settings with the scales and zeros that gauges and weight have shown.
 
     A part that is absent keeps its own. The travel stop is left as it is: its play is larger than the gain.
     """
@@ -65,7 +67,7 @@ def calibrated(settings: Settings, evidence: Evidence) -> Settings:
 
 
 def changed(before: Settings, after: Settings) -> dict[str, int]:
-    """Give the fields in which settings differ, as they are afterwards."""
+    """Return the fields in which settings differ, as they are afterwards."""
     names = [f.name for f in fields(before)]
     return {name: getattr(after, name) for name in names if getattr(after, name) != getattr(before, name)}
 

@@ -1,0 +1,1 @@
+"""The printed parts as code for a CAD kernel; needs fdvv-rig[cad]."""

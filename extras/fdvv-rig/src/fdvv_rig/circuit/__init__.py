@@ -1,0 +1,1 @@
+"""The circuit: parts, nets, values, rules and drawings."""

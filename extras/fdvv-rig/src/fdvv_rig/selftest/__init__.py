@@ -1,0 +1,1 @@
+"""The guided self-test of a rig: measurements, faults, diagnosis."""

@@ -1,0 +1,1 @@
+"""A button from anything: open, fit, compare, import and export."""

@@ -1,0 +1,1 @@
+"""``fdvv device``: list, check, press and measure devices."""

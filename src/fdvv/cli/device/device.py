@@ -1,0 +1,229 @@
+"""fdvv device: list, info, selftest and monitor; upload, press, exciter and strip are beside."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import fields
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.device.press import exciter, press, upload
+from fdvv.cli.device.strip import strip
+from fdvv.cli.options import device_option, opened, remote
+from fdvv.device.remote import Remote, watch
+from fdvv.device.telemetry import TickColumns
+
+if TYPE_CHECKING:
+    from fdvv.device.remote import Remote
+
+
+def follow(device: Remote, duration_s: float, every: int, output: Path | None) -> dict[str, Any]:
+    """Watch a device, show and write what it tells; give the counts. DeviceError if it goes away."""
+    records = 0
+    telemetry, info = device.client.telemetry, device.info()
+    target = output.open("w", encoding="ascii") if output else nullcontext()
+    with target as stream, live_line() as show:
+        write = writer(stream, output) if output and stream else None
+        for columns in watch(device, duration_s, every):
+            records += columns.tick.size
+            if write:
+                write(columns)
+            if columns.tick.size:
+                show(line_of(columns, telemetry.missing_ticks))
+    return {
+        "device": info.name,
+        "simulated": info.simulated,
+        "records": records,
+        "missing_ticks": telemetry.missing_ticks,
+        "missing_frames": telemetry.missing_frames,
+        "lost_records": telemetry.lost_records,
+        "late_ticks": telemetry.late_ticks,
+    }
+
+
+def line_of(columns: TickColumns, missing: int) -> str:
+    """Format the newest tick as a line."""
+    return (
+        f"tick {columns.tick[-1]}  {columns.displacement_mm[-1]:7.3f} mm  "
+        f"{columns.velocity_mm_s[-1]:7.1f} mm/s  {columns.commanded_cN[-1]:7.1f} cN  "
+        f"state {columns.state[-1]}  missing {missing}"
+    )
+
+
+@contextmanager
+def live_line() -> Iterator[Callable[[str], None]]:
+    """Show a line that is written over, on a terminal; elsewhere nothing."""
+    if not sys.stderr.isatty():
+        yield lambda _line: None
+        return
+    from rich.console import Console
+    from rich.live import Live
+    from rich.text import Text
+
+    with Live(console=Console(stderr=True), transient=True, refresh_per_second=20) as live:
+        yield lambda line: live.update(Text(line))
+
+
+def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
+    """Return a function that writes ticks to an open file, as CSV or as a JSON document per line."""
+    names = [field.name for field in fields(TickColumns)]
+    as_json = output.suffix.lower() == ".jsonl"
+    if not as_json:
+        stream.write(",".join(names) + "\n")
+
+    def write(columns: TickColumns) -> None:
+        lists = (getattr(columns, name).tolist() for name in names)
+        for row in zip(*lists, strict=True):
+            line = json.dumps(dict(zip(names, row, strict=True))) if as_json else ",".join(map(str, row))
+            stream.write(line + "\n")
+
+    return write
+
+
+@click.group()
+def device() -> None:
+    """Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.
+
+    --device is 'host' (the firmware as a program of this machine), 'emulated' (the program of the board in an
+    emulator), 'twin', 'serial:PORT' or 'replay:FILE'.
+    What is simulated says so.
+    """
+
+
+device.add_command(upload)
+
+device.add_command(press)
+
+device.add_command(exciter)
+
+device.add_command(strip)
+
+
+@device.command("list")
+@ui.json_option
+def list_(as_json: bool) -> None:
+    """List what --device may be, serial ports among it."""
+    from fdvv.device.open import KINDS
+    from fdvv.device.serial import serial_ports
+    from fdvv.errors import BuildError
+
+    rows = [{"device": name, "about": about} for name, about in KINDS.items()]
+    note = []
+    try:
+        rows += [{"device": f"serial:{path}", "about": about} for path, about in serial_ports()]
+    except BuildError as error:
+        note.append(str(error))
+    if as_json:
+        ui.print_json({"devices": rows})
+        return
+    ui.print_table(["device", "what it is"], [[row["device"], row["about"]] for row in rows], left=2)
+    ui.print_warnings(note)
+
+
+@device.command()
+@device_option
+@ui.json_option
+def info(spec: str, as_json: bool) -> None:
+    """Show what a device is: limits, firmware, mode, latched fault, counters."""
+    import dataclasses
+
+    from fdvv.device.remote import Remote
+
+    with opened(spec) as found:
+        document: dict[str, Any] = dataclasses.asdict(found.info())
+        if isinstance(found, Remote):
+            document |= _firmware(found)
+    if as_json:
+        ui.print_json(document)
+        return
+    flat = {k: v for k, v in document.items() if not isinstance(v, dict)}
+    flat |= document.get("counters", {})
+    ui.print_table(["what", "value"], [[k, str(v)] for k, v in flat.items()], left=2)
+
+
+def _firmware(found: Remote) -> dict[str, Any]:
+    import dataclasses
+
+    from fdvv.protocol.tables import Mode
+
+    hello, client = found.client.hello, found.client
+    version = ".".join(str(hello.firmware >> shift & 255) for shift in (16, 8, 0))
+    return {
+        "firmware": version,
+        "protocol": f"{hello.hash:08x}",
+        "serial": hello.serial,
+        "mode": Mode(client.ping().mode).name.lower(),
+        "fault": str(found.fault()),
+        "counters": dataclasses.asdict(client.counters()),
+    }
+
+
+@device.command()
+@device_option
+@ui.json_option
+def selftest(spec: str, as_json: bool) -> None:
+    """Have a device test its parts; exit status 1 if one fails."""
+    import struct
+
+    from fdvv.protocol.tables import Part, SelfTestResult
+
+    with remote(spec) as found:
+        reply = found.client.selftest()
+        simulated = found.info().simulated
+    values = struct.unpack("<8h", reply.values)
+    parts = [
+        {
+            "part": part.name.lower(),
+            "verdict": SelfTestResult(reply.verdicts[part]).name.lower(),
+            "value": values[part],
+        }
+        for part in Part
+    ]
+    if as_json:
+        ui.print_json({"parts": parts, "simulated": simulated})
+    else:
+        ui.print_table(
+            ["part", "verdict", "value"], [[str(v) for v in row.values()] for row in parts], left=2
+        )
+    failed = [str(row["part"]) for row in parts if row["verdict"] == "failed"]
+    if failed:
+        click.echo(f"fdvv: {spec}: failed: {', '.join(failed)}", err=True)
+        raise click.exceptions.Exit(1)
+
+
+@device.command()
+@device_option
+@ui.option(
+    "--seconds",
+    "duration_s",
+    type=ui.Finite(min=0.05, max=86400),
+    default=10.0,
+    help="By the device's clock.",
+)
+@ui.option("--every", type=click.IntRange(1, 255), default=1, help="Ticks per record.")
+@ui.option("-o", "--output", type=ui.PATH, help="Write the records to this .csv or .jsonl, a line each.")
+@ui.json_option
+def monitor(spec: str, duration_s: float, every: int, output: Path | None, as_json: bool) -> None:
+    """Show what a device tells of its ticks.
+
+    A live line on the terminal; records into a file if asked. Ticks that did not arrive are counted, never
+    made up. Nothing is rendered that was not before.
+    """
+    pass
+
+    ui.check_output(output, ".csv", ".jsonl")
+    with remote(spec) as found:
+        summary = follow(found, duration_s, every, output)
+    if as_json:
+        ui.print_json(summary)
+        return
+    source = f"{summary['device']}{ui.simulated(summary['simulated'])}"
+    click.echo(f"{source}: {summary['records']} records, {summary['missing_ticks']} ticks missing")
+    if output:
+        click.echo(f"written to {output}")

@@ -1,0 +1,179 @@
+"""fdvv device upload and press."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.options import (
+    device_option,
+    exciter_option,
+    opened,
+    opened_exciter,
+    record_option,
+    velocity_option,
+)
+
+if TYPE_CHECKING:
+    from fdvv.vibration.exciter import KnownExciter
+
+
+@click.command()
+@device_option
+@ui.option("--rig", type=ui.FILE, help="TOML file of a simulated device's rig.")
+@ui.option("--rig-known", type=ui.FILE, help="*.rig.json of this rig; its sensor's lag sharpens the gain.")
+@ui.option("--tone-s", type=ui.Finite(min=0.3, max=4), default=3.0, help="Length of each of 14 tones or so.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Of a simulated device.")
+@ui.option("-o", "--output", type=ui.PATH, help="The *.exciter.json to write.")
+@ui.json_option
+def exciter(
+    spec: str,
+    rig: Path | None,
+    rig_known: Path | None,
+    tone_s: float,
+    seed: int,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Know the exciter of a rig from tones that its position sensor sees; nobody touches the button.
+
+    The motor holds the cap in the middle while tones of 260 to 860 Hz sound. Gain, resonance and quality are
+    printed with their standard errors; --exciter of other commands plays vibrations through the inverse.
+    """  # fmt: skip
+    from fdvv.compensation.identification.rig_file import load_rig
+    from fdvv.rendering.exciter import identify_exciter
+    from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
+
+    ui.check_output(output, EXCITER_SUFFIX)
+    known = load_rig(rig_known) if rig_known else None
+    with opened(spec, rig=rig, seed=seed) as found, ui.progress("tones", 14) as advance:
+        result = identify_exciter(found, known, tone_s, advance, lambda text: click.echo(text, err=True))
+        name = found.info().name
+    if output:
+        save_exciter(result, output)
+    if as_json:
+        ui.print_json({"device": name, **asdict(result)})
+        return
+    click.echo(
+        f"{name}{ui.simulated(result.simulated)}, {result.tones} tones, "
+        f"{100 * result.residual_ratio:.0f} % rms off the fit"
+    )
+    units = {"gain_m_s2_V": "gain, m/s2/V", "resonance_Hz": "resonance, Hz", "quality": "quality"}
+    rows = [
+        [label, ui.number(getattr(result, key)), f"{100 * result.error[key]:.0f} %"]
+        for key, label in units.items()
+    ]
+    ui.print_table(["of the exciter on its cap", "found", "standard error"], rows)
+    if output:
+        click.echo(f"written to {output}")
+
+
+@click.command()
+@click.argument("button")
+@device_option
+@velocity_option
+@exciter_option
+@record_option
+@ui.json_option
+def upload(
+    button: str,
+    spec: str,
+    velocities_mm_s: tuple[float, ...],
+    exciter: Path | None,
+    recording: Path | None,
+    as_json: bool,
+) -> None:
+    """Make BUTTON the program of a device: a program image, a built-in, a *.fdvv.json or a measured file.
+
+    A model is rendered by its own force, not compensated for the rig.
+    """
+    from fdvv.protocol.messages import head_of, travel_mm_of
+    from fdvv.rendering.tuning import program_image
+
+    known = opened_exciter(exciter)
+    image = program_image(button, velocities_mm_s, known)
+    with opened(spec, recording) as found:
+        _upload(_programs(found, spec), image, known)
+        name = found.info().name
+    travel_mm = travel_mm_of(image)
+    document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
+    if as_json:
+        ui.print_json(document)
+        return
+    click.echo(f"{name}: {len(image)} bytes, checked and active, travel {travel_mm:.3f} mm")
+
+
+def _upload(found: Any, image: bytes, exciter: KnownExciter | None) -> None:
+    from fdvv.rendering.exciter import prepare_exciter
+
+    if exciter:
+        prepare_exciter(found, exciter)
+    found.upload_program(image)
+
+
+def _programs(found: Any, spec: str) -> Any:
+    from fdvv.errors import InputError
+
+    if not hasattr(found, "upload_program"):
+        raise InputError("--device", spec, "it runs tables of force only", "use host or serial:PORT")
+    return found
+
+
+@click.command()
+@click.argument("button")
+@device_option
+@velocity_option
+@exciter_option
+@ui.option("--speed", "speed_mm_s", type=ui.SPEED, default=100.0, help="Of the presses, mm/s.")
+@ui.option("--presses", type=click.IntRange(1, 1000), default=3, help="How many.")
+@record_option
+@ui.json_option
+def press(
+    button: str,
+    spec: str,
+    velocities_mm_s: tuple[float, ...],
+    exciter: Path | None,
+    speed_mm_s: float,
+    presses: int,
+    recording: Path | None,
+    as_json: bool,
+) -> None:
+    """Upload BUTTON and have it pressed.
+
+    On a simulated device the presses are simulated; on a serial one a person presses. Ctrl-C stops the
+    device and keeps what was recorded.
+    """
+    from fdvv.rendering.tuning import program_image
+
+    known = opened_exciter(exciter)
+    image = program_image(button, velocities_mm_s, known)
+    rows = []
+    with opened(spec, recording) as found:
+        _upload(_programs(found, spec), image, known)
+        info = found.info()
+        for count in range(presses):
+            if not info.simulated:
+                click.echo(f"press {count + 1} of {presses}: press fully and let go", err=True)
+            rows.append(_summary(found.press(speed_mm_s)))
+    if as_json:
+        ui.print_json({"device": info.name, "simulated": info.simulated, "presses": rows})
+        return
+    click.echo(f"{info.name}{' (simulated)' if info.simulated else ''}, asked at {speed_mm_s:g} mm/s")
+    ui.print_table(
+        ["press", "duration s", "deepest mm", "largest cN", "ticks"],
+        [[str(i + 1), *(ui.number(float(v), 3) for v in list(row.values())[:3]), str(row["ticks"])]
+         for i, row in enumerate(rows)],
+    )  # fmt: skip
+
+
+def _summary(found: Any) -> dict[str, Any]:
+    return {
+        "duration_s": float(found.t_s[-1] - found.t_s[0]),
+        "deepest_mm": float(found.displacement_mm.max()),
+        "largest_cN": float(found.force_cN.max()),
+        "ticks": int(found.tick.sum()),
+    }

@@ -1,0 +1,158 @@
+"""The group of commands; each is imported only when it is run, so that help stays fast."""
+
+from __future__ import annotations
+
+import errno
+import importlib
+import io
+import keyword
+import os
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from fdvv import __version__
+from fdvv.errors import BuildError, DeviceError, FdvvError, WorkerError
+
+COMMANDS = {
+    "assign": ("fdvv.cli.models", "Assign a curve, or a segment of one, to press or release of a model."),
+    "capture": ("fdvv.cli.capture", "Record a button: a guided session of presses at several paces."),
+    "check": ("fdvv.cli.check", "Check files: what each is, whether it is whole, and what it holds."),
+    "compare": ("fdvv.cli.show", "Compare buttons: landmarks side by side and force differences."),
+    "compensate": ("fdvv.cli.compensate", "Learn the actuation that makes a rig feel like a model."),
+    "demo": ("fdvv.cli.demo", "Run the whole chain on the simulated rig and write a report."),
+    "device": (
+        "fdvv.cli.device.device",
+        "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
+    ),
+    "export": ("fdvv.cli.exchange", "Write a button, its vibration or a recording for another program."),
+    "feasible": (
+        "fdvv.cli.feasible",
+        "Check whether a rig can render a button, and why not, before any upload.",
+    ),
+    "fit": ("fdvv.cli.fit", "Fit measured force curves: one file, or every file of a folder."),
+    "import": ("fdvv.cli.exchange", "Read a file of another program into a model."),
+    "join": ("fdvv.cli.join", "Join logs of instruments that ran at once into a recording."),
+    "library": (
+        "fdvv.cli.library",
+        "List the built-in buttons; build and search libraries of measured ones.",
+    ),
+    "merge": ("fdvv.cli.models", "Merge force curves at several velocities into one FDVV model."),
+    "optimize": ("fdvv.cli.optimize.optimize", "Find the button that makes a person perform best."),
+    "press": ("fdvv.cli.press", "Press a real button; simulated."),
+    "probe": ("fdvv.cli.compensate", "Measure on fresh presses how well a rig renders a model."),
+    "process": ("fdvv.cli.process", "Turn recorded presses into a model, with its spread over presses."),
+    "program": ("fdvv.cli.program", "Work with programs: list, show, make, check, compile."),
+    "show": ("fdvv.cli.show", "Show landmarks and curves of a button."),
+    "studio": ("fdvv.cli.studio", "See, edit, press and tune buttons in the browser."),
+    "study": ("fdvv.cli.study.study", "Compare buttons blind, with people, and analyse what they said."),
+    "sweep": ("fdvv.cli.sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
+    "tune": ("fdvv.cli.tune", "Tune the vibration of a button's press with a person."),
+    "vibration": ("fdvv.cli.vibration", "Show a button's vibrations, and write one as a sound."),
+}
+
+EXTRA_HELP = {
+    "hardware": "Build a rig: what to print and to buy, how to wire it, and which part is wrong.",
+    "mechanism": "Design a real switch that follows a model's curves.",
+}
+"""Short help of the extras' commands, which are not imported to list them."""
+
+
+class LazyGroup(click.Group):
+    """A group that knows the names and short helps of its commands without importing them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(_short_helps())
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command; BuildError if it comes with an extra that is not installed."""
+        if cmd_name in COMMANDS:
+            # a function cannot be called import
+            name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+            found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), name)
+        else:
+            # lists every installed distribution: not worth its time for a command of ours
+            from fdvv import extras
+
+            if cmd_name not in extras.names("commands"):
+                return None
+            found = extras.load("commands", cmd_name)
+        assert isinstance(found, click.Command)
+        return found
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(sorted(_short_helps().items()))
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click would turn Ctrl-C into an empty line of its own."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as stop:
+            raise Interrupted(*stop.args) from None
+
+
+def _short_helps() -> dict[str, str]:
+    from fdvv.extras import installed
+
+    helps = {name: text for name, (_, text) in COMMANDS.items()}
+    for name, entry in installed("commands").items():
+        helps[name] = EXTRA_HELP.get(name) or f"from {entry.dist.name if entry.dist else entry.module}"
+    return helps
+
+
+class Interrupted(Exception):  # noqa: N818 - nothing failed
+    """The person pressed Ctrl-C; the text, if there is one, says what was kept."""
+
+
+@click.group(
+    cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+)
+@click.version_option(__version__, prog_name="fdvv")
+@click.pass_context
+def cli(ctx: click.Context) -> None:
+    """Capture, model, render and compare the feel of push-buttons."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(2)
+
+
+def main() -> NoReturn:
+    """Run the command line; exit 0 done, 1 missed a bound or failed, 2 unusable input, 130 interrupted."""
+    # matrices here are small: threads of BLAS would only wait for each other. NumPy is not yet imported
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # a pipe of Windows does not know every sign: a question mark is better than none of the rest
+        sys.stdout.reconfigure(errors="replace")
+    try:
+        # click gives the status of an Exit, and None or whatever a command returns otherwise
+        status = cli.main(prog_name="fdvv", standalone_mode=False)
+        sys.exit(status if isinstance(status, int) else 0)
+    except click.UsageError as error:
+        _stop(2, _usage(error))
+    except click.ClickException as error:
+        _stop(2, error.format_message())
+    except FdvvError as error:
+        _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error))
+    except OSError as error:
+        _stop(2, _system(error))
+    except (Interrupted, KeyboardInterrupt, click.Abort) as stop:
+        _stop(130, str(stop) or "interrupted")
+
+
+def _stop(status: int, reason: str) -> NoReturn:
+    click.echo(f"fdvv: {' '.join(reason.split())}", err=True)
+    sys.exit(status)
+
+
+def _usage(error: click.UsageError) -> str:
+    command = error.ctx.command_path if error.ctx else "fdvv"
+    return f"{error.format_message().rstrip('.')}; see {command} --help"
+
+
+def _system(error: OSError) -> str:
+    path = error.filename2 or error.filename
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    remedy = "make room on the disk" if full else "check the path and its permissions"
+    return f"{f'{path}: ' if path else ''}{error.strerror or error}; {remedy}"

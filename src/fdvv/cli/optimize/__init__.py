@@ -1,0 +1,1 @@
+"""``fdvv optimize``: runs, experiments and populations."""

@@ -1,0 +1,193 @@
+"""fdvv optimize: run, resume, replay, report; experiment and population stand beside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.optimize.experiment import experiment
+from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
+from fdvv.cli.optimize.population import add_population
+
+if TYPE_CHECKING:
+    from fdvv.optimize.problem import Trial
+    from fdvv.optimize.run.session import Optimization
+
+LAST = 8
+"""Trials that are printed; --json has all."""
+folder_argument = click.argument("folder", type=ui.FOLDER)
+
+
+@click.group()
+def optimize() -> None:
+    """Find the button that makes a person perform best.
+
+    Everything here is played by simulated people who press the twin; in the studio a person plays. FOLDER is
+    that of a run: every trial is in it before anybody tries it, so a run may be killed at any moment.
+    """
+
+
+@optimize.command()
+@ui.option("--folder", required=True, type=ui.PATH, help="New or empty folder of the run.")
+@ui.option(
+    "--space", default="paper", help="paper, or a button whose numbers are varied: a built-in one or a file."
+)
+@ui.option(
+    "--vary", multiple=True, default=("FDV",), help="Of a button: FDV, FDVV or single numbers; repeatable."
+)
+@ui.option(
+    "--within", metavar="RIG", help="Only designs that this rig can render: a *.rig.json or a shipped one."
+)
+@ui.option(
+    "--prior", type=ui.FOLDER, help="Begin from what others did: a finished fdvv optimize population --grid."
+)
+@ui.option("--task", default="temporal-pointing", help="What is played.")
+@level_option
+@engine_option("gp")
+@ui.option("--trials", type=click.IntRange(1, 100_000), default=30, help="How many designs are tried.")
+@ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
+@ui.option("--person", type=ui.COUNT, default=0, help="Seed that the simulated person is drawn with.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Of the run.")
+@rig_option
+@strip_options
+@ui.json_option
+def run(folder: Path, strip: str | None, device: str, as_json: bool, **asked: Any) -> None:
+    """Begin an optimisation and play it to its end, with a simulated person or on an LED strip.
+
+    The same options give the same trials. Ctrl-C stops between two trials; fdvv optimize resume goes on.
+    """
+    from fdvv.optimize.run.begin import begin_run
+
+    ui.check_folder(folder)
+    wanted = _asked(strip=strip, **asked)
+    with on_strip(strip, device) as play, begin_run(folder, wanted) as session:
+        _play(session, play, as_json)
+
+
+@optimize.command()
+@folder_argument
+@strip_options
+@ui.json_option
+def resume(folder: Path, strip: str | None, device: str, as_json: bool) -> None:
+    """Go on with the run in FOLDER that was stopped or killed; the next design is as if it had not been."""
+    from fdvv.optimize.run.session import Optimization
+
+    with on_strip(strip, device) as play, Optimization.open(folder) as session:
+        _play(session, play, as_json)
+
+
+@optimize.command()
+@folder_argument
+@ui.json_option
+def replay(folder: Path, as_json: bool) -> None:
+    """Suggest every trial of a run anew from its seed, and tell whether each is the same.
+
+    Exit status 1 if one is not: another version of a library, or a folder that was changed by hand.
+    """
+    from fdvv.optimize.run.session import Optimization, replay_differences
+
+    with Optimization.open(folder) as session:
+        engine, made = session.setup.engine, session.trials
+    different = [trial.number for trial in replay_differences(folder)]
+    suggested = sum(trial.origin == engine for trial in made)
+    if as_json:
+        ui.print_json(
+            {"engine": engine, "suggested": suggested, "different": different, "same": not different}
+        )
+    elif not different:
+        click.echo(f"{engine} suggests {ui.counted(suggested, 'trial')} again, each the same")
+    if different:
+        numbers = ", ".join(map(str, different))
+        click.echo(f"fdvv: {folder}: {engine} now suggests otherwise at trial {numbers}", err=True)
+        raise click.exceptions.Exit(1)
+
+
+@optimize.command()
+@folder_argument
+@ui.option("-o", "--output", type=ui.PATH, help="The *.html to write; in the folder if none.")
+@ui.json_option
+def report(folder: Path, output: Path | None, as_json: bool) -> None:
+    """Write the run in FOLDER as a page: the design found, the scores, every trial."""
+    from fdvv.optimize.run.report import optimize_html, optimize_report
+    from fdvv.optimize.run.session import Optimization
+    from fdvv.report.report import write_report
+
+    ui.check_output(output, ".html")
+    path = output or folder / "report.html"
+    with Optimization.open(folder) as session:
+        write_report(path, optimize_html(session))
+        document = optimize_report(session)
+    if as_json:
+        ui.print_json({**document, "report": str(path)})
+    else:
+        click.echo(f"written to {path}")
+
+
+optimize.add_command(experiment)
+add_population(optimize)
+
+
+def _asked(
+    engine: tuple[str, dict[str, Any]], trials: int, person: int, strip: str | None, **asked: Any
+) -> Any:
+    from fdvv.optimize.run.begin import RunAsked
+    from fdvv.optimize.run.player import POINTING
+
+    if strip and asked["task"] != POINTING:
+        raise click.UsageError(f"on a strip one plays {POINTING}, not {asked['task']}")
+    name, options = engine
+    simulated = person if strip in (None, "host") else None
+    return RunAsked(engine=name, options=options, budget=trials, person=simulated, **asked)
+
+
+def _play(session: Optimization, play: Play | None, as_json: bool) -> None:
+    from fdvv.optimize.run.player import player_of
+    from fdvv.optimize.run.report import optimize_report
+
+    ui.print_warnings(session.warnings)
+    budget = session.setup.budget
+    with ui.progress("trials", budget) as move:
+        try:
+            if play is None:
+                player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move))
+            else:
+                for trial in play(session):
+                    _on_trial(trial, budget, move)
+        except KeyboardInterrupt:
+            kept = ui.counted(len(session.trials), "trial")
+            raise KeyboardInterrupt(
+                f"stopped with {kept} kept; go on with: fdvv optimize resume {session.folder}"
+            ) from None
+    document = optimize_report(session)
+    if as_json:
+        ui.print_json(document)
+    else:
+        _print(session, document)
+
+
+def _on_trial(trial: Trial, budget: int, move: Any) -> None:
+    move(trial.number + 1, budget)
+    if trial.reason:
+        ui.print_warnings([f"trial {trial.number} failed: {trial.reason}"])
+
+
+def _print(session: Optimization, document: dict[str, Any]) -> None:
+    trials = document["trials"]
+    about = f"{document['task']}, {document['level']}" if document["level"] else document["task"]
+    click.echo(
+        f"{about}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
+        f"{ui.counted(len(trials), 'trial')}"
+    )
+    rows = [
+        [str(t["number"]), t["state"], ui.number(t["score"], 1), ui.number(t["error"], 1)]
+        for t in trials[-LAST:]
+    ]
+    name = session.problem.objectives[0].name
+    ui.print_table(["trial", "state", name, "error"], rows, left=2)
+    if document["best"]:
+        values = ", ".join(f"{key} {value:.2f}" for key, value in document["best"].items())
+        click.echo(f"recommended: {values}")
+    click.echo(f"kept in {session.folder}")

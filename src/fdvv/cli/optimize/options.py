@@ -1,0 +1,91 @@
+"""Options that the commands of fdvv optimize share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.options import remote
+
+if TYPE_CHECKING:
+    from fdvv.optimize.problem import Trial
+    from fdvv.optimize.run.session import Optimization
+
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def strip_options(command: Command) -> Command:
+    """Add the options that choose strip and rig."""
+    strip = ui.option(
+        "--strip", metavar="DEVICE",
+        help="LED strip that a person plays on: serial:PORT, or host (simulated).",
+    )  # fmt: skip
+    device = ui.option("--device", default="host", help="With --strip: the rig that renders designs.")
+    return strip(device(command))
+
+
+Play = Callable[["Optimization"], "Iterator[Trial]"]
+
+
+@contextmanager
+def on_strip(strip: str | None, device: str) -> Iterator[Play | None]:
+    """Open strip and rig before a run is begun; give what plays it there, None where no strip is asked for.
+
+    InputError, DeviceError.
+    """
+    if strip is None:
+        yield None
+        return
+    from fdvv.device.strip_library import open_strip
+    from fdvv.optimize.run.strip import run_on_any_strip
+
+    with remote(device) as rig, open_strip(strip) as task:
+        yield lambda session: run_on_any_strip(session, rig, task, _wait)
+
+
+def _wait(trial: Trial) -> None:
+    click.prompt(f"trial {trial.number}: press Enter when ready", default="", show_default=False, err=True)
+
+
+class EngineType(click.ParamType[tuple[str, dict[str, Any]]]):
+    """An engine's name, with options in braces if there are any: gp, or 'tpe:{"multivariate": false}'."""
+
+    name = "engine"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, dict[str, Any]]:
+        """Read name and options, or refuse them."""
+        if isinstance(value, tuple):
+            return value
+        name, _, text = str(value).partition(":")
+        try:
+            options = json.loads(text) if text else {}
+        except ValueError as error:
+            self.fail(f"the options of {name} are no JSON object ({error})", param, ctx)
+        if not isinstance(options, dict):
+            self.fail(f"the options of {name} are no JSON object", param, ctx)
+        return name, options
+
+
+def engine_option(default: str) -> Callable[[ui.Command], ui.Command]:
+    """Add the option that chooses an engine."""
+    return ui.option(
+        "--engine",
+        type=EngineType(),
+        default=default,
+        help="Suggests designs (docs/explanation/optimisation.md); name:{JSON} for options.",
+    )
+
+
+level_option = ui.option("--level", type=click.Choice(["easy", "hard"]), default="easy", help="Of the task.")
+
+rig_option = ui.option(
+    "--rig", default="ideal", help="Shipped rig that renders designs; ideal does so exactly."
+)

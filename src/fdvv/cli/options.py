@@ -1,0 +1,184 @@
+"""The options of commands that share their work out over processes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fdvv.cli import ui
+
+if TYPE_CHECKING:
+    from fdvv.vibration.exciter import KnownExciter
+if TYPE_CHECKING:
+    from fdvv.compensation.paper import PaperLaw
+    from fdvv.compensation.rig_aware import RigAware
+if TYPE_CHECKING:
+    from fdvv.device.contract import Device
+    from fdvv.device.remote import Remote
+
+
+executor_options = ui.options(
+    ui.option(
+        "--processes", type=click.IntRange(1, 1024), help="Of this machine; by default all processors."
+    ),
+    ui.option("--workers", type=click.IntRange(1, 1024), help="Start so many dask workers instead."),
+    ui.option("--cluster", metavar="ADDRESS", help="Use the dask cluster of this scheduler instead."),
+)
+
+
+def check_executor(processes: int | None, workers: int | None, cluster: str | None) -> None:
+    """Refuse two of the options at once."""
+    if sum(choice is not None for choice in (processes, workers, cluster)) > 1:
+        raise click.UsageError("--processes, --workers and --cluster exclude each other")
+
+
+@contextmanager
+def kept_on_interrupt(folder: Path) -> Iterator[None]:
+    """Say what Ctrl-C leaves."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; what is done is kept in {folder}, the same command goes on"
+        ) from None
+
+
+exciter_option = ui.option(
+    "--exciter", type=ui.FILE,
+    help="File of fdvv device exciter; vibrations are played through its inverse.",
+)  # fmt: skip
+
+
+def opened_exciter(path: Path | None) -> KnownExciter | None:
+    """Read the file of a known exciter, if one is named. Raises InputError."""
+    from fdvv.vibration.exciter import load_exciter
+
+    return load_exciter(path) if path else None
+
+
+RIG_AWARE, PAPER = "rig-aware", "paper"
+
+ROUNDS = {RIG_AWARE: 3, PAPER: 4}
+
+PRESSES = 12
+
+method_options = ui.options(
+    ui.option("--method", type=click.Choice(list(ROUNDS)), default=RIG_AWARE, help="How to learn."),
+    ui.option(
+        "--rounds", type=click.IntRange(0, 20),
+        help=f"Presses per velocity once the rig is known, {ROUNDS[RIG_AWARE]} by default; with the paper's "
+             f"law runs averaged, {ROUNDS[PAPER]}.",
+    ),
+    ui.option(
+        "--presses", type=click.IntRange(1, 100),
+        help=f"With the paper's law, per round and velocity; {PRESSES} by default.",
+    ),
+    ui.option("--literal", is_flag=True, help="The paper's law exactly as printed."),
+    ui.option("--rig-known", type=ui.FILE, help="The *.rig.json that was learned from this rig before."),
+    ui.option("--save-rig", type=ui.PATH, help="The *.rig.json to write of what is learned from the rig."),
+)  # fmt: skip
+
+
+def law_of(
+    method: str,
+    rounds: int | None,
+    presses: int | None,
+    literal: bool,
+    rig_known: Path | None,
+    save_rig: Path | None,
+) -> PaperLaw | RigAware:
+    """Make the method that was asked for. InputError on an option of the other one, or on a file."""
+    from fdvv.compensation.identification.rig_file import load_learned_rig
+    from fdvv.compensation.paper import PaperLaw
+    from fdvv.compensation.rig_aware import RigAware
+
+    rounds = ROUNDS[method] if rounds is None else rounds
+    if method == RIG_AWARE:
+        _refuse({"--presses": presses, "--literal": literal}, PAPER)
+        return RigAware(rounds, load_learned_rig(rig_known) if rig_known else None)
+    _refuse({"--rig-known": rig_known, "--save-rig": save_rig, "--rounds 0": rounds == 0}, RIG_AWARE)
+    make = PaperLaw.literal if literal else PaperLaw
+    return make(rounds=rounds, presses_per_round=presses or PRESSES)
+
+
+def _refuse(options: dict[str, object], other: str) -> None:
+    from fdvv.errors import InputError
+
+    for name, value in options.items():
+        if value:
+            reason = f"belongs to the method {other}"
+            raise InputError(name, "option", reason, f"add --method {other}, or leave {name} out")
+
+
+class Paces(click.ParamType[tuple[float, ...]]):
+    """Speeds with commas between them."""
+
+    name = "mm/s,..."
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """Read the speeds, or refuse them."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            found = tuple(float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"{value!r} must be speeds with commas between them, as 50,100", param, ctx)
+        if not all(math.isfinite(v) and 20 <= v <= 500 for v in found) or len(set(found)) != len(found):
+            self.fail(f"{value!r} must be different speeds of 20 to 500 mm/s", param, ctx)
+        return found
+
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def device_option(command: Command) -> Command:
+    """Add the option that chooses a device."""
+    add = ui.option("--device", "spec", default="host", help="See fdvv device.")
+    return add(command)
+
+
+record_option = ui.option(
+    "--record", "recording", type=ui.NEW_FILE,
+    help="Append the session to this file, for --device replay:FILE.",
+)  # fmt: skip
+
+velocity_option = ui.option(
+    "--velocity", "velocities_mm_s", type=ui.SPEED, multiple=True,
+    default=ui.SPEEDS_mm_s, help="Rows of a model's table, mm/s; repeatable.",
+)  # fmt: skip
+
+
+@contextmanager
+def opened(
+    spec: str, recording: Path | None = None, rig: Path | None = None, seed: int = 0
+) -> Iterator[Device]:
+    """Open a device and close it again, whatever happens; rig and seed are of a simulated one."""
+    from fdvv.device.recording import Recorder
+    from fdvv.rendering.tuning import open_device
+
+    found = open_device(spec, rig, None, seed)
+    try:
+        found = Recorder(found, recording) if recording else found
+        yield found
+    finally:
+        if hasattr(found, "close"):
+            found.close()
+
+
+@contextmanager
+def remote(spec: str) -> Iterator[Remote]:
+    """Open a device that has the firmware in it; InputError if it has not."""
+    from fdvv.device.remote import Remote
+    from fdvv.errors import InputError
+
+    with opened(spec) as found:
+        if not isinstance(found, Remote):
+            raise InputError("--device", spec, "there is no firmware in it", "use host or serial:PORT")
+        yield found

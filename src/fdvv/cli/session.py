@@ -1,0 +1,301 @@
+"""What fdvv compensate and probe share: the device, the speeds, and the session that presses are kept in."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.cue import show_cue
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.live import Live
+
+    from fdvv.rendering.session_run import PressDone, PressRequest, VelocityProgress
+if TYPE_CHECKING:
+    from fdvv.device.contract import Device
+    from fdvv.rendering.session import Session
+    from fdvv.rendering.session_run import Guide
+
+
+REDRAW_s = 0.1
+
+LINES = 10
+"""Where there is no terminal, simulated presses are reported in so many lines."""
+
+Cue = Callable[[float, Callable[[str], None]], None]
+
+KEPT = {"compensate": "best", "probe": "median"}
+"""What the mean and the largest error of a curve are of."""
+
+
+class View(Protocol):
+    """What shows a session."""
+
+    def ask(self, ask: PressRequest) -> None:
+        """Ask for a press."""
+        ...
+
+    def done(self, event: PressDone) -> None:
+        """Report a press."""
+        ...
+
+    def notice(self, text: str) -> None:
+        """Report what a person should know."""
+        ...
+
+
+@contextmanager
+def session_view(person: bool, quiet: bool) -> Iterator[View]:
+    """Show a session on standard error, in place if it is a terminal.
+
+    person : someone presses and is shown the pace; quiet : tell only what a person at a device must know.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield LineView(person, quiet)
+        return
+    from rich.console import Console
+    from rich.live import Live
+
+    with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
+        yield TableView(person, live)
+
+
+class LineView:
+    """A line per press of a person, a few lines of simulated ones."""
+
+    def __init__(self, person: bool, quiet: bool) -> None:
+        self._person, self._quiet = person, quiet
+
+    def ask(self, ask: PressRequest) -> None:
+        """Ask a person for a press."""
+        if self._person:
+            click.echo(asked(ask), err=True)
+
+    def done(self, event: PressDone) -> None:
+        """Report a press, if it is due."""
+        step = max(1, event.presses_total // LINES)
+        due = self._person or event.skipped or event.presses_done % step == 0
+        if due and (self._person or not self._quiet):
+            click.echo(press_line(event), err=True)
+
+    def notice(self, text: str) -> None:
+        """Report it; where only a document is wanted, warnings alone."""
+        if not self._quiet or text.startswith("warning: "):
+            click.echo(ui.one_line(text), err=True)
+
+
+class TableView:
+    """A row per velocity, the last press and the cue below them, redrawn in place."""
+
+    def __init__(self, person: bool, live: Live, cue: Cue = show_cue) -> None:
+        self._person, self._live, self._cue = person, live, cue
+        self._rows: tuple[VelocityProgress, ...] = ()
+        self._line, self._kept, self._drawn_s = "", "best", 0.0
+
+    def ask(self, ask: PressRequest) -> None:
+        """Show a person the pace."""
+        if self._person:
+            self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
+            self._draw(asked(ask), "press now")
+
+    def done(self, event: PressDone) -> None:
+        """Report a press; simulated ones come faster than anyone reads."""
+        self._line, self._kept = press_line(event), KEPT[event.stage]
+        if self._person or event.skipped or time.monotonic() - self._drawn_s > REDRAW_s:
+            self._rows = event.progress()
+            self._draw()
+            self._drawn_s = time.monotonic()
+
+    def notice(self, text: str) -> None:
+        """Report it above the rows."""
+        self._live.console.print(ui.one_line(text), highlight=False, markup=False)
+
+    def _draw(self, *lines: str) -> None:
+        self._live.update(picture(self._rows, self._kept, (self._line, *lines)), refresh=True)
+
+
+def asked(ask: PressRequest) -> str:
+    """Say what is wanted."""
+    stroke_ms = 1000 * ask.travel_mm / ask.velocity_mm_s
+    return (
+        f"press {ask.number} of {ask.total}: {ask.velocity_mm_s:g} mm/s, "
+        f"{ask.travel_mm:.1f} mm in {stroke_ms:.0f} ms, down to the stop and let go"
+    )
+
+
+def press_line(event: PressDone) -> str:
+    """Say what became of a press."""
+    at = f"{event.presses_done} of {event.presses_total}, {event.velocity_mm_s:g} mm/s"
+    if event.skipped:
+        return ui.one_line(f"{at}: not used, {event.skipped}")
+    found = [f"achieved {event.achieved_mm_s:.0f} mm/s"] if math.isfinite(event.achieved_mm_s) else []
+    return ui.one_line(f"{at}: {'; '.join([*found, *([event.message] if event.message else [])])}")
+
+
+def picture(rows: tuple[VelocityProgress, ...], kept: str, lines: tuple[str, ...]) -> RenderableType:
+    """Lay out the rows and the lines below them."""
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("velocity")
+    figures = [
+        name for stroke in ("press", "release") for name in (f"{stroke}: last", f"{kept} mean", "max cN")
+    ]
+    for name in ("presses", *figures):
+        table.add_column(name, justify="right")
+    for row in rows:
+        table.add_row(*cells(row))
+    return Group(table, *(Text(line) for line in lines))
+
+
+def cells(row: VelocityProgress) -> list[str]:
+    """Return the row of a velocity: error_k of the last press, mean and largest error of what is kept."""
+    wanted = "" if row.wanted is None else f"/{row.wanted}"
+    found = [f"{row.velocity_mm_s:g} mm/s", f"{row.made}{wanted}"]
+    for stroke in ("press", "release"):
+        curve = next((c for c in row.curves if str(c.stroke) == stroke and c.error_cN), None)
+        figures = (curve.error_cN[-1], curve.mean_error_cN, curve.max_error_cN) if curve else (None,) * 3
+        found += [ui.number(value, 1) for value in figures]
+    return found
+
+
+session_options = ui.options(
+    ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
+    ui.option("--rig", type=ui.FILE, help="TOML file of the twin's rig (docs/reference/rig.md)."),
+    ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
+    ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
+    ui.option(
+        "--velocity", "velocities_mm_s", type=ui.SPEED, multiple=True, default=ui.SPEEDS_mm_s,
+        help="mm/s; repeatable.",
+    ),
+    ui.option(
+        "--session", "folder", type=ui.PATH,
+        help="Folder that keeps every press; name it again to continue where it stopped. Presses by a person "
+             "are always kept, beside the result if no folder is named.",
+    ),
+    ui.option(
+        "--pace-tolerance", "pace_ratio", type=ui.PART, default=0.35,
+        help="Part by which a press may miss its speed and still be used.",
+    ),
+)  # fmt: skip
+"""The device, the speeds, and where the presses are kept."""
+
+
+def open_session(
+    folder: Path | None,
+    device: str,
+    parts: tuple[int, Path | None, Path | None],
+    pace_ratio: float,
+    default: Path,
+) -> Session:
+    """Choose where presses are kept. Raises InputError where that cannot be.
+
+    parts : seed, rig and finger of a simulated device; default : the folder for a person's presses.
+    """
+    from fdvv.compensation.presses import AcceptanceLimits
+    from fdvv.device.open import pressed_by_person
+    from fdvv.rendering.session import Session
+
+    if folder is None and pressed_by_person(device):
+        folder = default
+    if folder:
+        ui.check_folder(folder)
+    seed, rig, finger = parts
+    return Session(folder, seed, rig, finger, AcceptanceLimits(pace_ratio=pace_ratio))
+
+
+@contextmanager
+def guided(session: Session, device: str, as_json: bool) -> Iterator[tuple[Device, View, Guide]]:
+    """Open the device, show the session, and let the device go at the end, whatever happens."""
+    from fdvv.device.open import pressed_by_person
+    from fdvv.rendering.session_run import Guide
+
+    found = session.open_device(device)
+    try:
+        with session_view(pressed_by_person(device), as_json) as view:
+            yield found, view, Guide(view.ask, view.notice)
+    finally:
+        if hasattr(found, "close"):
+            found.close()
+
+
+def beside(result: Path | None, button: str, what: str) -> Path:
+    """Name the folder for the presses behind a result: beside its file, else here after the button."""
+    name = (result or Path(Path(button).name)).name.partition(".")[0] or "button"
+    return (result.parent if result else Path()) / f"{name}.{what}"
+
+
+LISTED = 10
+"""Of the presses that were not used."""
+
+
+def print_receipt(found: dict[str, Any]) -> None:
+    """Print how a result came about."""
+    click.echo(
+        f"{found['task']} {found['model']['name']} on {found['device']['name']}"
+        f"{ui.simulated(found['simulated'])}"
+    )
+    ui.print_wrapped(f"method: {found['method']}")
+    spent = f"{found['pressing_s']:.0f} s of pressing in {ui.counted(len(found['runs']), 'run')}"
+    ui.print_wrapped(f"begun {found['begun']}, last press {found['finished'] or '–'}, {spent}")
+    for run in found["runs"]:
+        made = ", ".join(f"{name} {version}" for name, version in run["versions"].items())
+        seed = "" if run["seed"] is None else f"; seed {run['seed']}"
+        click.echo(f"run of {run['started']} with {made}{seed}")
+    ui.print_wrapped(_rig(found["device"]))
+    _print_presses(found)
+    if found["task"] == "tune":
+        click.echo("run the session's command again for its result, or to go on")
+        return
+    if not found["curves"]:
+        click.echo("not finished; run the session's command again to go on")
+        return
+    ui.print_table(
+        ["curve", "presses", "first cN", "last cN", "best cN", "mean cN", "max cN"],
+        [
+            [
+                f"{c['stroke']} {c['velocity_mm_s']:g} mm/s",
+                str(c["presses"]),
+                *(ui.number(c[f"{name}_cN"]) for name in ("first", "last", "best", "mean", "max")),
+            ]
+            for c in found["curves"]
+        ],
+    )
+
+
+def _rig(device: dict[str, Any]) -> str:
+    facts = [
+        f"rig: up to {device['force_limit_cN']:.0f} cN, {device['travel_limit_mm']:.1f} mm",
+        f"{1 / device['tick_s']:.0f} Hz",
+    ]
+    if "serial" in device:
+        version = ".".join(str(device["firmware"] >> shift & 255) for shift in (16, 8, 0))
+        facts += [f"serial {device['serial']}, firmware {version}, {len(device['settings'])} settings"]
+    facts += [f"{key.partition('_')[0]} file {device[key][:12]}" for key in sorted(device) if "toml" in key]
+    return ", ".join(facts)
+
+
+def _print_presses(found: dict[str, Any]) -> None:
+    unused = found["not_used"]
+    if found["task"] == "tune":
+        click.echo(ui.counted(found["used"], "answer"))
+        return
+    click.echo(f"{ui.counted(found['used'], 'press')} used, {len(unused)} not")
+    for press in unused[:LISTED]:
+        ui.print_wrapped(f"  press {press['number']} at {press['velocity_mm_s']:g} mm/s: {press['reason']}")
+    if len(unused) > LISTED:
+        speeds = Counter(f"{press['velocity_mm_s']:g} mm/s" for press in unused)
+        listed = ", ".join(f"{count} at {speed}" for speed, count in speeds.items())
+        click.echo(f"  and {len(unused) - LISTED} more; in all {listed}")

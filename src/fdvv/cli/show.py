@@ -1,0 +1,231 @@
+"""fdvv show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fdvv.cli import ui
+
+if TYPE_CHECKING:
+    from fdvv.button.compare import Comparison
+    from fdvv.model.landmarks import LandmarkError
+if TYPE_CHECKING:
+    from fdvv.model.landmarks import LandmarkError
+
+
+LABEL_WIDTH, LINE_NAME_WIDTH = 19, 28
+"""Of the names of landmarks, and what the columns of LANDMARKS leave for the names of buttons."""
+
+LANDMARKS = ("travel_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN", "work_mJ")
+
+
+@click.command()
+@click.argument("buttons", nargs=-1, required=True)
+@ui.option(
+    "--velocity", "velocity_mm_s", type=ui.POSITIVE, help="Compare at this speed, mm/s; default: the slowest."
+)
+@ui.option("--figure", type=ui.PATH, help="Draw the overlay: .svg, .png or .pdf.")
+@ui.json_option
+def compare(
+    buttons: tuple[str, ...], velocity_mm_s: float | None, figure: Path | None, as_json: bool
+) -> None:
+    """Compare buttons: landmarks side by side and force differences.
+
+    BUTTONS are two or more built-ins, *.fdvv.json files, files of measured curves or folders of either.
+    The first is the reference; displacement counts from each button's contact.
+    """
+    ui.check_output(figure, *ui.FIGURES)
+    from fdvv.button.compare import compare as compare_models
+    from fdvv.button.open import open_models
+    from fdvv.model.curve import Stroke
+
+    refused: list[str] = []
+    with ui.progress("opening", len(buttons)) as advance:
+        opened = open_models(buttons, refused, advance)
+    models = [model for model in opened if model.of(Stroke.PRESS)]
+    refused += [f"{model.name}: has no press curve" for model in opened if not model.of(Stroke.PRESS)]
+    ui.print_warnings([f"refused: {reason}" for reason in refused])
+    if len(models) < 2:
+        raise click.UsageError(f"two or more buttons with a press are needed, got {len(models)}")
+    result = compare_models(models, velocity_mm_s)
+    if figure:
+        from fdvv.report.model_figures import plot_comparison
+
+        ui.save_figure(plot_comparison(models, velocity_mm_s=velocity_mm_s).figure, figure)
+    if as_json:
+        ui.print_json({**result.to_dict(), "refused": refused})
+    elif (
+        LABEL_WIDTH + sum(_width(*named) for named in zip(result.names, result.errors, strict=True))
+        <= ui.WIDTH
+    ):
+        _print_columns(result)
+    else:
+        _print_lines(result)
+
+
+def _width(name: str, errors: dict[str, LandmarkError]) -> int:
+    return 2 + max(16 if errors else 8, len(name))
+
+
+def _print_columns(result: Comparison) -> None:
+    marks = [m.to_dict() for m in result.landmarks]
+    rows = [[key, *(_mark(m, e, key) for m, e in zip(marks, result.errors, strict=True))] for key in marks[0]]
+    ui.print_table(["landmark", *result.names], rows)
+    if any(result.errors):
+        click.echo("±: standard error over presses")
+    click.echo("")
+    ui.print_table(
+        [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
+        [
+            [
+                d.name,
+                str(d.stroke),
+                ui.number(d.rms_cN),
+                ui.number(d.mean_cN),
+                ui.number(d.max_cN),
+                ui.number(d.max_mm),
+            ]
+            for d in result.differences
+        ],
+    )
+
+
+def _mark(marks: dict[str, float | None], errors: dict[str, LandmarkError], key: str) -> str:
+    return ui.with_spread(marks[key], errors[key].error if key in errors else None, 3)
+
+
+def _print_lines(result: Comparison) -> None:
+    click.echo(f"rms cN: force of the press less that of {ui.one_line(result.names[0])}")
+    rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
+    rows = [
+        [
+            ui.one_line(name, LINE_NAME_WIDTH),
+            *(ui.number(marks.to_dict()[key]) for key in LANDMARKS),
+            ui.number(rms.get(i)),
+        ]
+        for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
+    ]
+    ui.print_table(["button", *LANDMARKS, "rms cN"], rows)
+
+
+TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
+
+NAME_WIDTH = 28
+"""What the columns of TABLE leave of the width of a line."""
+
+
+@click.command()
+@click.argument("button")
+@ui.option(
+    "--velocity",
+    "velocity_mm_s",
+    type=ui.POSITIVE,
+    help="Landmarks of the press nearest to this (mm/s); default: slowest.",
+)
+@ui.option("--figure", type=ui.PATH, help="Draw the curves into this .svg, .png or .pdf.")
+@ui.json_option
+def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json: bool) -> None:
+    """Show landmarks and curves of a button.
+
+    BUTTON is a built-in's name, a *.fdvv.json file, a file of measured curves, or a folder of them (a
+    table, one line per button). Of an *.actuation.json file, or of the folder of a session, the receipt is
+    shown: rig, method, presses, errors.
+    """
+    ui.check_output(figure, *ui.FIGURES)
+    if _show_receipt(button, as_json):
+        return
+    if button and Path(button).is_dir():
+        if figure:
+            raise click.UsageError(f"--figure draws one button, and {button} is a folder")
+        _show_folder(Path(button), velocity_mm_s, as_json)
+        return
+    from fdvv.button.compare import spread_reports
+    from fdvv.button.open import open_button
+    from fdvv.errors import InputError
+    from fdvv.model.landmarks import landmark_errors, landmarks
+
+    model = open_button(button)
+    if not model.of("press"):
+        raise InputError(
+            button, "curves", "it has no press, which landmarks are read from", "merge one into it"
+        )
+    marks, errors = landmarks(model, velocity_mm_s).to_dict(), landmark_errors(model, velocity_mm_s)
+    if figure:
+        from fdvv.report.model_figures import plot_model
+
+        ui.save_figure(plot_model(model).figure, figure)
+    if as_json:
+        uncertain = {name: vars(error) for name, error in errors.items()}
+        source = model.provenance.source
+        head = {"name": model.name, "source": source, "landmarks": marks, "landmark_errors": uncertain}
+        ui.print_json({**head, **spread_reports(model)})
+        return
+    ui.print_wrapped(f"{model.name}: {model.provenance.source or 'source not stated'}")
+    for stroke in ("press", "release"):
+        speeds = ", ".join(f"{v:g}" for v in model.velocities_mm_s(stroke))
+        if model.of(stroke):
+            click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
+    _print_landmarks(marks, errors)
+    ui.print_spreads(spread_reports(model))
+
+
+def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkError]) -> None:
+    if not errors:
+        ui.print_table(["landmark", "value"], [[name, ui.number(value, 3)] for name, value in marks.items()])
+        return
+    rows = []
+    for name, value in marks.items():
+        error = errors.get(name)
+        uncertainty = [f"± {error.error:.3f}", str(error.presses)] if error else ["", ""]
+        rows.append([name, ui.number(value, 3), *uncertainty])
+    ui.print_table(["landmark", "value", "standard error", "presses"], rows)
+
+
+def _show_receipt(button: str, as_json: bool) -> bool:
+    from fdvv.io.documents import ACTUATION, own_kind
+
+    path = Path(button)
+    if not button or not (path.is_dir() or button.endswith(".actuation.json") or own_kind(path) == ACTUATION):
+        return False
+    from fdvv.cli.session import print_receipt
+    from fdvv.rendering.actuation_file import open_run_summary
+
+    receipt = open_run_summary(path)
+    if receipt is None:
+        return False
+    if as_json:
+        ui.print_json(receipt.to_dict())
+    else:
+        print_receipt(receipt.to_dict())
+    return True
+
+
+def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:
+    from fdvv.button.open import button_files, open_files
+    from fdvv.model.landmarks import landmarks
+
+    found, refused = [], []
+    files = button_files(folder)
+    with ui.progress("opening", len(files)) as advance:
+        for done, button in enumerate(open_files(files), start=1):
+            if button.model and button.model.of("press"):
+                found.append((str(button.file), landmarks(button.model, velocity_mm_s).to_dict()))
+            else:
+                reason = button.reason or f"{button.file}: curves: holds no press; merge one into it"
+                refused.append({"file": str(button.file), "reason": reason})
+            advance(done, len(files))
+    if as_json:
+        ui.print_json({"results": [{"file": f, "landmarks": m} for f, m in found], "refused": refused})
+    elif found:
+        rows = [
+            [ui.one_line(Path(f).name, NAME_WIDTH), *(ui.number(m[key], 2) for key in TABLE)]
+            for f, m in found
+        ]
+        ui.print_table(["button", *TABLE], rows)
+    ui.print_warnings([f"refused: {r['reason']}" for r in refused])
+    if not found:
+        click.echo(f"fdvv: {folder}: no button of it can be shown; the reasons are above", err=True)
+        raise click.exceptions.Exit(2)

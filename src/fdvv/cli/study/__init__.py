@@ -1,0 +1,1 @@
+"""``fdvv study``: plan, run, analyse and simulate blind studies."""

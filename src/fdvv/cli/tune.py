@@ -1,0 +1,230 @@
+"""fdvv tune: a person at a rig rates or compares vibrations, and the best are kept."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fdvv.cli import ui
+from fdvv.cli.cue import show_cue
+from fdvv.cli.options import exciter_option, opened_exciter
+from fdvv.cli.session import beside, open_session, session_options
+
+if TYPE_CHECKING:
+    from fdvv.rendering.session_run import Guide, PressRequest
+    from fdvv.vibration.tune import Preferred, Question
+if TYPE_CHECKING:
+    from fdvv.vibration.tune import Rating
+    from fdvv.vibration.tune_compare import Comparing
+
+
+RATE = "how close to the real button, 1 (not at all) to 7 (the same); r presses again"
+
+COMPARE = "which was closer to the real button: 1 the first, 2 the second, 0 neither; r presses again"
+
+
+class TuneView:
+    """Leads a person through a tuning, on standard error; quiet where nobody answers.
+
+    Parameters
+    ----------
+    person : someone presses and is asked. as_json : tell only what must be known.
+    """
+
+    def __init__(self, person: bool, as_json: bool) -> None:
+        self._person, self._as_json = person, as_json
+        self._asked, self._press = 0, 0
+
+    @property
+    def guide(self) -> Guide:
+        """Return the callbacks of the session."""
+        from fdvv.rendering.session_run import Guide
+
+        return Guide(self._ask, self._notice)
+
+    def _ask(self, ask: PressRequest) -> None:
+        if not self._person:
+            return
+        self._press = self._press + 1 if ask.number == self._asked else 1
+        self._asked = ask.number
+        click.echo(
+            f"question {ask.number} of {ask.total} at most, press {self._press}: {ask.velocity_mm_s:g} mm/s, "
+            "down to the stop and let go",
+            err=True,
+        )
+        if sys.stderr.isatty():
+            show_cue(
+                ask.travel_mm / ask.velocity_mm_s, lambda cue: click.echo(f"\r{cue}", err=True, nl=False)
+            )
+            click.echo("", err=True)
+
+    def _notice(self, text: str) -> None:
+        if not self._as_json or text.startswith("warning: "):
+            click.echo(ui.one_line(text), err=True)
+
+    def answer(self, question: Question) -> int | Preferred | None:
+        """Ask until the answer is one; None to press again."""
+        from fdvv.vibration.tune import Preferred
+
+        self._press = 0
+        if len(question.templates) == 1:
+            answer = _prompt(RATE, [*map(str, range(1, 8)), "r"])
+            return None if answer == "r" else int(answer)
+        answer = _prompt(COMPARE, ["1", "2", "0", "r"])
+        meant = {"1": Preferred.FIRST, "2": Preferred.SECOND, "0": Preferred.NEITHER}
+        return meant.get(answer)
+
+
+def _prompt(text: str, choices: list[str]) -> str:
+    found: str = click.prompt(text, type=click.Choice(choices), show_choices=False, err=True)
+    return found
+
+
+@click.command()
+@click.argument("button")
+@click.argument("actuation", required=False, type=ui.FILE)
+@session_options
+@ui.option(
+    "--compare/--rate",
+    default=True,
+    help="Which of two is closer to the real button, or each by itself, 1 to 7.",
+)
+@ui.option("--comparisons", type=click.IntRange(1, 1000), help="Per velocity at most.  [default: 3 each]")
+@ui.option("--repeats", type=click.IntRange(2, 20), default=3, help="Of each rating.")
+@ui.option(
+    "--frequency-ratio",
+    "frequency_ratios",
+    type=ui.Finite(min=0.1, max=10),
+    multiple=True,
+    default=(1.0,),
+    help="Of the measured frequency; repeatable.",
+)
+@ui.option(
+    "--gain-ratio",
+    "gain_ratios",
+    type=ui.Finite(min=0.05, max=20),
+    multiple=True,
+    default=(1.0, 2.0),
+    help="Of the measured strength; repeatable.",
+)
+@exciter_option
+@ui.option(
+    "--simulated-observer",
+    "simulated",
+    is_flag=True,
+    help="Answers come from an invented preference: a test, evidence of nothing.",
+)
+@ui.option("-o", "--output", type=ui.PATH, help="The *.fdvv.json to write.")
+@ui.json_option
+def tune(
+    button: str,
+    actuation: Path | None,
+    device: str,
+    rig: Path | None,
+    finger: Path | None,
+    seed: int,
+    velocities_mm_s: tuple[float, ...],
+    folder: Path | None,
+    pace_ratio: float,
+    compare: bool,
+    comparisons: int | None,
+    repeats: int,
+    frequency_ratios: tuple[float, ...],
+    gain_ratios: tuple[float, ...],
+    exciter: Path | None,
+    simulated: bool,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Tune the vibration of a button's press with a person.
+
+    BUTTON is a built-in or a *.fdvv.json with a vibration; ACTUATION what fdvv compensate wrote. At every
+    velocity the measured vibration and templates around it, decaying sines like the paper's, are pressed
+    blind: only numbers are shown. The best are written into the model. Keep the real button beside the rig.
+
+    Every answer is on file before the next question; the same command goes on where a session stopped.
+    """
+    from fdvv.button.open import open_button
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
+    from fdvv.rendering.tune_vibration import TuneSetup
+    from fdvv.rendering.tune_vibration import tune_vibration as ask
+    from fdvv.vibration.templates import TemplateGrid
+
+    ui.check_output(output, MODEL_SUFFIX)
+    _check_observer(device, simulated)
+    model, known = open_button(button), opened_exciter(exciter)
+    learned = load_actuation(actuation) if actuation else None
+    grid = TemplateGrid(frequency_ratios, gain_ratios)
+    setup = TuneSetup(
+        learned.surface if learned else None, known, grid, "simulated observer" if simulated else "person"
+    )
+    default = beside(output, button, "tune-session")
+    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
+    view = TuneView(not simulated, as_json)
+    answer = view.answer
+    if simulated:
+        candidates = candidates_for(model, sorted(velocities_mm_s), grid, known)
+        answer = simulated_observer(candidates, seed).answer
+    method = _method(compare, comparisons, repeats, seed)
+    found = session.open_device(device)
+    try:
+        result = ask(found, model, velocities_mm_s, method, answer, setup, session, view.guide)
+    finally:
+        if hasattr(found, "close"):
+            found.close()
+    if output:
+        save_model(result.model, output)
+    _print({**result.to_dict(), "receipt": result.receipt.to_dict()}, as_json)
+    if output and not as_json:
+        click.echo(f"written to {output}")
+
+
+def _check_observer(device: str, simulated: bool) -> None:
+    from fdvv.device.open import pressed_by_person
+    from fdvv.errors import InputError
+
+    if simulated and pressed_by_person(device):
+        reason = "a person presses it, and nobody's answers would be kept"
+        raise InputError("--simulated-observer", device, reason, "leave the option out")
+    if not simulated and not pressed_by_person(device):
+        reason = "nobody can feel a simulated device"
+        raise InputError("--device", device, reason, "use serial:PORT, or add --simulated-observer")
+
+
+def _method(compare: bool, comparisons: int | None, repeats: int, seed: int) -> Rating | Comparing:
+    from fdvv.vibration.tune import Rating
+    from fdvv.vibration.tune_compare import Comparing
+
+    return Comparing(comparisons, seed=seed) if compare else Rating(repeats, seed)
+
+
+def _print(document: dict[str, Any], as_json: bool) -> None:
+    if as_json:
+        ui.print_json(document)
+        return
+    click.echo(
+        f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}, "
+        f"answers of a {document['observer']}"
+    )
+    click.echo(f"{document['method']}, {ui.counted(document['answers'], 'answer')}")
+    for found in document["velocities"]:
+        click.echo(f"{found['velocity_mm_s']:g} mm/s: {found['explanation']}")
+        ui.print_table(["vibration", "Hz", "m/s2", "score", "error", "spectrum", "ST-SIM"], _rows(found))
+
+
+def _rows(found: dict[str, Any]) -> list[list[str]]:
+    rows = []
+    for i, candidate in enumerate(found["candidates"]):
+        mode = max(candidate["vibration"]["modes"], key=lambda m: abs(m["amplitude_m_s2"]))
+        name = "measured" if i == 0 else f"template {i}"
+        mark = " *" if i == found["best"] else " =" if i in found["alike"] else ""
+        scores = candidate["objective"]
+        figures = (mode["frequency_Hz"], mode["amplitude_m_s2"], candidate["score"], candidate["error"])
+        alike = (scores["spectral_similarity"], scores["st_sim"])
+        rows.append([name + mark, *(ui.number(v) for v in (*figures, *alike))])
+    return rows

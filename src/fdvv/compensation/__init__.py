@@ -1,0 +1,1 @@
+"""Learning laws that find the command tables which make a rig feel like a model."""

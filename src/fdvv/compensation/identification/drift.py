@@ -1,0 +1,176 @@
+"""Drift detection: does a press still fit an identified rig, and if not, what changed?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.compensation.identification.balance import (
+    BACK_EMF,
+    DELAY,
+    ELECTRIC,
+    FRICTION,
+    GAIN,
+    LAG,
+    MASS,
+    PARAMETERS,
+    PLAY,
+    VISCOUS,
+    WEIGHT,
+    ticks_of,
+)
+from fdvv.compensation.identification.identify import RigEstimation, parameter_vector, residual_cN
+from fdvv.compensation.identification.rig_model import Prior, RigModel
+from fdvv.model.press import Press
+from fdvv.units import FloatArray
+
+DRIFT_Z_THRESHOLD = 4.0
+"""A change is reported beyond this many standard deviations; presses are many."""
+MOST_changes = 3
+OUTLIER_RESIDUAL_ratio, OUTLIER_RESIDUAL_cN = 3.0, 2.0
+"""A press is an outlier if its residual exceeds that of the identification by this factor and this force."""
+SHARED_ratio = 0.25
+"""Part of a standard error that counts against a change: errors are correlated, and a press repeats most."""
+UNINFORMATIVE_VARIANCE = 1e6
+"""Variance of a change already reported, in squares of the prior's spread."""
+LEAST_CHANGE = {
+    "gain": 0.03,
+    "drag": 0.15,
+    "friction": 1.5,
+    "weight": 3.0,
+    "mass": 2.0,
+    "play": 2.0,
+    "lag": 2e-4,
+}
+"""Smaller changes are not reported: ratios of gain and drag, else in the unit of the parameter."""
+
+LEAST_drag_N_s_m = 0.2
+ERRORS = {
+    0: "gain",
+    VISCOUS: "drag_N_s_m",
+    FRICTION: "friction_cN",
+    WEIGHT: "weight_cN",
+    MASS: "mass_g",
+    PLAY: "play_cN",
+    LAG: "position_lag_s",
+    ELECTRIC: "electric_lag_s",
+}
+"""Standard error of each parameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Change:
+    """A possible change: name, unit, direction in parameter space, old value, least size, lower bound."""
+
+    name: str
+    unit: str
+    along: FloatArray
+    was: float
+    least: float
+    lowest: float = 0.0
+
+
+def detect_drift(
+    rig: RigModel, press: Press, travel_mm: float = float("inf"), prior: Prior | None = None
+) -> str:
+    """Describe what has changed on a rig since its identification, from one press; empty if nothing has.
+
+    travel_mm : position of the bottom stop; the end of the press if not given.
+    The press must hold its rig's own columns. Raises FitError if it is not informative enough.
+    """
+    prior = prior or Prior()
+    problem = RigEstimation([ticks_of(press, "the press", prior.tick_s)], travel_mm, prior)
+    problem.mean = numbers = parameter_vector(rig)
+    runs = problem.runs(numbers)
+    gradient, matrix = problem.normal(numbers, runs)
+    outlier_cN = max(OUTLIER_RESIDUAL_ratio * rig.residual_cN, rig.residual_cN + OUTLIER_RESIDUAL_cN)
+    outlier = residual_cN(problem, numbers, runs) > outlier_cN
+    changes = _largest_changes(rig, problem.spread, gradient, matrix - np.eye(numbers.size), outlier)
+    messages = [_message(change, size) for change, size in changes]
+    left = residual_cN(problem, numbers + sum(size * change.along for change, size in changes), runs)
+    if left > outlier_cN:
+        messages.append(
+            f"{left:.1f} cN rms unexplained, {rig.residual_cN:.1f} before; identify the rig again"
+        )
+    return ", ".join(messages)
+
+
+def _largest_changes(
+    rig: RigModel, spread: FloatArray, gradient: FloatArray, matrix: FloatArray, outlier: bool
+) -> list[tuple[_Change, float]]:
+    """Find changes one by one, the most significant first; vectors in spreads of the prior.
+
+    For an outlier the likeliest change is returned even if it is not significant.
+    """
+    found: list[tuple[_Change, float]] = []
+    changes, doubt = _changes(rig), np.diag((SHARED_ratio * _errors(rig) / spread) ** 2)
+    while len(found) < MOST_changes:
+        shrunk = np.linalg.inv(np.eye(spread.size) + matrix @ doubt)
+        slope, curve = shrunk @ gradient, shrunk @ matrix
+        sized = [(change, *_size(change.along / spread, slope, curve)) for change in changes]
+        possible = [s for s in sized if s[0].was + s[1] >= min(s[0].lowest, s[0].was)]
+        if not possible:
+            break
+        change, size, z = max(possible, key=lambda s: s[2])
+        if z < DRIFT_Z_THRESHOLD and (found or not outlier):
+            break
+        if abs(size) >= change.least:
+            found.append((change, size))
+        changes.remove(change)
+        doubt = doubt + UNINFORMATIVE_VARIANCE * np.outer(change.along / spread, change.along / spread)
+    return found
+
+
+def _size(along: FloatArray, slope: FloatArray, curve: FloatArray) -> tuple[float, float]:
+    """Return the most likely size of a change, and that in standard deviations."""
+    weight = max(float(along @ curve @ along), 1e-12)
+    size = float(along @ slope) / weight
+    return size, abs(size) * weight**0.5
+
+
+def _changes(rig: RigModel) -> list[_Change]:
+    """List the possible changes: gain and drag relative to their old values, the rest in their units."""
+    numbers = parameter_vector(rig)
+
+    def along(*parts: tuple[int | slice, FloatArray | float]) -> FloatArray:
+        row = np.zeros(len(PARAMETERS))
+        for place, share in parts:
+            row[place] = share
+        return row
+
+    # a warm coil pushes and brakes less, and braking counts at gain 1 with the square of the gain
+    coil = along((GAIN, numbers[GAIN]), (BACK_EMF, -numbers[BACK_EMF]))
+    least_drag = max(LEAST_CHANGE["drag"] * rig.drag_N_s_m, LEAST_drag_N_s_m)
+    return [
+        _Change("gain", "", coil, 0.0, LEAST_CHANGE["gain"], -1.0),
+        _Change("drag", "N s/m", along((VISCOUS, 1.0)), rig.drag_N_s_m, least_drag),
+        _Change("friction", "cN", along((FRICTION, 1.0)), rig.friction_cN, LEAST_CHANGE["friction"]),
+        _Change("weight", "cN", along((WEIGHT, 1.0)), rig.weight_cN, LEAST_CHANGE["weight"], -np.inf),
+        _Change("mass", "g", along((MASS, 1.0)), rig.mass_g, LEAST_CHANGE["mass"]),
+        _Change("play", "cN", along((PLAY, 0.5)), rig.play_cN, LEAST_CHANGE["play"]),
+        _Change(
+            "position lag", "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, 1e3 * LEAST_CHANGE["lag"]
+        ),
+        _Change("delay", "ms", along((DELAY, 1e-3)), 1e3 * rig.delay_s, 1e3 * LEAST_CHANGE["lag"]),
+    ]
+
+
+def _errors(rig: RigModel) -> FloatArray:
+    """Return the standard error of each parameter, (12,); the gain's is that of its first coefficient."""
+    error = rig.error
+    found = np.zeros(len(PARAMETERS))
+    for place, name in ERRORS.items():
+        found[place] = error.get(name, 0.0)
+    found[PLAY] *= 0.5
+    return found
+
+
+def _message(change: _Change, size: float) -> str:
+    moved = "rose" if size > 0 else "fell"
+    if not change.unit:
+        return f"{change.name} {moved} {abs(size):.0%}"
+    digits = 2 if change.unit == "ms" else 1
+    to = change.was + size
+    share = f" ({size / change.was:+.0%})" if change.was > 0 else ""
+    return f"{change.name} {moved} from {change.was:.{digits}f} to {to:.{digits}f} {change.unit}{share}"

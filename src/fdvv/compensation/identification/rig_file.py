@@ -1,0 +1,183 @@
+"""The ``*.rig.json`` file: an identified rig as versioned plain JSON, and the residual learned on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.errors import InputError, ModelError
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.surface import ForceSurface
+from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedRig:
+    """A rig and the residual learned from presses on it, independent of the button.
+
+    Attributes
+    ----------
+    rig : the model of the rig.
+    residual : command (cN) added to that of the model, by displacement and speed, press and release.
+    travel_mm : of the button it was learned on; for another one displacement is scaled by the travels.
+    error_cN : (2, s) mean error left at the residual's speeds, press and release, as the rig measured it.
+    """
+
+    rig: RigModel = field(metadata={"key": "known"})
+    residual: ForceSurface
+    travel_mm: float
+    error_cN: FloatArray
+
+    def __post_init__(self) -> None:
+        errors = np.ascontiguousarray(self.error_cN, dtype=np.float64)
+        object.__setattr__(self, "error_cN", errors)
+        shape = (2, self.residual.velocity_mm_s.size)
+        if errors.shape != shape or not (np.isfinite(errors).all() and self.travel_mm > 0):
+            raise ModelError(f"a learned rig needs {shape} finite errors and a travel above 0 mm")
+
+    def rows_cN(
+        self, grid_mm: FloatArray, speeds_mm_s: FloatArray, travel_mm: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the residual on another grid, for other speeds and travel: (s, n) press and release."""
+        displacement_mm = grid_mm * self.travel_mm / travel_mm
+        own = self.residual.displacement_mm
+        press, release = (
+            self._between(np.stack([np.interp(displacement_mm, own, row) for row in table]), speeds_mm_s)
+            for table in (self.residual.press_cN, self.residual.release_cN)
+        )
+        return press, release
+
+    def expected_cN(self, speeds_mm_s: FloatArray) -> FloatArray:
+        """Return the mean error to expect at other speeds, (2, s)."""
+        own = self.residual.velocity_mm_s
+        return np.stack([np.interp(speeds_mm_s, own, row) for row in self.error_cN])
+
+    def _between(self, rows: FloatArray, speeds_mm_s: FloatArray) -> FloatArray:
+        """Interpolate rows, (s, n), linearly in the square of speed; the last one is held.
+
+        Below the slowest they approach one level at rest, where no inertia varies over displacement: the
+        median of the first two rows extrapolated to speed 0.
+        """
+        squares, wanted = self.residual.velocity_mm_s**2, speeds_mm_s**2
+        if squares.size > 1 and wanted.min() < squares[0]:
+            still = np.median(rows[0] - (rows[1] - rows[0]) * squares[0] / (squares[1] - squares[0]))
+            rows = np.vstack([np.full(rows.shape[1], still), rows])
+            squares = np.concatenate([[0.0], squares])
+        return np.stack([np.interp(wanted, squares, column) for column in rows.T], axis=1)
+
+
+FORMAT, VERSION, SUFFIX = "fdvv-rig", 1, ".rig.json"
+
+LIMIT_bytes = 4_000_000
+
+_REMEDY = "identify the rig again"
+
+_KIND = Kind(FORMAT, VERSION, "an identified rig", _REMEDY)
+
+_TABLES = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
+
+
+class LearnedRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """The residual learned on a rig; names as in LearnedRig and its residual."""
+
+    travel_mm: float
+    displacement_mm: list[float]
+    velocity_mm_s: list[float]
+    press_cN: list[list[float]]
+    release_cN: list[list[float]]
+    error_cN: tuple[list[float], list[float]]
+
+
+class RigRecord(msgspec.Struct, forbid_unknown_fields=True):
+    """A rig in its file; names as in RigModel."""
+
+    format: Literal["fdvv-rig"]
+    version: Literal[1]
+    gain: tuple[float, float, float]
+    delay_s: float
+    electric_lag_s: float
+    position_lag_s: float
+    drag_N_s_m: float
+    back_emf_N_s_m: float
+    friction_cN: float
+    weight_cN: float
+    mass_g: float
+    play_cN: float
+    position_noise_mm: float
+    force_noise_cN: float
+    residual_cN: float
+    presses: int
+    error: dict[str, float]
+    learned: LearnedRecord | None = None
+
+
+def rig_to_json(rig: RigModel | LearnedRig) -> str:
+    """Return a rig, or a learned rig, as the text of a ``*.rig.json`` file."""
+    model = rig.rig if isinstance(rig, LearnedRig) else rig
+    numbers = {f.name: getattr(model, f.name) for f in fields(model)}
+    numbers |= {"gain": list(model.gain), "error": dict(model.error)}
+    learned = {"learned": _learned(rig)} if isinstance(rig, LearnedRig) else {}
+    return pretty({"format": FORMAT, "version": VERSION, **numbers, **learned}) + "\n"
+
+
+def _learned(rig: LearnedRig) -> dict[str, Any]:
+    tables = {name: getattr(rig.residual, name).tolist() for name in _TABLES}
+    return {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}
+
+
+def rig_from_json(text: str | bytes, source: object = "rig") -> RigModel:
+    """Read a rig from its text. Raises InputError with source, place and remedy."""
+    return _read(text, source)[0]
+
+
+def learned_rig_from_json(text: str | bytes, source: object = "rig") -> LearnedRig:
+    """Read a learned rig from its text. Raises InputError, also if the text holds a rig's model alone."""
+    _, learned = _read(text, source)
+    if learned is None:
+        reason = "holds the rig's model, but nothing learned on it"
+        raise InputError(source, "$.learned", reason, "save it with fdvv compensate --save-rig")
+    return learned
+
+
+def _read(text: str | bytes, source: object) -> tuple[RigModel, LearnedRig | None]:
+    return read_document(text, source, _KIND, lambda data: _rig(data, source), lambda _place: None)
+
+
+def _rig(data: bytes, source: object) -> tuple[RigModel, LearnedRig | None]:
+    record, place = msgspec.json.decode(data, type=RigRecord), "$"
+    try:
+        rig = RigModel(**{f.name: getattr(record, f.name) for f in fields(RigModel)})
+        place = "$.learned"
+        return rig, _learned_rig(rig, record.learned) if record.learned else None
+    except ValueError as error:  # rows of different lengths, or values the records reject
+        raise InputError(source, place, str(error), _REMEDY) from error
+
+
+def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
+    residual = ForceSurface(*(np.array(getattr(learned, name), dtype=np.float64) for name in _TABLES))
+    return LearnedRig(rig, residual, learned.travel_mm, np.array(learned.error_cN, dtype=np.float64))
+
+
+def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
+    """Write a rig, or a learned rig, to a file, atomically. Raises OSError."""
+    write_atomic(Path(path), rig_to_json(rig))
+
+
+def load_rig(path: Path | str) -> RigModel:
+    """Read a rig from a ``*.rig.json`` file. Raises InputError, also if it cannot be read."""
+    return rig_from_json(_text(path), path)
+
+
+def load_learned_rig(path: Path | str) -> LearnedRig:
+    """Read a learned rig from a file. Raises InputError, also if the file holds the model alone."""
+    return learned_rig_from_json(_text(path), path)
+
+
+def _text(path: Path | str) -> bytes:
+    return read_limited(path, LIMIT_bytes, "pass a *.rig.json file")

@@ -1,0 +1,203 @@
+"""The model of a rig, which turns a command into the force on the finger, and its prior."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from fdvv.compensation.identification.balance import (
+    PARAMETERS,
+    DRAG_cN,
+    Sensor,
+    cN_PER_g_m_s2,
+    first_order_lag,
+)
+from fdvv.errors import ModelError
+from fdvv.units import FloatArray
+
+
+@dataclass(frozen=True)
+class RigModel:
+    """A rig as identified from its own presses; the finger's force at time t is
+
+        felt(t) = coil(t) + viscous v + friction sign(v) - weight + mass a
+        coil(t) + lag coil'(t) = gain(x) command(t - delay_s + lag) + back_emf gain(x)^2 v
+
+    with x, v, a the cap's true motion, positive into the button, and lag the electric one. To first order a
+    command acts after delay_s, and the coil's delayed braking cancels some inertia. The host never sees the
+    twin's parameters: every number is estimated from what a rig senses and commands, in the units of the
+    finger's sensor, whose calibration it shares.
+
+    Attributes
+    ----------
+    gain : (c0, c1, c2) of c0 + c1 x + c2 x^2, x in mm: force on the finger per command, with calibration,
+        the coil's droop over its stroke and its resistance.
+    delay_s : from the tick that commands a force to the coil's force: computing, half
+        a tick of holding, and the coil's inductance.
+    electric_lag_s : the part of delay_s that is a first-order lag, the coil's inductance over its resistance.
+    position_lag_s : age of the sensed displacement.
+    drag_N_s_m : viscous friction and, with a voltage drive, back-EMF where the gain is 1.
+    back_emf_N_s_m : the coil's part of drag_N_s_m, proportional to the square of the gain.
+    friction_cN : dry friction, half of the loop between both directions.
+    weight_cN : of the mover along the stroke; negative if it hangs.
+    mass_g : of all that moves with the cap.
+    play_cN : hysteresis of the finger's force sensor, whole loop.
+    position_noise_mm, force_noise_cN : rms, as sensed from tick to tick.
+    residual_cN : rms residual of the presses it was identified from, averaged over 8 ms.
+    presses : it was identified from.
+    error : standard error of every estimated number above, by its name; of ``gain`` at mid travel.
+    """
+
+    gain: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    delay_s: float = 0.0
+    electric_lag_s: float = 0.0
+    position_lag_s: float = 0.0
+    drag_N_s_m: float = 0.0
+    back_emf_N_s_m: float = 0.0
+    friction_cN: float = 0.0
+    weight_cN: float = 0.0
+    mass_g: float = 0.0
+    play_cN: float = 0.0
+    position_noise_mm: float = 0.0
+    force_noise_cN: float = 0.0
+    residual_cN: float = 0.0
+    presses: int = 0
+    error: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        numbers = [getattr(self, f.name) for f in fields(self) if f.name not in ("gain", "error")]
+        if not np.isfinite([*numbers, *self.gain, *self.error.values()]).all():
+            raise ModelError(f"a rig model needs finite numbers, got {self}")
+
+    def gain_at(self, displacement_mm: FloatArray) -> FloatArray:
+        """Return the gain, force on the finger per command, the shape of displacement_mm."""
+        c0, c1, c2 = self.gain
+        return np.asarray(c0 + displacement_mm * (c1 + displacement_mm * c2))
+
+    def drag_at(self, displacement_mm: FloatArray) -> FloatArray:
+        """Return the drag in N s/m, the shape of displacement_mm."""
+        braking = self.back_emf_N_s_m * self.gain_at(displacement_mm) ** 2
+        return np.asarray(self.drag_N_s_m - self.back_emf_N_s_m + braking)
+
+    def opposing_cN(
+        self,
+        velocity_mm_s: FloatArray,
+        acceleration_m_s2: FloatArray,
+        displacement_mm: FloatArray | None = None,
+    ) -> FloatArray:
+        """Return the force on the finger that the rig itself adds in this motion, at zero command.
+
+        All of one shape; without displacement_mm the gain is taken as 1. The coil's lag is first order.
+        """
+        drag, emf = np.asarray(self.drag_N_s_m), np.asarray(self.back_emf_N_s_m)
+        if displacement_mm is not None:
+            drag = self.drag_at(displacement_mm)
+            emf = drag - (self.drag_N_s_m - self.back_emf_N_s_m)
+        rub = self.friction_cN * np.sign(velocity_mm_s)
+        late_g = 1000.0 * emf * self.electric_lag_s
+        inertia = cN_PER_g_m_s2 * (self.mass_g - late_g) * acceleration_m_s2
+        return np.asarray(DRAG_cN * drag * velocity_mm_s + rub - self.weight_cN + inertia)
+
+    def coil_cN(
+        self,
+        t_s: FloatArray,
+        displacement_mm: FloatArray,
+        velocity_mm_s: FloatArray,
+        commanded_cN: FloatArray,
+    ) -> FloatArray:
+        """Return the force of the coil, including its braking, (n,) as every column, on even times.
+
+        commanded_cN : as decided at t_s, interpolated linearly; the zero-order hold is part of delay_s.
+        """
+        pushed = np.interp(t_s - self.delay_s + self.electric_lag_s, t_s, commanded_cN)
+        emf = DRAG_cN * self.back_emf_N_s_m * self.gain_at(displacement_mm) ** 2
+        coil = self.gain_at(displacement_mm) * pushed + emf * velocity_mm_s
+        return first_order_lag(coil, self.electric_lag_s, float(t_s[1] - t_s[0]))
+
+    def felt_cN(
+        self,
+        t_s: FloatArray,
+        displacement_mm: FloatArray,
+        velocity_mm_s: FloatArray,
+        acceleration_m_s2: FloatArray,
+        commanded_cN: FloatArray,
+    ) -> FloatArray:
+        """Return the force on the finger between the stops, (n,) as every column; see coil_cN()."""
+        coil = self.coil_cN(t_s, displacement_mm, velocity_mm_s, commanded_cN)
+        viscous = DRAG_cN * (self.drag_N_s_m - self.back_emf_N_s_m) * velocity_mm_s
+        rest = viscous + self.friction_cN * np.sign(velocity_mm_s) - self.weight_cN
+        return coil + rest + cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """Prior of a parameter: mean, spread and bounds."""
+
+    mean: float
+    spread: float
+    low: float = -np.inf
+    high: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not (self.spread > 0 and self.low <= self.mean <= self.high):
+            raise ModelError(f"a prior needs a spread above 0 and a mean within its bounds, got {self}")
+
+
+RANGES: Mapping[str, Plausible] = {
+    "gain_0": Plausible(0.9, 0.15, 0.2, 3.0),
+    "gain_1": Plausible(0.07, 0.06),
+    "gain_2": Plausible(-0.011, 0.012),
+    "viscous_N_s_m": Plausible(0.5, 0.3, 0.0),
+    "back_emf_N_s_m": Plausible(3.0, 4.0),
+    "friction_cN": Plausible(4.0, 3.0, 0.0),
+    "weight_cN": Plausible(20.0, 20.0),
+    "mass_g": Plausible(22.0, 8.0, 1.0),
+    "half_play_cN": Plausible(1.5, 1.0, 0.0, 5.0),
+    "position_lag_s": Plausible(9e-4, 4e-4, 5e-5, 4e-3),
+    "electric_lag_s": Plausible(5e-4, 4e-4, 2e-5, 4e-3),
+}
+"""Priors for voice coils of a few newtons with their transformers and bushings."""
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Prior of a rig, before any press.
+
+    Attributes
+    ----------
+    tick_s : period of its loop; from the record if None.
+    sensor : the finger's force sensor.
+    compute_ratio, compute_spread_ratio : from sample to drive, in ticks, without the half tick of holding.
+    ranges : of the other parameters, by their names in RANGES, which supplies the missing ones.
+    """
+
+    tick_s: float | None = None
+    sensor: Sensor = field(default_factory=Sensor)
+    compute_ratio: float = 0.4
+    compute_spread_ratio: float = 0.2
+    ranges: Mapping[str, Plausible] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        unknown = set(self.ranges) - set(RANGES)
+        if unknown:
+            raise ModelError(
+                f"no rig parameter is called {', '.join(sorted(unknown))}; choose from {', '.join(RANGES)}"
+            )
+        if not (0 <= self.compute_ratio <= 1 and self.compute_spread_ratio > 0):
+            raise ModelError(
+                f"compute_ratio must be in 0..1 and its spread above 0, got {self.compute_ratio}"
+            )
+
+    def vectors(self, tick_s: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return means, spreads, lower and upper bounds, in the order of PARAMETERS."""
+        delay = Plausible(
+            (0.5 + self.compute_ratio) * tick_s,
+            self.compute_spread_ratio * tick_s,
+            0.5 * tick_s,
+            1.5 * tick_s,
+        )
+        ranges = {**RANGES, **self.ranges, "command_delay_s": delay}
+        rows = np.array([(p.mean, p.spread, p.low, p.high) for p in (ranges[name] for name in PARAMETERS)])
+        return rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3]

@@ -1,0 +1,295 @@
+"""Model-based compensation: identify the rig, feed its forces forward, learn only the rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fdvv.compensation.identification.balance import Sensor
+from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.method import UNTUNED, CompensationJob, Outcome, PressCount, Trial, Tuning
+from fdvv.compensation.rig_learning import (
+    Learning,
+    Pair,
+    PressError,
+    PressErrors,
+    best_rows,
+    command_surface,
+    curves_of,
+    learn_stroke,
+    minimum_lift_surface,
+    press_error,
+    press_summary,
+    prior_table,
+    tuning_of,
+)
+from fdvv.compensation.stroke_samples import StrokeSample, stroke_samples
+from fdvv.errors import FitError, ModelError
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+
+WEAK_ratio = 0.5
+"""An estimate is weak if its standard error exceeds this part of it."""
+
+QUANTITIES = {
+    "gain": ("gain", ""),
+    "drag_N_s_m": ("drag", "N s/m"),
+    "friction_cN": ("friction", "cN"),
+    "weight_cN": ("weight", "cN"),
+    "mass_g": ("mass", "g"),
+    "delay_s": ("command delay", "ms"),
+    "position_lag_s": ("position lag", "ms"),
+    "play_cN": ("sensor play", "cN"),
+}
+
+
+def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
+    """Summarize a rig with standard errors, and which estimates are weak; the gain at middle_mm."""
+    found, weak = [], []
+    for name, (words, unit) in QUANTITIES.items():
+        value, error = value_of(rig, name, middle_mm), rig.error.get(name, 0.0)
+        scale = 1000.0 if unit == "ms" else 1.0
+        digits = 2 if unit in ("", "ms") else 1
+        end = f" {unit}" if unit else ""
+        found.append(f"{words} {scale * value:.{digits}f} +- {scale * error:.{digits}f}{end}")
+        if error > WEAK_ratio * abs(value):
+            weak.append(words)
+    text = f"{', '.join(found)}, from {rig.presses} presses; {rig.residual_cN:.1f} cN rms unexplained"
+    return f"{text}; weak: {', '.join(weak)}" if weak else text
+
+
+def value_of(rig: RigModel, name: str, middle_mm: float) -> float:
+    """Return a parameter of a rig by its name; the gain at middle_mm."""
+    if name != "gain":
+        return float(getattr(rig, name))
+    c0, c1, c2 = rig.gain
+    return c0 + middle_mm * (c1 + middle_mm * c2)
+
+
+ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio = float("inf"), 0.6
+"""Identification accepts any speed: on a heavy rig that is not compensated yet, no person can keep a pace."""
+
+MAX_SPEED_DEVIATION_ratio = 0.5
+"""A press further from its requested speed informs the rig model, but not the tables of that speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class RigState:
+    """State of a job.
+
+    Attributes
+    ----------
+    rig : its model, once identified, or from an earlier job.
+    tables : learned corrections, press and release; None while the rig is not identified.
+    identification : presses made before the rig was identified.
+    errors : per speed of the job, of each press after that: press and release.
+    message : what the last press changed.
+    """
+
+    job: CompensationJob
+    errors: PressErrors
+    rig: RigModel | None = None
+    tables: Pair | None = None
+    identification: tuple[Press, ...] = ()
+    message: str = ""
+
+    @property
+    def identified(self) -> tuple[RigModel, Pair]:
+        """Rig and tables. Raises ModelError while they are unknown."""
+        if self.rig is None or self.tables is None:
+            raise ModelError("the rig is not identified yet")
+        return self.rig, self.tables
+
+    @property
+    def turn(self) -> int:
+        """Index of the speed with the fewest presses since identification."""
+        return min(range(len(self.errors)), key=lambda i: len(self.errors[i]))
+
+
+@dataclass(frozen=True)
+class RigAware:
+    """Settings of the method, which docs/explanation/rig-aware.md explains.
+
+    Attributes
+    ----------
+    rounds : presses per speed after identification; with learned_rig 0 is enough.
+    learned_rig : from an earlier job on this rig: then nothing is identified.
+    identification_presses : at the job's speeds in turn; more, up to max_identification_presses, if they
+        are not informative enough.
+    sensor : of the finger.
+    bandwidth_Hz : of the controller's look-ahead.
+    friction_mm_s : speed above which friction is compensated in full.
+    learning : settings of learning. bin_mm : step of the tables.
+
+    Sessions on file know some fields by an older name, the "key" of their metadata.
+    """
+
+    rounds: int = 3
+    learned_rig: LearnedRig | None = field(default=None, metadata={"key": "memory"})
+    identification_presses: int = field(default=4, metadata={"key": "meet"})
+    max_identification_presses: int = field(default=8, metadata={"key": "meet_most"})
+    sensor: Sensor = field(default_factory=Sensor)
+    bandwidth_Hz: float = 120.0
+    friction_mm_s: float = 10.0
+    learning: Learning = field(default_factory=Learning)
+    bin_mm: float = 0.05
+
+    def __post_init__(self) -> None:
+        if self.rounds < 0 or not 1 <= self.identification_presses <= self.max_identification_presses:
+            raise ModelError(
+                "rounds must be at least 0, and 1 <= identification_presses <= max_identification_presses, "
+                f"got {self}"
+            )
+        if not (self.bandwidth_Hz > 0 and self.friction_mm_s > 0 and self.bin_mm > 0):
+            raise ModelError(f"bandwidth_Hz, friction_mm_s and bin_mm must be above 0, got {self}")
+
+    @property
+    def name(self) -> str:
+        # part of session.json: a session is resumed only under the same name
+        met = (
+            "a rig known before"
+            if self.learned_rig
+            else f"a rig identified from {self.identification_presses} presses"
+        )
+        rounds = "1 round" if self.rounds == 1 else f"{self.rounds} rounds"
+        return f"rig-aware: {met}, look-ahead and feed-forward, {rounds} of learning what is left"
+
+    def init(self, job: CompensationJob) -> RigState:
+        state = RigState(job, ((),) * job.target.velocity_mm_s.size)
+        if self.learned_rig is None:
+            return state
+        rig, target = self.learned_rig.rig, job.target
+        fresh = prior_table(job, rig, self.learning)
+        rows = self.learned_rig.rows_cN(target.displacement_mm, target.velocity_mm_s, job.travel_mm)
+        # what was learned on another button is certain up to the spread of one speed alone
+        alone = np.diag(fresh.covariance_cN2) * self.learning.alone_ratio**2
+        press, release = (replace(fresh, rows_cN=r, covariance_cN2=np.diag(alone)) for r in rows)
+        return replace(state, rig=rig, tables=(press, release))
+
+    def trial(self, state: RigState) -> Trial | None:
+        """Return the next press: first identification, then the speed with the fewest; None when finished."""
+        speeds = state.job.target.velocity_mm_s
+        if state.rig is None:
+            surface = identification_surface(state.job.target, limit_cN=state.job.force_limit_cN)
+            speed = float(speeds[len(state.identification) % speeds.size])
+            return Trial(surface, speed, pace_ratio=ANY_SPEED_ratio)
+        at = state.turn
+        if len(state.errors[at]) >= self.rounds:
+            return None
+        return Trial(
+            self._surface(state, state.identified[1]),
+            float(speeds[at]),
+            self._tuning(state),
+            LOOSE_SPEED_TOLERANCE_ratio,
+        )
+
+    def step(self, press: Press, state: RigState) -> RigState:
+        """Identify the rig, or learn from a press on it. Raises ModelError on an uninformative press."""
+        if state.rig is None:
+            return self._identify_step(press, state)
+        at = state.turn
+        pair, tables = self._learn(self._strokes(press, state), state, at)
+        errors = (*state.errors[:at], (*state.errors[at], pair), *state.errors[at + 1 :])
+        message = press_summary(state.rig, (state.identified[1], tables), pair, at)
+        return replace(state, errors=errors, tables=tables, message=message)
+
+    def explain(self, state: RigState) -> str:
+        """Return what the last press changed; empty before the first."""
+        return state.message
+
+    def count(self, state: RigState) -> PressCount:
+        """Return the count of presses; identification presses count for the speed they are requested at."""
+        size = state.job.target.velocity_mm_s.size
+        needed = (
+            0
+            if self.learned_rig
+            else max(self.identification_presses, len(state.identification) + (state.rig is None))
+        )
+        first = [needed // size + (i < needed % size) for i in range(size)]
+        made = len(state.identification) + sum(map(len, state.errors))
+        return PressCount(made, needed + size * self.rounds, tuple(n + self.rounds for n in first))
+
+    def done(self, state: RigState) -> Outcome:
+        """Return the tables, with the best ones pressed wherever the last press was far worse."""
+        made = self.count(state).made
+        if state.rig is None:
+            start = minimum_lift_surface(state.job)
+            return Outcome(start, (), made, False, f"{made} presses, the rig is not identified yet")
+        _, tables = state.identified
+        complete = self.trial(state) is None
+        sentence = explain_rig(state.rig, 0.5 * state.job.travel_mm)
+        surface = self._surface(state, best_rows(tables, state.errors))
+        curves = curves_of(state.job, state.errors, self.learned_rig)
+        return Outcome(surface, curves, made, complete, sentence, self._tuning(state))
+
+    def learned(self, state: RigState) -> LearnedRig:
+        """Return the rig with its learned residual, for other buttons. ModelError before identification."""
+        rig, tables = state.identified
+        press, release = (table.rows_cN for table in best_rows(tables, state.errors))
+        target, job = state.job.target, state.job
+        errors = np.array([[c.mean_error_cN for c in curves_of(job, state.errors, self.learned_rig)]])
+        errors = np.nan_to_num(errors.reshape(2, -1), nan=rig.residual_cN)
+        residual = ForceSurface(target.displacement_mm, target.velocity_mm_s, press, release)
+        return LearnedRig(rig, residual, job.travel_mm, errors)
+
+    def _identify_step(self, press: Press, state: RigState) -> RigState:
+        """Collect identification presses; once they suffice, identify the rig and learn from them all."""
+        presses = (*state.identification, press)
+        if len(presses) < self.identification_presses:
+            message = f"{len(presses)} of {self.identification_presses} identification presses"
+            return replace(state, identification=presses, message=message)
+        try:
+            rig = identify(presses, state.job.travel_mm)
+        except FitError as error:
+            if len(presses) >= self.max_identification_presses:
+                raise ModelError(f"the rig cannot be identified: {error}") from error
+            return replace(state, identification=presses, message=f"one more press is needed: {error}")
+        table = prior_table(state.job, rig, self.learning)
+        after = replace(state, rig=rig, identification=presses, tables=(table, table))
+        speeds = state.job.target.velocity_mm_s
+        for i, earlier in enumerate(presses):
+            after = replace(after, tables=self._from_identification(earlier, after, i % speeds.size))
+        return replace(after, message=explain_rig(rig, 0.5 * state.job.travel_mm))
+
+    def _from_identification(self, press: Press, state: RigState, at: int) -> Pair:
+        """Return the tables after an identification press, if it is near enough to its requested speed."""
+        requested = float(state.job.target.velocity_mm_s[at])
+        try:
+            strokes = self._strokes(press, state)
+            if abs(strokes[0].speed_mm_s - requested) <= MAX_SPEED_DEVIATION_ratio * requested:
+                return self._learn(strokes, state, at)[1]
+        except ModelError:
+            pass  # it served the identification
+        return state.identified[1]
+
+    def _strokes(self, press: Press, state: RigState) -> tuple[StrokeSample, StrokeSample]:
+        try:
+            return stroke_samples(press, state.job.travel_mm, state.identified[0], self.sensor)
+        except FitError as error:
+            raise ModelError(str(error)) from error
+
+    def _learn(
+        self, strokes: tuple[StrokeSample, StrokeSample], state: RigState, at: int
+    ) -> tuple[tuple[PressError, PressError], Pair]:
+        """Return the errors of a press of speed number ``at``, and the tables after it."""
+        rig, tables = state.identified
+        job, rig_and_tuning = state.job, (rig, self._tuning(state))
+        targets = (job.target.press_cN[at], job.target.release_cN[at])
+        each = tuple(zip(tables, strokes, targets, strict=True))
+        down, up = (press_error(stroke, force, table, at, job.travel_mm) for table, stroke, force in each)
+        press_table, release_table = (
+            learn_stroke(table, stroke, force, at, rig_and_tuning, self.learning)
+            for table, stroke, force in each
+        )
+        return (down, up), (press_table, release_table)
+
+    def _tuning(self, state: RigState) -> Tuning:
+        if state.rig is None:
+            return UNTUNED
+        return tuning_of(state.rig, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
+
+    def _surface(self, state: RigState, tables: Pair) -> ForceSurface:
+        return command_surface(state.job, state.identified[0], tables, self.friction_mm_s)

@@ -1,0 +1,233 @@
+"""A board in lockstep with a simulated rig and person: its link, and the device."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from fdvv.device.client import Client
+from fdvv.device.contract import DeviceInfo
+from fdvv.device.plant import Inputs, Outputs, Person, Plant, Truth
+from fdvv.device.remote import Remote
+from fdvv.device.telemetry import IntArray, TickColumns
+from fdvv.errors import DeviceError
+from fdvv.model.press import Press
+from fdvv.protocol.tables import Settings, TickFlag
+
+
+class Board(Protocol):
+    """The firmware, run a tick at a time."""
+
+    @property
+    def name(self) -> str:
+        """Kind of board."""
+
+    @property
+    def ticks(self) -> int:
+        """How many it had counted before its first plant was connected."""
+
+    def tick(self, inputs: Inputs) -> Outputs:
+        """Run one tick; DeviceError if the board is gone."""
+
+    def write(self, data: bytes) -> None:
+        """Put bytes on its link."""
+
+    def read(self) -> bytes:
+        """Return what it has put on the link since the last call."""
+
+    def unplug(self) -> None:
+        """Pull the link's cable; what is on it is lost."""
+
+    def plug(self) -> None:
+        """Plug it in again."""
+
+    def close(self) -> None:
+        """Switch the board off."""
+
+
+class LockstepPort:
+    """The link of a board in lockstep; its clock is the board's, so waiting costs no real time.
+
+    Attributes
+    ----------
+    tick_us : period of the board's loop.
+    outputs : of the last tick.
+    ticks : the board's number of each tick since the plant was connected.
+    """
+
+    def __init__(self, board: Board, plant: Plant, tick_us: int) -> None:
+        self.board, self.tick_us = board, tick_us
+        self.outputs = Outputs()
+        self.ticks: list[int] = []
+        self._tick = board.ticks
+        self._plant = plant
+        self._time_us = 0
+        self._plugged = True
+
+    @property
+    def name(self) -> str:
+        return self.board.name
+
+    def now_s(self) -> float:
+        return self._time_us * 1e-6
+
+    def connect(self, plant: Plant) -> None:
+        """Connect the board to another plant from the next tick on."""
+        self._plant, self.ticks = plant, []
+
+    def step(self) -> Outputs:
+        last = self.outputs
+        inputs = self._plant.step(last.duty_q15, last.enable, last.stop_us, last.slot)
+        self._tick += inputs.elapsed_ticks
+        self.ticks.append(self._tick)
+        self._time_us += inputs.elapsed_ticks * self.tick_us
+        self.outputs = self.board.tick(inputs._replace(time_us=self._time_us % 2**32))
+        return self.outputs
+
+    def write(self, data: bytes) -> None:
+        """Send bytes; the board sees them in its next tick."""
+        self._check()
+        self.board.write(data)
+
+    def read(self, until_s: float) -> bytes:
+        self._check()
+        while True:
+            data = self.board.read()
+            if data or self.now_s() >= until_s:
+                return data
+            self.step()
+
+    def unplug(self) -> None:
+        self._plugged = False
+        self.board.unplug()
+
+    def reopen(self) -> None:
+        if not self._plugged:
+            self.board.plug()
+        self._plugged = True
+
+    def close(self) -> None:
+        self._plugged = False
+        self.board.close()
+
+    def _check(self) -> None:
+        if not self._plugged:
+            raise DeviceError(f"{self.name}: the line is closed; open the device again")
+
+
+class LinkedDevice(Remote):
+    """A board in lockstep; someone on the plant presses when asked.
+
+    Parameters
+    ----------
+    board : with the firmware.
+    person : plants to press on; the board gets their settings.
+    """
+
+    def __init__(self, board: Board, person: Person) -> None:
+        self._person = person
+        self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
+        try:
+            super().__init__(Client(self.port))
+            if self.settings() != person.settings:
+                self.configure(person.settings)
+        except BaseException:
+            self.port.close()
+            raise
+
+    def info(self) -> DeviceInfo:
+        """Return who this is; an emulated board does not know that nothing about it is real."""
+        return replace(super().info(), name=self.board_name, simulated=True)
+
+    def upload_program(self, image: bytes) -> None:
+        """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
+        super().upload_program(image)
+        self._person.load(image)
+
+    @property
+    def board_name(self) -> str:
+        """Name the board, and how it runs where its firmware names a real one."""
+        name, kind = super().info().name, self.port.board.name
+        return name if name == kind else f"{kind} {name}"
+
+    def configure(self, settings: Settings) -> None:
+        """Replace calibration and limits, whole or not at all; the device forgets its program."""
+        super().configure(settings)
+        self.port.tick_us = settings.tick_us
+        self.port.connect(self._person.rest(settings))
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Have the simulated person press once; DeviceError if the device faults meanwhile."""
+        self._check_press(velocity_mm_s)
+        self.client.announce(velocity_mm_s)
+        self.client.telemetry.clear()
+        self.client.stream(1)
+        try:
+            self.client.arm()
+            truth, ticks = self._pressed(velocity_mm_s)
+        finally:
+            self.stop()
+            self.port.connect(self._person.rest(self._settings))
+        self._fail_on_fault()
+        return self._joined(truth, ticks, velocity_mm_s)
+
+    def press_armed(self, velocity_mm_s: float) -> Press:
+        """Have the simulated person press once while the device renders, which it goes on with.
+
+        It must be armed and stream its records. DeviceError if it faults meanwhile.
+        """
+        self._check_press(velocity_mm_s)
+        self.client.announce(velocity_mm_s)
+        self.client.telemetry.clear()
+        try:
+            truth, ticks = self._pressed(velocity_mm_s)
+        finally:
+            self.port.connect(self._person.rest(self._settings))
+        self._fail_on_fault()
+        return self._joined(truth, ticks, velocity_mm_s)
+
+    def _pressed(self, velocity_mm_s: float) -> tuple[Truth, IntArray]:
+        """Let the cap come up and the person press; give what happened and the board's ticks of it."""
+        self._listen(self._person.settle_s)
+        plant = self._person.press(self.image, velocity_mm_s, self._settings)
+        self.port.connect(plant)
+        self._listen(plant.ticks * self._settings.tick_us * 1e-6)
+        return plant.record(), np.array(self.port.ticks)
+
+    def _listen(self, duration_s: float) -> None:
+        self.client.listen(self.port.now_s() + duration_s)
+
+    def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
+        """Join the telemetry of the board with the truth at the same ticks."""
+        telemetry = self.client.telemetry.columns()
+        assert truth.tick is not None
+        rows = np.flatnonzero(truth.tick)[: ticks.size]
+        places = np.searchsorted(ticks, telemetry.tick)
+        inside = (places < rows.size) & (telemetry.tick >= ticks[0])
+        if not inside.any():
+            raise DeviceError(f"{self.client.port.name}: no telemetry arrived during the press")
+        return join(truth, rows[places[inside]], telemetry.part(inside), velocity_mm_s)
+
+
+def join(truth: Truth, rows: IntArray, telemetry: TickColumns, velocity_mm_s: float) -> Press:
+    """Return a press from the truth and the telemetry of some of its rows.
+
+    Telemetry is held between its ticks; rows without telemetry are not marked as ticks.
+    """
+    held = np.maximum(np.searchsorted(rows, np.arange(truth.t_s.size), side="right") - 1, 0)
+    marked = np.zeros(truth.t_s.size, dtype=np.bool_)
+    marked[rows] = True
+    return Press(
+        truth.t_s,
+        truth.displacement_mm,
+        truth.force_cN,
+        velocity_mm_s,
+        telemetry.displacement_mm[held],
+        telemetry.force_cN[held],
+        telemetry.commanded_cN[held],
+        (telemetry.flags[held] & TickFlag.LIMITED) > 0,
+        marked,
+        simulated=True,
+    )

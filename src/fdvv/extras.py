@@ -1,0 +1,52 @@
+"""Optional parts of the laboratory: packages of their own, found by their entry points."""
+
+from __future__ import annotations
+
+from functools import cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+from fdvv.errors import BuildError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+Kind = Literal["commands", "engines", "pair_engines", "devices"]
+"""What an extra can add: a click command, an engine of ``fdvv optimize`` or a board in lockstep."""
+
+KNOWN = MappingProxyType(
+    {
+        ("commands", "hardware"): "fdvv-rig",
+        ("commands", "mechanism"): "fdvv-switch",
+        ("engines", "botorch"): "fdvv-botorch",
+        ("pair_engines", "preference-botorch"): "fdvv-botorch",
+        ("devices", "emulated"): "fdvv-m0",
+    }
+)
+"""The package that brings a name, installed or not: what an error tells a person to install."""
+
+
+@cache
+def installed(kind: Kind) -> MappingProxyType[str, EntryPoint]:
+    """Return the entry points of the installed extras by name; imports none of them."""
+    # imports the email package, for metadata: only where an extra may be meant
+    from importlib.metadata import entry_points
+
+    return MappingProxyType({entry.name: entry for entry in entry_points(group=f"fdvv.{kind}")})
+
+
+def names(kind: Kind) -> tuple[str, ...]:
+    """Return the names of a kind: the known ones, installed or not, then those of other packages."""
+    known = [name for group, name in KNOWN if group == kind]
+    return tuple(dict.fromkeys([*known, *sorted(installed(kind))]))
+
+
+def load(kind: Kind, name: str) -> Any:
+    """Import what an extra adds under a name.
+
+    Raises BuildError if the extra is not installed, KeyError if no extra is known to have the name.
+    """
+    if entry := installed(kind).get(name):
+        return entry.load()
+    package = KNOWN[kind, name]
+    raise BuildError(f"{name} is not installed; it comes with {package}: pip install {package}")

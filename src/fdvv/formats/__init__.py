@@ -1,0 +1,1 @@
+"""Foreign files: readers of measured force curves, and exchange with other programs."""

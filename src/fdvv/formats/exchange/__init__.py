@@ -1,0 +1,1 @@
+"""Import and export of buttons, vibrations and recordings in other programs' formats."""

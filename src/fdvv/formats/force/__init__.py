@@ -1,0 +1,1 @@
+"""Readers of measured force-displacement files, chosen by content."""

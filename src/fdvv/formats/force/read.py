@@ -1,0 +1,289 @@
+"""Read a file of force curves, whatever bench it is from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.errors import InputError, ModelError
+from fdvv.formats.force import repair as _repair
+from fdvv.formats.force import theremingoat as goat
+from fdvv.formats.force.haata import is_haata, read_haata
+from fdvv.formats.force.ods import is_ods, read_ods
+from fdvv.formats.force.plain_csv import read_plain_csv
+from fdvv.formats.force.repair import mean_velocity_mm_s, switching_mm
+from fdvv.formats.force.split import hand_over_turn, orient, split_run
+from fdvv.formats.force.tester_json import is_tester_json, read_tester_json
+from fdvv.formats.force.text import LEAST_SAMPLES, decode, refusal
+from fdvv.formats.force.types import Cycle, ForceFile, Notes, RawCycle, Reading, Track
+from fdvv.model.curve import MeasuredCurve, Stroke
+
+ENDINGS = (
+    (".downstroke", ".upstroke"),
+    ("_downstroke", "_upstroke"),
+    ("_press", "_release"),
+    (".press", ".release"),
+)
+
+
+def stroke_of(path: Path) -> tuple[Stroke, Path] | None:
+    """Return the stroke in a file's name and the path of the other stroke; None if it names none."""
+    for press, release in ENDINGS:
+        for mine, other, stroke in ((press, release, Stroke.PRESS), (release, press, Stroke.RELEASE)):
+            if path.stem.lower().endswith(mine):
+                return stroke, path.with_name(f"{path.stem[: -len(mine)]}{other}{path.suffix}")
+    return None
+
+
+def companion(path: Path) -> Path | None:
+    """Return the path of the other stroke of a pair; None if the name says no stroke."""
+    named = stroke_of(path)
+    return None if named is None else named[1]
+
+
+def base_name(path: Path) -> str:
+    """Return the name that both halves share."""
+    stem = path.stem
+    found = (ending for pair in ENDINGS for ending in pair if stem.lower().endswith(ending))
+    ending = next(found, "")
+    return stem[: len(stem) - len(ending)] or stem
+
+
+LEAST_TRAVEL_mm = 0.02
+"""Below four steps of the finest bench nothing was pressed."""
+
+
+def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
+    """Check a reading and make it a file; raises InputError if no stroke is left."""
+    cycles: list[Cycle] = []
+    for raw in reading.cycles:
+        cycles += [_cycle(part, notes) for part in split_run(_clean(raw, notes), notes)]
+    cycles = [cycle for cycle in cycles if cycle.press or cycle.release]
+    if not cycles:
+        why = notes.sentences[-1] if notes.sentences else "the displacement never changes"
+        raise refusal(source, "whole file", f"no stroke in it: {why}")
+    return ForceFile(reading.name, reading.format, tuple(cycles), notes.lines())
+
+
+def _clean(raw: RawCycle, notes: Notes) -> RawCycle:
+    return replace(
+        raw,
+        run=_possible(raw.run, notes),
+        press=_possible(raw.press, notes),
+        release=_possible(raw.release, notes),
+    )
+
+
+def _possible(track: Track | None, notes: Notes) -> Track | None:
+    if track is None or track.x_mm.size == 0:
+        return None
+    track = _repair.drop_impossible(track, notes)
+    if track.x_mm.size >= 3:
+        track = _repair.drop_stray_positions(track, notes)
+    return track if _long_enough(track, notes) else None
+
+
+def _long_enough(track: Track, notes: Notes) -> bool:
+    if track.x_mm.size < LEAST_SAMPLES:
+        notes.say(f"{track.where}: only {track.x_mm.size} usable samples; it was left out")
+        return False
+    if np.ptp(track.x_mm) < LEAST_TRAVEL_mm:
+        notes.say(
+            f"{track.where}: the displacement stays within {np.ptp(track.x_mm):.3g} mm; it was left out"
+        )
+        return False
+    return True
+
+
+def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
+    raw = _repair.correct_slip(hand_over_turn(_orient_pair(raw, notes), notes), notes)
+    actuation = switching_mm(raw.press, Stroke.PRESS, notes)
+    reset = switching_mm(raw.release, Stroke.RELEASE, notes)
+    return Cycle(
+        _curve(raw.press, Stroke.PRESS, raw.velocity_mm_s, notes),
+        _curve(raw.release, Stroke.RELEASE, raw.velocity_mm_s, notes),
+        raw.actuation_mm if actuation is None else actuation,
+        raw.reset_mm if reset is None else reset,
+        raw.label,
+    )
+
+
+def _orient_pair(raw: RawCycle, notes: Notes) -> RawCycle:
+    return replace(
+        raw,
+        press=None if raw.press is None else orient(raw.press, notes),
+        release=None if raw.release is None else orient(raw.release, notes),
+    )
+
+
+def _curve(track: Track | None, stroke: Stroke, velocity: float | None, notes: Notes) -> MeasuredCurve | None:
+    if track is None or not _long_enough(track, notes):
+        return None
+    track = _repair.drop_lost_tare(_repair.drop_spikes(track, notes), notes)
+    if stroke is Stroke.PRESS:
+        track = _repair.drop_stuck_probe(track, notes)
+    if not _long_enough(track, notes):
+        return None
+    _repair.warn_of_jumps(track, notes)
+    speed = mean_velocity_mm_s(track) if velocity is None else velocity
+    return MeasuredCurve(*_repair.rising(track, notes), stroke, speed)
+
+
+LARGEST_FILE = 64 * 2**20
+
+Lines = Sequence[str]
+
+READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines, Notes], Reading]], ...] = (
+    (is_tester_json, read_tester_json),
+    (goat.is_tidy, goat.read_tidy),
+    (goat.is_raw, goat.read_raw),
+    (goat.is_highres, goat.read_highres),
+    (is_haata, read_haata),
+)
+"""Text formats known by their first lines; a table with named columns is what none of them takes."""
+
+
+def reader_names() -> tuple[str, ...]:
+    """List the formats that can be read, as in ForceFile.format."""
+    return (
+        "thereminGoat-raw",
+        "thereminGoat-highres",
+        "thereminGoat-tidy",
+        "stroke-pair",
+        "haata",
+        "bluepylons-ods",
+        "bluepylons-csv",
+        "buddyog",
+        "tester-json",
+        "plain-csv",
+    )
+
+
+def read_force_file(path: str | Path) -> ForceFile:
+    """Read one file of force curves, found out by looking inside it.
+
+    Half of a stroke pair brings the other half with it. ``warnings`` say what was repaired.
+    Raises InputError, one line, if the file cannot be used.
+    """
+    path = Path(path)
+    notes = Notes()
+    reading = _read(path, notes)
+    try:
+        return build(path, reading, notes)
+    except ModelError as error:
+        raise refusal(path, "whole file", f"no valid curve: {error}") from None
+
+
+def _read(path: Path, notes: Notes) -> Reading:
+    content = _content(path)
+    if is_ods(content):
+        return read_ods(path, content, notes)
+    lines = decode(path, content, notes)
+    head = [line for line in lines if line.strip()][:60] or [""]
+    for recognise, read in READERS:
+        if recognise(head):
+            return read(path, _from_first(lines), notes)
+    return _strokes_or_table(path, lines, notes)
+
+
+def _content(path: Path) -> bytes:
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise refusal(path, "whole file", f"it has {size / 2**20:.0f} MiB; at most 64 are read")
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(path, "whole file", f"cannot be read ({error.strerror})", "check the path") from None
+    except ValueError as error:
+        raise InputError(repr(str(path)), "path", str(error), "check the path") from None
+
+
+def _from_first(lines: Lines) -> Lines:
+    start = next((i for i, line in enumerate(lines) if line.strip()), 0)
+    return lines[start:] if start else lines
+
+
+def _strokes_or_table(path: Path, lines: Lines, notes: Notes) -> Reading:
+    named = stroke_of(path)
+    mine = _half(path, lines, named[0] if named else None, notes)
+    if named is None:
+        return mine
+    stroke, sibling = named
+    name = base_name(path)
+    if not sibling.is_file():
+        notes.say(f"{sibling.name} is not there; the file holds the {stroke.value} only")
+        return replace(mine, name=name)
+    other_stroke = Stroke.RELEASE if stroke is Stroke.PRESS else Stroke.PRESS
+    theirs = _half(sibling, decode(sibling, _content(sibling), notes), other_stroke, notes)
+    return Reading(mine.format, name, _join(mine.cycles, theirs.cycles))
+
+
+def _half(path: Path, lines: Lines, stroke: Stroke | None, notes: Notes) -> Reading:
+    if not goat.is_stroke(lines):
+        return read_plain_csv(path, lines, stroke, notes)
+    if stroke is None:
+        raise refusal(
+            path,
+            "line 1",
+            "two columns without a header, and the file's name tells no stroke",
+            "name the columns with their units, or the file NAME.downstroke.csv",
+        )
+    track = goat.read_stroke(path, lines, stroke.value, notes)
+    cycle = RawCycle("", press=track) if stroke is Stroke.PRESS else RawCycle("", release=track)
+    return Reading("stroke-pair", base_name(path), [cycle])
+
+
+def _join(mine: Sequence[RawCycle], theirs: Sequence[RawCycle]) -> list[RawCycle]:
+    """Join presses and releases of the same velocity from two files; others stay single."""
+    rest = list(theirs)
+    joined = []
+    for cycle in mine:
+        match = next((c for c in rest if _fits(cycle, c)), None)
+        if match is not None:
+            rest.remove(match)
+            cycle = replace(cycle, press=cycle.press or match.press, release=cycle.release or match.release)
+        joined.append(cycle)
+    return joined + rest
+
+
+def _fits(a: RawCycle, b: RawCycle) -> bool:
+    both = (a.press is None) != (b.press is None) and (a.release is None) != (b.release is None)
+    return both and a.velocity_mm_s == b.velocity_mm_s
+
+
+SUFFIXES = (".csv", ".ods", ".json", ".txt")
+
+NOT_DATA = ("readme", "license", "licence", "copying", "changelog", "contributing", "notice")
+
+
+def find_force_files(folder: str | Path) -> list[Path]:
+    """List candidates under a folder, in the order of their paths; a stroke pair is listed once.
+
+    Only suffixes and names are looked at (.csv .ods .json .txt, no hidden files, readmes or licences);
+    whether a file can be read shows when it is read. Raises InputError if there is no such folder.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(folder, "path", "there is no such folder", "give a folder of measurements")
+    found = [path for path in folder.rglob("*") if _is_candidate(path.relative_to(folder)) and path.is_file()]
+    known = set(found)
+    return sorted(path for path in found if not _second_half(path, known))
+
+
+def _is_candidate(inside: Path) -> bool:
+    hidden = any(part.startswith(".") for part in inside.parts)
+    return not hidden and is_force_file(inside.name)
+
+
+def is_force_file(name: str) -> bool:
+    """Return whether a file's name alone may be that of force curves."""
+    lower = name.lower()
+    return lower.endswith(SUFFIXES) and not lower.startswith(NOT_DATA)
+
+
+def _second_half(path: Path, known: set[Path]) -> bool:
+    named = stroke_of(path)
+    return named is not None and named[0] is Stroke.RELEASE and named[1] in known

@@ -1,0 +1,1 @@
+"""Files: atomic writes, versioned JSON documents, columns, Parquet parts, file kinds."""

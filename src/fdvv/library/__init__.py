@@ -1,0 +1,1 @@
+"""The catalogue of buttons: index, search, similarity, and libraries of measured buttons."""

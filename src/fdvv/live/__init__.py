@@ -1,0 +1,1 @@
+"""Buttons pressed live: real-time loop, traces, telemetry for a page."""

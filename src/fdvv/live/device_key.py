@@ -1,0 +1,294 @@
+"""A device that a person presses while a task is shown elsewhere: its key on the host's clock."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from queue import Empty, SimpleQueue
+from threading import Lock, Thread
+from typing import Protocol, TypeVar
+
+from fdvv.device.contract import Device
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.remote import PressedDevice, Remote
+from fdvv.device.telemetry import TickColumns
+from fdvv.device.wire import RefusedError
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.model.model import FDVVModel
+from fdvv.program.button import compile_button
+from fdvv.program.surface import Limits
+from fdvv.protocol.tables import Fault, KeyRequest
+from fdvv.rendering.session_run import clear_latched
+
+Found = TypeVar("Found")
+
+GLANCE_s = 0.01
+"""What is asked for waits no longer while a real line is listened to."""
+
+WATCH_s = 0.5
+"""A warning that does not end the force is looked for so often."""
+
+ASKS_s = 0.1
+
+
+class DeviceLine(Protocol):
+    """A device that is heard while it renders."""
+
+    def do(self, work: Callable[[], Found]) -> Found:
+        """Call work with exclusive access to the device; its exceptions are raised here."""
+        ...
+
+    def now_s(self) -> float:
+        """Return the time by which changes are measured."""
+        ...
+
+    def wait(self, time_s: float) -> None:
+        """Let time pass."""
+        ...
+
+    def close(self) -> None:
+        """Listen no more."""
+        ...
+
+
+class SimulatedLine:
+    """A board in lockstep: its time passes while somebody waits, and at no other time."""
+
+    def __init__(self, device: LinkedDevice) -> None:
+        self._device = device
+
+    def do(self, work: Callable[[], Found]) -> Found:
+        """Do it."""
+        return work()
+
+    def now_s(self) -> float:
+        """Return the board's own time."""
+        return self._device.client.port.now_s()
+
+    def wait(self, time_s: float) -> None:
+        """Let the board run."""
+        self._device.client.listen(self.now_s() + time_s)
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class RealLine:
+    """A device that somebody presses: listened to in a thread of its own, which keeps its watch fed.
+
+    Parameters
+    ----------
+    device : open. heard : called with what came, also with nothing. watched : called every half second.
+    lost : called once with what went wrong. Both in the line's thread.
+    """
+
+    def __init__(
+        self,
+        device: Remote,
+        heard: Callable[[TickColumns], None],
+        watched: Callable[[], None],
+        lost: Callable[[DeviceError], None],
+    ) -> None:
+        self._device, self._heard, self._watched, self._lost = device, heard, watched, lost
+        self._asked: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._over, self._watch_s = False, time.monotonic()
+        self._thread = Thread(target=self._run, name="device line", daemon=True)
+        self._thread.start()
+
+    def do(self, work: Callable[[], Found]) -> Found:
+        """Have it done between two glances at the line."""
+        found: Future[Found] = Future()
+
+        def done() -> None:
+            try:
+                found.set_result(work())
+            except BaseException as error:
+                found.set_exception(error)
+
+        self._asked.put(done)
+        while True:
+            try:
+                return found.result(ASKS_s)
+            except TimeoutError:
+                if not self._thread.is_alive() and not found.done():
+                    name = self._device.client.port.name
+                    raise DeviceError(f"{name}: nobody listens to it any more; open it again") from None
+
+    def now_s(self) -> float:
+        """Return the host's monotonic clock."""
+        return time.monotonic()
+
+    def wait(self, time_s: float) -> None:
+        """Sleep."""
+        time.sleep(time_s)
+
+    def close(self) -> None:
+        """Listen no more; waits until the thread has ended."""
+        self._over = True
+        self._thread.join()
+
+    def _run(self) -> None:
+        client = self._device.client
+        while not self._over:
+            try:
+                client.listen(client.port.now_s() + GLANCE_s)
+                self._heard(client.telemetry.take())
+                if time.monotonic() >= self._watch_s + WATCH_s:
+                    self._watch_s = time.monotonic()
+                    self._watched()
+            except DeviceError as error:
+                self._lost(error)
+                self._over = True
+            self._do_asked()
+        self._do_asked()
+
+    def _do_asked(self) -> None:
+        while True:
+            try:
+                self._asked.get_nowait()()
+            except Empty:
+                return
+
+
+PINGS = 12
+"""Before the first press, to join the clocks; then every exchange goes on joining them."""
+
+EVERY = 10
+"""Ticks between two records: frames come steadily, so that a lost one is noticed."""
+
+KEPT = 200
+"""Of presses; a round has a handful."""
+
+
+class DeviceKey:
+    """A device on a line under a person's hand, button after button.
+
+    Parameters
+    ----------
+    device : open; closed with this. failed : called once with one line when the device has fallen to zero
+        force or is gone, from a thread of this.
+
+    Raises InputError on a device that no person presses.
+    """
+
+    def __init__(self, device: Device, failed: Callable[[str], None] = lambda _line: None) -> None:
+        if not isinstance(device, PressedDevice):
+            raise InputError("device", device.info().name, "is pressed by no person", "use serial:PORT")
+        self._device, self._failed = device, failed
+        self._level, self._pressed_s, self._missed = 0, list[float](), 0
+        self._problem, self._rendering, self._lock = "", False, Lock()
+        device.client.on_key = self._key
+        self._line = RealLine(device, self._heard, self._look, self._lost)
+
+    @property
+    def device(self) -> PressedDevice:
+        """The device."""
+        return self._device
+
+    @property
+    def problem(self) -> str:
+        """Why the device no longer renders, in one line; empty while it does."""
+        return self._problem
+
+    @property
+    def clock_error_ms(self) -> float:
+        """Error bound between the device's clock and the host's: half of the quickest exchange."""
+        return self._line.do(lambda: 0.5e-3 * self._device.client.clocks().shortest_us)
+
+    def render(self, model: FDVVModel) -> None:
+        """Put a button under the hand.
+
+        Raises InputError, ModelError on one that the device cannot hold, DeviceError.
+        """
+        self._check()
+        limits = Limits(self._device.settings())
+        image = compile_button(model, limits=limits).image
+        self._guarded(lambda: self._load(image))
+
+    def pressed_s(self, start_s: float, end_s: float) -> tuple[float, ...]:
+        """Return the times the key went down from start to end, on the host's monotonic clock, rising.
+
+        DeviceError if the device has failed, or if the line lost frames that may have reported a press.
+        """
+        self._check()
+        missed = self._line.do(lambda: self._device.client.telemetry.missing_frames)
+        lost, self._missed = missed - self._missed, missed
+        if lost:
+            name = self._device.info().name
+            raise DeviceError(f"{name}: the line lost {lost} frames, maybe a press; play it again")
+        with self._lock:
+            return tuple(sorted(at for at in self._pressed_s if start_s <= at <= end_s))
+
+    def rest(self) -> None:
+        """Fall to zero force until the next button; nothing happens if the device is gone."""
+        self._rendering = False
+        if not self._problem:
+            with suppress(DeviceError):
+                self._line.do(self._device.stop)
+
+    def close(self) -> None:
+        """Fall to zero force and let the device go."""
+        self.rest()
+        self._problem = self._problem or "the device is closed; open it again"
+        self._line.close()
+        self._device.close()
+
+    # -- in the line's thread ------------------------------------------------------------------------------
+
+    def _load(self, image: bytes) -> None:
+        device, client = self._device, self._device.client
+        device.stop()
+        clear_latched(device, lambda _line: None)
+        try:
+            device.upload_program(image)
+        except RefusedError as error:
+            raise ModelError(f"the device does not take it: {error}") from error
+        for _ in range(PINGS):
+            client.ping()
+        client.telemetry.clear()
+        self._missed, self._level = 0, 0
+        client.stream(EVERY)
+        client.arm()
+        self._rendering = True
+
+    def _key(self, notice: KeyRequest) -> None:
+        """Note a key that went down, or on to the next level."""
+        if notice.key > self._level:
+            at_s = self._device.client.host_s(notice.time_us)
+            with self._lock:
+                self._pressed_s = [*self._pressed_s, at_s][-KEPT:]
+        self._level = notice.key
+
+    def _heard(self, _columns: TickColumns) -> None:
+        """Ignore telemetry: keys are reported separately."""
+
+    def _look(self) -> None:
+        if self._rendering and not self._problem:
+            found = self._device.fault()
+            if found.fault is not Fault.NONE:
+                reason = found.fault.name.lower().replace("_", " ")
+                self._end(
+                    f"{self._device.info().name}: fell to zero force: {reason}; let go and play it again"
+                )
+
+    def _lost(self, error: DeviceError) -> None:
+        self._end(str(error))
+
+    def _end(self, line: str) -> None:
+        if self._problem:
+            return
+        self._problem, self._rendering = line, False
+        self._failed(line)
+
+    def _guarded(self, work: Callable[[], None]) -> None:
+        try:
+            self._line.do(work)
+        except DeviceError as error:
+            self._end(str(error))
+            raise
+
+    def _check(self) -> None:
+        if self._problem:
+            raise DeviceError(self._problem)

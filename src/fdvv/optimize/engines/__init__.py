@@ -1,0 +1,1 @@
+"""Engines that suggest designs: random, Sobol, Gaussian processes, Optuna, preferences."""

@@ -1,0 +1,93 @@
+"""The engines by name: those of this package and those of extras."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from fdvv import extras
+from fdvv.errors import InputError
+from fdvv.optimize.engines.gp import GPEngine, GPExpectedImprovement
+from fdvv.optimize.engines.gp_model import RecommendsBelievedBest
+from fdvv.optimize.engines.optuna import CMAESEngine, NSGA2Engine, TPEEngine
+from fdvv.optimize.engines.preference import PreferenceEngine
+from fdvv.optimize.engines.search import random_places, sobol_places, tried_places
+from fdvv.optimize.problem import Engine, PairEngine, Problem, Trial
+
+
+@dataclass(frozen=True)
+class RandomEngine(RecommendsBelievedBest):
+    """Draw designs at random, uniformly."""
+
+    name: str = field(default="random", init=False)
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        return problem.space.of_unit(random_places(problem, trials, count))
+
+
+@dataclass(frozen=True)
+class SobolEngine(RecommendsBelievedBest):
+    """Take the points of a scrambled Sobol sequence in turn, those that hold the constraints."""
+
+    name: str = field(default="sobol", init=False)
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        places = sobol_places(problem, tried_places(problem.space, trials), count)
+        return problem.space.of_unit(places)
+
+
+ENGINES: Mapping[str, Callable[..., Engine]] = MappingProxyType(
+    {
+        "random": RandomEngine,
+        "sobol": SobolEngine,
+        "tpe": TPEEngine,
+        "cmaes": CMAESEngine,
+        "nsga2": NSGA2Engine,
+        "gp-ei": GPExpectedImprovement,
+        "gp": GPEngine,
+    }
+)
+"""Engines of this package that read scores, by name; called with their options."""
+PAIR_ENGINES: Mapping[str, Callable[..., PairEngine]] = MappingProxyType({"preference": PreferenceEngine})
+"""Engines of this package that read comparisons, by name."""
+
+
+def engine_names() -> tuple[str, ...]:
+    """Return the names of the engines that read scores, those of extras last."""
+    return (*ENGINES, *extras.names("engines"))
+
+
+def pair_engine_names() -> tuple[str, ...]:
+    """Return the names of the engines that read comparisons, those of extras last."""
+    return (*PAIR_ENGINES, *extras.names("pair_engines"))
+
+
+def engine_of(name: str, options: Mapping[str, Any] | None = None) -> Engine:
+    """Make an engine.
+
+    Raises InputError on a name or an option that is not known, BuildError if its extra is not installed.
+    """
+    engine: Engine = _made(ENGINES, "engines", name, options)
+    return engine
+
+
+def pair_engine_of(name: str, options: Mapping[str, Any] | None = None) -> PairEngine:
+    """Make an engine of comparisons. Raises like ``engine_of``."""
+    engine: PairEngine = _made(PAIR_ENGINES, "pair_engines", name, options)
+    return engine
+
+
+def _made(
+    own: Mapping[str, Callable[..., Any]], kind: extras.Kind, name: str, options: Mapping[str, Any] | None
+) -> Any:
+    known = (*own, *extras.names(kind))
+    if name not in known:
+        raise InputError("engine", name, "no engine has this name", f"use one of {', '.join(known)}")
+    make = own[name] if name in own else extras.load(kind, name)
+    try:
+        return make(**(options or {}))
+    except TypeError as error:
+        reason = f"an option does not fit ({error})"
+        raise InputError("engine", name, reason, "see the options in the docs") from error

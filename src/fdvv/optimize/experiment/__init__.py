@@ -1,0 +1,1 @@
+"""The paper's experiment on simulated people: training, a week, validation, report."""

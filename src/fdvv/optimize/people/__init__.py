@@ -1,0 +1,1 @@
+"""Simulated users who press the twin."""

@@ -1,0 +1,178 @@
+"""A simulated person as numbers; docs/explanation/simulated-users.md tells where they come from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from fdvv.errors import ModelError
+
+AT_LEAST_0 = ("motor_ms", "percept_ms", "lift_mm", "rest_spread_cN", "learning_ratio", "fatigue_ratio")
+FREE = ("bias_ms", "anticipated_ms", "rest_cN")
+RATIOS = ("aim_ratio", "adaptation_ratio", "pace_spread_ratio", "push_spread_ratio", "stiffness_spread_ratio")
+
+
+@dataclass(frozen=True)
+class SimulatedUser:
+    """A person who plays tasks on the twin.
+
+    Attributes
+    ----------
+    number : of the person in a draw.
+    clock_ratio, cue_1_s, cue_delay_s, aim_ratio : of the click-timing model: c_sigma, nu, delta, c_mu.
+    motor_ms : spread of a movement's onset about its plan.
+    bias_ms : how late keys are reported and targets seen, alike for all buttons; the person cannot notice.
+    anticipated_ms : time from the onset of movement to its felt event that is allowed for on a new button.
+    adaptation_ratio : share of the felt error that the next press makes up for.
+    percept_ms : spread of the felt time of an event of salience 1.
+    snap_cN, impact_mm_s, vibration_m_s2 : a fall of force, a speed at the stop, a vibration of salience 1.
+    stiffness_N_m, damping_N_s_m, mass_kg : of the finger.
+    push_cN : force beyond the bottom that is aimed at.
+    rest_cN, rest_spread_cN : force of the resting finger, and how it differs from press to press.
+    pace_mm_s : mean speed of the finger's referent.
+    lift_mm : height above the cap before a press; 0: resting.
+    pace_spread_ratio, push_spread_ratio, stiffness_spread_ratio : from press to press.
+    learning_ratio, learning_presses : extra spread of timing at first, and presses in which it falls to 1/e.
+    fatigue_ratio : of spread added, and of force and pace lost, per thousand presses.
+
+    ModelError on anything impossible.
+    """
+
+    number: int = 0
+    clock_ratio: float = 0.09015
+    cue_1_s: float = 19.931
+    cue_delay_s: float = 0.399
+    aim_ratio: float = 0.185
+    motor_ms: float = 10.0
+    bias_ms: float = 93.0
+    anticipated_ms: float = 0.0
+    adaptation_ratio: float = 0.05
+    percept_ms: float = 20.0
+    snap_cN: float = 10.0
+    impact_mm_s: float = 200.0
+    vibration_m_s2: float = 5.0
+    stiffness_N_m: float = 450.0
+    damping_N_s_m: float = 4.5
+    mass_kg: float = 0.007
+    push_cN: float = 150.0
+    rest_cN: float = 10.0
+    rest_spread_cN: float = 5.0
+    pace_mm_s: float = 100.0
+    lift_mm: float = 0.0
+    pace_spread_ratio: float = 0.1
+    push_spread_ratio: float = 0.15
+    stiffness_spread_ratio: float = 0.15
+    learning_ratio: float = 0.0
+    learning_presses: float = 60.0
+    fatigue_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            if one.name != "number":
+                self._check(one.name, getattr(self, one.name))
+
+    def _check(self, name: str, value: float) -> None:
+        fine = math.isfinite(value)
+        if name in RATIOS:
+            fine = fine and 0 <= value <= 1
+        elif name in AT_LEAST_0:
+            fine = fine and value >= 0
+        elif name not in FREE:
+            fine = fine and value > 0
+        if not fine:
+            raise ModelError(f"a simulated person cannot have {name} = {value}")
+
+
+SPREADS: Mapping[str, float] = MappingProxyType(
+    {
+        "clock_ratio": 0.25,
+        "motor_ms": 0.15,
+        "adaptation_ratio": 0.4,
+        "percept_ms": 0.25,
+        "stiffness_N_m": 0.35,
+        "damping_N_s_m": 0.15,
+        "mass_kg": 0.2,
+        "push_cN": 0.3,
+        "rest_cN": 0.5,
+        "pace_mm_s": 0.2,
+        "bias_ms": 18.0,
+        "anticipated_ms": 10.0,
+    }
+)
+"""Between people: of the logarithm, but of bias_ms and anticipated_ms in ms."""
+STRAIGHT = ("bias_ms", "anticipated_ms")
+
+
+@dataclass(frozen=True)
+class UserSettings:
+    """Who is drawn.
+
+    Attributes
+    ----------
+    middle : the person in the middle of all. spreads : standard deviations between people by field, of the
+        logarithm or in ms (STRAIGHT); a field that is left out does not differ.
+    """
+
+    middle: SimulatedUser = field(default_factory=SimulatedUser)
+    spreads: Mapping[str, float] = field(default_factory=lambda: dict(SPREADS))
+
+    def __post_init__(self) -> None:
+        for name, spread in self.spreads.items():
+            if name not in SPREADS or not 0 <= spread < 1e3:
+                raise ModelError(f"people may differ in {', '.join(SPREADS)}, not in {name} by {spread}")
+
+
+def draw_users(count: int, seed: int = 0, settings: UserSettings | None = None) -> tuple[SimulatedUser, ...]:
+    """Draw people, two spreads either way at most; each is the same whatever count is."""
+    return tuple(draw_user(number, seed, settings) for number in range(count))
+
+
+def draw_user(number: int, seed: int = 0, settings: UserSettings | None = None) -> SimulatedUser:
+    """Draw one person by number."""
+    settings = settings or UserSettings()
+    random = np.random.default_rng([seed, number])
+    draws = dict(zip(SPREADS, np.clip(random.standard_normal(len(SPREADS)), -2, 2).tolist(), strict=True))
+    changed = {
+        name: _moved(settings.middle, name, spread * draws[name]) for name, spread in settings.spreads.items()
+    }
+    return replace(settings.middle, number=number, **changed)
+
+
+def _moved(middle: SimulatedUser, name: str, by: float) -> float:
+    value: float = getattr(middle, name)
+    if name in STRAIGHT:
+        return value + by
+    moved = value * float(np.exp(by))
+    return min(1.0, moved) if name.endswith("_ratio") else moved
+
+
+def timing_spread_s(user: SimulatedUser, cue_s: float, period_s: float) -> float:
+    """Return the standard deviation of a click on a target that is seen for cue_s and comes every period_s.
+
+    The clock of the rhythm alone has a spread in proportion to the period; what is seen has one that falls
+    with the time it is seen; both are weighed by their precision (Lee et al. 2018, constants as published
+    with Park and Lee 2020).
+    """
+    clock = math.expm1(min(700.0, user.cue_1_s * cue_s))
+    seen_s = (1.0 / clock if clock > 0 else math.inf) + user.cue_delay_s
+    return user.clock_ratio * period_s / math.sqrt(1.0 + (period_s / seen_s) ** 2)
+
+
+def aim_s(user: SimulatedUser, zone_s: float) -> float:
+    """Return where a person aims from the centre of a zone that lasts zone_s: at a share of it (ibid.)."""
+    return (user.aim_ratio - 0.5) * zone_s
+
+
+def spread_factor(user: SimulatedUser, presses_before: int) -> float:
+    """Return by what timing scatters more after so many presses: unpractised at first, tired later."""
+    unpractised = user.learning_ratio * math.exp(-presses_before / user.learning_presses)
+    return 1.0 + unpractised + tiredness(user, presses_before)
+
+
+def tiredness(user: SimulatedUser, presses_before: int) -> float:
+    """Return the share that fatigue has added to spread, and taken from force and pace, growing evenly."""
+    return user.fatigue_ratio * presses_before / 1000.0

@@ -1,0 +1,1 @@
+"""One optimisation for many simulated people, in resumable chunks."""

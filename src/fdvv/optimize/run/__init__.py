@@ -1,0 +1,1 @@
+"""Optimisation sessions on file: begin, resume, report."""

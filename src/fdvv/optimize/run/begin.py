@@ -1,0 +1,219 @@
+"""A run as a command begins it: its space, the rig it must suit, what others did before."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from fdvv.button.open import open_button
+from fdvv.errors import InputError
+from fdvv.optimize.experiment.setup import LEVELS
+from fdvv.optimize.model_space import model_space, neutral_design
+from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.player import POINTING, about_player, task_named
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
+
+OPTION = "--prior"
+GRID = "name the folder of a finished fdvv optimize population --grid"
+EACH = "name one grid per level: --prior EASY --prior HARD"
+FOLDER = "others"
+"""Of a project: every folder in it that holds a finished grid can be begun from."""
+
+
+@dataclass(frozen=True)
+class PriorDataEntry:
+    """A finished grid of a project.
+
+    Attributes
+    ----------
+    name : of its folder. level : that was played. people, designs : how many; each design has their mean.
+    """
+
+    name: str
+    level: str
+    people: int
+    designs: int
+
+    @property
+    def about(self) -> str:
+        """What it is, in a few words."""
+        return f"{self.designs} designs scored by {self.people} simulated people, {self.level}"
+
+
+class PriorDataStore:
+    """The finished grids of a project, in ``<project>/others``; what is unfinished or broken is not offered.
+
+    Parameters
+    ----------
+    project : its folder.
+    """
+
+    def __init__(self, project: Path) -> None:
+        self._folder = project / FOLDER
+
+    def entries(self) -> tuple[PriorDataEntry, ...]:
+        """List what a run may begin from, by name."""
+        found = ((folder, _offered(folder)) for folder in self._folders())
+        return tuple(_entry(folder, grid) for folder, grid in found if grid)
+
+    def prior(self, name: str) -> tuple[PriorDataEntry, tuple[Trial, ...]]:
+        """Return the trials of a grid that is offered, and what it is. Raises InputError."""
+        for folder in self._folders():
+            if folder.name == name and (grid := _offered(folder)):
+                return _entry(folder, grid), grid.prior()
+        reason = f"is no finished grid in the project's folder {FOLDER}"
+        raise InputError("optimise", name, reason, "choose one that is offered, or finish it")
+
+    def _folders(self) -> list[Path]:
+        return sorted(self._folder.iterdir()) if self._folder.is_dir() else []
+
+
+def _offered(folder: Path) -> PopulationResult | None:
+    try:
+        return read_grid(folder)
+    except (InputError, OSError):
+        return None
+
+
+def _entry(folder: Path, grid: PopulationResult) -> PriorDataEntry:
+    return PriorDataEntry(folder.name, grid.plan.level, grid.plan.people, grid.plan.designs)
+
+
+def read_grid(folder: Path) -> PopulationResult:
+    """Read a finished grid of others. Raises InputError on anything else."""
+    if not (folder / RESULT_FILE).is_file():
+        raise InputError(OPTION, str(folder), "holds no grid that is finished", GRID)
+    found = read_population(folder)
+    if found.plan.kind != "grid":
+        raise InputError(OPTION, str(folder), "holds runs of many people, not a grid", GRID)
+    return found
+
+
+def experiment_prior(folders: Sequence[Path], seed: int) -> dict[str, tuple[Trial, ...]]:
+    """Return what everybody's training begins from, by level, of a grid per level; nothing of no folder.
+
+    folders : of finished grids, in any order.
+    seed : of the experiment; its people are drawn with it, so the others must be of another one.
+
+    Raises InputError on a level without or with two grids, and on others who are the same people.
+    """
+    grids: dict[str, PopulationResult] = {}
+    for folder in folders:
+        found = read_grid(folder)
+        level = found.plan.level
+        if level in grids:
+            raise InputError(OPTION, str(folder), f"is a second grid of the level {level}", EACH)
+        if found.plan.seed == seed:
+            same = f"its people are those of the experiment: both are drawn with seed {seed}"
+            raise InputError(OPTION, str(folder), same, "give the experiment another --seed")
+        grids[level] = found
+    missing = [level for level in LEVELS if level not in grids]
+    if grids and missing:
+        raise InputError(OPTION, missing[0], "is a level without a grid", EACH)
+    return {level: grids[level].prior() for level in LEVELS if level in grids}
+
+
+PAPER = "paper"
+
+
+@dataclass(frozen=True)
+class RunAsked:
+    """What a person asks for.
+
+    Attributes
+    ----------
+    space, vary : paper, or a button and what of it is varied. within : a rig that must be able to render
+        every design: a shipped one's name, or a *.rig.json. prior : folder of a finished grid of others.
+    task, level, presses : what is played. engine, options, budget, seed : of the run.
+    person, rig : the simulated one, and what is pressed; person None: a human plays.
+    """
+
+    space: str = PAPER
+    vary: Sequence[str] = ("FDV",)
+    within: str | None = None
+    prior: Path | None = None
+    task: str = POINTING
+    level: str | None = "easy"
+    presses: int = 20
+    engine: str = "gp"
+    options: dict[str, Any] = field(default_factory=dict)
+    budget: int = 30
+    seed: int = 0
+    person: int | None = 0
+    rig: str = "ideal"
+
+
+def begin_run(folder: Path, asked: RunAsked) -> Optimization:
+    """Begin a run in a folder that is new or empty. Raises InputError, BuildError, OSError."""
+    with _shelf_of(asked.within) as (project, rig_id):
+        space, start = _space(asked, rig_id)
+        task = task_named(asked.task, asked.level, asked.presses)
+        first = task.objectives[0]
+        setup = OptimizeSetup(
+            space=space,
+            engine=asked.engine,
+            options=asked.options,
+            task=asked.task,
+            level=asked.level if asked.task == POINTING else None,
+            objectives=(ObjectiveSetup(first.name, first.larger_is_better),),
+            seed=asked.seed,
+            budget=asked.budget,
+            start=start,
+            prior=_prior(asked),
+            simulated=asked.person is not None,
+            about=_about(asked),
+        )
+        return Optimization.create(folder, setup, project)
+
+
+def _space(asked: RunAsked, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
+    """Return the space, and the design a run starts from: a button that is varied is tried as it is first."""
+    if asked.space == PAPER:
+        return SpaceSetup(rig=rig_id), None
+    base = open_button(asked.space)
+    setup = model_space_setup(base, asked.vary, rig=rig_id)
+    return setup, neutral_design(model_space(base, asked.vary), base)
+
+
+def _about(asked: RunAsked) -> dict[str, Any]:
+    if asked.person is None:
+        return {OptimizeSetup.PRESSES: asked.presses}
+    return about_player(asked.person, asked.rig, asked.presses)
+
+
+def _prior(asked: RunAsked) -> tuple[Trial, ...]:
+    if asked.prior is None:
+        return ()
+    found = read_grid(asked.prior)
+    if asked.space != PAPER or asked.task != POINTING:
+        reason = f"others played {POINTING} with designs of the space {PAPER}"
+        raise InputError("--prior", str(asked.prior), reason, "leave it out, or play the same")
+    return found.prior()
+
+
+@contextmanager
+def _shelf_of(within: str | None) -> Iterator[tuple[Path | None, str | None]]:
+    """Return a project whose shelf has the rig, and the rig's id there. Raises InputError."""
+    if within is None:
+        yield None, None
+        return
+    if within in SHIPPED_RIGS:
+        yield None, f"shipped:{within}"
+        return
+    path = Path(within)
+    if not path.name.endswith(SUFFIX) or not path.is_file():
+        remedy = f"name a *{SUFFIX}, as fdvv compensate --save-rig writes it, or {', '.join(SHIPPED_RIGS)}"
+        raise InputError("--within", within, "is no rig that is known", remedy)
+    with TemporaryDirectory() as project:
+        shelf = Path(project) / "rigs"
+        shelf.mkdir()
+        shutil.copy(path, shelf / path.name)
+        yield Path(project), f"own:{path.name.removesuffix(SUFFIX)}"

@@ -1,0 +1,212 @@
+"""What an optimisation came to: its figures by name, as ``fdvv optimize --json`` prints them, and a page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv import __version__
+from fdvv.errors import ModelError
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.report import style
+from fdvv.report.report import Section, Table, render_html
+from fdvv.report.score_figures import TrainingScores, plot_training
+from fdvv.report.svg import figure_svg
+from fdvv.units import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+STEP_mm = 0.02
+ACTUATION: Any = {"color": style.PALETTE[2], "linestyle": (0, (4, 2)), "linewidth": 1.4}
+VIBRATION: Any = {"color": style.PALETTE[1], "linestyle": (0, (1, 1.5)), "linewidth": 1.6}
+
+
+@dataclass(frozen=True, eq=False)
+class DesignPanel:
+    """One design.
+
+    Attributes
+    ----------
+    title : of the panel. model : the button. points : (n, 2) control points, mm and cN; None: none are drawn.
+    """
+
+    title: str
+    model: FDVVModel
+    points: FloatArray | None = None
+
+
+@style.in_house_style
+def plot_designs(panels: Sequence[DesignPanel], columns: int = 2, simulated: bool = False) -> Any:
+    """Draw designs in a grid with common scales: force of the press, actuation and onset of vibration.
+
+    Gives the (rows, columns) array of axes. ModelError without a design.
+    """
+    if not panels:
+        raise ModelError("a figure of designs needs at least one")
+    rows = -(-len(panels) // columns)
+    fig = style.new_figure(4.0 * columns + 0.4, 2.35 * rows + 0.6)
+    axes = fig.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for number, ax in enumerate(axes.flat):
+        ax.set_visible(number < len(panels))
+    for ax, panel in zip(axes.flat, panels, strict=False):
+        _draw_design(ax, panel)
+        style.set_titles(ax, style.name_text(panel.title), simulated or panel.model.provenance.simulated)
+    for number, ax in enumerate(axes.flat):
+        ax.set_xlabel(style.DISPLACEMENT if number + columns >= len(panels) else "")
+        ax.tick_params(labelbottom=number + columns >= len(panels))
+        ax.set_ylabel(style.FORCE if number % columns == 0 else "")
+    axes[0, 0].set_ylim(bottom=0.0)
+    _legend(axes, panels)
+    return axes
+
+
+def _draw_design(ax: Axes, panel: DesignPanel) -> None:
+    model = panel.model
+    x = np.arange(0.0, model.travel_mm + STEP_mm / 2, STEP_mm)
+    force = model.of(Stroke.PRESS)[0].force_cN(x)
+    ax.plot(x, force, color=style.PALETTE[0], linewidth=1.8)
+    if panel.points is not None:
+        ax.plot(*panel.points.T, "o", color=style.PALETTE[0], markerfacecolor="white", markersize=5.5)
+    if model.actuation_mm is not None:
+        ax.axvline(model.actuation_mm, **ACTUATION)
+    for vibration in model.vibrations:
+        if vibration.stroke is Stroke.PRESS:
+            ax.axvline(vibration.onset_mm, **VIBRATION)
+
+
+def _legend(axes: Any, panels: Sequence[DesignPanel]) -> None:
+    """Name curve, points and marks once for all, below."""
+    handles = [style.handle("force of the press", color=style.PALETTE[0])]
+    if any(panel.points is not None for panel in panels):
+        look: Any = {"linestyle": "", "marker": "o", "color": style.PALETTE[0], "markerfacecolor": "white"}
+        handles.append(style.handle("control point", **look))
+    handles += [style.handle("activation", **ACTUATION), style.handle("vibration", **VIBRATION)]
+    labels = [str(item.get_label()) for item in handles]
+    axes[0, 0].figure.legend(handles, labels, loc="outside lower center", ncols=len(handles))
+
+
+SIMULATED = "a simulated person pressed the twin; no human and no hardware took part"
+
+
+def optimize_report(session: Optimization) -> dict[str, Any]:
+    """Return trials, the recommended design and how the run was made; units are in the names."""
+    setup = session.setup
+    return {
+        "space": session.space.name,
+        "engine": setup.engine,
+        "task": setup.task,
+        "level": setup.level,
+        "seed": setup.seed,
+        "budget": setup.budget,
+        "finished": session.finished,
+        "trials": [trial_report(trial) for trial in session.trials],
+        "best": best_of(session),
+        "simulated": setup.simulated,
+    }
+
+
+def trial_report(trial: Trial) -> dict[str, Any]:
+    """Return a trial: score is that of its first objective, null unless it is done."""
+    first = next(iter(trial.scores.values()), None)
+    return {
+        "number": trial.number,
+        "parameters": trial.design,
+        "score": first.value if first else None,
+        "error": first.error if first else None,
+        "scores": {name: score.value for name, score in trial.scores.items()},
+        "state": str(trial.state),
+        "origin": trial.origin,
+        "suggested": trial.suggested,
+        "reason": trial.reason or None,
+    }
+
+
+def best_of(session: Optimization) -> dict[str, float] | None:
+    """Return the recommended design; None as long as nothing is done, or with several objectives."""
+    if len(session.problem.objectives) > 1:
+        return None
+    try:
+        return session.best()
+    except ModelError:
+        return None
+
+
+def optimize_html(session: Optimization) -> str:
+    """Write the page of a run. Needs matplotlib (BuildError without it)."""
+    report, setup = optimize_report(session), session.setup
+    done = [t for t in session.trials if t.state is TrialState.DONE]
+    counts = f"{len(session.trials)} of {setup.budget} trials, {len(done)} of them scored"
+    title = f"{setup.task}, {setup.level}" if setup.level else setup.task
+    sections = [_found(session, report["best"]), _scores(session), _trials(session)]
+    footer = f"fdvv {__version__}; engine {setup.engine}, seed {setup.seed}, begun {setup.created}"
+    shown = [section for section in sections if section is not None]
+    summary = f"Space {session.space.name}, engine {setup.engine}: {counts}."
+    return render_html(
+        f"Optimisation: {title}", summary, shown, footer, SIMULATED if setup.simulated else None
+    )
+
+
+def control_points(design: dict[str, float]) -> FloatArray | None:
+    """Return the control points of a design of the paper's space, (3, 2) in mm and cN; None elsewhere."""
+    try:
+        return np.array([(design[f"x{i}_mm"], design[f"y{i}_cN"]) for i in (1, 2, 3)])
+    except KeyError:
+        return None
+
+
+def _found(session: Optimization, best: dict[str, float] | None) -> Section:
+    """Show the recommended design beside the one that was begun from."""
+    if best is None:
+        return Section("Design found", ("Nothing is scored yet, or there are several objectives.",))
+    start = session.setup.start or session.trials[0].design
+    panels = [
+        DesignPanel(name, session.model(design, name), control_points(design))
+        for name, design in (("first design", dict(start)), ("recommended", best))
+    ]
+    svg = figure_svg(plot_designs(panels, simulated=session.setup.simulated), "First and recommended design")
+    rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}") for name in session.space.names)
+    text = ("The recommendation is by what the engine believes of all trials, not by the luckiest score.",)
+    return Section("Design found", text, (svg,), (Table(("parameter", "first", "recommended"), rows),))
+
+
+def _scores(session: Optimization) -> Section | None:
+    """Draw the first objective over the trials; nothing before the first score."""
+    name = session.problem.objectives[0].name
+    values = [t.scores[name].value if t.scores else np.nan for t in session.trials]
+    if not np.isfinite(values).any():
+        return None
+    panel = TrainingScores(session.setup.level or session.setup.task, np.array([values]))
+    axes = plot_training([panel], score_label(name), simulated=session.setup.simulated)
+    return Section("Scores", (), (figure_svg(axes, "Score of every trial"),))
+
+
+def score_label(name: str) -> str:
+    """Write an objective's name for an axis: asynchrony_ms is asynchrony (ms)."""
+    words, _, unit = name.rpartition("_")
+    return f"{words.replace('_', ' ')} ({unit})" if words else name
+
+
+def _trials(session: Optimization) -> Section:
+    columns = ("trial", "state", "score", "error", *(score_label(name) for name in session.space.names))
+    rows = []
+    for trial in session.trials:
+        report = trial_report(trial)
+        values = (_value_text(name, trial.design[name]) for name in session.space.names)
+        scored = ("–" if report[key] is None else f"{report[key]:.1f}" for key in ("score", "error"))
+        rows.append((str(trial.number), report["state"], *scored, *values))
+    failed = tuple(
+        f"Trial {t.number} failed: {t.reason}." for t in session.trials if t.state is TrialState.FAILED
+    )
+    return Section("Trials", failed, (), (Table(columns, tuple(rows)),))
+
+
+def _value_text(name: str, value: float) -> str:
+    return f"{value:.0f}" if name.endswith("_cN") else f"{value:.2f}"

@@ -1,0 +1,1 @@
+"""Executors: this process, worker processes, a Dask cluster."""

@@ -1,0 +1,199 @@
+"""The ``*.recording.jsonl`` file: a journal with a head, a line for each take, and corrections."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from fdvv.errors import InputError, ModelError
+from fdvv.eventlog import JournalKind, line_of, read_bodies
+from fdvv.io.files import write_atomic
+from fdvv.recording.records import FORMAT, VERSION, MendRecord, pack_head, pack_take, unpack_head, unpack_take
+from fdvv.recording.types import Bench, Recording, Take
+
+STREAM = ("scale", "zero")
+
+TAKE = ("stage", "velocity_mm_s", "remark")
+
+RECORDING = ("licence", "person")
+
+TEXTS = (*RECORDING, "stage", "remark")
+
+BENCH = tuple(f.name for f in fields(Bench))
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A correction.
+
+    Attributes
+    ----------
+    values : what holds from now on. Of a stream: scale, zero; of a take: stage, velocity_mm_s, remark; of the
+        recording: licence, person and every field of Bench.
+    take : number of the take that it is for; None for all that were made before it.
+    stream : name of the stream that it is for; None corrects the take, or without a take the recording.
+    why : what was found out, for the reader of the file.
+    """
+
+    values: Mapping[str, Any]
+    take: int | None = None
+    stream: str | None = None
+    why: str = ""
+
+    def __post_init__(self) -> None:
+        whole = self.take is None and self.stream is None
+        may = STREAM if self.stream is not None else (*RECORDING, *BENCH) if whole else TAKE
+        wrong = sorted(set(self.values) - set(may))
+        if wrong or not self.values:
+            raise ModelError(f"a correction may set {', '.join(may)} here, got {wrong or 'nothing'}")
+        for key, value in self.values.items():
+            if not _fits(key, value):
+                raise ModelError(f"a correction cannot set {key} to {value!r:.40}")
+
+
+def _fits(key: str, value: object) -> bool:
+    """Return whether a value is of the field's type; its range is checked where it is used."""
+    if key in TEXTS:
+        return isinstance(value, str)
+    if key == "clocks_go_on":
+        return isinstance(value, bool)
+    if value is None:
+        return key == "velocity_mm_s"
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def corrected(recording: Recording, correction: Correction) -> Recording:
+    """Return a recording with a correction applied. ModelError if it names what is not there."""
+    if correction.take is not None and not 1 <= correction.take <= len(recording.takes):
+        raise ModelError(f"there is no take {correction.take} to correct, only {len(recording.takes)}")
+    if correction.take is None and correction.stream is None:
+        bench = replace(recording.bench, **{k: v for k, v in correction.values.items() if k in BENCH})
+        return replace(
+            recording, bench=bench, **{k: v for k, v in correction.values.items() if k in RECORDING}
+        )
+    takes = tuple(
+        _take(take, correction) if correction.take in (None, take.number) else take
+        for take in recording.takes
+    )
+    if correction.stream is not None and all(
+        new is old for new, old in zip(takes, recording.takes, strict=True)
+    ):
+        raise ModelError(f"there is no stream {correction.stream!r} to correct")
+    return replace(recording, takes=takes)
+
+
+def _take(take: Take, correction: Correction) -> Take:
+    if correction.stream is None:
+        return replace(take, **correction.values)
+    streams = [replace(s, **correction.values) if s.name == correction.stream else s for s in take.streams]
+    changed = any(new is not old for new, old in zip(streams, take.streams, strict=True))
+    return replace(take, streams=tuple(streams)) if changed else take
+
+
+RECORDING_SUFFIX = ".recording.jsonl"
+"""How a recording's name ends."""
+
+REMEDY = "compare with docs/reference/recording-file.md"
+
+KIND = JournalKind({"head": Any, "take": Any, "mend": Any}, REMEDY)
+
+CUT = "the last record is not whole and is left out"
+
+
+def load_recording(path: Path | str) -> Recording:
+    """Read a recording, corrections applied.
+
+    A last line that was cut short, as a killed process leaves it, is left out with a warning.
+    Raises InputError that names the line or the take and the remedy, also where the file cannot be read.
+    """
+    recording, end, whole = read_file(Path(path))
+    if recording is None:
+        raise InputError(path, "whole file", "holds no whole record", REMEDY)
+    if end < whole:
+        warning = f"{CUT}; takes kept: {len(recording.takes)}"
+        return replace(recording, warnings=(*recording.warnings, warning))
+    return recording
+
+
+def save_recording(recording: Recording, path: Path | str) -> None:
+    """Write a recording into a new file, whole or not at all.
+
+    Raises InputError if there is a file already, for what was recorded is never written over; OSError.
+    """
+    path = Path(path)
+    if path.exists():
+        raise InputError(path, "output", "there is a file already", "name another, or remove it yourself")
+    lines = [line_of({"head": pack_head(recording)})]
+    lines += [line_of({"take": pack_take(take)}) for take in recording.takes]
+    write_atomic(path, b"".join(lines))
+
+
+def pack_correction(correction: Correction, made: str) -> dict[str, Any]:
+    return {**asdict(correction), "values": dict(correction.values), "made": made}
+
+
+def read_file(path: Path) -> tuple[Recording | None, int, int]:
+    """Read a recording, where its last whole record ends, and the size of the file; None without a head.
+
+    Raises InputError.
+    """
+    try:
+        whole = path.stat().st_size
+        return *_read(path), whole
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
+
+
+def _read(path: Path) -> tuple[Recording | None, int]:
+    recording: Recording | None = None
+    takes: list[Take] = []
+    end = 0
+    for number, (key, found, after) in enumerate(read_bodies(path, KIND), 1):
+        if (key == "head") != (number == 1):
+            reason = "begins with no head" if number == 1 else "holds a second head"
+            raise InputError(path, f"line {number}", reason, REMEDY)
+        try:
+            if key == "head":
+                recording = unpack_head(_known(path, found))
+            elif key == "take":
+                takes.append(_next(found, len(takes) + 1))
+            elif recording is not None:
+                recording = corrected(replace(recording, takes=tuple(takes)), _correction(found))
+                takes = list(recording.takes)
+        except (ModelError, ValueError, TypeError) as error:
+            reason, _, place = str(error).partition(" - at ")
+            raise InputError(path, f"line {number}{_inside(place)}", reason, REMEDY) from error
+        end = after
+    return (replace(recording, takes=tuple(takes)) if recording else None), end
+
+
+def _inside(place: str) -> str:
+    return f", {place.strip('`')}" if place else ""
+
+
+def _known(path: Path, found: Any) -> Any:
+    head = found if isinstance(found, dict) else {}
+    if head.get("format") != FORMAT:
+        reason = f'not a recording ("format" must be "{FORMAT}")'
+        raise InputError(path, "line 1, $.format", reason, REMEDY)
+    if head.get("version") != VERSION:
+        reason = f"file version {head.get('version')!r:.40}, this fdvv reads version {VERSION}"
+        raise InputError(path, "line 1, $.version", reason, "install the fdvv that wrote it, or a newer one")
+    return found
+
+
+def _next(found: Any, number: int) -> Take:
+    take = unpack_take(found)
+    if take.number != number:
+        raise ModelError(f"take {number} bears the number {take.number}")
+    return take
+
+
+def _correction(found: Any) -> Correction:
+    record = msgspec.convert(found, MendRecord)
+    return Correction(record.values, record.take, record.stream, record.why)

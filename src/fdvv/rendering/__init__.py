@@ -1,0 +1,1 @@
+"""Press sessions: compensate, probe, feasibility, tuning, and the files they keep."""

@@ -1,0 +1,247 @@
+"""Learn the actuation that makes a device feel like a model."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+from fdvv.compensation.identification.drift import detect_drift
+from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.method import CompensationJob, CurveOutcome, Method, Outcome, PressCount
+from fdvv.compensation.paper import PaperLaw
+from fdvv.compensation.per_curve import PerCurve
+from fdvv.compensation.presses import judge_press
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import Device
+from fdvv.device.remote import Remote
+from fdvv.errors import DeviceError, FitError, InputError
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
+from fdvv.rendering.session import Session, make_manifest
+from fdvv.rendering.session_log import PressLog
+from fdvv.rendering.session_run import Guide, PressDone, Progress, SessionPlan, VelocityProgress, run
+
+REMEDY = "leave out its rig file to identify it again"
+
+
+def learned_rig(method: Method[Any], state: Any) -> LearnedRig | None:
+    """Return the rig as a method learned it; None for a method that learns tables only."""
+    return method.learned(state) if isinstance(method, RigAware) else None
+
+
+def warn_on_drift(method: Method[Any], plan: SessionPlan[Any], log: PressLog) -> Progress:
+    """Wrap a plan's progress so that the first used press on a rig identified earlier is checked for drift.
+
+    A change is reported as a notice. An uninformative press leaves the check to the next; a resumed session
+    has been checked already.
+    """
+    learned = method.learned_rig if isinstance(method, RigAware) else None
+    if learned is None or log.used:
+        return plan.progress
+    checked = False
+
+    def progress(done: PressDone) -> None:
+        nonlocal checked
+        if not checked and done.press is not None and not done.skipped:
+            with suppress(FitError):
+                change = detect_drift(learned.rig, done.press, plan.travel_mm)
+                checked = True
+                if change:
+                    plan.guide.notice(
+                        f"warning: the rig has changed since its identification: {change}; {REMEDY}"
+                    )
+        plan.progress(done)
+
+    return progress
+
+
+@dataclass(frozen=True, eq=False)
+class CompensationResult:
+    """Actuation learned for one device.
+
+    Attributes
+    ----------
+    method : name of the law with its additions.
+    model_name, device_name, travel_mm : what was rendered, on which device, with the bottom stop where.
+    outcome : surface of actuation, error history per curve, presses.
+    skipped : unusable presses, each with its reason.
+    simulated : the presses came from the twin.
+    receipt : summary of the session; None in files of version 1.
+    learned_rig : the rig, for other buttons; None for methods that learn tables only, and in files.
+    """
+
+    method: str
+    model_name: str
+    device_name: str
+    travel_mm: float
+    outcome: Outcome
+    skipped: tuple[str, ...]
+    simulated: bool
+    receipt: RunSummary | None = None
+    learned_rig: LearnedRig | None = None
+
+    @property
+    def surface(self) -> ForceSurface:
+        return self.outcome.surface
+
+    @property
+    def presses(self) -> int:
+        """Number of presses made, including unusable ones."""
+        return self.outcome.presses + len(self.skipped)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the report: per curve error_k of every press as the rig measured it while it learned."""
+        return {
+            "method": self.method,
+            "model": self.model_name,
+            "device": self.device_name,
+            "presses": self.presses,
+            "skipped": list(self.skipped),
+            "explanation": self.outcome.sentence,
+            "curves": [_curve_dict(c) for c in self.outcome.curves],
+            "simulated": self.simulated,
+        }
+
+    def to_json(self) -> str:
+        return json.dumps(self.to_dict(), allow_nan=False)
+
+
+def _curve_dict(curve: CurveOutcome) -> dict[str, Any]:
+    return {
+        "stroke": str(curve.stroke),
+        "velocity_mm_s": curve.velocity_mm_s,
+        "error_cN": list(curve.error_cN),
+        "mean_error_cN": _known(curve.mean_error_cN),
+        "max_error_cN": _known(curve.max_error_cN),
+        "explanation": curve.sentence,
+    }
+
+
+def _known(error_cN: float) -> float | None:
+    return error_cN if math.isfinite(error_cN) else None
+
+
+def compensate(
+    device: Device,
+    model: FDVVModel,
+    velocities_mm_s: Sequence[float],
+    law: PaperLaw | Method[Any] | None = None,
+    progress: Progress | None = None,
+    session: Session | None = None,
+    guide: Guide | None = None,
+) -> CompensationResult:
+    """Press and learn until the method is done.
+
+    velocities_mm_s : speeds to learn at, in any order; law : settings of a method, the paper's if None.
+    progress : called after every press; guide : called before it, and with notices.
+    session : where presses are stored and which are accepted; in memory with the defaults if None.
+
+    Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on speeds
+    that cannot be used and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
+    """
+    method, session = _method(law), session or Session()
+    job = _job(device, model, velocities_mm_s, method)
+    start = method.init(job)
+    if method.trial(start) is not None:
+        check_force_sensor(device)
+    speeds = job.target.velocity_mm_s.tolist()
+    manifest = make_manifest(
+        "compensate", device, model, speeds, (method.name, method), (session.seed, session.parts)
+    )
+    with session.open_presses(manifest) as log:
+        plan = _plan(method, job, log, session)
+        plan = replace(plan, progress=progress or plan.progress, guide=guide or plan.guide)
+        plan = replace(plan, progress=warn_on_drift(method, plan, log))
+        state = run(device, plan, start, log)
+        outcome = method.done(state)
+        if not outcome.complete:
+            raise DeviceError(f"{device.info().name}: {outcome.sentence}")
+        receipt = make_run_summary(manifest, log.runs, log.entries, outcome.curves)
+        if session.folder:
+            save_run_summary(session.folder, receipt)
+        skipped = tuple(str(entry) for entry in log.entries if not entry.used)
+    info = device.info()
+    names = method.name, model.name, info.name, model.travel_mm
+    learned = learned_rig(method, state)
+    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned)
+
+
+def _plan(method: Method[Any], job: CompensationJob, log: PressLog, session: Session) -> SessionPlan[Any]:
+    return SessionPlan(
+        "compensate",
+        method,
+        job.travel_mm,
+        lambda press, pace_ratio: judge_press(press, job.travel_mm, session.acceptance.with_pace(pace_ratio)),
+        session.acceptance.patience,
+        lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
+    )
+
+
+def velocity_progress(
+    job: CompensationJob, count: PressCount, log: PressLog, curves: Sequence[CurveOutcome]
+) -> tuple[VelocityProgress, ...]:
+    """Return the progress of every velocity."""
+    speeds = job.target.velocity_mm_s.tolist()
+    made = [sum(e.used and e.velocity_mm_s == speed for e in log.entries) for speed in speeds]
+    wanted = count.wanted or (None,) * len(speeds)
+    return tuple(
+        VelocityProgress(speed, m, w, tuple(c for c in curves if c.velocity_mm_s == speed))
+        for speed, m, w in zip(speeds, made, wanted, strict=True)
+    )
+
+
+def uncompensated(
+    device: Device,
+    model: FDVVModel,
+    velocities_mm_s: Sequence[float],
+    law: PaperLaw | Method[Any] | None = None,
+) -> ForceSurface:
+    """Return the surface that a method starts from, before any press: the baseline of compensation.
+
+    With the default law that is the model's own force, with a minimum command that holds the cap up.
+    """
+    method = _method(law)
+    return method.done(method.init(_job(device, model, velocities_mm_s, method))).surface
+
+
+def _method(law: PaperLaw | Method[Any] | None) -> Method[Any]:
+    return PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
+
+
+def _job(
+    device: Device, model: FDVVModel, velocities_mm_s: Sequence[float], method: Method[Any]
+) -> CompensationJob:
+    target = ForceSurface.of_model(model, check_speeds(velocities_mm_s), method.bin_mm)
+    return CompensationJob(target, model.travel_mm, device.info().force_limit_cN)
+
+
+def check_force_sensor(device: Device, truth_counts: bool = False) -> None:
+    """Raise DeviceError for a board without a force sensor on its cap.
+
+    truth_counts : accept a simulated rig, whose true force is known.
+    """
+    if not isinstance(device, Remote) or device.settings().force_gain_q14:
+        return
+    info = device.info()
+    if not (truth_counts and info.simulated):
+        remedy = 'name a --rig with [keycap_sensor] kind = "force"' if info.simulated else "fit one"
+        raise DeviceError(
+            f"{info.name}: no force sensor in its settings (force_gain_q14 is 0), its presses hold no "
+            f"force on the finger; {remedy}"
+        )
+
+
+def check_speeds(velocities_mm_s: Sequence[float]) -> list[float]:
+    """Return sorted speeds. Raises InputError unless they are positive, finite and distinct, at least one."""
+    speeds = sorted(float(v) for v in velocities_mm_s)
+    remedy = "give one or more different speeds above 0 mm/s"
+    if not speeds or not all(0 < v < float("inf") for v in speeds):
+        raise InputError("velocities", "all", f"speeds cannot be {list(velocities_mm_s)} mm/s", remedy)
+    if len(set(speeds)) != len(speeds):
+        raise InputError("velocities", "all", f"a speed repeats in {speeds} mm/s", remedy)
+    return speeds

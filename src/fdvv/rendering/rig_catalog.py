@@ -1,0 +1,229 @@
+"""The rigs of a project: shipped simulated ones, identified once, and a person's own files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.compensation.feasibility.limits import Motion, minimum_jerk
+from fdvv.compensation.identification.rig_file import load_rig, save_rig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.contract import DeviceInfo
+from fdvv.device.twin import TwinDevice
+from fdvv.errors import InputError
+from fdvv.io.files import write_atomic
+from fdvv.model.curve import Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.protocol.tables import Settings
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.twin.files import load_rig as load_plant
+from fdvv.units import FloatArray
+
+SHIPPED_RIGS = {
+    "default": "voltage drive, mover of 20 g",
+    "paper": "one that could have been the paper's: current drive, 12 g",
+    "light": "current drive, mover of 6 g, loop of 10 kHz",
+}
+"""Rigs that come with the package, and what each is."""
+
+OWN_ABOUT = "your rig file; limits of force and time are those of the shipped default rig"
+
+SUFFIX, SIMULATED = ".rig.json", ".simulated.rig.json"
+
+IDENTIFIED_ON, IDENTIFIED_AT_mm_s, IDENTIFIED_SEED = "mx-clear", (50.0, 100.0, 150.0, 200.0), 1
+"""Button, speeds and seed that identify a shipped rig."""
+
+
+@dataclass(frozen=True)
+class RigEntry:
+    """One rig that can be chosen.
+
+    Attributes
+    ----------
+    rig_id : "shipped:NAME" or "own:NAME".
+    about : what it is, in a few words.
+    simulated : its numbers come from presses of the twin.
+    known : it is identified already.
+    """
+
+    rig_id: str
+    about: str
+    simulated: bool
+    known: bool
+
+
+@dataclass(frozen=True, eq=False)
+class AvailableRig:
+    """An identified rig with the settings of its device.
+
+    Attributes
+    ----------
+    known : the model of the rig. settings, info : of the device; for a person's own file, which holds no
+        settings, those of the shipped default rig.
+    """
+
+    entry: RigEntry
+    known: RigModel
+    settings: Settings
+    info: DeviceInfo
+
+
+class RigCatalog:
+    """The rigs of a project folder, looked up by id; models are stored in ``<project>/rigs``."""
+
+    def __init__(self, project: Path) -> None:
+        self._folder = project / "rigs"
+        self._found: dict[str, AvailableRig] = {}
+        self._lock = Lock()
+
+    def entries(self) -> tuple[RigEntry, ...]:
+        """List the shipped rigs, then a person's own files by name."""
+        files = self._files()
+        shipped = [
+            RigEntry(f"shipped:{name}", about, True, f"{name}{SIMULATED}" in files)
+            for name, about in SHIPPED_RIGS.items()
+        ]
+        own = [
+            RigEntry(f"own:{file.removesuffix(SUFFIX)}", OWN_ABOUT, False, True)
+            for file in sorted(files)
+            if not file.endswith(SIMULATED)
+        ]
+        return (*shipped, *own)
+
+    def rig(self, rig_id: str) -> AvailableRig:
+        """Return a rig by its id; a shipped one is identified at first use, which takes about a second.
+
+        Raises InputError on an unknown id and on a file that cannot be read.
+        """
+        with self._lock:
+            entry = next((e for e in self.entries() if e.rig_id == rig_id), None)
+            if entry is None:
+                names = ", ".join(e.rig_id for e in self.entries())
+                raise InputError("rig", rig_id, "no such rig in this project", f"choose one of {names}")
+            if rig_id not in self._found:
+                self._found[rig_id] = self._load(entry)
+            return self._found[rig_id]
+
+    def lend(self, rig_id: str, project: Path) -> None:
+        """Copy the file of a rig to another project. Raises InputError on an unknown id, OSError."""
+        self.rig(rig_id)
+        kind, _, name = rig_id.partition(":")
+        file = f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}"
+        write_atomic(project / "rigs" / file, self._files()[file].read_bytes())
+
+    def _load(self, entry: RigEntry) -> AvailableRig:
+        kind, _, name = entry.rig_id.partition(":")
+        device = TwinDevice(load_plant(name if kind == "shipped" else "default"), seed=IDENTIFIED_SEED)
+        files = self._files()
+        path = files.get(f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}")
+        known = load_rig(path) if path else self._identify(device, name)
+        return AvailableRig(entry, known, device.settings(), device.info())
+
+    def _identify(self, device: TwinDevice, name: str) -> RigModel:
+        """Identify a shipped rig by simulated presses, and save it."""
+        learned = compensate(device, load_builtin(IDENTIFIED_ON), IDENTIFIED_AT_mm_s, RigAware()).learned_rig
+        assert learned is not None  # RigAware always returns one
+        save_rig(learned, self._folder / f"{name}{SIMULATED}")
+        return learned.rig
+
+    def _files(self) -> dict[str, Path]:
+        """Return the rig files by name; an id is looked up here, never made into a path."""
+        if not self._folder.is_dir():
+            return {}
+        return {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
+
+
+Limit = Literal["force", "slew"]
+
+DEFAULT_SPEED_mm_s = 50.0
+"""Speed of curves of unknown velocity."""
+
+POINTS = 201
+"""Points of a curve: 0.02 mm on a button of 4 mm."""
+
+STEPS, STEPS_A_TICK = 2500, 8
+"""Largest number of time steps of a stroke; a report takes eight per tick, too slow for an editor."""
+
+
+@dataclass(frozen=True)
+class LimitedRange:
+    """Where a limit cuts: from start to end, mm; limit is "force" (or duty) or "slew"."""
+
+    start_mm: float
+    end_mm: float
+    limit: Limit
+
+
+@dataclass(frozen=True, eq=False)
+class AchievableCurve:
+    """One stroke at one speed, computed: no press was made.
+
+    Attributes
+    ----------
+    displacement_mm, intended_cN, achievable_cN : (n,) on the same places.
+    limited : where force, duty or slew limits cut.
+    verdict, reasons : whether the rig follows; per reason one line, the gravest first.
+    expected_mean_cN : mean error that learning would leave, an estimate.
+    """
+
+    stroke: Stroke
+    velocity_mm_s: float
+    displacement_mm: FloatArray
+    intended_cN: FloatArray
+    achievable_cN: FloatArray
+    limited: tuple[LimitedRange, ...]
+    verdict: str
+    reasons: tuple[str, ...]
+    expected_mean_cN: float
+
+
+def achievable(
+    model: FDVVModel, rig: AvailableRig, velocities_mm_s: Sequence[float | None]
+) -> tuple[AchievableCurve, ...]:
+    """Return what a rig renders of both strokes of a model at these speeds, in about 10 ms per speed.
+
+    velocities_mm_s : of the changed curves; None, an unknown velocity, is judged at 50 mm/s.
+    Raises InputError on invalid speeds, ModelError on a model without a press curve.
+    """
+    speeds = list(dict.fromkeys(DEFAULT_SPEED_mm_s if v is None else float(v) for v in velocities_mm_s))
+    motions = {(stroke, v): _motion(stroke, model, rig, v) for stroke in Stroke for v in speeds}
+    report = feasibility(model, rig.known, rig.settings, speeds, info=rig.info, motions=motions)
+    return tuple(_curve(curve) for curve in report.curves)
+
+
+def _motion(stroke: Stroke, model: FDVVModel, rig: AvailableRig, velocity_mm_s: float) -> Motion:
+    """Return a stroke as a report does, in fewer steps if it is slow."""
+    coarse_s = STEPS_A_TICK * model.travel_mm / velocity_mm_s / STEPS
+    return minimum_jerk(stroke, model.travel_mm, velocity_mm_s, max(1e-6 * rig.settings.tick_us, coarse_s))
+
+
+def _curve(curve: CurveFeasibility) -> AchievableCurve:
+    reached = curve.reached
+    x = reached.displacement_mm
+    places = np.linspace(x[0], x[-1], min(POINTS, x.size))
+    return AchievableCurve(
+        curve.stroke,
+        curve.velocity_mm_s,
+        places,
+        np.interp(places, x, reached.intended_cN),
+        np.interp(places, x, reached.achievable_cN),
+        (*_ranges(x, reached.saturated, "force"), *_ranges(x, reached.slewed, "slew")),
+        str(curve.verdict.following),
+        curve.verdict.reasons,
+        curve.expected.mean_cN,
+    )
+
+
+def _ranges(x: FloatArray, rows: npt.NDArray[np.bool_], limit: Limit) -> list[LimitedRange]:
+    """Return the ranges of x, (n,), where rows, (n,), are True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(np.int8)))
+    return [LimitedRange(float(x[a]), float(x[b - 1]), limit) for a, b in edges.reshape(-1, 2)]

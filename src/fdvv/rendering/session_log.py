@@ -1,0 +1,308 @@
+"""The records of a session on file, each forced to the disk before the next: people cannot repeat them.
+
+Both files are journals (see `fdvv.eventlog`), with ``{"run": {…}}`` for each start of the program.
+``presses.jsonl`` has ``{"press": {…}}`` for every press, used or not, with all columns (`fdvv.io.columns`)
+and the table it was made on; ``answers.jsonl`` has ``{"answer": {…}}`` for every answer of a tuning.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import msgspec
+
+from fdvv.compensation.method import UNTUNED, Tuning
+from fdvv.device.recording import pack_record, unpack_press, unpack_surface
+from fdvv.errors import InputError
+from fdvv.eventlog import Journal, JournalKind, read_bodies
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+
+
+class SessionRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One start of the program on a session: when, with which versions, seed and bounds."""
+
+    started: str
+    seed: int | None
+    versions: dict[str, str]
+    acceptance: dict[str, int | float]
+
+
+class SessionFile(ABC):
+    """A journal of a session, in memory, and on file for one process at a time if there is a path.
+
+    Attributes
+    ----------
+    kind, noun : what its records are, and their name for people, as "presses".
+    path : of the journal; None keeps it in memory.
+    runs : including earlier ones.
+    warnings : about the file, for people.
+
+    Raises InputError on a file that is damaged or in use, OSError if it cannot be written.
+    """
+
+    kind: ClassVar[JournalKind]
+    noun: ClassVar[str]
+
+    def __init__(self, path: Path | None) -> None:
+        self.path = path
+        self.runs: list[SessionRun] = []
+        self.warnings: list[str] = []
+        self._journal: Journal | None = None
+        if path:
+            self._journal = Journal.resume(path, self.kind, _busy(path), self._replay)
+            if self._journal.torn:
+                kept = f"{self.noun} kept: {self._count()}"
+                self.warnings.append(f"{path}: the last record is not whole and is left out; {kept}")
+
+    def _replay(self, key: str, body: Any) -> None:
+        if key == "run":
+            self.runs.append(body)
+        else:
+            self._take(body)
+
+    @abstractmethod
+    def _take(self, body: Any) -> None:
+        """Add a record that was read from the file. Raises InputError."""
+
+    @abstractmethod
+    def _count(self) -> int:
+        """Return the number of records without runs."""
+
+    def begin(self, run: SessionRun) -> None:
+        """Record that the session is begun or continued."""
+        self._write({"run": msgspec.to_builtins(run)})
+        self.runs.append(run)
+
+    def _write(self, record: dict[str, Any]) -> None:
+        if self._journal:
+            self._journal.write(record)
+
+    def close(self) -> None:
+        """Close the file; closing twice is harmless."""
+        if self._journal:
+            self._journal.close()
+            self._journal = None
+
+
+def _busy(path: Path) -> InputError:
+    reason = "another process is at work on this session"
+    return InputError(path.parent, "session", reason, "wait for it, or name another folder")
+
+
+PRESSES = "presses.jsonl"
+REMEDY = "begin a new session in another folder"
+PRESSES_KIND = JournalKind({"run": SessionRun, "press": Any}, REMEDY)
+
+
+class PressEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The outcome of one press.
+
+    Attributes
+    ----------
+    number : counts all presses of the session from 1, including unused ones.
+    reason : why it was not used; empty if it was.
+    achieved_mm_s : mean speed of the press; None if it has none.
+    made : when, UTC.
+    """
+
+    number: int
+    velocity_mm_s: float
+    reason: str
+    achieved_mm_s: float | None
+    made: str
+
+    @property
+    def used(self) -> bool:
+        """Whether the press was used."""
+        return not self.reason
+
+    def __str__(self) -> str:
+        return f"press {self.number} at {self.velocity_mm_s:g} mm/s: {self.reason or 'used'}"
+
+
+@dataclass(frozen=True, eq=False)
+class PressRecord:
+    """A press on file; without columns if the device faulted before reporting it.
+
+    tuning : of the controller; on file only where it does something.
+    """
+
+    entry: PressEntry
+    surface: ForceSurface
+    press: Press | None
+    tuning: Tuning = UNTUNED
+
+
+class PressLog(SessionFile):
+    """The presses of a session, in memory, and on file if there is a folder for it.
+
+    Parameters
+    ----------
+    folder : of the session, for one process at a time; None keeps only what became of each press.
+
+    Attributes
+    ----------
+    entries : so far, those of earlier runs among them.
+    """
+
+    kind, noun = PRESSES_KIND, "presses"
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder
+        self.entries: list[PressEntry] = []
+        super().__init__(folder / PRESSES if folder else None)
+
+    def _take(self, body: Any) -> None:
+        assert self.path is not None
+        self.entries.append(_record(self.path, body, len(self.entries) + 1).entry)
+
+    def _count(self) -> int:
+        return len(self.entries)
+
+    def kept(self) -> Iterator[PressRecord]:
+        """Read the presses on file again, with all columns, in order; nothing if there is no file."""
+        if self.path is None:
+            return
+        number = 0
+        for key, body, _ in read_bodies(self.path, PRESSES_KIND):
+            if key == "press":
+                number += 1
+                yield _record(self.path, body, number)
+
+    @property
+    def used(self) -> int:
+        """Number of used presses."""
+        return sum(entry.used for entry in self.entries)
+
+    def add(self, kept: PressRecord) -> None:
+        if self.path is not None:
+            self._write({"press": _packed(kept)})
+        self.entries.append(kept.entry)
+
+
+def read_log(path: Path) -> tuple[list[SessionRun], list[PressEntry], int]:
+    """Return the runs, what became of each press, and the byte where the last whole record ends.
+
+    Raises InputError on a damaged file.
+    """
+    runs: list[SessionRun] = []
+    entries: list[PressEntry] = []
+    end = 0
+    for key, body, after in read_bodies(path, PRESSES_KIND):
+        end = after
+        if key == "run":
+            runs.append(body)
+        else:
+            entries.append(_record(path, body, len(entries) + 1).entry)
+    return runs, entries, end
+
+
+def _packed(kept: PressRecord) -> dict[str, Any]:
+    columns = pack_record(kept.press) if kept.press else None
+    tuning = {} if kept.tuning == UNTUNED else {"tuning": asdict(kept.tuning)}
+    found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
+    return found | tuning
+
+
+def _record(path: Path, found: dict[str, Any], number: int) -> PressRecord:
+    """Unpack a press, which must have this number."""
+    try:
+        surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
+        tuning = Tuning(**found.pop("tuning", {}))
+        entry = msgspec.convert(found, PressEntry)
+        if entry.number != number:
+            raise ValueError(f"bears the number {entry.number}")
+        return PressRecord(entry, surface, unpack_press(columns) if columns else None, tuning)
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise InputError(path, f"press {number}", str(error), REMEDY) from error
+
+
+ANSWERS = "answers.jsonl"
+
+
+class AnswerRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One answer.
+
+    Attributes
+    ----------
+    number : counts from 1.
+    templates : those asked about, in the order they were pressed; numbers among the session's templates.
+    answer : a rating from 1 to 7, or "first", "second" or "neither".
+    achieved_mm_s : mean speed of each press; None where it has none.
+    made : when, UTC.
+    """
+
+    number: int
+    velocity_mm_s: float
+    templates: list[int]
+    answer: int | str
+    achieved_mm_s: list[float | None]
+    made: str
+
+    @property
+    def entry(self) -> PressEntry:
+        """The answer as a press of the run summary; the speed is that of the last press."""
+        achieved = self.achieved_mm_s[-1] if self.achieved_mm_s else None
+        return PressEntry(self.number, self.velocity_mm_s, "", achieved, self.made)
+
+
+ANSWERS_KIND = JournalKind({"run": SessionRun, "answer": AnswerRecord}, REMEDY)
+
+
+class AnswerLog(SessionFile):
+    """The answers of a session, in memory, and on file if there is a folder for it.
+
+    Parameters
+    ----------
+    folder : of the session, for one process at a time; None keeps them in memory.
+
+    Attributes
+    ----------
+    answers : so far, those of earlier runs among them.
+    """
+
+    kind, noun = ANSWERS_KIND, "answers"
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder
+        self.answers: list[AnswerRecord] = []
+        super().__init__(folder / ANSWERS if folder else None)
+
+    def _take(self, body: AnswerRecord) -> None:
+        assert self.path is not None
+        self.answers.append(_checked(self.path, body, len(self.answers) + 1))
+
+    def _count(self) -> int:
+        return len(self.answers)
+
+    def add(self, given: AnswerRecord) -> None:
+        self._write({"answer": msgspec.to_builtins(given)})
+        self.answers.append(given)
+
+
+def read_answers(path: Path) -> tuple[list[SessionRun], list[PressEntry], int]:
+    """Return the runs, each answer as a press of the run summary, and the byte where the last record ends.
+
+    Raises InputError on a damaged file.
+    """
+    runs: list[SessionRun] = []
+    entries: list[PressEntry] = []
+    end = 0
+    for key, body, after in read_bodies(path, ANSWERS_KIND):
+        end = after
+        if key == "run":
+            runs.append(body)
+        else:
+            entries.append(_checked(path, body, len(entries) + 1).entry)
+    return runs, entries, end
+
+
+def _checked(path: Path, answer: AnswerRecord, number: int) -> AnswerRecord:
+    if answer.number != number:
+        raise InputError(path, f"answer {number}", f"bears the number {answer.number}", REMEDY)
+    return answer

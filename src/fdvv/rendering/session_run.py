@@ -1,0 +1,321 @@
+"""The loop of a session: upload a trial, have it pressed, judge, store, learn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Generic, NoReturn, Protocol, TypeVar, cast
+
+import numpy as np
+
+from fdvv.compensation.method import CurveOutcome, PressCount, Trial
+from fdvv.compensation.presses import PressAcceptance
+from fdvv.device.contract import Device, FaultReport, ProgramDevice
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.io.files import defer_interrupt
+from fdvv.model.press import Press
+from fdvv.protocol.tables import Fault
+from fdvv.rendering.session import now
+from fdvv.rendering.session_log import REMEDY, PressEntry, PressLog, PressRecord
+from fdvv.rendering.tuning import tune
+
+
+@dataclass(frozen=True)
+class VelocityProgress:
+    """Progress at one velocity.
+
+    Attributes
+    ----------
+    made, wanted : presses used and needed; None if unknown.
+    curves : of both strokes, as far as available.
+    """
+
+    velocity_mm_s: float
+    made: int
+    wanted: int | None
+    curves: tuple[CurveOutcome, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class PressDone:
+    """A completed press, for displays of progress.
+
+    Attributes
+    ----------
+    stage : "compensate" or "probe".
+    presses_done, presses_total : used so far, and planned.
+    press : None if the device faulted before reporting it.
+    skipped : why the press was not used and the remedy; empty if it was.
+    achieved_mm_s : its mean speed; NaN if undefined.
+    message : what it changed, from the method.
+    progress : returns the progress of every velocity, slowest first.
+    """
+
+    stage: str
+    velocity_mm_s: float
+    presses_done: int
+    presses_total: int
+    press: Press | None
+    skipped: str
+    achieved_mm_s: float
+    message: str
+    progress: Callable[[], tuple[VelocityProgress, ...]]
+
+
+Progress = Callable[[PressDone], None]
+
+
+@dataclass(frozen=True)
+class PressRequest:
+    """The press requested next from the person, the ``number``-th of ``total`` that are used."""
+
+    velocity_mm_s: float
+    travel_mm: float
+    number: int
+    total: int
+
+
+@dataclass(frozen=True, eq=False)
+class Guide:
+    """Callbacks that guide the person through a session.
+
+    Attributes
+    ----------
+    ask : called before every press.
+    notice : called with notices: that a session is resumed, that a record was truncated.
+    """
+
+    ask: Callable[[PressRequest], None] = lambda _ask: None
+    notice: Callable[[str], None] = lambda _text: None
+
+
+S = TypeVar("S")
+
+SAME_TABLE_cN = 1 / 64
+"""Resolution of a device's commands: tables that differ by less are equal."""
+
+
+class TrialSource(Protocol[S]):
+    """The part of a method, or of a probe, that the loop uses."""
+
+    def trial(self, state: S) -> Trial | None:
+        """Return the next press; None when finished."""
+        ...
+
+    def step(self, press: Press, state: S) -> S:
+        """Use the press. Raises ModelError with the reason if it is unusable."""
+        ...
+
+    def count(self, state: S) -> PressCount:
+        """Return the number of presses made and needed."""
+        ...
+
+    def explain(self, state: S) -> str:
+        """Return what the last press changed."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SessionPlan(Generic[S]):
+    """What a session runs, and its callbacks.
+
+    Attributes
+    ----------
+    stage : "compensate" or "probe".
+    judge : decides whether a press can be used, with a trial's own pace_ratio unless that is None.
+    patience : the session stops after this many unusable presses in a row.
+    velocity_progress : of a state.
+    progress : called after every press; guide : called before it, and with notices.
+    """
+
+    stage: str
+    source: TrialSource[S]
+    travel_mm: float
+    judge: Callable[[Press, float | None], PressAcceptance]
+    patience: int
+    velocity_progress: Callable[[S], tuple[VelocityProgress, ...]]
+    progress: Progress = lambda _done: None
+    guide: Guide = field(default_factory=Guide)
+
+
+def prepare(device: Device, trial: Trial, travel_mm: float, before: Trial | None) -> None:
+    """Put a trial on the device, replacing only what differs from the trial before.
+
+    Settings are written before the table, only if the tuning changes them, and persist after the session.
+    """
+    fresh = before is None or before.surface is not trial.surface
+    if before is None or before.tuning != trial.tuning:
+        fresh |= tune(device, trial.tuning) or before is None or before.tuning.paced != trial.tuning.paced
+    if fresh:
+        device.upload(trial.surface, travel_mm, trial.tuning.paced)
+
+
+def run(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
+    """Continue from the presses of the log until the plan is finished; return the last state.
+
+    Every press is logged before it is used. Raises DeviceError if the device fails or too many presses in
+    a row cannot be used, KeyboardInterrupt on Ctrl-C; both say how to resume; the device is at zero force.
+    """
+    state = replay(plan, state, log)
+    for text in (*(f"warning: {warning}" for warning in log.warnings), _resume_notice(plan, state, log)):
+        if text:
+            plan.guide.notice(text)
+    try:
+        return _pressed(device, plan, state, log)
+    except KeyboardInterrupt:
+        release_force(device)
+        raise KeyboardInterrupt(f"interrupted; {_how_to_resume(plan, log)}") from None
+    except DeviceError as error:
+        release_force(device)
+        raise DeviceError(f"{error}; {_how_to_resume(plan, log)}") from error
+    except BaseException:
+        release_force(device)
+        raise
+
+
+def replay(plan: SessionPlan[S], state: S, log: PressLog) -> S:
+    """Rebuild the state from the used presses. Raises InputError if they were made on other tables."""
+    for kept in log.kept():
+        if not kept.entry.used:
+            continue
+        trial = plan.source.trial(state)
+        if trial is None or kept.press is None or not _same(trial, kept):
+            _refuse(log, kept, "was made on another table or tuning than this method asks for")
+        try:
+            state = plan.source.step(kept.press, state)
+        except ModelError as error:
+            _refuse(log, kept, str(error))
+    return state
+
+
+def _resume_notice(plan: SessionPlan[S], state: S, log: PressLog) -> str:
+    """Return a notice that a session is resumed or already finished; empty for a fresh one."""
+    if log.folder is None or not log.entries:
+        return ""
+    count = plan.source.count(state)
+    if plan.source.trial(state) is None:
+        rest = "is finished; this is its result again, name another folder for a new one"
+    else:
+        rest = "goes on"
+    return f"the session in {log.folder}, with {count.made} of {count.total} presses, {rest}"
+
+
+def _same(trial: Trial, kept: PressRecord) -> bool:
+    """Return whether a press was made with the tables and tuning of a trial."""
+    if trial.velocity_mm_s != kept.entry.velocity_mm_s or trial.tuning != kept.tuning:
+        return False
+    names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
+    pairs = [(getattr(trial.surface, name), getattr(kept.surface, name)) for name in names]
+    return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=SAME_TABLE_cN) for a, b in pairs)
+
+
+def _refuse(log: PressLog, kept: PressRecord, reason: str) -> NoReturn:
+    why = f"{reason}; another version of fdvv made it"
+    raise InputError(log.path, f"press {kept.entry.number}", why, REMEDY)
+
+
+def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
+    before, in_a_row = None, 0
+    clear_latched(device, plan.guide.notice)
+    while (trial := plan.source.trial(state)) is not None:
+        prepare(device, trial, plan.travel_mm, before)
+        count = plan.source.count(state)
+        plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
+        press, fault = _made(device, trial)
+        with defer_interrupt():
+            entry, state = _taken(plan, state, trial, (press, fault), log)
+        _report(plan, state, entry, press)
+        before = trial
+        if fault:
+            _cleared(device)
+            before = None  # a cleared device needs its program again
+        in_a_row = 0 if entry.used else in_a_row + 1
+        if in_a_row >= plan.patience:
+            name = device.info().name
+            raise DeviceError(f"{name}: {in_a_row} presses in a row could not be used; the last {entry}")
+    return state
+
+
+def _made(device: Device, trial: Trial) -> tuple[Press | None, str]:
+    """Return a press and no message, or no press and the message of the device's fault."""
+    try:
+        return device.press(trial.velocity_mm_s), ""
+    except DeviceError as error:
+        if not _faulted(device):
+            raise
+        return None, str(error)
+
+
+def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
+    """Clear a latched fault, with a notice. Raises DeviceError while its cause lasts."""
+    if _faulted(device):
+        notice(f"warning: {device.info().name} had fallen to zero force, {_cleared(device)}; cleared")
+
+
+def _faulted(device: Device) -> bool:
+    """Return whether the device is connected and has a latched fault."""
+    try:
+        return hasattr(device, "fault") and device.fault().fault is not Fault.NONE
+    except DeviceError:
+        return False
+
+
+def _cleared(device: Device) -> FaultReport:
+    """Clear and return the fault of a device. Raises DeviceError while its cause lasts."""
+    board = cast(ProgramDevice, device)
+    report = board.fault()
+    board.clear_fault()
+    return report
+
+
+def _taken(
+    plan: SessionPlan[S], state: S, trial: Trial, made: tuple[Press | None, str], log: PressLog
+) -> tuple[PressEntry, S]:
+    """Judge and log a press, and use it if it is usable."""
+    press, reason = made
+    verdict = PressAcceptance(reason, float("nan")) if press is None else plan.judge(press, trial.pace_ratio)
+    reason, after = verdict.reason, state
+    if press is not None and not reason:
+        try:
+            after = plan.source.step(press, state)
+        except ModelError as error:
+            reason = str(error)
+    achieved = verdict.achieved_mm_s if np.isfinite(verdict.achieved_mm_s) else None
+    entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, reason, achieved, now())
+    log.add(PressRecord(entry, trial.surface, press, trial.tuning))
+    return entry, after
+
+
+def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | None) -> None:
+    count = plan.source.count(state)
+    achieved = float("nan") if entry.achieved_mm_s is None else entry.achieved_mm_s
+    message = plan.source.explain(state) if entry.used else ""
+    plan.progress(
+        PressDone(
+            plan.stage,
+            entry.velocity_mm_s,
+            count.made,
+            count.total,
+            press,
+            entry.reason,
+            achieved,
+            message,
+            lambda: plan.velocity_progress(state),
+        )
+    )
+
+
+def release_force(device: Any) -> None:
+    """Set the device to zero force, if it is connected."""
+    try:
+        if hasattr(device, "stop"):
+            device.stop()
+    except DeviceError:
+        pass  # disconnected, or at zero force already
+
+
+def _how_to_resume(plan: SessionPlan[Any], log: PressLog) -> str:
+    made = f"{log.used} {'press is' if log.used == 1 else 'presses are'}"
+    if log.folder is None:
+        return f"{made} lost; name a folder with --session to keep them"
+    return f"{made} kept in {log.folder}; run the same command again to go on"

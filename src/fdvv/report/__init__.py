@@ -1,0 +1,1 @@
+"""Figures and HTML reports; figures need the extra ``plot``."""

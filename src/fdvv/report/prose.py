@@ -1,0 +1,87 @@
+"""Statistics in words and cells, as a result section writes them."""
+
+from __future__ import annotations
+
+from fdvv.stats.anova import AnovaEffect
+from fdvv.stats.effect_size import Estimate
+from fdvv.stats.post_hoc import PairedTest
+
+ALPHA = 0.05
+
+
+def p_text(p: float) -> str:
+    """Write a p value: p < .001, or three decimals without the zero before the point."""
+    return "p < .001" if p < 0.001 else f"p = {p:.3f}".replace("0.", ".", 1)
+
+
+def stars(p: float) -> str:
+    """Mark a p value: *** below .001, ** below .01, * below .05, else n.s."""
+    return next((mark for bound, mark in ((0.001, "***"), (0.01, "**"), (0.05, "*")) if p < bound), "n.s.")
+
+
+def effect_text(effect: AnovaEffect) -> str:
+    """Write an effect, degrees of freedom and p corrected where sphericity needs it."""
+    first, second = effect.corrected_df
+    if effect.effect_df == 1:
+        return (
+            f"F(1, {effect.error_df}) = {effect.F:.2f}, {p_text(effect.p)}, "
+            f"generalized η² = {effect.generalized_eta2:.3f}"
+        )
+    return (
+        f"F({first:.2f}, {second:.2f}) = {effect.F:.2f}, {p_text(effect.corrected_p)} "
+        f"(Greenhouse-Geisser ε = {effect.sphericity.epsilon:.3f}), "
+        f"generalized η² = {effect.generalized_eta2:.3f}, partial η² = {effect.partial_eta2:.3f}"
+    )
+
+
+def sphericity_text(effect: AnovaEffect) -> str:
+    """Say what Mauchly's test says; nothing where it has nothing to say."""
+    found = effect.sphericity
+    if found.W is None or found.p is None:
+        return ""
+    verdict = "is denied" if found.p < ALPHA else "is not denied"
+    return f"Sphericity of {effect.name} {verdict} (Mauchly's W = {found.W:.3g}, {p_text(found.p)})."
+
+
+def pair_cells(one: PairedTest) -> tuple[str, ...]:
+    """Write a pair as a row of a table."""
+    return (
+        f"{button_text(one.first)} − {button_text(one.second)}",
+        interval_text(one.difference, 1),
+        f"{one.t:.2f}",
+        _short_p(one.p),
+        _short_p(one.bonferroni_p),
+        _short_p(one.holm_p),
+        interval_text(one.dz, 2),
+        interval_text(one.reduction_ratio, 1, 100.0),
+    )
+
+
+PAIR_COLUMNS = (
+    "pair", "difference (ms)", "t", "p", "Bonf. p", "Holm p", "dz", "reduction (%)"
+)  # fmt: skip
+
+
+def interval_text(one: Estimate, digits: int, scale: float = 1.0) -> str:
+    """Write an estimate with its interval, where there is one."""
+    value = f"{scale * one.value:.{digits}f}"
+    if one.low is None or one.high is None:
+        return value
+    # spaces that no line breaks at: an interval stays in one piece
+    return f"{value} [{scale * one.low:.{digits}f}, {scale * one.high:.{digits}f}]".replace(
+        " ", "\N{NO-BREAK SPACE}"
+    )
+
+
+def listed(names: list[str]) -> str:
+    """Join names: a, b and c."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _short_p(p: float) -> str:
+    return "< .001" if p < 0.001 else f"{p:.3f}"
+
+
+def button_text(name: str) -> str:
+    """Write a button's name where room is scarce: the switches are all MX."""
+    return name.removeprefix("mx-")

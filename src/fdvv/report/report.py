@@ -1,0 +1,103 @@
+"""One report as one HTML file: style, figures and tables inside it, nothing fetched, nothing run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup
+
+from fdvv.errors import ModelError
+from fdvv.io.files import write_atomic
+from fdvv.report.templates import environment
+
+_NUMBER = re.compile(
+    r"(< ?)?[+\-−]?(\d+(\.\d*)?|\.\d+|∞)(e[+-]?\d+)?\s?(%|[A-Za-zµ/²]{1,6})?(\s?\[[^\[\]]+\])?"
+)
+"""A cell that reads as a number, with a unit and an interval or not, is set to the right, in one line."""
+
+_NOTHING = {"", "-", "–", "—"}
+"""What a cell says where there is no number."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text.
+
+    Attributes
+    ----------
+    columns : headings, units in them.
+    rows : cells as text, one per column; the first is the heading of its row.
+    caption : one sentence that says what the table shows.
+
+    Raises ModelError if a row has another length than the headings.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    caption: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "columns", tuple(str(c) for c in self.columns))
+        object.__setattr__(self, "rows", tuple(tuple(str(c) for c in row) for row in self.rows))
+        for i, row in enumerate(self.rows):
+            if len(row) != len(self.columns):
+                raise ModelError(f"row {i} has {len(row)} cells, the table {len(self.columns)} columns")
+
+    def kinds(self) -> list[Markup]:
+        """Return an attribute per column: numbers are set to the right, in one line."""
+        columns = list(zip(*self.rows, strict=True)) or [()] * len(self.columns)
+        return [Markup(' class="number"' if _is_numeric(column) else "") for column in columns]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a report: text, then figures, then tables.
+
+    Attributes
+    ----------
+    title : its heading.
+    paragraphs : plain text, no markup.
+    figures : svg elements as figure_svg gives them.
+    tables : see Table.
+    """
+
+    title: str
+    paragraphs: tuple[str, ...] = ()
+    figures: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("paragraphs", "figures", "tables"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for svg in self.figures:
+            if not svg.lstrip().startswith("<svg"):
+                raise ModelError(f"a figure must be an svg element as figure_svg gives it, got {svg[:40]!r}")
+
+
+def render_html(
+    title: str,
+    summary: str,
+    sections: Sequence[Section],
+    footer: str = "",
+    simulated: str | None = None,
+) -> str:
+    """Return a report as one self-contained HTML document; every text is escaped.
+
+    simulated : where the numbers come from if no hardware made them ("the twin, seed 1"); shown in a
+        banner at the top as "Simulated: ...". None for measured data.
+    """
+    page = environment().get_template("report.html")
+    return page.render(title=title, summary=summary, sections=sections, footer=footer, simulated=simulated)
+
+
+def write_report(path: Path, html: str) -> None:
+    """Write a report to a file, whole or not at all. Raises OSError."""
+    write_atomic(path, html)
+
+
+def _is_numeric(column: Sequence[str]) -> bool:
+    texts = [text.strip() for text in column if text.strip() not in _NOTHING]
+    return bool(texts) and all(_NUMBER.fullmatch(text) for text in texts)

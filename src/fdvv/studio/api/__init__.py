@@ -1,0 +1,1 @@
+"""What each page of the studio asks of the server: messages and their handlers together."""

@@ -1,0 +1,28 @@
+"""The version, project and sources of this studio."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+from fdvv import __version__
+from fdvv.studio.contract import Call, Empty
+from fdvv.studio.studio import Studio
+
+
+class About(Struct, frozen=True, forbid_unknown_fields=True):
+    """What this studio is.
+
+    project : name of the project's folder. sources : names of the folders of measured switches.
+    """
+
+    version: str
+    project: str
+    sources: list[str]
+
+
+def about(studio: Studio, _ask: Empty) -> About:
+    """Return names only: the page needs no paths."""
+    return About(__version__, studio.project.resolve().name, [s.resolve().name for s in studio.sources])
+
+
+CALLS = (Call("studio.about", Empty, About, about),)

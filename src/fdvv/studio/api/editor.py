@@ -1,0 +1,136 @@
+"""The editor: rigs, what they make of the curves that are being drawn, and measured forces."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, cast
+
+import msgspec
+from msgspec import Meta, Struct
+
+from fdvv.model.file import model_from_json, model_to_json
+from fdvv.project.measured_bands import MeasuredButton, measured_button
+from fdvv.rendering.rig_catalog import AchievableCurve, LimitedRange, RigCatalog, RigEntry
+from fdvv.rendering.rig_catalog import achievable as make_achievable
+from fdvv.studio.contract import Call, Empty
+from fdvv.studio.studio import Studio
+from fdvv.units import FloatArray
+
+Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
+StrokeName = Literal["press", "release"]
+
+
+class Rigs(Struct, frozen=True, forbid_unknown_fields=True):
+    """The rigs of the project, the shipped ones first."""
+
+    rigs: list[RigEntry]
+
+
+class AchievableAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask what a rig makes of both strokes of a model at some speeds.
+
+    model : a document as in a ``*.fdvv.json`` file. velocities_mm_s : null for a curve of unknown velocity.
+    """
+
+    model: msgspec.Raw
+    velocities_mm_s: Annotated[list[Velocity | None], Meta(min_length=1, max_length=24)]
+    rig_id: str
+
+
+class AchievableForce(Struct, frozen=True, forbid_unknown_fields=True):
+    """One stroke at one speed, computed; expected_mean_cN : error that learning leaves, an estimate."""
+
+    stroke: StrokeName
+    velocity_mm_s: float
+    displacement_mm: list[float]
+    intended_cN: list[float]
+    achievable_cN: list[float]
+    limited: list[LimitedRange]
+    verdict: str
+    reasons: list[str]
+    expected_mean_cN: float
+
+
+class Achievable(Struct, frozen=True, forbid_unknown_fields=True):
+    """What a rig makes of the curves, presses before releases."""
+
+    curves: list[AchievableForce]
+
+
+class ButtonAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for the model of any button, to take curves from."""
+
+    button_id: str
+
+
+class ButtonModel(Struct, frozen=True, forbid_unknown_fields=True):
+    """A model as in a ``*.fdvv.json`` file; a measured button is fitted for it."""
+
+    model: msgspec.Raw
+
+
+class MeasuredAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for what presses of a button gave; name as in its id."""
+
+    name: str
+
+
+class Measured(Struct, frozen=True, forbid_unknown_fields=True):
+    """The presses of a button; null if none were kept."""
+
+    found: MeasuredButton | None
+
+
+DECIMALS = 4
+"""Of mm and cN on the way to a screen."""
+
+
+class RigService:
+    """The project's rigs, each read or identified once."""
+
+    def __init__(self, studio: Studio) -> None:
+        self.catalog = RigCatalog(studio.project)
+
+
+def rigs(studio: Studio, _ask: Empty) -> Rigs:
+    entries = studio.part(RigService).catalog.entries()
+    return Rigs(list(entries))
+
+
+def achievable(studio: Studio, ask: AchievableAsk) -> Achievable:
+    model = model_from_json(bytes(ask.model), "the button")
+    rig = studio.part(RigService).catalog.rig(ask.rig_id)
+    return Achievable([_curve(c) for c in make_achievable(model, rig, ask.velocities_mm_s)])
+
+
+def button(studio: Studio, ask: ButtonAsk) -> ButtonModel:
+    return ButtonModel(msgspec.Raw(model_to_json(studio.catalog.model(ask.button_id)).encode()))
+
+
+def measured(studio: Studio, ask: MeasuredAsk) -> Measured:
+    return Measured(measured_button(studio.project, ask.name))
+
+
+def _curve(curve: AchievableCurve) -> AchievableForce:
+    return AchievableForce(
+        cast(StrokeName, str(curve.stroke)),
+        curve.velocity_mm_s,
+        _rounded(curve.displacement_mm),
+        _rounded(curve.intended_cN),
+        _rounded(curve.achievable_cN),
+        list(curve.limited),
+        curve.verdict,
+        list(curve.reasons),
+        curve.expected_mean_cN,
+    )
+
+
+def _rounded(column: FloatArray) -> list[float]:
+    return cast("list[float]", column.round(DECIMALS).tolist())
+
+
+CALLS = (
+    Call("editor.rigs", Empty, Rigs, rigs),
+    Call("editor.achievable", AchievableAsk, Achievable, achievable),
+    Call("editor.button", ButtonAsk, ButtonModel, button),
+    Call("editor.measured", MeasuredAsk, Measured, measured),
+)

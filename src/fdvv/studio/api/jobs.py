@@ -1,0 +1,242 @@
+"""Jobs on the page: started, followed, answered; what their forms offer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import msgspec
+
+from fdvv.device.open import pressed_by_person
+from fdvv.errors import FdvvError
+from fdvv.model.file import builtin_names
+from fdvv.studio.contract import Call, ChannelKind, Empty, Tell
+from fdvv.studio.devices import DeviceLocks, available_devices, device_names
+from fdvv.studio.jobs.events import JobEvent
+from fdvv.studio.jobs.file import JobRow, result_names
+from fdvv.studio.jobs.inputs import BENCH, RIGS
+from fdvv.studio.jobs.jobs import Jobs
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, ProbeOrder, TuneOrder
+from fdvv.studio.studio import Studio
+from fdvv.twin.capture.participant import PARTICIPANTS
+from fdvv.twin.files import button_names
+
+
+class StartJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Begin long work."""
+
+    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+
+
+class JobAsk(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Name a job: to cancel or resume it, or to read its order."""
+
+    job: str
+
+
+class JobAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Answer the question that a job has asked.
+
+    answer : "first", "second" or "neither"; a rating from "1" to "7"; or "again" to press once more.
+    """
+
+    job: str
+    number: int
+    answer: str
+
+
+class JobDetail(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A job and what it was ordered with."""
+
+    row: JobRow
+    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+
+
+class ButtonChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A button that work can be done on. vibrates : it has a vibration of the press."""
+
+    button: str
+    name: str
+    vibrates: bool
+
+
+class DeviceChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A device that there is. bench : a capture bench may be there; rig : a rig may be."""
+
+    device: str
+    about: str
+    simulated: bool
+    rig: bool
+    bench: bool
+    used_by: str
+
+
+class WorkChoices(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What forms offer.
+
+    rigs : simulated. known_rigs, actuations : kept in the project, by name.
+    switches, participants : of the simulated bench.
+    note : why serial ports cannot be listed; empty if they can.
+    """
+
+    buttons: tuple[ButtonChoice, ...]
+    devices: tuple[DeviceChoice, ...]
+    rigs: tuple[str, ...]
+    known_rigs: tuple[str, ...]
+    actuations: tuple[str, ...]
+    switches: tuple[str, ...]
+    participants: tuple[str, ...]
+    note: str
+
+
+class JobRows(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All jobs, newest first."""
+
+    jobs: tuple[JobRow, ...]
+
+
+class WatchJobs(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_jobs"):
+    """Send all jobs, and then each that changes."""
+
+
+class WatchJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_job"):
+    """Send the events of one job from a number on, and then as they come; of one job at a time."""
+
+    job: str
+    from_event: int
+
+
+class JobList(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="jobs"):
+    """All jobs, newest first; sent when the page subscribes."""
+
+    jobs: tuple[JobRow, ...]
+
+
+class JobChanged(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="job"):
+    """A job that is new or has changed."""
+
+    row: JobRow
+
+
+class JobEvents(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="events"):
+    """Events of a job, the first of which bears the number from_event; they count from 0."""
+
+    job: str
+    from_event: int
+    events: tuple[JobEvent, ...]
+
+
+def choices(studio: Studio) -> WorkChoices:
+    known, note = available_devices()
+    locks = studio.part(DeviceLocks)
+    return WorkChoices(
+        tuple(_buttons(studio)),
+        tuple(
+            DeviceChoice(
+                name,
+                about,
+                not pressed_by_person(name),
+                True,
+                name == "twin" or pressed_by_person(name),
+                locks.holder(name) or locks.holder(BENCH + name),
+            )
+            for name, about in known
+        ),
+        RIGS,
+        result_names(studio.project, "rig"),
+        result_names(studio.project, "actuation"),
+        button_names(),
+        tuple(PARTICIPANTS),
+        note,
+    )
+
+
+def _buttons(studio: Studio) -> list[ButtonChoice]:
+    """List the person's own buttons, then the built-in ones; a file that cannot be read is passed over."""
+    ids = [f"own:{name}" for name in result_names(studio.project, "button")]
+    ids += [f"builtin:{name}" for name in builtin_names()]
+    found = []
+    for button in ids:
+        try:
+            model = studio.catalog.model(button)
+        except FdvvError:
+            continue
+        vibrates = any(v.stroke == "press" for v in model.vibrations)
+        found.append(ButtonChoice(button, button.partition(":")[2], vibrates))
+    return found
+
+
+AT_ONCE = 50
+"""So many events in one message: a press with its curve is some 3 kB."""
+
+
+class JobsChannel:
+    """One page that follows the jobs."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._jobs, self._tell = studio.part(Jobs), tell
+        self._ends: dict[str, Callable[[], None]] = {}
+
+    def receive(self, ask: WatchJobs | WatchJob) -> None:
+        """Begin to follow all jobs, or the events of one. InputError."""
+        if isinstance(ask, WatchJobs):
+            self._end("rows")
+            self._ends["rows"] = self._jobs.watch(lambda row: self._tell(JobChanged(row)))
+            self._tell(JobList(self._jobs.rows()))
+            return
+        self._end("events")
+
+        def heard(number: int, events: Sequence[JobEvent]) -> None:
+            for first in range(0, len(events), AT_ONCE):
+                self._tell(JobEvents(ask.job, number + first, tuple(events[first : first + AT_ONCE])))
+
+        self._ends["events"] = self._jobs.listen(ask.job, ask.from_event, heard)
+
+    def close(self) -> None:
+        for name in tuple(self._ends):
+            self._end(name)
+
+    def _end(self, name: str) -> None:
+        if name in self._ends:
+            self._ends.pop(name)()
+
+
+def start(studio: Studio, ask: StartJob) -> JobRow:
+    return studio.part(Jobs).start(ask.order, device_names())
+
+
+def resume(studio: Studio, ask: JobAsk) -> JobRow:
+    return studio.part(Jobs).resume(ask.job)
+
+
+def cancel(studio: Studio, ask: JobAsk) -> JobRow:
+    return studio.part(Jobs).cancel(ask.job)
+
+
+def answer(studio: Studio, ask: JobAnswer) -> JobRow:
+    return studio.part(Jobs).answer(ask.job, ask.number, ask.answer)
+
+
+def detail(studio: Studio, ask: JobAsk) -> JobDetail:
+    job = studio.part(Jobs).job(ask.job)
+    return JobDetail(job.row, job.record.order)
+
+
+def rows(studio: Studio, _ask: Empty) -> JobRows:
+    return JobRows(studio.part(Jobs).rows())
+
+
+def offered(studio: Studio, _ask: Empty) -> WorkChoices:
+    return choices(studio)
+
+
+CALLS = (
+    Call("jobs.start", StartJob, JobRow, start),
+    Call("jobs.resume", JobAsk, JobRow, resume),
+    Call("jobs.cancel", JobAsk, JobRow, cancel),
+    Call("jobs.answer", JobAnswer, JobRow, answer),
+    Call("jobs.detail", JobAsk, JobDetail, detail),
+    Call("jobs.list", Empty, JobRows, rows),
+    Call("jobs.choices", Empty, WorkChoices, offered),
+)
+
+CHANNELS = (ChannelKind("jobs", (WatchJobs, WatchJob), (JobList, JobChanged, JobEvents), JobsChannel),)

@@ -1,0 +1,263 @@
+"""The library page: the index of all buttons, its status, and searches."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from threading import Lock
+from typing import Annotated
+
+import numpy as np
+from msgspec import Meta, Struct
+
+from fdvv.library.index import CatalogIndex, IndexStatus, RefusedFile, builtin_rows
+from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.library.search import CatalogSearch, SearchQuery, SearchResult
+from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watchers
+from fdvv.studio.studio import Studio
+
+Number = float | None
+
+
+class LibraryIndexAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for rows: those from ``first`` on if ``epoch`` is still the index's, else all."""
+
+    epoch: int = 0
+    first: Annotated[int, Meta(ge=0)] = 0
+
+
+class LibraryStatus(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag="standing"):
+    """How far the index is.
+
+    epoch : counts what replaced the rows as a whole; positions hold within one. done, total : files.
+    sources : folders of measured files that were given. trouble : why the cache cannot be written.
+    """
+
+    epoch: int
+    rows: int
+    refused: int
+    done: int
+    total: int
+    ended: bool
+    sources: int
+    trouble: str
+
+
+class LibraryIndex(Struct, frozen=True, forbid_unknown_fields=True):
+    """Rows as columns, from position ``first`` on.
+
+    numbers : by name, null where there is none. sketches : base64 of 16-bit integers, lowest byte first, 64
+    of the press and 64 of the release for every row, in tenths of a centinewton from contact to the end of
+    the travel; -32768 where there is no such stroke.
+    """
+
+    standing: LibraryStatus
+    first: int
+    ids: list[str]
+    names: list[str]
+    collections: list[str]
+    origins: list[Origin]
+    kinds: list[ButtonType]
+    stated: list[list[str]]
+    speeds_mm_s: list[list[float]]
+    dates: list[str | None]
+    simulated: list[bool]
+    numbers: dict[str, list[Number]]
+    sketches: str
+
+
+class LibraryRange(Struct, frozen=True, forbid_unknown_fields=True):
+    """A range of a figure; null has no end."""
+
+    low: Number = None
+    high: Number = None
+
+
+class LibraryFind(Struct, frozen=True, forbid_unknown_fields=True):
+    """What is sought; all of it must hold. Empty lists take every kind and origin.
+
+    ranges : by the name of a number. like : id of the button that others are to feel like.
+    sort : "match", "name", "kind", "origin", "date" or a number's name.
+    """
+
+    text: Annotated[str, Meta(max_length=200)] = ""
+    kinds: list[ButtonType] = []
+    origins: list[Origin] = []
+    ranges: dict[str, LibraryRange] = {}
+    like: str | None = None
+    sort: str = "match"
+    descending: bool = False
+
+
+class LibraryHistogram(Struct, frozen=True, forbid_unknown_fields=True):
+    """How the buttons that match everything else spread over equal bins from lowest to highest."""
+
+    lowest: float
+    highest: float
+    counts: list[int]
+
+
+class LibraryFound(Struct, frozen=True, forbid_unknown_fields=True):
+    """Positions of the rows that match, in order.
+
+    distances_jnd : to the button they are to be like, in that order. without : how many would match if a
+    filter were dropped. mended : words that were read with a typo.
+    """
+
+    epoch: int
+    positions: list[int]
+    distances_jnd: list[float]
+    histograms: dict[str, LibraryHistogram]
+    kinds: dict[str, int]
+    origins: dict[str, int]
+    without: dict[str, int]
+    mended: list[str]
+
+
+class LibraryRefused(Struct, frozen=True, forbid_unknown_fields=True):
+    """Files that cannot be used."""
+
+    files: list[RefusedFile]
+
+
+NO_STROKE = -32768
+"""In place of every force of a stroke that is not there."""
+
+
+def index_columns(status: LibraryStatus, first: int, rows: Sequence[ButtonRow]) -> LibraryIndex:
+    """Return rows as columns; first : position of the first of them."""
+    return LibraryIndex(
+        standing=status,
+        first=first,
+        ids=[row.id for row in rows],
+        names=[row.name for row in rows],
+        collections=[row.collection for row in rows],
+        origins=[row.origin for row in rows],
+        kinds=[row.kind for row in rows],
+        stated=[list(row.stated) for row in rows],
+        speeds_mm_s=[list(row.speeds_mm_s) for row in rows],
+        dates=[row.date for row in rows],
+        simulated=[row.simulated for row in rows],
+        numbers={name: [getattr(row, name) for row in rows] for name in NUMBERS},
+        sketches=_packed(rows),
+    )
+
+
+def _packed(rows: Sequence[ButtonRow]) -> str:
+    none = (NO_STROKE,) * 64
+    sketches = [(row.sketch.press_dcN or none) + (row.sketch.release_dcN or none) for row in rows]
+    return base64.b64encode(np.array(sketches, dtype="<i2").tobytes()).decode()
+
+
+def search_message(found: SearchResult, epoch: int) -> LibraryFound:
+    """Return a search result; epoch : of the rows that its positions count."""
+    return LibraryFound(
+        epoch=epoch,
+        positions=found.positions.tolist(),
+        distances_jnd=np.round(found.distances, 3).tolist(),
+        histograms={
+            name: LibraryHistogram(h.lowest, h.highest, h.counts.tolist())
+            for name, h in found.histograms.items()
+        },
+        kinds=found.kinds,
+        origins=found.origins,
+        without=found.without,
+        mended=list(found.mended),
+    )
+
+
+def prepare() -> None:
+    """Read what a person sees first, before other parts are imported beside it."""
+    builtin_rows()
+
+
+class Library:
+    """The index of a studio's catalogue, ready to be searched, and the pages that watch it grow."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._sources = len(studio.sources)
+        self.watchers = Watchers[Struct]()
+        self._lock = Lock()
+        self._search, self._epoch = CatalogSearch(), 0
+        cache = studio.project / "cache" / "shelf.jsonl"
+        self.index = CatalogIndex(studio.catalog, cache, self._status_changed, libraries=studio.libraries)
+        self.index.start()
+
+    def close(self) -> None:
+        self.index.close()
+
+    def status(self) -> LibraryStatus:
+        s = self.index.status
+        rows, refused = len(s.rows), len(s.refused)
+        return LibraryStatus(s.epoch, rows, refused, s.done, s.total, s.ended, self._sources, s.trouble)
+
+    def find(self, query: SearchQuery) -> tuple[SearchResult, Sequence[ButtonRow], IndexStatus]:
+        """Search the rows that were read so far; positions are of the rows given."""
+        with self._lock:
+            indexed, search = self._ready()
+            return search.find(query), search.rows, indexed
+
+    def row(self, button_id: str) -> ButtonRow | None:
+        """Return the row of a button; None if it is not indexed yet."""
+        with self._lock:
+            return self._ready()[1].row(button_id)
+
+    def _ready(self) -> tuple[IndexStatus, CatalogSearch]:
+        indexed = self.index.status
+        if self._epoch != indexed.epoch:
+            self._search, self._epoch = CatalogSearch(), indexed.epoch
+        self._search.extend(indexed.rows[len(self._search.rows) :])
+        return indexed, self._search
+
+    def _status_changed(self, _status: IndexStatus) -> None:
+        self.watchers.tell(self.status())
+
+
+def index(studio: Studio, ask: LibraryIndexAsk) -> LibraryIndex:
+    library = studio.part(Library)
+    status, indexed = library.status(), library.index.status
+    first = ask.first if ask.epoch == indexed.epoch else 0
+    return index_columns(status, first, indexed.rows[first:])
+
+
+def find(studio: Studio, ask: LibraryFind) -> LibraryFound:
+    """Search; positions are of library.index."""
+    found, _, indexed = studio.part(Library).find(
+        SearchQuery(
+            text=ask.text,
+            kinds=tuple(ask.kinds),
+            origins=tuple(ask.origins),
+            ranges={name: (r.low, r.high) for name, r in ask.ranges.items()},
+            like=ask.like,
+            sort=ask.sort,
+            descending=ask.descending,
+        )
+    )
+    return search_message(found, indexed.epoch)
+
+
+def refused(studio: Studio, _ask: Empty) -> LibraryRefused:
+    found = studio.part(Library).index.status.refused
+    return LibraryRefused(list(found))
+
+
+def rescan(studio: Studio, _ask: Empty) -> LibraryStatus:
+    library = studio.part(Library)
+    library.index.rescan()
+    return library.status()
+
+
+def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
+    """Open a page's end of the channel: the status of the index, now and whenever it changes."""
+    library = studio.part(Library)
+    return WatchChannel(library.watchers, tell, library.status)
+
+
+CALLS = (
+    Call("library.index", LibraryIndexAsk, LibraryIndex, index),
+    Call("library.find", LibraryFind, LibraryFound, find),
+    Call("library.refused", Empty, LibraryRefused, refused),
+    Call("library.rescan", Empty, LibraryStatus, rescan),
+)
+
+CHANNELS = (ChannelKind("library", (Watch,), (LibraryStatus,), open_channel),)

@@ -1,0 +1,215 @@
+"""Buttons of the catalogue: rows for pickers, similar buttons, curves with landmarks."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from msgspec import Meta, Struct
+
+from fdvv.errors import FdvvError
+from fdvv.library.figures import row_of_model
+from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.library.search import SearchQuery
+from fdvv.model.model import FDVVModel
+from fdvv.studio.api.library import Library, Number
+from fdvv.studio.contract import Call, error_line
+from fdvv.studio.studio import Studio
+
+STEP_mm, MOST_POINTS = 0.01, 2000
+"""Of curves on the page."""
+
+
+class LibraryQuery(Struct, frozen=True, forbid_unknown_fields=True):
+    """What a picker of buttons asks: as LibraryFind, with at most ``limit`` rows in the answer."""
+
+    text: Annotated[str, Meta(max_length=200)] = ""
+    kinds: list[ButtonType] = []
+    origins: list[Origin] = []
+    limit: Annotated[int, Meta(ge=1, le=1000)] = 50
+
+
+class LibraryRow(Struct, frozen=True, forbid_unknown_fields=True):
+    """One button with its main landmarks."""
+
+    id: str
+    name: str
+    origin: Origin
+    kind: ButtonType
+    collection: str
+    stated: list[str]
+    peak_cN: Number
+    drop_cN: Number
+    actuation_mm: Number
+    bottom_out_cN: Number
+    travel_mm: float
+    simulated: bool
+
+
+class LibraryRows(Struct, frozen=True, forbid_unknown_fields=True):
+    """The first rows that match, and how many match. ended : whether every file has been looked at."""
+
+    rows: list[LibraryRow]
+    total: int
+    ended: bool
+
+
+class LibraryLikeAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for the buttons that feel most like one."""
+
+    id: str
+    limit: Annotated[int, Meta(ge=1, le=1000)] = 20
+
+
+class LibraryAlike(Struct, frozen=True, forbid_unknown_fields=True):
+    """A button and how far it is from the one asked for, in just noticeable differences."""
+
+    row: LibraryRow
+    distance_jnd: float
+    force_jnd: float
+    shape_jnd: float
+    landmarks_jnd: float
+
+
+class LibraryAlikes(Struct, frozen=True, forbid_unknown_fields=True):
+    """The nearest first."""
+
+    alike: list[LibraryAlike]
+
+
+class LibraryCurvesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for the curves of some buttons."""
+
+    ids: Annotated[list[str], Meta(max_length=100)]
+
+
+class LibraryStroke(Struct, frozen=True, forbid_unknown_fields=True):
+    """Force of a stroke at start + i step, contact at 0. velocity_mm_s : null if the source tells none."""
+
+    stroke: str
+    velocity_mm_s: Number
+    start_mm: float
+    step_mm: float
+    force_cN: list[float]
+
+
+class LibraryButton(Struct, frozen=True, forbid_unknown_fields=True):
+    """All that is known of a button.
+
+    numbers : its landmarks by name. why : reasons of what is null, each with its subject and a colon.
+    cycles, used : presses in the source and in the mean. source, licence : empty if not stated.
+    """
+
+    id: str
+    name: str
+    origin: Origin
+    kind: ButtonType
+    kind_reason: str
+    collection: str
+    stated: list[str]
+    numbers: dict[str, Number]
+    why: list[str]
+    cycles: int | None
+    used: int | None
+    date: str | None
+    source: str
+    licence: str
+    simulated: bool
+    strokes: list[LibraryStroke]
+
+
+class LibraryMissing(Struct, frozen=True, forbid_unknown_fields=True):
+    """A button that cannot be had, and why."""
+
+    id: str
+    reason: str
+
+
+class LibraryCurves(Struct, frozen=True, forbid_unknown_fields=True):
+    """Buttons in the order asked for, and those that cannot be had."""
+
+    buttons: list[LibraryButton]
+    missing: list[LibraryMissing]
+
+
+def picker_row(row: ButtonRow) -> LibraryRow:
+    """Return what a picker shows of a row."""
+    return msgspec.convert(row, LibraryRow, from_attributes=True)
+
+
+def sampled_strokes(model: FDVVModel) -> list[LibraryStroke]:
+    """Sample every curve of a model about every 10 um from its start to its end, in reading order."""
+    strokes = []
+    for curve in model.curves:
+        points = round((curve.end_mm - curve.start_mm) / STEP_mm) + 1
+        x = np.linspace(curve.start_mm, curve.end_mm, int(np.clip(points, 2, MOST_POINTS)))
+        force_cN = np.round(curve.force_cN(x), 3).tolist()
+        start_mm, step_mm = float(x[0]), float(x[1] - x[0])
+        strokes.append(LibraryStroke(curve.stroke, curve.velocity_mm_s, start_mm, step_mm, force_cN))
+    return strokes
+
+
+def button_message(row: ButtonRow, strokes: list[LibraryStroke]) -> LibraryButton:
+    """Return all that is known of a button, with its curves."""
+    return LibraryButton(
+        id=row.id,
+        name=row.name,
+        origin=row.origin,
+        kind=row.kind,
+        kind_reason=row.kind_reason,
+        collection=row.collection,
+        stated=list(row.stated),
+        numbers={name: getattr(row, name) for name in NUMBERS},
+        why=list(row.why),
+        cycles=row.cycles,
+        used=row.used,
+        date=row.date,
+        source=row.source,
+        licence=row.licence,
+        simulated=row.simulated,
+        strokes=strokes,
+    )
+
+
+def search(studio: Studio, ask: LibraryQuery) -> LibraryRows:
+    query = SearchQuery(text=ask.text, kinds=tuple(ask.kinds), origins=tuple(ask.origins))
+    found, rows, indexed = studio.part(Library).find(query)
+    best = [picker_row(rows[at]) for at in found.positions[: ask.limit]]
+    return LibraryRows(best, len(found.positions), indexed.ended)
+
+
+def like(studio: Studio, ask: LibraryLikeAsk) -> LibraryAlikes:
+    found, rows, _ = studio.part(Library).find(SearchQuery(like=ask.id))
+    alike = [
+        LibraryAlike(picker_row(rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist())
+        for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
+        if np.isfinite(distance)
+    ]
+    return LibraryAlikes(alike[: ask.limit])
+
+
+def curves(studio: Studio, ask: LibraryCurvesAsk) -> LibraryCurves:
+    """Return curves and landmarks; a button that cannot be read does not prevent the others."""
+    library = studio.part(Library)
+    buttons, missing = [], []
+    for button_id in ask.ids:
+        try:
+            buttons.append(button_of(studio, library, button_id))
+        except FdvvError as error:
+            missing.append(LibraryMissing(button_id, error_line(error)))
+    return LibraryCurves(buttons, missing)
+
+
+def button_of(studio: Studio, library: Library, button_id: str) -> LibraryButton:
+    """Return a button with its curves; one that is not indexed yet is read. InputError."""
+    model = studio.catalog.curves(button_id)
+    row = library.row(button_id) or row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
+    return button_message(row, sampled_strokes(model))
+
+
+CALLS = (
+    Call("library.search", LibraryQuery, LibraryRows, search),
+    Call("library.like", LibraryLikeAsk, LibraryAlikes, like),
+    Call("library.curves", LibraryCurvesAsk, LibraryCurves, curves),
+)

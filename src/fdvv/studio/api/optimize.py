@@ -1,0 +1,298 @@
+"""Optimisation runs on the page: list, details, and simulated players."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from msgspec import Meta, Struct, field
+
+from fdvv.errors import FdvvError
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.problem import Answer, Objective, Score, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.space import Parameter
+from fdvv.optimize.tasks import TemporalPointing
+from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watching, error_line
+from fdvv.studio.optimizations import Optimizations, OptimizeChanged, SimulatedPlay
+from fdvv.studio.played_trial import playable, pointing_of
+from fdvv.studio.studio import Studio
+
+Number = Annotated[int, Meta(ge=0, le=2**31)]
+Name = Annotated[str, Meta(max_length=100)]
+Level = Literal["easy", "hard"]
+
+
+class OptimizeRow(Struct, frozen=True):
+    """A run in short.
+
+    spent : trials, or comparisons, that count. problem : why it cannot be read; empty if it can.
+    best : the least score of the first objective. simulated : played by a simulated person. made : when, UTC.
+    """
+
+    run: int
+    title: str
+    engine: str
+    preference: bool
+    simulated: bool
+    level: str
+    spent: int
+    budget: int
+    best: Score | None
+    made: str
+    problem: str
+
+
+class OptimizeRows(Struct, frozen=True):
+    """All runs, the newest first."""
+
+    rows: list[OptimizeRow]
+
+
+class OptimizeAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Name a run."""
+
+    run: Number
+
+
+class OptimizeCurve(Struct, frozen=True):
+    """The press of a design, for a small picture."""
+
+    step_mm: float
+    force_cN: list[float]
+    actuation_mm: float | None
+
+
+class OptimizeTrial(Struct, frozen=True):
+    """A trial. front : no other one is better in every objective; False where there is one objective."""
+
+    number: int
+    design: dict[str, float]
+    edited: bool
+    state: TrialState
+    scores: dict[str, Score]
+    reason: str
+    origin: str
+    curve: OptimizeCurve
+    front: bool
+
+
+class OptimizePair(Struct, frozen=True):
+    """Two designs and what was said of them."""
+
+    number: int
+    first: dict[str, float]
+    second: dict[str, float]
+    first_curve: OptimizeCurve
+    second_curve: OptimizeCurve
+    answer: Answer | None
+
+
+class OptimizeStrip(Struct, frozen=True):
+    """The strip of temporal pointing, in pixels from where bullets start."""
+
+    pixels: int
+    zone_px: int
+    zone_half_px: int
+    speed_px_s: float
+
+
+class OptimizeSimulated(Struct, frozen=True):
+    """A simulated person who plays: how far, and whether still at it. about : the person."""
+
+    running: bool
+    done: int
+    total: int
+    about: str = field(name="told")
+    fault: str
+
+
+class OptimizeDetail(Struct, frozen=True):
+    """A run and all of its trials.
+
+    rounds : presses of a score. rules : what every design must hold. start : the design the run began with,
+    None while there is none. start_name : the button it is near; empty if an engine chose it.
+    others : what it began from; empty if from nothing. playable : a person can play its task here.
+    """
+
+    row: OptimizeRow
+    seed: int
+    parameters: list[Parameter]
+    rules: list[str]
+    objectives: list[Objective]
+    rounds: int
+    strip: OptimizeStrip
+    trials: list[OptimizeTrial]
+    pairs: list[OptimizePair]
+    start: dict[str, float] | None
+    start_name: str
+    others: str
+    simulated: OptimizeSimulated | None
+    playable: bool
+
+
+class OptimizeSimulate(Struct, frozen=True, forbid_unknown_fields=True):
+    """Have a simulated person play so many trials. person : seed that draws them."""
+
+    run: Number
+    person: Number
+    trials: Annotated[int, Meta(ge=1, le=500)]
+
+
+PICTURE_POINTS = 40
+DIGITS = 3
+TITLE, START, OTHERS = "title", "start", "others"
+"""Where a setup keeps what people call a run, the button it starts from, whose scores it begins from."""
+
+
+def run_row(run: int, session: Optimization) -> OptimizeRow:
+    setup, trials = session.setup, session.trials
+    counting = sum(one.state is not TrialState.ABANDONED for one in trials)
+    answered = sum(one.answer is not None for one in session.comparisons)
+    name = setup.objectives[0].name
+    scores = [one.scores[name] for one in trials if one.state is TrialState.DONE and name in one.scores]
+    best = min(scores, key=lambda score: score.value, default=None)
+    return OptimizeRow(
+        run,
+        str(setup.about.get(TITLE, "")) or f"run {run}",
+        setup.engine,
+        setup.preference,
+        setup.simulated,
+        setup.level or "",
+        answered if setup.preference else counting,
+        setup.budget,
+        best,
+        setup.created,
+        "",
+    )
+
+
+def broken_run(run: int, reason: str) -> OptimizeRow:
+    return OptimizeRow(run, f"run {run}", "", False, False, "", 0, 0, None, "", reason)
+
+
+def strip_of(setup: OptimizeSetup) -> OptimizeStrip:
+    """Return the strip of a run's task; that of temporal pointing where it is another task."""
+    task = pointing_of(setup) if playable(setup) else TemporalPointing()
+    half_px = int(task.zone_px // 2)
+    return OptimizeStrip(round(task.strip_px), round(task.target_px), half_px, task.speed_px_s)
+
+
+def trial_list(session: Optimization) -> list[OptimizeTrial]:
+    several = len(session.problem.objectives) > 1
+    front = {one.number for one in session.front().trials} if several else set()
+    return [
+        OptimizeTrial(
+            one.number,
+            one.design,
+            one.suggested is not None,
+            one.state,
+            dict(one.scores),
+            one.reason,
+            one.origin,
+            press_picture(session.model(one.design)),
+            one.number in front,
+        )
+        for one in session.trials
+    ]
+
+
+def pair_list(session: Optimization) -> list[OptimizePair]:
+    return [
+        OptimizePair(
+            one.number,
+            one.first,
+            one.second,
+            press_picture(session.model(one.first)),
+            press_picture(session.model(one.second)),
+            one.answer,
+        )
+        for one in session.comparisons
+    ]
+
+
+def press_picture(model: FDVVModel) -> OptimizeCurve:
+    """Sample a button's slow press for a small picture."""
+    x = np.linspace(0.0, model.travel_mm, PICTURE_POINTS)
+    force = model.force_cN(x, 0.0, Stroke.PRESS)
+    return OptimizeCurve(float(x[1]), force.round(DIGITS).tolist(), model.actuation_mm)
+
+
+def simulated_player(play: SimulatedPlay | None) -> OptimizeSimulated | None:
+    if play is None:
+        return None
+    about = f"simulated person {play.person}"
+    return OptimizeSimulated(play.running, play.done, play.total, about, play.fault)
+
+
+def rows(studio: Studio, _ask: Empty) -> OptimizeRows:
+    optimizations = studio.part(Optimizations)
+    return OptimizeRows([_row(optimizations, run) for run in optimizations.runs()])
+
+
+def _row(optimizations: Optimizations, run: int) -> OptimizeRow:
+    try:
+        with optimizations.session(run) as session:
+            return run_row(run, session)
+    except FdvvError as error:
+        return broken_run(run, error_line(error))
+
+
+def detail(studio: Studio, ask: OptimizeAsk) -> OptimizeDetail:
+    optimizations = studio.part(Optimizations)
+    with optimizations.session(ask.run) as session:
+        setup, space = session.setup, session.space
+        return OptimizeDetail(
+            run_row(ask.run, session),
+            setup.seed,
+            list(space.parameters),
+            [one.text for one in space.constraints],
+            list(session.problem.objectives),
+            pointing_of(setup).rounds if playable(setup) else 0,
+            strip_of(setup),
+            trial_list(session),
+            pair_list(session),
+            _start(session),
+            str(setup.about.get(START) or ""),
+            str(setup.about.get(OTHERS) or ""),
+            simulated_player(optimizations.simulated(ask.run)),
+            playable(setup),
+        )
+
+
+def _start(session: Optimization) -> dict[str, float] | None:
+    """Return the design the run began with: the person's own button, or the first suggestion."""
+    if session.setup.start is not None:
+        return session.setup.start
+    if session.comparisons:
+        return session.comparisons[0].first
+    return session.trials[0].design if session.trials else None
+
+
+def simulate(studio: Studio, ask: OptimizeSimulate) -> OptimizeAsk:
+    studio.part(Optimizations).simulate(ask.run, ask.person, ask.trials)
+    return OptimizeAsk(ask.run)
+
+
+def halt(studio: Studio, ask: OptimizeAsk) -> OptimizeAsk:
+    play = studio.part(Optimizations).simulated(ask.run)
+    if play:
+        play.close()
+    return ask
+
+
+def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
+    """Open a page's end of the channel of changes."""
+    return WatchChannel(studio.part(Optimizations).watchers, tell)
+
+
+CALLS = (
+    Call("optimize.list", Empty, OptimizeRows, rows),
+    Call("optimize.detail", OptimizeAsk, OptimizeDetail, detail),
+    Call("optimize.simulate", OptimizeSimulate, OptimizeAsk, simulate),
+    Call("optimize.halt", OptimizeAsk, OptimizeAsk, halt),
+)
+
+CHANNELS = (ChannelKind("optimize", (Watch,), (Watching, OptimizeChanged), open_channel),)

@@ -1,0 +1,190 @@
+"""New optimisation runs: what they can be made of, and their setup."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta, Struct, field
+
+from fdvv.errors import InputError, ModelError
+from fdvv.live.press_subject import button_choices
+from fdvv.optimize.engines.registry import engine_names, pair_engine_names
+from fdvv.optimize.model_space import model_space, neutral_design
+from fdvv.optimize.paper_space import paper_design_like
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.begin import PriorDataStore
+from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.tasks import LEVELS_px_s
+from fdvv.rendering.rig_catalog import RigCatalog
+from fdvv.studio.api.documents import ButtonId
+from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
+from fdvv.studio.contract import Call, Empty
+from fdvv.studio.optimizations import Optimizations
+from fdvv.studio.play_trials import pressed_devices
+from fdvv.studio.played_trial import TASK, playable, pointing_of
+from fdvv.studio.studio import Studio
+
+
+class OptimizeOffer(Struct, frozen=True):
+    """Something to choose: its name for the server, and what it is."""
+
+    name: str
+    about: str = field(name="told")
+
+
+class OptimizeOffers(Struct, frozen=True):
+    """What a run can be made of.
+
+    engines : read scores. pair_engines : read preferences. spaces : of designs. objectives : beside the
+    first. starts : buttons that a run may start from. others : grids of the project that a run in the
+    paper's space may begin from.
+    """
+
+    engines: list[OptimizeOffer]
+    pair_engines: list[OptimizeOffer]
+    spaces: list[OptimizeOffer]
+    rigs: list[OptimizeOffer]
+    levels: list[OptimizeOffer]
+    objectives: list[OptimizeOffer]
+    starts: list[OptimizeOffer]
+    others: list[OptimizeOffer]
+
+
+class OptimizeDevices(Struct, frozen=True):
+    """Devices that a person presses, as there are just now."""
+
+    devices: list[OptimizeOffer]
+
+
+class OptimizeCreate(Struct, frozen=True, forbid_unknown_fields=True):
+    """Begin a run.
+
+    title : for people. engine, space : of the offers. preference : designs are compared, not scored.
+    simulated : a simulated person plays. level : of temporal pointing.
+    also : objectives beside asynchrony. start : a button; None starts from what the engine suggests.
+    rig : must be able to render every design; None asks for none. budget : trials, or comparisons.
+    task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
+    begins from nothing.
+    """
+
+    title: Name
+    engine: Name
+    space: Name
+    preference: bool
+    simulated: bool
+    level: Level
+    also: Annotated[list[Name], Meta(max_length=4)]
+    start: ButtonId | None
+    rig: Annotated[str, Meta(max_length=300)] | None
+    seed: Number
+    budget: Annotated[int, Meta(ge=1, le=500)]
+    task_presses: Annotated[int, Meta(ge=2, le=100)] = 20
+    others: Annotated[str, Meta(max_length=300)] | None = None
+
+
+PAPER = "paper"
+ENGINES_TOLD = {
+    "random": "draws designs by lot",
+    "sobol": "spreads designs evenly",
+    "tpe": "Optuna's; for many trials",
+    "cmaes": "moves a cloud of designs towards the better ones",
+    "nsga2": "breeds designs; for several objectives",
+    "gp": "learns from every score, and knows how noisy each is",
+    "gp-ei": "as in the paper: a Gaussian process and expected improvement",
+    "botorch": "the strongest; needs the extra fdvv[botorch]",
+}
+
+
+SPACES_TOLD = {
+    PAPER: "eight parameters of the paper, three points, activation, vibration",
+    "FDV": "variations of the button you start from: force, bump, activation, vibration",
+    "FDVV": "the same and a scale of force for every speed it knows",
+}
+
+
+PAIR_ENGINES_TOLD = {
+    "preference": "learns from which of two you prefer",
+    "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
+}
+
+
+MORE_TOLD = {"lost_ratio": "share of rounds lost"}
+
+
+def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
+    return OptimizeOffers(
+        [OptimizeOffer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
+        [OptimizeOffer(name, PAIR_ENGINES_TOLD.get(name, "")) for name in pair_engine_names()],
+        [OptimizeOffer(name, about) for name, about in SPACES_TOLD.items()],
+        [OptimizeOffer(entry.rig_id, entry.about) for entry in RigCatalog(studio.project).entries()],
+        [OptimizeOffer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
+        [OptimizeOffer(name, MORE_TOLD[name]) for name in MORE_TOLD],
+        [OptimizeOffer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
+        [OptimizeOffer(entry.name, entry.about) for entry in PriorDataStore(studio.project).entries()],
+    )
+
+
+def devices(_studio: Studio, _ask: Empty) -> OptimizeDevices:
+    return OptimizeDevices([OptimizeOffer(name, about) for name, about in pressed_devices()])
+
+
+def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
+    space, start = _space(studio, ask)
+    others, prior = _others(studio, ask)
+    setup = OptimizeSetup(
+        space=space,
+        engine=ask.engine,
+        task="preference" if ask.preference else TASK,
+        level=ask.level,
+        simulated=ask.simulated,
+        objectives=tuple(ObjectiveSetup(name) for name in ("asynchrony_ms", *ask.also)),
+        seed=ask.seed,
+        budget=ask.budget,
+        start=start,
+        prior=prior,
+        about={
+            TITLE: ask.title.strip(),
+            START: ask.start,
+            OTHERS: others,
+            OptimizeSetup.PRESSES: ask.task_presses,
+        },
+    )
+    if playable(setup):
+        try:
+            pointing_of(setup)
+        except ModelError as error:
+            raise InputError("optimise", "setup", str(error), "choose another") from error
+    return OptimizeAsk(studio.part(Optimizations).create(setup))
+
+
+def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, float] | None]:
+    """Return the space, and the design in it that the run starts from. InputError."""
+    base = None if ask.start is None else studio.catalog.model(ask.start)
+    if ask.space == PAPER:
+        return SpaceSetup(rig=ask.rig), None if base is None else paper_design_like(base)
+    if ask.space not in SPACES_TOLD:
+        raise InputError("optimise", ask.space, "there is no such space", f"use {', '.join(SPACES_TOLD)}")
+    if base is None:
+        raise InputError(
+            "optimise", ask.space, "varies a button, and none was named", "choose one to start from"
+        )
+    setup = model_space_setup(base, (ask.space,), rig=ask.rig)
+    return setup, neutral_design(model_space(base, (ask.space,)), base)
+
+
+def _others(studio: Studio, ask: OptimizeCreate) -> tuple[str, tuple[Trial, ...]]:
+    """Return the prior data of a run, in words and as trials. InputError."""
+    if ask.others is None:
+        return "", ()
+    if ask.preference or ask.space != PAPER:
+        reason = f"others scored designs of the space {PAPER}"
+        raise InputError("optimise", ask.others, reason, "begin from nothing, or choose that space")
+    entry, prior = PriorDataStore(studio.project).prior(ask.others)
+    return entry.about, prior
+
+
+CALLS = (
+    Call("optimize.offers", Empty, OptimizeOffers, offers),
+    Call("optimize.devices", Empty, OptimizeDevices, devices),
+    Call("optimize.create", OptimizeCreate, OptimizeAsk, create),
+)

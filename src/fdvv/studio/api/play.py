@@ -1,0 +1,158 @@
+"""A pointing task played now: the hand on the page, the button under test simulated or on a device.
+
+Times in ms are on the page's clock (performance.now) unless the name says server.
+"""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct, field
+
+from fdvv.errors import InputError, ModelError
+from fdvv.live.device_key import DeviceKey
+from fdvv.live.press_subject import model_subject
+from fdvv.studio.api.press_frames import ShakeSignal, shake_signal
+from fdvv.studio.contract import ChannelKind, Tell, error_line
+from fdvv.studio.optimizations import Optimizations
+from fdvv.studio.play_trials import CLOCK, DeviceTrial, LiveTrial, PlayClick, PlayOver, Table
+from fdvv.studio.played_trial import Count, PlayedTrial, PlayKept, PlayRound, Time
+from fdvv.studio.studio import Studio
+
+
+class PlayOpen(Struct, frozen=True, forbid_unknown_fields=True, tag="open"):
+    """Begin a trial of a run, or begin it again: its rounds so far no longer count.
+
+    device : that is pressed, one of optimize.devices; empty: a simulated button under the page's hand.
+    """
+
+    run: Count
+    trial: Count
+    device: Annotated[str, Meta(max_length=300)] = ""
+
+
+class PlayPing(Struct, frozen=True, forbid_unknown_fields=True, tag="ping"):
+    """Ask for the server's clock. sent_ms is returned."""
+
+    sent_ms: Time
+
+
+class PlayDown(Struct, frozen=True, forbid_unknown_fields=True, tag="down"):
+    """The hand pressed: the simulated finger goes down. at_ms : of the browser's event."""
+
+    at_ms: Time
+
+
+class PlayUp(Struct, frozen=True, forbid_unknown_fields=True, tag="up"):
+    """The hand let go."""
+
+    at_ms: Time
+
+
+class PlayClose(Struct, frozen=True, forbid_unknown_fields=True, tag="close"):
+    """Put the button away; an unfinished trial's rounds are kept and do not count."""
+
+
+class PlayReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
+    """The button is under the finger. attempt : how often this trial was begun. about : what is simulated."""
+
+    run: int
+    trial: int
+    attempt: int
+    rounds: int
+    about: str = field(name="told")
+    signals: list[ShakeSignal]
+
+
+class PlayPong(Struct, frozen=True, forbid_unknown_fields=True, tag="pong"):
+    """The server's clock when it heard the question."""
+
+    sent_ms: float
+    server_ms: float
+
+
+class PlayChannel:
+    """What serves one page: nothing, or a trial."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._optimizations, self._tell = studio.part(Optimizations), tell
+        self._table = Table(studio, lambda line: tell(PlayOver(line)))
+        self._live: LiveTrial | DeviceTrial | None = None
+
+    def receive(self, ask: Any) -> None:
+        """Do what the page asks; without a trial most asks have come too late and do nothing."""
+        self._do(ask)
+
+    def close(self) -> None:
+        self._put_away()
+        self._table.clear()
+
+    def _put_away(self) -> None:
+        if self._live:
+            self._live.close()
+        self._live = None
+
+    @singledispatchmethod
+    def _do(self, ask: Any) -> None:
+        raise TypeError(f"no such ask: {ask}")
+
+    @_do.register
+    def _(self, ask: PlayOpen) -> None:
+        self._put_away()
+        key = self._table.put(ask.device)
+        played = self._optimizations.play(ask.run, ask.trial)
+        try:
+            self._live, about, signals = self._under(played, key)
+        except (InputError, ModelError) as error:
+            played.fail(error_line(error))
+            raise
+        except BaseException:
+            played.close()
+            raise
+        self._tell(PlayReady(ask.run, ask.trial, played.attempt, played.task.rounds, about, signals))
+
+    def _under(
+        self, played: PlayedTrial, key: DeviceKey | None
+    ) -> tuple[LiveTrial | DeviceTrial, str, list[ShakeSignal]]:
+        """Put a trial's button under the hand: on the table, or simulated."""
+        if key:
+            return DeviceTrial(played, key), f"{key.device.info().name}, under your own finger", []
+        subject = model_subject(played.model)
+        signals = [shake_signal(signal) for signal in subject.signals]
+        return LiveTrial(played, subject, self._tell), subject.description, signals
+
+    @_do.register
+    def _(self, ask: PlayPing) -> None:
+        self._tell(PlayPong(ask.sent_ms, 1e3 * CLOCK()))
+        if self._live:
+            self._live.here()
+
+    @_do.register
+    def _(self, ask: PlayDown) -> None:
+        if self._live:
+            self._live.down(ask.at_ms)
+
+    @_do.register
+    def _(self, ask: PlayUp) -> None:
+        if self._live:
+            self._live.up(ask.at_ms)
+
+    @_do.register
+    def _(self, ask: PlayRound) -> None:
+        if not self._live:
+            return
+        kept = self._live.keep(ask)
+        if kept.finished:
+            self._put_away()
+        self._tell(kept)
+
+    @_do.register
+    def _(self, _ask: PlayClose) -> None:
+        self._put_away()
+        self._tell(PlayOver(""))
+
+
+ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayRound, PlayClose)
+TELLS = (PlayReady, PlayPong, PlayClick, PlayKept, PlayOver)
+CHANNELS = (ChannelKind("play", ASKS, TELLS, PlayChannel),)

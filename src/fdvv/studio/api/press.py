@@ -1,0 +1,330 @@
+"""The press page: a button under the mouse, on a simulated rig in real time."""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+from msgspec import Meta, Struct, field
+
+from fdvv.errors import InputError, ModelError
+from fdvv.library.catalog import Catalog
+from fdvv.live.press import LiveEventKind, LivePress
+from fdvv.live.press_subject import (
+    PRESS_RIGS,
+    PressChoice,
+    PressMode,
+    PressSubject,
+    button_choices,
+    drawn_trace,
+    model_subject,
+    program_choices,
+    program_subject,
+)
+from fdvv.live.press_trace import PressTrace, drawn_traces, read_press_trace
+from fdvv.live.run import LiveFrame, LiveRun
+from fdvv.model.file import model_from_json
+from fdvv.program.file import program_from_json
+from fdvv.project.programs import ProgramCatalog
+from fdvv.protocol.tables import Fault
+from fdvv.studio.api.press_frames import (
+    PressFrame,
+    PressMeant,
+    PressReady,
+    _column,
+    meant_force,
+    press_frame,
+    press_ready,
+)
+from fdvv.studio.api.programs import Programs
+from fdvv.studio.contract import Call, ChannelKind, Empty, Tell
+from fdvv.studio.studio import Studio
+
+Count = Annotated[int, Meta(ge=0, le=2**53)]
+Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
+
+
+class TraceItem(Struct, frozen=True, forbid_unknown_fields=True):
+    """A trace that can be replayed, thinned for a small picture."""
+
+    name: str
+    about: str = field(name="told")
+    duration_s: float
+    t_s: list[float]
+    displacement_mm: list[float]
+
+
+class PressList(Struct, frozen=True, forbid_unknown_fields=True):
+    """What can be pressed, replayed, and on which rigs."""
+
+    buttons: list[PressChoice]
+    programs: list[PressChoice]
+    traces: list[TraceItem]
+    rigs: list[str]
+
+
+class TraceReadAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Read a file of a key's travel. name : of the file, for messages only."""
+
+    name: Annotated[str, Meta(max_length=200)]
+    text: Annotated[str, Meta(max_length=4_000_000)]
+
+
+class TraceRead(Struct, frozen=True, forbid_unknown_fields=True):
+    """A trace that was read, ready to be replayed."""
+
+    name: str
+    about: str = field(name="told")
+    t_s: list[float]
+    displacement_mm: list[float]
+
+
+class PressStart(Struct, frozen=True, forbid_unknown_fields=True, tag="start"):
+    """Put something under the finger: one of button, program (ids), model or code (documents).
+
+    seed : of everything random.
+    """
+
+    button: str | None = None
+    program: str | None = None
+    model: dict[str, Any] | None = None
+    code: dict[str, Any] | None = None
+    mode: PressMode = PressMode.INTENDED
+    rig: str = "paper"
+    seed: Count = 0
+
+
+class PressLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
+    """Lead the finger to a place that moves at a speed.
+
+    near_1_s : rate at which it nears that place, critically damped. sequence : repeated in the first frame
+    after it.
+    """
+
+    referent_mm: Number
+    velocity_mm_s: Number
+    sequence: Count
+    near_1_s: Annotated[float, Meta(ge=1, le=1000)] = 125.0
+
+
+class PressPush(Struct, frozen=True, forbid_unknown_fields=True, tag="push"):
+    """Push with a force."""
+
+    force_cN: Number
+    sequence: Count
+
+
+class PressLift(Struct, frozen=True, forbid_unknown_fields=True, tag="lift"):
+    """Take the finger off."""
+
+    sequence: Count
+
+
+class PressReplay(Struct, frozen=True, forbid_unknown_fields=True, tag="replay"):
+    """Lead the finger along a trace: a shipped one by its name, or the given columns."""
+
+    name: Annotated[str, Meta(max_length=200)]
+    t_s: list[float] | None = None
+    displacement_mm: list[float] | None = None
+
+
+class PressHostEvent(Struct, frozen=True, forbid_unknown_fields=True, tag="event"):
+    """Send the program a host event."""
+
+    number: Annotated[int, Meta(ge=0, le=31)]
+
+
+class PressHere(Struct, frozen=True, forbid_unknown_fields=True, tag="here"):
+    """The page is visible."""
+
+
+class PressPause(Struct, frozen=True, forbid_unknown_fields=True, tag="pause"):
+    """The page is hidden."""
+
+
+class PressStop(Struct, frozen=True, forbid_unknown_fields=True, tag="stop"):
+    """Take everything away."""
+
+
+class PressFail(Struct, frozen=True, forbid_unknown_fields=True, tag="fail"):
+    """Have the firmware find its position sensor dead, to see what it does."""
+
+
+class PressClear(Struct, frozen=True, forbid_unknown_fields=True, tag="clear"):
+    """Clear the latched fault."""
+
+
+class PressRefused(Struct, frozen=True, forbid_unknown_fields=True, tag="refused"):
+    """A request could not be done; the press continues."""
+
+    reason: str
+
+
+class PressOver(Struct, frozen=True, forbid_unknown_fields=True, tag="over"):
+    """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
+
+    reason: str
+
+
+PICTURE_POINTS = 60
+
+
+def choices(catalog: Catalog, programs: ProgramCatalog) -> PressList:
+    return PressList(
+        list(button_choices(catalog)),
+        list(program_choices(programs)),
+        [_trace_item(trace) for trace in drawn_traces()],
+        list(PRESS_RIGS),
+    )
+
+
+def _trace_item(trace: PressTrace) -> TraceItem:
+    every = max(1, trace.t_s.size // PICTURE_POINTS)
+    thin = [_column(column[::every]) for column in (trace.t_s, trace.displacement_mm)]
+    return TraceItem(trace.name, trace.origin, trace.duration_s, *thin)
+
+
+def list_choices(studio: Studio, _ask: Empty) -> PressList:
+    return choices(studio.catalog, studio.part(Programs).catalog)
+
+
+def read_trace(_studio: Studio, ask: TraceReadAsk) -> TraceRead:
+    found = read_press_trace(ask.text.encode(), ask.name)
+    return TraceRead(found.name, found.origin, found.t_s.tolist(), found.displacement_mm.tolist())
+
+
+def subject_of(studio: Studio, ask: PressStart) -> PressSubject:
+    """Make ready what is asked for. Raises InputError."""
+    given = [thing for thing in (ask.button, ask.program, ask.model, ask.code) if thing is not None]
+    if len(given) != 1:
+        raise InputError("press", "start", f"{len(given)} things to press were named", "name one")
+    if ask.button is not None:
+        return model_subject(studio.catalog.model(ask.button), ask.mode, ask.rig)
+    if ask.model is not None:
+        return model_subject(model_from_json(msgspec.json.encode(ask.model), "model"), ask.mode, ask.rig)
+    if ask.program is not None:
+        return program_subject(studio.part(Programs).catalog.program(ask.program), ask.mode, ask.rig)
+    return program_subject(program_from_json(msgspec.json.encode(ask.code), "program"), ask.mode, ask.rig)
+
+
+class PressChannel:
+    """What serves one page: nothing, or a run."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._studio, self._tell = studio, tell
+        self._run: LiveRun | None = None
+
+    def receive(self, ask: Any) -> None:
+        """Do what the page asks; without a run most asks have come too late and do nothing."""
+        self._do(ask)
+
+    def close(self) -> None:
+        if self._run:
+            self._run.close()
+        self._run = None
+
+    @singledispatchmethod
+    def _do(self, ask: Any) -> None:
+        raise TypeError(f"no such ask: {ask}")
+
+    @_do.register
+    def _(self, ask: PressStart) -> None:
+        self.close()
+        subject = subject_of(self._studio, ask)
+        press = LivePress(subject, ask.seed)
+        self._tell(press_ready(subject))
+        self._run = LiveRun(
+            press,
+            lambda seen: self._show(press, seen),
+            lambda line: self._tell(PressRefused(line)),
+            lambda line: self._tell(PressOver(line)),
+        )
+
+    def _show(self, press: LivePress, seen: LiveFrame) -> None:
+        """Send a frame, and after a press the intended force at its speed."""
+        self._tell(press_frame(seen, press.replaying))
+        for event in seen.events:
+            if event.kind is LiveEventKind.PRESSED:
+                self._tell(meant_force(press.subject, round(event.velocity_mm_s, 1)))
+
+    @_do.register
+    def _(self, ask: PressLead) -> None:
+        self._ask(lambda press: press.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s), ask.sequence)
+
+    @_do.register
+    def _(self, ask: PressPush) -> None:
+        self._ask(lambda press: press.push(ask.force_cN), ask.sequence)
+
+    @_do.register
+    def _(self, ask: PressLift) -> None:
+        self._ask(LivePress.lift, ask.sequence)
+
+    @_do.register
+    def _(self, ask: PressReplay) -> None:
+        trace = _given_trace(ask)
+        self._ask(lambda press: press.replay(trace))
+
+    @_do.register
+    def _(self, ask: PressHostEvent) -> None:
+        self._ask(lambda press: press.event(ask.number))
+
+    @_do.register
+    def _(self, _ask: PressFail) -> None:
+        self._ask(lambda press: press.fail(Fault.POSITION_STUCK))
+
+    @_do.register
+    def _(self, _ask: PressClear) -> None:
+        self._ask(LivePress.clear_fault)
+
+    @_do.register
+    def _(self, _ask: PressHere) -> None:
+        if self._run:
+            self._run.here()
+
+    @_do.register
+    def _(self, _ask: PressPause) -> None:
+        if self._run:
+            self._run.pause()
+
+    @_do.register
+    def _(self, _ask: PressStop) -> None:
+        self.close()
+        self._tell(PressOver(""))
+
+    def _ask(self, work: Any, sequence: int | None = None) -> None:
+        if self._run:
+            self._run.ask(work, sequence)
+
+
+def _given_trace(ask: PressReplay) -> PressTrace:
+    if ask.t_s is None or ask.displacement_mm is None:
+        return drawn_trace(ask.name)
+    try:
+        return PressTrace(ask.name, "", np.array(ask.t_s), np.array(ask.displacement_mm))
+    except ModelError as error:
+        raise InputError("trace", ask.name, str(error), "choose another") from error
+
+
+ASKS = (
+    PressStart,
+    PressLead,
+    PressPush,
+    PressLift,
+    PressReplay,
+    PressHostEvent,
+    PressHere,
+    PressPause,
+    PressStop,
+    PressFail,
+    PressClear,
+)
+
+TELLS = (PressReady, PressMeant, PressFrame, PressRefused, PressOver)
+CALLS = (
+    Call("press.list", Empty, PressList, list_choices),
+    Call("press.trace", TraceReadAsk, TraceRead, read_trace),
+)
+
+CHANNELS = (ChannelKind("press", ASKS, TELLS, PressChannel),)

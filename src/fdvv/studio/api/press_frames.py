@@ -1,0 +1,157 @@
+"""What the press page gets while a button is pressed; every figure of it is simulated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from msgspec import Struct, field
+
+from fdvv.live.press import LiveEventKind
+from fdvv.live.press_subject import PressMark, PressMode, PressSubject
+from fdvv.live.run import LiveFrame
+from fdvv.model.vibration import Mode
+from fdvv.program.program import Signal
+from fdvv.units import FloatArray
+
+
+class ShakeSignal(Struct, frozen=True, forbid_unknown_fields=True):
+    """What the vibration board plays from one slot."""
+
+    name: str
+    duration_s: float
+    modes: tuple[Mode, ...]
+
+
+class PressMeant(Struct, frozen=True, forbid_unknown_fields=True, tag="meant"):
+    """The force that is meant to be felt in a press at a speed."""
+
+    velocity_mm_s: float
+    displacement_mm: list[float]
+    press_cN: list[float]
+    release_cN: list[float]
+
+
+class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
+    """Something is under the finger. about : what is between the two."""
+
+    name: str
+    about: str = field(name="told")
+    mode: PressMode
+    rig: str
+    travel_mm: float
+    actuation_mm: float | None
+    reset_mm: float | None
+    places: list[PressMark]
+    states: list[str]
+    signals: list[ShakeSignal]
+    meant: PressMeant
+
+
+class PressHappened(Struct, frozen=True, forbid_unknown_fields=True):
+    """An event: fields as fdvv.live.press.LiveEvent."""
+
+    kind: LiveEventKind
+    t_s: float
+    displacement_mm: float
+    velocity_mm_s: float
+    number: int
+    reason: str = field(name="told")
+
+
+class PressFrame(Struct, frozen=True, forbid_unknown_fields=True, tag="frame"):
+    """What happened since the last frame.
+
+    Columns have a row a millisecond; velocity_mm_s, state, key, mode, warm_K are those of the last tick.
+    sequence : of the last lead that had taken effect. dropped_s : not simulated, since the start.
+    """
+
+    t_s: list[float]
+    displacement_mm: list[float]
+    force_cN: list[float]
+    finger_mm: list[float]
+    velocity_mm_s: float
+    commanded_cN: float
+    state: int
+    key: int
+    mode: int
+    saturated: bool
+    warm_K: float
+    events: list[PressHappened]
+    sequence: int
+    dropped_s: float
+    busy_ratio: float
+    replaying: bool
+
+
+ROW_s = 0.001
+"""Between two rows of a frame."""
+
+
+DIGITS = 4
+
+
+def press_ready(subject: PressSubject) -> PressReady:
+    return PressReady(
+        subject.name,
+        subject.description,
+        subject.mode,
+        subject.rig_name,
+        subject.travel_mm,
+        subject.actuation_mm,
+        subject.reset_mm,
+        list(subject.marks),
+        list(subject.states),
+        [shake_signal(signal) for signal in subject.signals],
+        meant_force(subject, 0.0),
+    )
+
+
+def meant_force(subject: PressSubject, velocity_mm_s: float) -> PressMeant:
+    press, release = subject.meant_cN(velocity_mm_s)
+    return PressMeant(velocity_mm_s, _column(subject.displacement_mm), _column(press, 2), _column(release, 2))
+
+
+def press_frame(seen: LiveFrame, replaying: bool) -> PressFrame:
+    c = seen.columns
+    rows = _rows(c.t_s)
+    return PressFrame(
+        t_s=_column(c.t_s[rows]),
+        displacement_mm=_column(c.displacement_mm[rows]),
+        force_cN=_column(c.force_cN[rows], 2),
+        finger_mm=_column(c.finger_mm[rows]),
+        velocity_mm_s=_last(c.velocity_mm_s),
+        commanded_cN=_last(c.commanded_cN),
+        state=int(_last(c.state)),
+        key=int(_last(c.key)),
+        mode=int(_last(c.mode)),
+        saturated=bool(c.saturated.any()),
+        warm_K=_last(c.warm_K),
+        events=[
+            PressHappened(e.kind, e.t_s, e.displacement_mm, e.velocity_mm_s, e.number, e.message)
+            for e in seen.events
+        ],
+        sequence=seen.sequence,
+        dropped_s=round(seen.dropped_s, DIGITS),
+        busy_ratio=round(seen.busy_ratio, DIGITS),
+        replaying=replaying,
+    )
+
+
+def _rows(t_s: FloatArray) -> Any:
+    """Choose the first tick of every millisecond, and the last tick."""
+    chosen = np.diff(np.floor(t_s / ROW_s + 1e-6), prepend=-1.0) > 0
+    chosen[-1:] = True
+    return chosen
+
+
+def _column(values: FloatArray, digits: int = DIGITS) -> list[float]:
+    return [float(value) for value in np.round(values, digits)]
+
+
+def _last(values: Any) -> float:
+    return round(float(values[-1]), DIGITS) if len(values) else 0.0
+
+
+def shake_signal(signal: Signal) -> ShakeSignal:
+    return ShakeSignal(signal.name, signal.duration_s, signal.modes)

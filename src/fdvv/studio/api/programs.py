@@ -1,0 +1,234 @@
+"""The programs page: stored programs, checks at every edit, recipes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+from fdvv.errors import InputError
+from fdvv.live.press_subject import button_choices
+from fdvv.program.button import ranges
+from fdvv.program.file import program_to_json
+from fdvv.program.library import Recipe, make, programs
+from fdvv.program.surface import of_model
+from fdvv.project.program_check import ProgramCheckResult, checked_program
+from fdvv.project.programs import KeptProgram, ProgramCatalog, ProgramEntry, read_program
+from fdvv.studio.contract import Call, Empty
+from fdvv.studio.studio import Studio
+
+Id = Annotated[str, Meta(max_length=80)]
+Title = Annotated[str, Meta(max_length=80)]
+
+
+class ProgramParameter(Struct, frozen=True, forbid_unknown_fields=True):
+    """A number that a recipe takes, over the base that was asked for; its unit ends its name."""
+
+    name: str
+    default: float
+    whole: bool
+    low: float
+    high: float
+
+
+class ProgramRecipe(Struct, frozen=True, forbid_unknown_fields=True):
+    """A program before it is made."""
+
+    name: str
+    summary: str
+    details: str
+    parameters: list[ProgramParameter]
+
+
+class ProgramRows(Struct, frozen=True, forbid_unknown_fields=True):
+    """Every program, every recipe, and the buttons that recipes may stand on."""
+
+    programs: list[ProgramEntry]
+    recipes: list[ProgramRecipe]
+    bases: list[str]
+
+
+class ProgramAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for a program by its id."""
+
+    program: Id
+
+
+class SaveProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Write a program of the person's. revision : of the file that was opened; empty for a new one."""
+
+    program: Id
+    text: str
+    revision: Title = ""
+
+
+class KeepProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Keep a text as a new program of the person's, under its own name or the next free one."""
+
+    text: str
+
+
+class CopyProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Copy a program. name : of the copy; empty: the next free one."""
+
+    program: Id
+    name: Title = ""
+
+
+class DeleteProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Move a program to the trash. revision : of the file as it was last seen."""
+
+    program: Id
+    revision: Title
+
+
+class ThrownProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """The name of a program in the trash, by which it can be taken out again."""
+
+    thrown: Title
+
+
+class CheckProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Check a program as it is being edited."""
+
+    text: str
+
+
+class MakeProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """Make a program by a recipe over a button. parameters : those that differ from their defaults."""
+
+    recipe: Title
+    base: Id
+    parameters: Annotated[dict[str, float], Meta(max_length=20)]
+
+
+class MadeProgram(Struct, frozen=True, forbid_unknown_fields=True):
+    """The text of a program that was made; it is not kept."""
+
+    text: str
+
+
+class RangesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask between what a recipe's parameters may be over a button. levels : of multi-level."""
+
+    recipe: Title
+    base: Id
+    levels: Annotated[int, Meta(ge=1, le=8)] = 1
+
+
+class ProgramRanges(Struct, frozen=True, forbid_unknown_fields=True):
+    """A recipe's parameters over a button."""
+
+    parameters: list[ProgramParameter]
+
+
+class SurfaceAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Ask for the forces of one stroke of a button, to put them into a program."""
+
+    button: Id
+    stroke: Literal["press", "release"]
+
+
+class ProgramSurface(Struct, frozen=True, forbid_unknown_fields=True):
+    """Force on displacement, a row per velocity, as a program's file holds it."""
+
+    displacement_mm: list[float]
+    velocity_mm_s: list[float]
+    force_cN: list[list[float]]
+
+
+PLAINEST = "builtin:mx-red"
+"""The button that recipes stand on by default: linear, so that nothing distracts."""
+
+
+class Programs:
+    """The programs of a studio's project."""
+
+    def __init__(self, studio: Studio) -> None:
+        self.catalog = ProgramCatalog(studio.project)
+
+
+def _catalog(studio: Studio) -> ProgramCatalog:
+    return studio.part(Programs).catalog
+
+
+def list_programs(studio: Studio, _ask: Empty) -> ProgramRows:
+    recipes = [
+        ProgramRecipe(r.name, r.summary, r.details, _parameters(studio, r, PLAINEST)) for r in programs()
+    ]
+    return ProgramRows(
+        list(_catalog(studio).entries()), recipes, [b.id for b in button_choices(studio.catalog)]
+    )
+
+
+def _parameters(studio: Studio, recipe: Recipe, base: str, levels: int = 1) -> list[ProgramParameter]:
+    allowed = ranges(recipe.name, studio.catalog.model(base), levels=levels)
+    return [
+        ProgramParameter(p.name, float(p.default), isinstance(p.default, int), *allowed[p.name])
+        for p in recipe.parameters
+    ]
+
+
+def open_program(studio: Studio, ask: ProgramAsk) -> KeptProgram:
+    return _catalog(studio).open(ask.program)
+
+
+def save_program(studio: Studio, ask: SaveProgram) -> KeptProgram:
+    """Write a program, unless its file has changed since it was opened."""
+    return _catalog(studio).save(ask.program, ask.text, ask.revision)
+
+
+def keep_program(studio: Studio, ask: KeepProgram) -> KeptProgram:
+    catalog = _catalog(studio)
+    name = catalog.free_name(read_program(ask.text, "file").name)
+    return catalog.save(f"own:{name}", ask.text)
+
+
+def copy_program(studio: Studio, ask: CopyProgram) -> KeptProgram:
+    return _catalog(studio).copy(ask.program, ask.name)
+
+
+def delete_program(studio: Studio, ask: DeleteProgram) -> ThrownProgram:
+    return ThrownProgram(_catalog(studio).delete(ask.program, ask.revision))
+
+
+def restore_program(studio: Studio, ask: ThrownProgram) -> KeptProgram:
+    return _catalog(studio).restore(ask.thrown)
+
+
+def check_program(_studio: Studio, ask: CheckProgram) -> ProgramCheckResult:
+    """Check a text as far as it goes; what is wrong with it is the answer, not an error."""
+    return checked_program(ask.text)
+
+
+def make_program(studio: Studio, ask: MakeProgram) -> MadeProgram:
+    """Make a program by a recipe; it is not kept."""
+    return MadeProgram(program_to_json(make(ask.recipe, studio.catalog.model(ask.base), **ask.parameters)))
+
+
+def parameter_ranges(studio: Studio, ask: RangesAsk) -> ProgramRanges:
+    recipe = next((r for r in programs() if r.name == ask.recipe), None)
+    if recipe is None:
+        raise InputError("studio", "recipe", f"none is called {ask.recipe!r}", "choose one from the list")
+    return ProgramRanges(_parameters(studio, recipe, ask.base, ask.levels))
+
+
+def button_surface(studio: Studio, ask: SurfaceAsk) -> ProgramSurface:
+    found = of_model(studio.catalog.model(ask.button), ask.stroke)
+    rows = [list(row) for row in found.force_cN]
+    return ProgramSurface(list(found.displacement_mm), list(found.velocity_mm_s), rows)
+
+
+CALLS = (
+    Call("program.list", Empty, ProgramRows, list_programs),
+    Call("program.open", ProgramAsk, KeptProgram, open_program),
+    Call("program.save", SaveProgram, KeptProgram, save_program),
+    Call("program.keep", KeepProgram, KeptProgram, keep_program),
+    Call("program.copy", CopyProgram, KeptProgram, copy_program),
+    Call("program.delete", DeleteProgram, ThrownProgram, delete_program),
+    Call("program.restore", ThrownProgram, KeptProgram, restore_program),
+    Call("program.check", CheckProgram, ProgramCheckResult, check_program),
+    Call("program.recipe", MakeProgram, MadeProgram, make_program),
+    Call("program.ranges", RangesAsk, ProgramRanges, parameter_ranges),
+    Call("program.surface", SurfaceAsk, ProgramSurface, button_surface),
+)

@@ -1,0 +1,343 @@
+"""The operator's page: people and their progress, and never what a label hides."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct, field
+
+from fdvv.errors import FdvvError, InputError
+from fdvv.studio.api.study_steps import text_in
+from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watching, error_line
+from fdvv.studio.devices import available_devices, device_names
+from fdvv.studio.studies import TWIN, Studies, StudiesChanged, StudyState, state_of
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.operator_view import PersonView, operator_view
+from fdvv.study.admin.study import Study
+from fdvv.study.analysis.analyse import analyse
+from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.analysis.report import study_html
+from fdvv.study.files.people import EVERYBODY
+
+Name = Annotated[str, Meta(max_length=60)]
+Line = Annotated[str, Meta(max_length=1000)]
+Secret = Annotated[str, Meta(min_length=1, max_length=200)]
+Text = Annotated[str, Meta(max_length=200_000)]
+
+
+class StudiesRow(Struct, frozen=True):
+    """A study in short. problem : why it cannot be read; empty if it can."""
+
+    name: str
+    title: str
+    kind: str
+    state: StudyState
+    people: int
+    planned: int
+    problem: str
+
+
+class StudiesRows(Struct, frozen=True):
+    """All studies by name."""
+
+    rows: list[StudiesRow]
+
+
+class StudiesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+    """Name a study."""
+
+    study: Name
+
+
+class StudiesFreeze(Struct, frozen=True, forbid_unknown_fields=True):
+    """Freeze a study. passphrase : the key holder's, stored nowhere."""
+
+    study: Name
+    passphrase: Secret
+
+
+class StudiesPerson(Struct, frozen=True):
+    """A person's progress. here : at a screen now. answered, trials : that count. note : may be empty."""
+
+    person: str
+    language: str
+    state: str
+    answered: int
+    trials: int
+    here: bool
+    paused: bool
+    note: str = field(name="told")
+
+
+class StudiesDevice(Struct, frozen=True):
+    """Something that may render a study. name : as calls name it. about : for people."""
+
+    name: str
+    about: str
+
+
+class StudiesDevices(Struct, frozen=True):
+    """All that may render a study now."""
+
+    devices: list[StudiesDevice]
+
+
+class StudiesDetail(Struct, frozen=True):
+    """A study for the operator.
+
+    history : what was done with it, one line each. waiting : open invitations.
+    device : what renders it, one of those that `studies.devices` tells.
+    """
+
+    row: StudiesRow
+    fingerprint: str
+    frozen: str
+    people: list[StudiesPerson]
+    waiting: int
+    paused: bool
+    history: list[str]
+    device: str
+
+
+class StudiesUse(Struct, frozen=True, forbid_unknown_fields=True):
+    """Choose the device that renders a study."""
+
+    study: Name
+    device: Annotated[str, Meta(max_length=200)]
+
+
+class StudiesSeat(Struct, frozen=True):
+    """An invitation. seat : the one-time word in the address of the participant's screen."""
+
+    study: str
+    seat: str
+
+
+class StudiesPause(Struct, frozen=True, forbid_unknown_fields=True):
+    """Pause all screens, or that of one person."""
+
+    study: Name
+    person: Name | None
+    on: bool
+
+
+class StudiesWithdraw(Struct, frozen=True, forbid_unknown_fields=True):
+    """Take a person out. delete : and their answers off the disk."""
+
+    study: Name
+    person: Name
+    delete: bool
+
+
+class StudiesVerified(Struct, frozen=True):
+    """What a check of the frozen files and journals found; nothing if all is as it was."""
+
+    problems: list[str]
+
+
+class StudiesUnseal(Struct, frozen=True, forbid_unknown_fields=True):
+    """Open what the labels hid, for good and on record."""
+
+    study: Name
+    passphrase: Secret
+    who: Line
+    why: Line
+
+
+class StudiesUnsealed(Struct, frozen=True):
+    """How much was unsealed, and where it lies below the study's folder."""
+
+    rows: int
+    excluded: int
+    folder: str
+
+
+class StudiesReport(Struct, frozen=True):
+    """The report as a page to keep."""
+
+    name: str
+    html: str
+
+
+SIMULATED = "simulated"
+ON_THE_TABLE = ("host", "serial:")
+"""How devices are called that keep the labels of a trial ready side by side."""
+
+
+def study_row(name: str, study: Study) -> StudiesRow:
+    plan = study.plan
+    title = text_in(plan.title, plan.languages[0])
+    return StudiesRow(name, title, plan.kind, state_of(study), len(study.people()), plan.people, "")
+
+
+def broken_study(name: str, reason: str) -> StudiesRow:
+    return StudiesRow(name, name, "", "broken", 0, 0, reason)
+
+
+def study_detail(studies: Studies, name: str) -> StudiesDetail:
+    study = studies.study(name)
+    frozen = study.frozen
+    people = operator_view(study, time.time()).people if frozen else ()
+    paused = study.paused
+    return StudiesDetail(
+        study_row(name, study),
+        study.fingerprint,
+        when(frozen.when) if frozen else "",
+        [_person(one, studies.screen(name, one.person) is not None, one.person in paused) for one in people],
+        studies.waiting(name),
+        EVERYBODY in paused,
+        [history_line(record) for record in study.history()],
+        studies.device(name),
+    )
+
+
+def all_devices() -> list[StudiesDevice]:
+    """List what may render a study: the twin, and what keeps the labels of a trial ready side by side."""
+    return [
+        StudiesDevice(TWIN, "the twin, under a hand on the screen"),
+        *(
+            StudiesDevice(name, f"{name}: {about}" if about else name)
+            for name, about in available_devices()[0]
+            if name.startswith(ON_THE_TABLE)
+        ),
+    ]
+
+
+def history_line(record: Mapping[str, Any]) -> str:
+    """Return a record of a study's log as one line, without keys and sums."""
+    ((event, details),) = record.items()
+    known = ("person", "language", "who", "why", "simulated", "deleted")
+    more = ", ".join(f"{key} {details[key]}" for key in known if details.get(key))
+    return f"{when(details.get('when', ''))} {event}{': ' if more else ''}{more}".strip()
+
+
+def when(stamp: str) -> str:
+    """Write a time of the log for people, to the minute."""
+    return f"{stamp[:16].replace('T', ' ')} UTC" if stamp else ""
+
+
+def _person(one: PersonView, here: bool, paused: bool) -> StudiesPerson:
+    return StudiesPerson(
+        one.person,
+        one.language,
+        place_of(one),
+        one.answered,
+        one.trials,
+        here,
+        paused,
+        SIMULATED if one.simulated else "",
+    )
+
+
+def place_of(one: PersonView) -> str:
+    if one.problem:
+        return "not to be read"
+    if one.state in ("withdrawn", "deleted"):
+        return one.state
+    return f"page {one.page}" if one.kind == "page" else (one.kind or one.state)
+
+
+UNSEALED, ANSWERS = "unsealed", "answers.csv"
+TOLD = {
+    "realism": "which of two hidden renderings is closer to a named reference; the paper's",
+    "abx": "X is A or B: which?",
+    "2afc": "which of two has more of something",
+    "2ac": "the same, or which has more?",
+    "preference": "which of two is liked better",
+    "mushra": "several are rated beside a reference, itself and anchors hidden among them",
+    "staircase": "how small a difference is just felt",
+}
+
+
+def rows(studio: Studio, _ask: Empty) -> StudiesRows:
+    studies = studio.part(Studies)
+    return StudiesRows([_row(studies, name) for name in studies.names()])
+
+
+def _row(studies: Studies, name: str) -> StudiesRow:
+    try:
+        return study_row(name, studies.study(name))
+    except FdvvError as error:
+        return broken_study(name, error_line(error))
+
+
+def detail(studio: Studio, ask: StudiesAsk) -> StudiesDetail:
+    return study_detail(studio.part(Studies), ask.study)
+
+
+def freeze(studio: Studio, ask: StudiesFreeze) -> StudiesDetail:
+    studies = studio.part(Studies)
+    studies.study(ask.study).freeze(ask.passphrase)
+    studies.announce(ask.study)
+    return study_detail(studies, ask.study)
+
+
+def seat(studio: Studio, ask: StudiesAsk) -> StudiesSeat:
+    found = studio.part(Studies).invite(ask.study)
+    return StudiesSeat(found.study, found.word)
+
+
+def use(studio: Studio, ask: StudiesUse) -> StudiesDetail:
+    studies = studio.part(Studies)
+    studies.use_device(ask.study, ask.device, device_names())
+    return study_detail(studies, ask.study)
+
+
+def devices(_studio: Studio, _ask: Empty) -> StudiesDevices:
+    return StudiesDevices(all_devices())
+
+
+def pause(studio: Studio, ask: StudiesPause) -> StudiesDetail:
+    studies = studio.part(Studies)
+    studies.pause(ask.study, ask.person, ask.on)
+    return study_detail(studies, ask.study)
+
+
+def withdraw(studio: Studio, ask: StudiesWithdraw) -> StudiesDetail:
+    studies = studio.part(Studies)
+    studies.withdraw(ask.study, ask.person, ask.delete)
+    return study_detail(studies, ask.study)
+
+
+def verify(studio: Studio, ask: StudiesAsk) -> StudiesVerified:
+    return StudiesVerified(list(studio.part(Studies).study(ask.study).verify()))
+
+
+def unseal(studio: Studio, ask: StudiesUnseal) -> StudiesUnsealed:
+    studies = studio.part(Studies)
+    answers = studies.study(ask.study).unseal(ask.passphrase, ask.who, ask.why)
+    studies.announce(ask.study)
+    return StudiesUnsealed(len(answers.person), int((~answers.counts).sum()), UNSEALED)
+
+
+def report(studio: Studio, ask: StudiesAsk) -> StudiesReport:
+    study = studio.part(Studies).study(ask.study)
+    if state_of(study) != "unsealed":
+        raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
+    found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)
+    footer = f"Study {ask.study}, frozen as {study.fingerprint}."
+    return StudiesReport(f"{ask.study}-report.html", study_html(found, study.plan, footer))
+
+
+def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
+    """Open a page's end of the channel of changes."""
+    return WatchChannel(studio.part(Studies).watchers, tell)
+
+
+CALLS = (
+    Call("studies.list", Empty, StudiesRows, rows),
+    Call("studies.freeze", StudiesFreeze, StudiesDetail, freeze),
+    Call("studies.detail", StudiesAsk, StudiesDetail, detail),
+    Call("studies.seat", StudiesAsk, StudiesSeat, seat),
+    Call("studies.devices", Empty, StudiesDevices, devices),
+    Call("studies.use", StudiesUse, StudiesDetail, use),
+    Call("studies.pause", StudiesPause, StudiesDetail, pause),
+    Call("studies.withdraw", StudiesWithdraw, StudiesDetail, withdraw),
+    Call("studies.verify", StudiesAsk, StudiesVerified, verify),
+    Call("studies.unseal", StudiesUnseal, StudiesUnsealed, unseal),
+    Call("studies.report", StudiesAsk, StudiesReport, report),
+)
+
+CHANNELS = (ChannelKind("studies", (Watch,), (Watching, StudiesChanged), open_channel),)

@@ -1,0 +1,399 @@
+"""The participant's screen: labels, and never what hides behind one."""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+from threading import RLock
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct
+
+from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.studio.api.press import Count, Number
+from fdvv.studio.api.study_steps import (
+    StudyBroke,
+    StudyFrame,
+    StudyReady,
+    StudyStages,
+    StudyStep,
+    step_message,
+    unnamed_sound,
+)
+from fdvv.studio.contract import ChannelKind, Tell
+from fdvv.studio.studies import Invitation, Studies
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.session import ENDS, Step
+from fdvv.study.plan.trial import TrialAnswer
+from fdvv.study.session.participant import Participant
+from fdvv.study.stimulus.open import ScreenRenderer
+
+Short = Annotated[str, Meta(max_length=100)]
+Long = Annotated[str, Meta(max_length=4000)]
+Holder = Annotated[str, Meta(min_length=16, max_length=100)]
+
+
+class StudyLook(Struct, frozen=True, forbid_unknown_fields=True, tag="look"):
+    """Ask what the study is, before anybody sits down.
+
+    seat : that the link holds, or empty. holder : see JoinSession.
+    """
+
+    study: Short
+    seat: Short
+    holder: Holder
+
+
+class JoinSession(Struct, frozen=True, forbid_unknown_fields=True, tag="sit"):
+    """Sit down as a new person.
+
+    seat : the one-time word that the operator's link holds. holder : a word that this page drew and tells
+        no one else: the first page to begin holds the invitation, even if others see the link.
+    """
+
+    study: Short
+    seat: Short
+    holder: Holder
+    language: Short
+
+
+class StudyResume(Struct, frozen=True, forbid_unknown_fields=True, tag="resume"):
+    """Resume the session of a person who has a card. code : printed on it."""
+
+    study: Short
+    person: Short
+    code: Short
+
+
+class StudyShown(Struct, frozen=True, forbid_unknown_fields=True, tag="shown"):
+    """The trial is on the screen."""
+
+    number: Count
+
+
+class ContinueStep(Struct, frozen=True, forbid_unknown_fields=True, tag="go"):
+    """Bring what a label hides under the finger."""
+
+    label: Short
+
+
+class StudyLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
+    """Lead the finger to a place that moves at a speed, as PressLead does."""
+
+    referent_mm: Number
+    velocity_mm_s: Number
+    near_1_s: Annotated[float, Meta(ge=1, le=1000)] = 125.0
+
+
+class StudyPush(Struct, frozen=True, forbid_unknown_fields=True, tag="push"):
+    """Push with a force."""
+
+    force_cN: Number
+
+
+class StudyLift(Struct, frozen=True, forbid_unknown_fields=True, tag="lift"):
+    """Take the finger off."""
+
+
+class StudyAnswered(Struct, frozen=True, forbid_unknown_fields=True, tag="answer"):
+    """Answer a trial. choice : a label, "equal", or "" where only ratings are asked. ratings : by label."""
+
+    number: Count
+    choice: Short
+    ratings: Annotated[dict[Short, dict[Short, float]], Meta(max_length=20)]
+
+
+class StudyFilled(Struct, frozen=True, forbid_unknown_fields=True, tag="page"):
+    """Answer a page's questions, and its consent where it asks for that."""
+
+    name: Short
+    values: Annotated[dict[Short, Long | float], Meta(max_length=200)]
+    agreed: bool
+
+
+class StudyAgain(Struct, frozen=True, forbid_unknown_fields=True, tag="again"):
+    """Set up the button that broke."""
+
+
+class EndBreak(Struct, frozen=True, forbid_unknown_fields=True, tag="rested"):
+    """Continue after the break."""
+
+
+class StudyWithdraw(Struct, frozen=True, forbid_unknown_fields=True, tag="withdraw"):
+    """Leave the study for good."""
+
+
+class Heartbeat(Struct, frozen=True, forbid_unknown_fields=True, tag="here"):
+    """The page is visible."""
+
+
+class StudyAbout(Struct, frozen=True, tag="about"):
+    """What the study is. seat : it can be taken by this page. titles : by language."""
+
+    study: str
+    titles: dict[str, str]
+    languages: list[str]
+    seat: bool
+
+
+class StudyCard(Struct, frozen=True, tag="card"):
+    """The person at this screen. code : for them to write down; sent nowhere else, empty after a resume."""
+
+    person: str
+    language: str
+    code: str
+
+
+class StudyFelt(Struct, frozen=True, tag="felt"):
+    """A label is under the finger."""
+
+    label: str
+
+
+class StudyPaused(Struct, frozen=True, tag="paused"):
+    """The operator pauses: the screen waits, whatever step it is at."""
+
+    on: bool
+
+
+class StudyStopped(Struct, frozen=True, tag="stopped"):
+    """The session at this screen has ended. reason : one line."""
+
+    reason: str
+
+
+def taken_error() -> InputError:
+    return InputError("study", "seat", "is taken", "ask for another, or continue with your card")
+
+
+class StudyScreen:
+    """What serves one page: no one, or a participant. See Screen for what the operator does with it."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._studies, self._tell = studio.part(Studies), tell
+        self._stages = StudyStages(studio, tell)
+        self._name = ""
+        self._participant: Participant | None = None
+        self._stage: ScreenRenderer | None = None
+        self._invitation: Invitation | None = None
+        # the operator may use it while the page's own thread does
+        self._lock, self._gone = RLock(), False
+
+    def receive(self, ask: Any) -> None:
+        """Do what the page asks; without a participant most asks have come too late and do nothing."""
+        if isinstance(ask, StudyLead | StudyPush | StudyLift | Heartbeat):
+            self._move_finger(ask)
+            return
+        with self._lock:
+            if self._gone:  # the page was closed while this waited for its turn
+                return
+            try:
+                self._do(ask)
+            except DeviceError:
+                self._tell(StudyBroke())
+            except ModelError:
+                # a page that fell behind gets the step it is at
+                self._tell_step()
+
+    def close(self) -> None:
+        """The page is gone: the session waits to be resumed."""
+        with self._lock:
+            self._gone = True
+            self._leave_session()
+
+    def _leave_session(self) -> None:
+        with self._lock:
+            participant, self._participant, self._stage = self._participant, None, None
+            if participant:
+                participant.close()
+                self._studies.detach(self._name, participant.person, self)
+            self._stages.release()
+
+    def pause(self, on: bool) -> None:
+        """Pause or continue."""
+        stage = self._stage
+        if on and stage:
+            stage.lift()
+        self._tell(StudyPaused(on))
+
+    def leave(self, reason: str) -> None:
+        """End the session at this screen with a reason."""
+        self._leave_session()
+        self._tell(StudyStopped(reason))
+
+    def withdraw(self, delete: bool) -> None:
+        """Take the person out of the study."""
+        with self._lock:
+            if self._participant:
+                self._advance(self._participant.withdraw(delete=delete))
+
+    @singledispatchmethod
+    def _do(self, ask: Any) -> None:
+        raise TypeError(f"no such ask: {ask}")
+
+    @_do.register
+    def _(self, ask: StudyLook) -> None:
+        plan = self._studies.study(ask.study).plan
+        free = self._studies.invitation(ask.study, ask.seat, ask.holder) is not None
+        self._tell(StudyAbout(ask.study, plan.title, list(plan.languages), free))
+
+    @_do.register
+    def _(self, ask: JoinSession) -> None:
+        invitation = self._studies.invitation(ask.study, ask.seat, ask.holder)
+        if invitation is None:
+            raise taken_error()
+        self._leave_session()
+        study = self._studies.study(ask.study)
+        with invitation.lock:
+            if invitation.holder not in ("", ask.holder):  # two began at once
+                raise taken_error()
+            if invitation.person:  # the page went away before it heard the code
+                self._resume(study, ask.study, invitation.person, invitation.code)
+            else:
+                stage = self._stages.first(study)
+                participant, invitation.code = Participant.enrol(study, ask.language, stage)
+                invitation.person, invitation.holder = participant.person, ask.holder
+                self._take(ask.study, participant, stage)
+            self._invitation = invitation
+        self._begin(invitation.code)
+
+    @_do.register
+    def _(self, ask: StudyResume) -> None:
+        self._leave_session()
+        self._resume(self._studies.study(ask.study), ask.study, ask.person, ask.code)
+        self._begin("")
+
+    @_do.register
+    def _(self, ask: StudyShown) -> None:
+        if self._participant and self._stage:
+            self._forget_code()
+            self._participant.show_trial(ask.number)
+            signals = [unnamed_sound(signal) for signal in self._stage.sounds]
+            self._tell(StudyReady(ask.number, self._stage.travel_mm, signals))
+
+    @_do.register
+    def _(self, ask: ContinueStep) -> None:
+        if self._participant:
+            self._require_running()
+            self._participant.go_to(ask.label)
+            self._tell(StudyFelt(ask.label))
+
+    @_do.register
+    def _(self, _ask: StudyAgain) -> None:
+        if self._participant:
+            self._stage = self._stages.open(self._participant.study)
+            self._participant.reconnect(self._stage)
+            self._tell_step()
+
+    @_do.register
+    def _(self, ask: StudyAnswered) -> None:
+        if self._participant:
+            self._require_running()
+            answer = TrialAnswer(choice=ask.choice, ratings=ask.ratings)
+            self._advance(self._participant.answer(ask.number, answer))
+
+    @_do.register
+    def _(self, ask: StudyFilled) -> None:
+        if self._participant:
+            self._forget_code()
+            self._advance(self._participant.answer_page(ask.name, ask.values, ask.agreed))
+
+    @_do.register
+    def _(self, _ask: EndBreak) -> None:
+        if self._participant:
+            self._advance(self._participant.end_break())
+
+    @_do.register
+    def _(self, _ask: StudyWithdraw) -> None:
+        self.withdraw(delete=True)
+
+    def _move_finger(self, ask: Any) -> None:
+        """Lead the finger; many of these come, and none waits for anything."""
+        stage = self._stage
+        if stage is None:
+            return
+        if isinstance(ask, Heartbeat):
+            stage.here()
+        elif isinstance(ask, StudyLead):
+            stage.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s)
+        elif isinstance(ask, StudyPush):
+            stage.push(ask.force_cN)
+        else:
+            stage.lift()
+
+    def _resume(self, study: Study, name: str, person: str, code: str) -> None:
+        """Resume a person's session; another screen that serves them, or is about to, ends first."""
+        with self._studies.exclusive(name, person):
+            other = self._studies.screen(name, person)
+            if other:
+                study.schedule(person, code)  # a wrong code must not take anybody's screen away
+                other.leave("this study continues at another screen")
+            stage = self._stages.first(study)
+            self._take(name, Participant.resume(study, person, code, stage), stage)
+
+    def _take(self, name: str, participant: Participant, stage: ScreenRenderer) -> None:
+        self._name, self._participant, self._stage = name, participant, stage
+        self._studies.attach(name, participant.person, self)
+
+    def _begin(self, code: str) -> None:
+        assert self._participant is not None
+        self._tell(StudyCard(self._participant.person, self._participant.language, code))
+        self._tell(StudyPaused(self._studies.paused(self._name, self._participant.person)))
+        self._tell_step()
+
+    def _forget_code(self) -> None:
+        """Forget the code: the page has shown it."""
+        if self._invitation:
+            self._studies.discard(self._invitation)
+            self._invitation = None
+
+    def _require_running(self) -> None:
+        assert self._participant is not None
+        if self._studies.paused(self._name, self._participant.person):
+            raise InputError("study", "screen", "the study pauses", "wait a moment")
+
+    def _advance(self, step: Step) -> None:
+        """Send the next step; at the end of the session the operator is informed too."""
+        self._tell_step(step)
+        if self._participant and step.kind in ENDS:
+            self._leave_session()
+        else:
+            self._studies.announce(self._name)
+
+    def _tell_step(self, step: Step | None = None) -> None:
+        participant = self._participant
+        if participant:
+            now = step or participant.step()
+            self._tell(step_message(participant.study.plan, participant.state, participant.language, now))
+
+
+ASKS = (
+    StudyLook,
+    JoinSession,
+    StudyResume,
+    StudyShown,
+    ContinueStep,
+    StudyLead,
+    StudyPush,
+    StudyLift,
+    StudyAgain,
+    StudyAnswered,
+    StudyFilled,
+    EndBreak,
+    StudyWithdraw,
+    Heartbeat,
+)
+
+TELLS = (
+    StudyAbout,
+    StudyCard,
+    StudyStep,
+    StudyReady,
+    StudyFelt,
+    StudyFrame,
+    StudyBroke,
+    StudyPaused,
+    StudyStopped,
+)
+
+CHANNELS = (ChannelKind("study", ASKS, TELLS, StudyScreen),)

@@ -1,0 +1,140 @@
+"""Declarations of studies: templates, checks, preview."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from msgspec import Struct, field
+
+from fdvv.errors import InputError
+from fdvv.report.report import Section
+from fdvv.studio.api.studies import TOLD, Name, StudiesAsk, Text
+from fdvv.studio.contract import Call, Empty, error_line
+from fdvv.studio.studies import Studies
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.preview import preview_sections
+from fdvv.study.admin.review import review_study
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.plan_check import plan_problems
+from fdvv.study.plan.plan_file import (
+    STUDY_FILE,
+    read_plan_text,
+    template_names,
+    template_text,
+    write_template,
+)
+
+
+class StudiesOffer(Struct, frozen=True):
+    """A template. about : what it is for."""
+
+    name: str
+    about: str = field(name="told")
+
+
+class StudiesOffers(Struct, frozen=True):
+    """All templates."""
+
+    templates: list[StudiesOffer]
+
+
+class StudiesCreate(Struct, frozen=True, forbid_unknown_fields=True):
+    """Declare a study from a template."""
+
+    name: Name
+    template: Name
+
+
+class StudiesTable(Struct, frozen=True):
+    """A table of a preview."""
+
+    heads: list[str]
+    rows: list[list[str]]
+
+
+class StudiesSection(Struct, frozen=True):
+    """A part of a preview."""
+
+    title: str
+    paragraphs: list[str]
+    tables: list[StudiesTable]
+
+
+class StudiesPlan(Struct, frozen=True):
+    """The declaration.
+
+    problems : what is wrong with it. preview : what it comes to; nothing where it has
+        problems, or is not kept.
+    """
+
+    study: str
+    text: str
+    problems: list[str]
+    preview: list[StudiesSection]
+
+
+class StudiesWrite(Struct, frozen=True, forbid_unknown_fields=True):
+    """Check a declaration, and keep it if that is asked for and the study is not frozen."""
+
+    study: Name
+    text: Text
+    keep: bool
+
+
+def preview_section(one: Section) -> StudiesSection:
+    tables = [StudiesTable(list(table.columns), [list(row) for row in table.rows]) for table in one.tables]
+    return StudiesSection(one.title, list(one.paragraphs), tables)
+
+
+def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
+    return StudiesOffers([StudiesOffer(name, TOLD.get(name, "")) for name in template_names()])
+
+
+def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
+    studies = studio.part(Studies)
+    template_text(ask.template)  # a wrong name leaves no folder
+    with tempfile.TemporaryDirectory() as building:
+        Study.declare(studies.path(ask.name), write_template(ask.template, Path(building)))
+    studies.announce(ask.name)
+    return StudiesAsk(ask.name)
+
+
+def plan(studio: Studio, ask: StudiesAsk) -> StudiesPlan:
+    return _kept(ask.study, studio.part(Studies).study(ask.study))
+
+
+def write(studio: Studio, ask: StudiesWrite) -> StudiesPlan:
+    studies = studio.part(Studies)
+    study = studies.study(ask.study)
+    if not ask.keep:
+        return StudiesPlan(ask.study, ask.text, _problems(ask.text), [])
+    study.change_plan(ask.text)
+    studies.announce(ask.study)
+    return _kept(ask.study, study)
+
+
+def _problems(text: str) -> list[str]:
+    try:
+        return list(plan_problems(read_plan_text(text, STUDY_FILE)))
+    except InputError as error:
+        return [error_line(error)]
+
+
+def _kept(name: str, study: Study) -> StudiesPlan:
+    """Return a declaration with its preview, read with all files it names."""
+    text = (study.folder / STUDY_FILE).read_text(encoding="utf-8", errors="replace")
+    try:
+        look = review_study(study.folder)
+    except InputError as error:
+        return StudiesPlan(name, text, [error_line(error)], [])
+    sections = [] if look.problems else [preview_section(one) for one in preview_sections(look)]
+    return StudiesPlan(name, text, list(look.problems), sections)
+
+
+CALLS = (
+    Call("studies.offers", Empty, StudiesOffers, offers),
+    Call("studies.create", StudiesCreate, StudiesAsk, create),
+    Call("studies.plan", StudiesAsk, StudiesPlan, plan),
+    Call("studies.write", StudiesWrite, StudiesPlan, write),
+)

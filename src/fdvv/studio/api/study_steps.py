@@ -1,0 +1,244 @@
+"""What a participant's screen shows: steps and frames in their language, and the stage behind them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Literal
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import DeviceError, InputError
+from fdvv.program.program import Signal
+from fdvv.studio.api.press_frames import DIGITS, ShakeSignal, shake_signal
+from fdvv.studio.contract import Tell
+from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.studies import TWIN, Studies
+from fdvv.studio.studio import Studio
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.events import TrialFace, choices_of, rated_labels
+from fdvv.study.plan.plan import Page, Question, Rating, StudyPlan
+from fdvv.study.plan.plan_words import equal_text, question_text
+from fdvv.study.plan.session import SessionState, Step
+from fdvv.study.plan.trial import EQUAL
+from fdvv.study.stimulus.open import ScreenRenderer, open_screen_renderer
+from fdvv.study.stimulus.twin import PersonFrame
+
+PARTED = re.compile(r"\n\s*\n")
+
+
+def step_message(plan: StudyPlan, state: SessionState, language: str, step: Step) -> StudyStep:
+    form = task = None
+    if step.kind == "page":
+        (page,) = (one for one in plan.pages if one.name == step.page)
+        form = form_message(page, language)
+    elif step.kind in ("practice", "trial"):
+        task = task_message(plan, state, language, state.started.trials[step.number])
+    left_s = step.left_s if step.kind == "break" else None
+    return StudyStep(step.kind, round(step.progress, 4), form, task, left_s)
+
+
+def form_message(page: Page, language: str) -> StudyForm:
+    """Return a page; blank lines separate its paragraphs."""
+    paragraphs = PARTED.split(text_in(page.text, language).strip())
+    return StudyForm(
+        page.name,
+        text_in(page.title, language),
+        [text for text in paragraphs if text],
+        [_asked(question, language) for question in page.questions],
+        page.when == "consent",
+    )
+
+
+def task_message(plan: StudyPlan, state: SessionState, language: str, face: TrialFace) -> StudyTask:
+    """Return a trial; `of` is 0 for a staircase, whose end is not known."""
+    alike = [one.number for one in state.started.trials if one.practice == face.practice]
+    known = face.practice or plan.kind != "staircase"
+    at = 1 + sum(number in state.answers for number in alike)
+    return StudyTask(
+        face.number,
+        at,
+        len(alike) if known else 0,
+        face.item,
+        question_text(plan, language),
+        list(face.labels),
+        [choice for choice in choices_of(plan) if choice != EQUAL],
+        equal_text(plan, language),
+        list(rated_labels(face)) if plan.ratings else [],
+        [_scale(rating, language) for rating in plan.ratings],
+    )
+
+
+def text_in(texts: Mapping[str, str], language: str) -> str:
+    """Return a text in a language, else in any there is."""
+    return texts.get(language) or next(iter(texts.values()), "")
+
+
+def _scale(rating: Rating, language: str) -> StudyScale:
+    question, low, high = (text_in(texts, language) for texts in (rating.question, rating.low, rating.high))
+    return StudyScale(rating.name, question, low, high, rating.points)
+
+
+def _asked(question: Question, language: str) -> StudyAsked:
+    choices = question.choices.get(language) or next(iter(question.choices.values()), ())
+    about = (question.low, question.high, question.required)
+    return StudyAsked(question.name, text_in(question.question, language), list(choices), *about)
+
+
+def frame_message(frame: PersonFrame) -> StudyFrame:
+    """Return a frame: the position of the cap at its end, and its clicks."""
+    clicks = [StudyClick(one.sound, one.t_s, one.velocity_mm_s) for one in frame.clicks]
+    t_s, displacement_mm = (round(float(column[-1]), DIGITS) for column in (frame.t_s, frame.displacement_mm))
+    return StudyFrame(
+        frame.label, t_s, displacement_mm, frame.key > 0, frame.pressed, frame.dropped_s, clicks
+    )
+
+
+def unnamed_sound(signal: Signal) -> ShakeSignal:
+    """Return a sound without its name, which may reveal the stimulus."""
+    return msgspec.structs.replace(shake_signal(signal), name="")
+
+
+StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
+
+
+class StudyScale(Struct, frozen=True):
+    """A scale on which every hidden rendering is rated; words in the person's language."""
+
+    name: str
+    question: str
+    low: str
+    high: str
+    points: int
+
+
+class StudyAsked(Struct, frozen=True):
+    """A question of a page; choices empty: a number from low to high, or free text."""
+
+    name: str
+    question: str
+    choices: list[str]
+    low: float | None
+    high: float | None
+    required: bool
+
+
+class StudyForm(Struct, frozen=True):
+    """A page outside the trials; consent : it asks for agreement."""
+
+    name: str
+    title: str
+    paragraphs: list[str]
+    questions: list[StudyAsked]
+    consent: bool
+
+
+class StudyTask(Struct, frozen=True):
+    """A trial. number : of the person, practice included.
+
+    at, of : for people, among trials that count, or among those of practice; of : 0 where it is not known.
+    places : labels that can be brought under the finger. choices : that can be chosen; none where only
+    ratings are asked. equal : words on the answer that it is none of them; empty where it is not offered.
+    rated : labels that are rated on every scale.
+    item : name of the button it is about.
+    """
+
+    number: int
+    at: int
+    of: int
+    item: str
+    question: str
+    places: list[str]
+    choices: list[str]
+    equal: str
+    rated: list[str]
+    scales: list[StudyScale]
+
+
+class StudyStep(Struct, frozen=True, tag="step"):
+    """What comes next. progress_ratio : of the whole session. left_s : of a break, or None."""
+
+    kind: StepKind
+    progress_ratio: float
+    form: StudyForm | None = None
+    task: StudyTask | None = None
+    left_s: float | None = None
+
+
+class StudyClick(Struct, frozen=True):
+    """A vibration starts at the cap. sound : its place among the trial's signals."""
+
+    sound: int
+    t_s: float
+    velocity_mm_s: float
+
+
+class StudyFrame(Struct, frozen=True, tag="frame"):
+    """What the cap did since the last frame; no force is sent.
+
+    t_s, displacement_mm : of its end. pressed : presses that ended. dropped_s : time that
+        was not simulated.
+    """
+
+    label: str
+    t_s: float
+    displacement_mm: float
+    key: bool
+    pressed: int
+    dropped_s: float
+    clicks: list[StudyClick]
+
+
+class StudyStages:
+    """Opens stages for one screen, and holds the lease of the device they use. tell : to that screen."""
+
+    def __init__(self, studio: Studio, tell: Tell) -> None:
+        self._studies, self._tell = studio.part(Studies), tell
+        self._locks, self._locked = studio.part(DeviceLocks), ""
+
+    def open(self, study: Study) -> ScreenRenderer:
+        """Open what the operator chose. InputError where it is used elsewhere, DeviceError."""
+        device = self._studies.device(study.folder.name)
+        if device not in (TWIN, self._locked):
+            self.release()
+            self._locks.acquire(device, f"the study {study.folder.name}")
+            self._locked = device
+        return open_screen_renderer(device, study.folder, self._show, self._broke, study.plan.switch_s)
+
+    def first(self, study: Study) -> ScreenRenderer:
+        """Open a stage for a new session. InputError where it cannot be opened."""
+        try:
+            return self.open(study)
+        except DeviceError as error:
+            self.release()
+            raise InputError("study", "device", str(error), "ask who leads the study") from error
+
+    def release(self) -> None:
+        if self._locked:
+            self._locks.release(self._locked)
+            self._locked = ""
+
+    def _show(self, frame: PersonFrame) -> None:
+        if frame.t_s.size:  # else this machine was busy, and no time has passed
+            self._tell(frame_message(frame))
+
+    def _broke(self, _line: str) -> None:
+        """Report that the button restarts; the reason could reveal what was rendered."""
+        self._tell(StudyBroke())
+
+
+class StudyReady(Struct, frozen=True, tag="ready"):
+    """A trial's labels can be felt; nothing here differs between them.
+
+    travel_mm : scale of the drawing, the same for all labels. signals : of all labels together, without
+    names, in an order that tells nothing.
+    """
+
+    number: int
+    travel_mm: float
+    signals: list[ShakeSignal]
+
+
+class StudyBroke(Struct, frozen=True, tag="broke"):
+    """The button fell to zero force and is set up anew: the trial's labels are felt once more."""

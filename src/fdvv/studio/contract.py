@@ -1,0 +1,127 @@
+"""What a part of the studio offers to the page: calls that are answered once, and channels."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any, Generic, Protocol, TypeVar
+
+from msgspec import Struct
+
+from fdvv.errors import FdvvError, InputError
+from fdvv.studio.studio import Studio
+
+Tell = Callable[[Struct], None]
+"""Sends a message to the page; may be called from any thread."""
+
+
+@dataclass(frozen=True)
+class Call:
+    """A question that is answered once, served as ``POST /api/NAME``.
+
+    Attributes
+    ----------
+    name : part and verb, such as ``library.search``.
+    ask, answer : types of the request and of what is returned: structs, or plain dataclasses for answers.
+    function : runs in a worker thread. What it raises of FdvvError is one line on the page.
+    """
+
+    name: str
+    ask: type[Any]
+    answer: type[Any]
+    function: Callable[[Studio, Any], object]
+
+
+class Empty(Struct, frozen=True, forbid_unknown_fields=True):
+    """A request that needs no fields."""
+
+
+class Watch(Struct, frozen=True, forbid_unknown_fields=True, tag="watch"):
+    """Send every change from now on."""
+
+
+class Watching(Struct, frozen=True, tag="watching"):
+    """The watch is in force."""
+
+
+class Channel(Protocol):
+    """One page's end of a channel."""
+
+    def receive(self, ask: Any) -> None:
+        """Take a message of the page; called in a worker thread, one after the other."""
+        ...
+
+    def close(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class ChannelKind:
+    """Messages that come and go as long as the page is open.
+
+    Attributes
+    ----------
+    name : of the channel.
+    asks, tells : message types, tagged: what the page sends and what it gets.
+    open : called when a page first sends on it.
+    """
+
+    name: str
+    asks: tuple[type[Struct], ...]
+    tells: tuple[type[Struct], ...]
+    open: Callable[[Studio, Tell], Channel]
+
+
+def error_line(error: FdvvError | OSError) -> str:
+    """Return an error as one line, without paths of this machine."""
+    if isinstance(error, InputError):
+        return f"{error.place}: {error.reason}; {error.remedy}"
+    if isinstance(error, OSError) and error.strerror:
+        known = isinstance(error.filename, str | bytes)  # else a number, or nothing
+        return f"{Path(os.fsdecode(error.filename)).name}: {error.strerror}" if known else error.strerror
+    return str(error)
+
+
+News = TypeVar("News")
+
+
+class Watchers(Generic[News]):
+    """Functions that are called with every piece of news, in the order in which they began to watch."""
+
+    def __init__(self) -> None:
+        self._watching: dict[Callable[[News], None], None] = {}
+        self._lock = Lock()
+
+    def watch(self, tell: Callable[[News], None]) -> None:
+        with self._lock:
+            self._watching[tell] = None
+
+    def forget(self, tell: Callable[[News], None]) -> None:
+        """Call it no more; unknown ones are no fault."""
+        with self._lock:
+            self._watching.pop(tell, None)
+
+    def tell(self, news: News) -> None:
+        """Call all, outside the lock, so that they may watch or forget."""
+        with self._lock:
+            watching = tuple(self._watching)
+        for tell in watching:
+            tell(news)
+
+
+class WatchChannel:
+    """One page that follows the changes of a service after it sent Watch. first : makes the first message."""
+
+    def __init__(
+        self, watchers: Watchers[Struct], tell: Tell, first: Callable[[], Struct] = Watching
+    ) -> None:
+        self._watchers, self._tell, self._first = watchers, tell, first
+
+    def receive(self, _ask: Watch) -> None:
+        self._watchers.watch(self._tell)
+        self._tell(self._first())
+
+    def close(self) -> None:
+        self._watchers.forget(self._tell)

@@ -1,0 +1,314 @@
+"""The device that is connected on the page, and its subscribers."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import msgspec
+
+from fdvv.device.contract import FaultReport
+from fdvv.device.open import open_device
+from fdvv.device.remote import Remote
+from fdvv.errors import DeviceError, FdvvError, InputError
+from fdvv.live.tick_bins import TickPiece
+from fdvv.model.model import FDVVModel
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.protocol.tables import Fault
+from fdvv.rendering.compensate import CompensationResult
+from fdvv.rendering.press_check import felt_press, intended_press
+from fdvv.rendering.tuning import settings_with
+from fdvv.studio.device_thread import DeviceThread, mode_of
+from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.jobs.inputs import RIGS, check_speeds
+from fdvv.studio.rounding import finite_row, rounded
+from fdvv.studio.studio import Studio
+from fdvv.twin.files import load_rig
+
+STEP_mm = 0.05
+HOLDER = "the device view"
+NONE = "no device is connected"
+
+
+class DeviceStatus(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="standing"):
+    """What is connected, and how it is.
+
+    device : as listed; empty if none is connected. name : as it calls itself.
+    streams : it tells of every tick; else only presses are shown.
+    programmed : name of the button that is its program; empty if it has none. travel_mm : of that.
+    fault : why it fell to zero force; empty if it has not.
+    missing_ticks, late_ticks, missing_frames, lost_records : since something was last done with it.
+    """
+
+    device: str = ""
+    name: str = ""
+    simulated: bool = False
+    streams: bool = False
+    person: bool = False
+    force_sensor: bool = False
+    tick_s: float = 0.0
+    mode: str = ""
+    programmed: str = ""
+    travel_mm: float | None = None
+    fault: str = ""
+    missing_ticks: int = 0
+    late_ticks: int = 0
+    missing_frames: int = 0
+    lost_records: int = 0
+
+
+class PressSeen(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press_seen"):
+    """Force over displacement of a press that was made, and what its button asks for.
+
+    displacement_mm : (n,) the grid of all columns. felt_* : None where the stroke was not.
+    """
+
+    velocity_mm_s: float
+    simulated: bool
+    displacement_mm: tuple[float, ...]
+    felt_press_cN: tuple[float | None, ...]
+    felt_release_cN: tuple[float | None, ...]
+    intended_press_cN: tuple[float, ...]
+    intended_release_cN: tuple[float, ...]
+
+
+def with_faults(known: DeviceStatus, remote: Remote) -> DeviceStatus:
+    """Add the mode, the latched fault and what is missing."""
+    telemetry, report = remote.client.telemetry, remote.fault()
+    return msgspec.structs.replace(
+        known,
+        mode="fault" if report.fault is not Fault.NONE else mode_of(remote),
+        fault=_fault_line(report),
+        missing_ticks=telemetry.missing_ticks,
+        late_ticks=telemetry.late_ticks,
+        missing_frames=telemetry.missing_frames,
+        lost_records=telemetry.lost_records,
+    )
+
+
+def _fault_line(report: FaultReport) -> str:
+    return "" if report.fault is Fault.NONE else str(report)
+
+
+def put_button(
+    held: DeviceThread, model: FDVVModel, learned: CompensationResult | None, speeds_mm_s: list[float]
+) -> None:
+    """Put a button on a device: what was learned under its tuning, or the button's own program."""
+    device = held.device
+    if learned:
+        wanted = settings_with(device.settings(), learned.outcome.tuning)
+        if wanted != device.settings():
+            device.configure(wanted)
+        device.upload(learned.surface, learned.travel_mm, learned.outcome.tuning.paced)
+        return
+    if not model.of("press"):
+        raise InputError(model.name, "curves", "it has no press, there is nothing to render", "give it one")
+    program = button_program(model, ForceSurface.of_model(model, speeds_mm_s, STEP_mm))
+    device.upload_program(compile_program(program).image)  # type: ignore[attr-defined]  # all that are listed do
+
+
+def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSeen:
+    felt, wanted = felt_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
+    return PressSeen(
+        velocity_mm_s,
+        press.simulated,
+        rounded(felt.displacement_mm),
+        finite_row(felt.press_cN),
+        finite_row(felt.release_cN),
+        rounded(wanted.press_cN),
+        rounded(wanted.release_cN),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class TelemetrySubscriber:
+    """One page that follows the device; its functions are called from the device's thread."""
+
+    ticks: Callable[[TickPiece], None]
+    status: Callable[[DeviceStatus], None]
+    press: Callable[[PressSeen], None]
+
+
+class DeviceSession:
+    """Holds one device open for the page. Any thread may ask; zero force once no page is subscribed."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._locks = studio.part(DeviceLocks)
+        # never held while the device's thread is waited for, which takes it too
+        self._lock = threading.RLock()
+        self._held: DeviceThread | None = None
+        self._status = DeviceStatus()
+        self._model: FDVVModel | None = None
+        self._subscribers: list[TelemetrySubscriber] = []
+
+    def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStatus:
+        """Open a device of the list. InputError, DeviceError."""
+        if ask.device not in devices:
+            raise InputError("device", "device", f"there is no {ask.device[:80]!r}", "choose one of the list")
+        if ask.rig not in RIGS:
+            raise InputError("rig", "rig", f"there is no {ask.rig[:80]!r}", f"use one of {', '.join(RIGS)}")
+        with self._lock:
+            if self._held:
+                reason = f"{self._status.device} is connected"
+                raise InputError("device", "device", reason, "disconnect it first")
+            self._locks.acquire(ask.device, HOLDER)
+            try:
+                rig = load_rig(ask.rig) if ask.rig != "default" else None
+                self._held = DeviceThread(
+                    open_device(ask.device, rig, None, ask.seed), self._ticks, self._lost
+                )
+            except BaseException:
+                self._locks.release(ask.device)
+                raise
+            self._status = DeviceStatus(ask.device)
+        return self.refresh("")
+
+    def disconnect(self) -> DeviceStatus:
+        """Set zero force and close the device, if there is one."""
+        with self._lock:
+            held, self._held, self._model = self._held, None, None
+            device, self._status = self._status.device, DeviceStatus()
+        if held:
+            held.close()
+            self._locks.release(device)
+        return self._changed()
+
+    def held(self) -> DeviceThread:
+        """Return the device that is connected. DeviceError if there is none."""
+        with self._lock:
+            if not self._held:
+                raise DeviceError(f"{NONE}; connect one first")
+            return self._held
+
+    def upload(self, ask: DeviceUpload, model: FDVVModel, learned: CompensationResult | None) -> DeviceStatus:
+        """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
+        held = self.held()
+        check_speeds(ask.velocities_mm_s, 5.0)
+        held.do(lambda: put_button(held, model, learned, sorted(ask.velocities_mm_s)))
+        self._model = model
+        return self.refresh(f"{model.name}{f', {ask.actuation}' if ask.actuation else ''}")
+
+    def press(self, velocity_mm_s: float) -> DeviceStatus:
+        """Make one simulated press and send it to all subscribers. DeviceError."""
+        held = self.held()
+        check_speeds((velocity_mm_s,), 5.0)
+        if not held.device.info().simulated:
+            raise DeviceError("a person presses this device; arm it and press")
+        try:
+            press = held.do(lambda: held.press(velocity_mm_s))
+        finally:
+            self.refresh()
+        if self._model:
+            seen = press_seen(press, self._model, velocity_mm_s)
+            for subscriber in self._current_subscribers():
+                subscriber.press(seen)
+        return self._status
+
+    def do(self, work: Callable[[Remote], None]) -> DeviceStatus:
+        """Do something with a device that runs the firmware. DeviceError."""
+        held = self.held()
+        if not held.remote:
+            raise DeviceError("there is no firmware in this device: it makes whole presses only")
+        remote = held.remote
+        held.do(lambda: work(remote))
+        return self.refresh()
+
+    def refresh(self, programmed: str | None = None) -> DeviceStatus:
+        """Read the state of the device and send it to all subscribers."""
+        with self._lock:
+            held, known = self._held, self._status
+        if held:
+            found = self._read(held, known.device, known.programmed if programmed is None else programmed)
+            with self._lock:
+                if self._held is held:
+                    self._status = found
+        return self._changed()
+
+    def subscribe(self, subscriber: TelemetrySubscriber) -> Callable[[], None]:
+        """Send telemetry to a subscriber until the returned function is called."""
+        with self._lock:
+            self._subscribers.append(subscriber)
+        subscriber.status(self._status)
+
+        def end() -> None:
+            with self._lock:
+                if subscriber in self._subscribers:
+                    self._subscribers.remove(subscriber)
+                alone = not self._subscribers
+            if alone:
+                self._zero_force()
+
+        return end
+
+    def close(self) -> None:
+        self.disconnect()
+
+    def _zero_force(self) -> None:
+        """Set zero force: no page is subscribed any more."""
+        # there may be none, or one that holds no force between presses
+        with contextlib.suppress(FdvvError):
+            self.do(lambda remote: remote.stop())
+
+    def _read(self, held: DeviceThread, device: str, programmed: str) -> DeviceStatus:
+        info, remote = held.device.info(), held.remote
+        common = DeviceStatus(
+            device,
+            info.name,
+            info.simulated,
+            remote is not None,
+            not info.simulated,
+            bool(held.device.settings().force_gain_q14) or remote is None,
+            info.tick_s,
+            programmed=programmed,
+            travel_mm=self._model.travel_mm if self._model else None,
+        )
+        return held.do(lambda: with_faults(common, remote)) if remote else common
+
+    def _ticks(self, piece: TickPiece) -> None:
+        for subscriber in self._current_subscribers():
+            subscriber.ticks(piece)
+        with self._lock:
+            held, mode = self._held, self._status.mode
+        # a mode that changes by itself is sent at once: a fault, heat
+        if held and held.remote and mode and mode_of(held.remote) != mode:
+            self.refresh()
+
+    def _lost(self, error: DeviceError) -> None:
+        with self._lock:
+            device, self._held = self._status.device, None
+            self._status = DeviceStatus(fault=str(error))
+        self._locks.release(device)
+        self._changed()
+
+    def _changed(self) -> DeviceStatus:
+        for subscriber in self._current_subscribers():
+            subscriber.status(self._status)
+        return self._status
+
+    def _current_subscribers(self) -> tuple[TelemetrySubscriber, ...]:
+        with self._lock:
+            return tuple(self._subscribers)
+
+
+class DeviceConnect(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Connect a device of the list. rig, seed : of a simulated one."""
+
+    device: str
+    rig: str = "default"
+    seed: int = 0
+
+
+class DeviceUpload(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Make a button the device's program.
+
+    actuation : name of a table that was learned for it; empty: its own force.
+    """
+
+    button: str
+    actuation: str = ""
+    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)

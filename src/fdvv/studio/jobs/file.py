@@ -1,0 +1,250 @@
+"""The folder of a job: its order, state, events, inputs and results.
+
+``job.json`` holds the order and the state; ``events.jsonl`` is the journal (`fdvv.eventlog`) of its events;
+inputs are copies, so that an edit of a button does not change a job in progress.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from fdvv.device.open import pressed_by_person
+from fdvv.errors import InputError
+from fdvv.eventlog import Journal, JournalKind, read_records
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.studio.jobs.events import JobEvent
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order, ProbeOrder, TuneOrder
+
+JOB, EVENTS = "job.json", "events.jsonl"
+REMEDY = "put the job's folder elsewhere, or begin the work anew"
+KIND = Kind("fdvv-job", 1, "a job", REMEDY)
+JOURNAL = JournalKind({"event": Any}, REMEDY)
+LARGEST_bytes = 1_000_000
+
+
+class JobRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A job as its file keeps it.
+
+    line : why it was not finished; empty otherwise. run : counts its starts.
+    done, total : of presses, takes or questions. events : how many there are.
+    created, ended : UTC; ended None while it lasts.
+    """
+
+    format: Literal["fdvv-job"]
+    version: Literal[1]
+    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+    title: str
+    simulated: bool
+    created: str
+    state: JobState = "waiting"
+    line: str = ""
+    run: int = 0
+    ended: str | None = None
+    done: int = 0
+    total: int = 0
+    events: int = 0
+    results: tuple[JobResult, ...] = ()
+
+
+class JobFolder:
+    """Where a job keeps everything.
+
+    Attributes
+    ----------
+    button : the model that is worked on. recording : the takes of a capture.
+    actuation : the learned table that is worked on; absent where there is none.
+    known_rig : what is known of the rig from before; absent where nothing is.
+    rig : the simulated rig. session : the presses or answers.
+    probe : the fresh presses that judge what was learned.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.button = path / "button.fdvv.json"
+        self.actuation = path / "given.actuation.json"
+        self.known_rig = path / "known.rig.json"
+        self.rig = path / "rig.toml"
+        self.session = path / "session"
+        self.probe = path / "probe-session"
+        self.recording = path / "capture.recording.jsonl"
+
+    def result(self, kind: str) -> Path:
+        """The file of a result, before it is put into its place in the project."""
+        return self.path / f"result.{kind}.json"
+
+    def save(self, record: JobRecord) -> None:
+        """Write the record of the job. OSError."""
+        write_atomic(self.path / JOB, pretty(msgspec.to_builtins(record)) + "\n")
+
+    def load(self) -> JobRecord:
+        """Read the record of the job. InputError."""
+        path = self.path / JOB
+        text = read_limited(path, LARGEST_bytes, REMEDY)
+        return read_document(text, path, KIND, _record, lambda _: None)
+
+    def open_journal(self) -> Journal:
+        """Open the events to append to them; an incomplete last record is cut off. InputError, OSError."""
+        path = self.path / EVENTS
+        busy = InputError(path, "job", "another process is at work on it", "wait until it is done")
+        journal = Journal(path, busy)
+        journal.cut(whole_bytes(path))
+        return journal
+
+    def events(self) -> list[JobEvent]:
+        """Read all events; none if there is no file. InputError on a damaged one."""
+        path = self.path / EVENTS
+        if not path.is_file():
+            return []
+        return [_event(path, record) for record, _ in read_records(path, JOURNAL)]
+
+
+def utc_now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def whole_bytes(path: Path) -> int:
+    """Return the byte offset at which the last whole record of a journal ends."""
+    end = 0
+    for _record_there, after in read_records(path, JOURNAL):
+        end = after
+    return end
+
+
+def _record(data: bytes) -> JobRecord:
+    return msgspec.json.decode(data, type=JobRecord)
+
+
+def _event(path: Path, record: dict[str, Any]) -> JobEvent:
+    try:
+        found: JobEvent = msgspec.convert(record["event"], JobEvent)
+        return found
+    except msgspec.ValidationError as error:
+        raise InputError(path, "event", str(error), REMEDY) from error
+
+
+JobState = Literal["waiting", "running", "needs you", "done", "cancelled", "failed"]
+
+
+class JobResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Something that a job left in the project: by its kind and name there."""
+
+    kind: Literal["actuation", "measured", "rig", "button", "recording"]
+    name: str
+
+
+class JobRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A job as a list shows it.
+
+    line : why it failed or was cancelled; empty otherwise. now : what is being done.
+    done, total : of its presses, takes or questions; total 0 where that is not known yet.
+    events : so far. resumable : it can continue where it stopped.
+    created, ended : UTC; ended None while it lasts.
+    """
+
+    job: str
+    kind: KindName
+    title: str
+    device: str
+    simulated: bool
+    state: JobState
+    line: str
+    now: str
+    done: int
+    total: int
+    events: int
+    resumable: bool
+    created: str
+    ended: str | None
+    results: tuple[JobResult, ...]
+
+
+NAME = re.compile(r"[^\W_][\w .+()-]{0,79}")
+"""Of what comes out: it becomes part of a file's name."""
+
+
+@dataclass(frozen=True)
+class ResultFolder:
+    """A folder of the project and how its files end; fresh: a name that is there already is not taken."""
+
+    folder: str
+    suffix: str
+    fresh: bool
+
+    def file(self, project: Path, name: str) -> Path:
+        """Name the file of a result."""
+        return project / self.folder / f"{name}{self.suffix}"
+
+
+RESULT_FOLDERS = {
+    "actuation": ResultFolder("actuations", ".actuation.json", False),
+    "measured": ResultFolder("measured", ".json", False),
+    "rig": ResultFolder("rigs", ".rig.json", False),
+    "button": ResultFolder("buttons", ".fdvv.json", True),
+    "recording": ResultFolder("recordings", ".recording.jsonl", True),
+}
+
+
+def check_name(name: str) -> str:
+    """Return a name that is valid in a file's name; InputError on any other."""
+    if not NAME.fullmatch(name) or name.endswith((".", " ")):
+        reason = f"cannot be {name[:80]!r}"
+        raise InputError("name", "name", reason, "use letters, digits, spaces and . + - ( ), 80 at most")
+    return name
+
+
+def result_names(project: Path, kind: str) -> tuple[str, ...]:
+    """List the results of a kind in the project."""
+    place = RESULT_FOLDERS[kind]
+    found = (project / place.folder).glob(f"*{place.suffix}")
+    return tuple(sorted(path.name.removesuffix(place.suffix) for path in found if path.name[0] != "."))
+
+
+def result_file(project: Path, kind: str, name: str) -> Path:
+    """Return the file of a result by its name, looked up among those that are there. InputError."""
+    if name not in result_names(project, kind):
+        raise InputError(kind, name[:80], "there is none of this name in the project", "choose another")
+    return RESULT_FOLDERS[kind].file(project, name)
+
+
+def publish(project: Path, folder: JobFolder, order: Order) -> tuple[JobResult, ...]:
+    """Copy what a job made into its places in the project. OSError.
+
+    A table, what was measured of it and what a rig has taught replace those of the same name; buttons and
+    recordings never do.
+    """
+    files = {kind: folder.result(kind) for kind in RESULT_FOLDERS} | {"recording": folder.recording}
+    names = dict.fromkeys(RESULT_FOLDERS, order.name) | {"rig": rig_name(order)}
+    return tuple(
+        _put(project, kind, names[kind], file.read_bytes()) for kind, file in files.items() if file.exists()
+    )
+
+
+def rig_name(order: Order) -> str:
+    """Name the rig that an order works on, as what it has taught is kept."""
+    if isinstance(order, CaptureOrder):
+        return order.device
+    simulated = isinstance(order, CompensateOrder) and not pressed_by_person(order.device)
+    where = order.device.rpartition("/")[2] if "/" in order.device else order.device.replace(":", "-")
+    return f"{where}-{order.rig}" if simulated else where
+
+
+def _put(project: Path, kind: str, name: str, content: bytes) -> JobResult:
+    place = RESULT_FOLDERS[kind]
+    free = _free(project, place, name) if place.fresh else name
+    write_atomic(place.file(project, free), content)
+    return JobResult(kind, free)  # type: ignore[arg-type]  # the keys of PLACES are its kinds
+
+
+def _free(project: Path, place: ResultFolder, name: str) -> str:
+    found, count = name, 1
+    while place.file(project, found).exists():
+        count += 1
+        found = f"{name} {count}"
+    return found

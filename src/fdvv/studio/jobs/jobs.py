@@ -1,0 +1,366 @@
+"""All jobs of a project: started, cancelled, resumed, watched."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from fdvv.errors import FdvvError, InputError
+from fdvv.eventlog import Journal
+from fdvv.io.files import write_atomic
+from fdvv.studio.contract import Watchers, error_line
+from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.jobs.events import (
+    JobEnded,
+    JobEvent,
+    JobOutcome,
+    PressAsked,
+    PressEvent,
+    QuestionAnswered,
+    QuestionAsked,
+    StageEvent,
+    TakeAsked,
+    TakeEvent,
+)
+from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, JobState, publish, utc_now
+from fdvv.studio.jobs.inputs import BENCH, Inputs, inputs_of
+from fdvv.studio.jobs.orders import CaptureOrder, Order, kind_of
+from fdvv.studio.jobs.process import JobStart
+from fdvv.studio.studio import Studio
+
+Heard = Callable[[int, Sequence[JobEvent]], None]
+"""Is given the number of the first event, and events."""
+
+UNFINISHED = ("waiting", "running", "needs you")
+
+BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
+
+
+@dataclass(frozen=True)
+class JobProgress:
+    """How far a job is, as its events tell.
+
+    Attributes
+    ----------
+    question : number of the one that waits for an answer; 0 if none does.
+    """
+
+    state: JobState = "waiting"
+    now: str = ""
+    done: int = 0
+    total: int = 0
+    question: int = 0
+
+    def after(self, event: JobEvent) -> JobProgress:
+        """Return the progress after an event."""
+        done, total = self.done, self.total
+        if isinstance(event, StageEvent):
+            return JobProgress("running", event.text, 0, 0)
+        if isinstance(event, PressEvent):
+            outcome = event.skipped or event.summary
+            return JobProgress(
+                "running", f"{event.velocity_mm_s:g} mm/s: {outcome}".rstrip(": "), event.done, event.total
+            )
+        if isinstance(event, PressAsked):
+            return JobProgress(
+                "needs you", f"press at {event.velocity_mm_s:g} mm/s", event.number - 1, event.total
+            )
+        if isinstance(event, TakeAsked):
+            return JobProgress("needs you", "follow the cue", event.number - 1, event.total)
+        if isinstance(event, TakeEvent):
+            outcome = event.reason or "good"
+            return JobProgress("running", f"take {event.number}: {outcome}", event.done, event.total)
+        if isinstance(event, QuestionAsked):
+            now = f"question {event.number} of {event.total} at most"
+            return JobProgress("needs you", now, event.number - 1, event.total, event.number)
+        if isinstance(event, QuestionAnswered):
+            return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
+        if isinstance(event, JobOutcome):
+            return JobProgress("running", event.sentence, done, total)
+        return self if self.state != "waiting" else JobProgress("running", self.now, done, total)
+
+
+class LiveJob:
+    """A job of this studio. Any thread may ask; all changes are made under the lock.
+
+    Parameters
+    ----------
+    name : of the job. folder, record : of it.
+    """
+
+    def __init__(self, name: str, folder: JobFolder, record: JobRecord) -> None:
+        self.name, self.folder, self.record = name, folder, record
+        self.lock = threading.RLock()
+        self.start: JobStart | None = None
+        self.progress = JobProgress(record.state, record.line, record.done, record.total)
+        self._events: list[JobEvent] | None = None
+        self._journal: Journal | None = None
+        self._listeners: list[Heard] = []
+
+    @property
+    def events(self) -> list[JobEvent]:
+        """Return all events, read on first use. InputError."""
+        with self.lock:
+            if self._events is None:
+                self._events = self.folder.events()
+            return self._events
+
+    @property
+    def row(self) -> JobRow:
+        with self.lock:
+            record, progress = self.record, self.progress
+            over = record.state not in UNFINISHED
+            return JobRow(
+                self.name,
+                kind_of(record.order),
+                record.title,
+                record.order.device,
+                record.simulated,
+                record.state if over else progress.state,
+                record.line,
+                progress.now,
+                progress.done,
+                progress.total,
+                record.events if self._events is None else len(self._events),
+                record.state in ("cancelled", "failed"),
+                record.created,
+                record.ended,
+                record.results,
+            )
+
+    def begin(self) -> None:
+        """Open the journal to append to it. InputError if another process is at work on the job, OSError."""
+        with self.lock:
+            self._journal = self.folder.open_journal()
+            self._events = self.folder.events()
+
+    def heard(self, event: JobEvent) -> None:
+        """Keep an event and send it to all listeners."""
+        with self.lock:
+            if self._journal:
+                self._journal.write({"event": msgspec.to_builtins(event)})
+            number = len(self.events)
+            self.events.append(event)
+            if not isinstance(event, JobEnded):
+                self.progress = self.progress.after(event)
+            for listener in self._listeners:
+                listener(number, (event,))
+
+    def settle(self, record: JobRecord) -> None:
+        """Save the record of the job; the journal is closed with the end of a start. OSError."""
+        with self.lock:
+            counts = {"done": self.progress.done, "total": self.progress.total, "events": len(self.events)}
+            self.record = msgspec.structs.replace(record, **counts)
+            self.folder.save(self.record)
+            if record.state not in UNFINISHED and self._journal:
+                self._journal.close()
+                self._journal = None
+
+    def listen(self, from_event: int, heard: Heard) -> Callable[[], None]:
+        """Send events from a number on, and then as they come; the returned function ends it. InputError."""
+        with self.lock:
+            if from_event < len(self.events):
+                heard(from_event, self.events[from_event:])
+            self._listeners.append(heard)
+
+        def end() -> None:
+            with self.lock:
+                if heard in self._listeners:
+                    self._listeners.remove(heard)
+
+        return end
+
+
+JOBS = "jobs"
+
+MOST_JOBS = 10_000
+
+ANSWERS = ("first", "second", "neither", "again", *map(str, range(1, 8)))
+
+
+class Jobs:
+    """Long work in a studio's project, each job in ``jobs/NUMBER``. Any thread may ask.
+
+    A job is a process of its own; one that was in progress when the studio ended can be resumed.
+    """
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._folder = studio.project / JOBS
+        self._locks = studio.part(DeviceLocks)
+        self._lock = threading.RLock()
+        self._watchers = Watchers[JobRow]()
+        self._jobs = {job.name: job for job in _jobs_on_disk(self._folder)}
+
+    def rows(self) -> tuple[JobRow, ...]:
+        """List all jobs, newest first."""
+        with self._lock:
+            return tuple(job.row for job in reversed(self._jobs.values()))
+
+    def job(self, name: str) -> LiveJob:
+        """Return a job by its name. InputError."""
+        with self._lock:
+            if name not in self._jobs:
+                raise InputError("job", "job", f"there is no job {name[:20]!r}", "choose one of the list")
+            return self._jobs[name]
+
+    def start(self, order: Order, devices: tuple[str, ...]) -> JobRow:
+        """Begin a job. devices : that there are. InputError on an order that cannot be done; OSError."""
+        inputs = inputs_of(order, self._studio.catalog, self._studio.project, devices)
+        with self._lock:
+            name = f"{_last_number(self._folder) + 1:04d}"
+            self._locks.acquire(inputs.device, f"job {int(name)}, {inputs.title}")
+            try:
+                job = self._made(name, order, inputs)
+            except BaseException:
+                self._locks.release(inputs.device)
+                raise
+            self._jobs[name] = job
+        self._run(job, inputs.device)
+        return job.row
+
+    def resume(self, name: str) -> JobRow:
+        """Resume a job that was stopped or failed. InputError if it cannot, OSError."""
+        job = self.job(name)
+        with self._lock:
+            if not job.row.resumable:
+                raise InputError("job", "job", f"is {job.row.state}", "begin another one")
+            device = _device_of(job.record)
+            self._locks.acquire(device, f"job {int(name)}, {job.record.title}")
+        self._run(job, device)
+        return job.row
+
+    def cancel(self, name: str) -> JobRow:
+        """Stop a job that is under way: what was made is kept, the device lets go. InputError."""
+        job = self.job(name)
+        with job.lock:
+            if job.record.state not in UNFINISHED or not job.start:
+                raise InputError("job", "job", f"is {job.row.state} already", "there is nothing to stop")
+            job.start.stop()
+        return job.row
+
+    def answer(self, name: str, number: int, answer: str) -> JobRow:
+        """Answer the question that a job has asked. InputError if it has not."""
+        job = self.job(name)
+        with job.lock:
+            if not job.start or job.progress.question != number:
+                reason = f"question {number} does not wait for an answer"
+                raise InputError("answer", "answer", reason, "answer the one that is shown")
+            if answer not in ANSWERS:
+                raise InputError("answer", "answer", f"cannot be {answer[:20]!r}", "use the keys shown")
+            # a question is answered once, however fast the keys come
+            job.progress = dataclasses.replace(job.progress, question=0)
+            job.start.answer(number, answer)
+        return job.row
+
+    def watch(self, changed: Callable[[JobRow], None]) -> Callable[[], None]:
+        """Send a job's row whenever it changes; the returned function ends it."""
+        self._watchers.watch(changed)
+        return lambda: self._watchers.forget(changed)
+
+    def listen(self, name: str, from_event: int, heard: Heard) -> Callable[[], None]:
+        """Send a job's events from a number on; the returned function ends it. InputError."""
+        return self.job(name).listen(max(0, from_event), heard)
+
+    def close(self) -> None:
+        """Stop all that is under way, and wait for it."""
+        with self._lock:
+            starts = [job.start for job in self._jobs.values() if job.start]
+        for start in starts:
+            start.stop()
+        for start in starts:
+            start.wait()
+
+    def _made(self, name: str, order: Order, inputs: Inputs) -> LiveJob:
+        folder = JobFolder(self._folder / name)
+        folder.path.mkdir(parents=True)
+        for file, content in inputs.files.items():
+            write_atomic(folder.path / file, content)
+        record = JobRecord("fdvv-job", 1, order, inputs.title, inputs.simulated, utc_now())
+        folder.save(record)
+        return LiveJob(name, folder, record)
+
+    def _run(self, job: LiveJob, device: str) -> None:
+        """Start a process for a job; the device stays locked until the process has ended."""
+        try:
+            with job.lock:
+                job.begin()
+                run = job.record.run + 1
+                job.settle(msgspec.structs.replace(job.record, state="running", line="", run=run, ended=None))
+                job.start = JobStart(
+                    job.folder.path,
+                    run,
+                    lambda event: self._heard(job, event),
+                    lambda end: self._over(job, device, end),
+                )
+        except BaseException:
+            self._locks.release(device)
+            raise
+        self._changed(job)
+
+    def _heard(self, job: LiveJob, event: JobEvent) -> None:
+        job.heard(event)
+        self._changed(job)
+
+    def _over(self, job: LiveJob, device: str, end: JobEnded) -> None:
+        """Put what was made in its place, and keep how the job ended."""
+        results = job.record.results
+        if end.state == "done":
+            try:
+                results = publish(self._studio.project, job.folder, job.record.order)
+            except (OSError, FdvvError) as error:
+                end = JobEnded(
+                    "failed", f"what was made could not be kept in the project: {error_line(error)}"
+                )
+        job.heard(end)
+        record = msgspec.structs.replace(
+            job.record, state=end.state, line=end.line, ended=utc_now(), results=results
+        )
+        with job.lock:
+            job.start = None
+            job.settle(record)
+        self._locks.release(device)
+        self._changed(job)
+
+    def _changed(self, job: LiveJob) -> None:
+        self._watchers.tell(job.row)
+
+
+def _jobs_on_disk(folder: Path) -> list[LiveJob]:
+    """Find the jobs of a project; one that was under way when its studio ended is over for now."""
+    if not folder.is_dir():
+        return []
+    found = []
+    for path in sorted(folder.iterdir())[-MOST_JOBS:]:
+        if path.name.isdecimal() and (path / JOB).is_file():
+            # one that is damaged stays on the disk, and is no reason to have none at all
+            with contextlib.suppress(FdvvError):
+                found.append(_job_on_disk(path))
+    return found
+
+
+def _last_number(folder: Path) -> int:
+    names = [path.name for path in folder.iterdir()] if folder.is_dir() else []
+    return max((int(name) for name in names if name.isdecimal()), default=0)
+
+
+def _job_on_disk(path: Path) -> LiveJob:
+    folder = JobFolder(path)
+    job = LiveJob(path.name, folder, folder.load())
+    if job.record.state in UNFINISHED:
+        for event in job.events:
+            job.progress = job.progress.after(event)
+        job.settle(msgspec.structs.replace(job.record, state="cancelled", line=BROKEN_OFF, ended=utc_now()))
+    return job
+
+
+def _device_of(record: JobRecord) -> str:
+    """Name the device of a job as the device locks name it."""
+    bench = isinstance(record.order, CaptureOrder) and record.simulated
+    return BENCH + record.order.device if bench else record.order.device

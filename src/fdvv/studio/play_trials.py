@@ -1,0 +1,242 @@
+"""Trials that a person plays: on a button simulated in real time, or on a device beside the page."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from contextlib import suppress
+
+from msgspec import Struct
+
+from fdvv.device.open import open_device, pressed_by_person
+from fdvv.errors import DeviceError, InputError
+from fdvv.live.binary_finger import BinaryFinger
+from fdvv.live.device_key import DeviceKey
+from fdvv.live.press import LiveEventKind, LivePress, PressTimes
+from fdvv.live.press_subject import PressSubject
+from fdvv.live.run import LiveFrame, LiveRun
+from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming
+from fdvv.studio.contract import Tell
+from fdvv.studio.devices import DeviceLocks, available_devices
+from fdvv.studio.played_trial import PlayedTrial, PlayKept, PlayRound
+from fdvv.studio.studio import Studio
+
+log = logging.getLogger("fdvv.studio")
+CLOCK = time.monotonic
+LONGEST_s = 5.0
+"""No hold lasts longer, whatever a page says."""
+
+LET_GO_cN = 1.0
+"""A finger that pushes no harder has let go."""
+
+DOWN = (LiveEventKind.ACTUATION, LiveEventKind.LEVEL)
+
+
+class LiveTrial:
+    """A trial under the finger.
+
+    Parameters
+    ----------
+    played : the trial, its rounds and its task. subject : its button, on its rig. tell : to the page.
+    """
+
+    def __init__(self, played: PlayedTrial, subject: PressSubject, tell: Tell) -> None:
+        self.played, self._tell = played, tell
+        self._times, self._hand = PressTimes(), BinaryFinger.of(subject)
+        self._faulted, self._pressed_s = False, (0.0, 0.0)
+        self._came_ms: list[tuple[float, float]] = []
+        press = LivePress(subject, seed=played.seed)
+        self.run = LiveRun(press, self._show, log.warning, self._over, CLOCK)
+
+    def down(self, at_ms: float) -> None:
+        """Press the simulated finger down; at_ms : when the hand pressed."""
+        self._came_ms = [*self._came_ms[-9:], (at_ms, 1e3 * CLOCK())]
+        self.run.ask(lambda press: self._press(press, at_ms / 1e3))
+
+    def up(self, at_ms: float) -> None:
+        """Release after as long as the hand held: less input latency this time shortens no press."""
+        self.run.ask(lambda press: self._release(press, at_ms / 1e3))
+
+    def here(self) -> None:
+        self.run.here()
+
+    def close(self) -> None:
+        self.run.close()
+        self.played.close()
+
+    def _press(self, press: LivePress, hand_s: float) -> None:
+        self._pressed_s = press.time_s, hand_s
+        self._times.led(press.time_s, hand_s)
+        self._hand.down(press)
+
+    def _release(self, press: LivePress, hand_s: float) -> None:
+        pressed_s, since_s = self._pressed_s
+        if press.time_s < pressed_s + min(hand_s - since_s, LONGEST_s):
+            self.run.ask(lambda later: self._release(later, hand_s))
+        else:
+            self._hand.up(press)
+
+    def _show(self, seen: LiveFrame) -> None:
+        for event in seen.events:
+            if event.kind in DOWN:
+                self._times.activated(event.t_s)
+            elif event.kind is LiveEventKind.VIBRATION:
+                at_ms = 1e3 * (event.t_s + seen.zero_s)
+                self._tell(PlayClick(event.number, at_ms, event.velocity_mm_s))
+            elif event.kind is LiveEventKind.FAULT:
+                self._faulted = True
+        if self._faulted and seen.columns.force_cN[-1] <= LET_GO_cN:
+            self.run.ask(self._clear)
+
+    def _clear(self, press: LivePress) -> None:
+        """Continue after a fault once its cause is gone; a hard stop after the key went down costs none."""
+        with suppress(DeviceError):
+            press.clear_fault()
+            self._faulted = False
+
+    def _over(self, reason: str) -> None:
+        self._tell(PlayOver(reason))
+
+    def keep(self, ask: PlayRound) -> PlayKept:
+        """Bring a round to the disk, and score the trial after the last one."""
+        timing = RoundTiming(
+            ClockSource.PAGE,
+            ask.display.ms,
+            ask.display.error_ms,
+            ask.input.ms,
+            ask.input.error_ms,
+            ask.clock_ms,
+            ask.clock_error_ms,
+            self._transport_ms(ask),
+            ask.frame_ms,
+            ask.hand,
+        )
+        found = self._times.between(ask.start_ms / 1e3, ask.end_ms / 1e3)
+        return self.played.over(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
+
+    def _transport_ms(self, ask: PlayRound) -> float | None:
+        """Return the latency of the round's first press."""
+        for at_ms, came_ms in self._came_ms:
+            if ask.start_ms <= at_ms <= ask.end_ms and ask.clock_ms is not None:
+                return came_ms - ask.clock_ms - at_ms
+        return None
+
+
+class PlayClick(Struct, frozen=True, forbid_unknown_fields=True, tag="click"):
+    """A vibration starts at the cap. server_ms : when, on the server's clock."""
+
+    slot: int
+    server_ms: float
+    velocity_mm_s: float
+
+
+class PlayOver(Struct, frozen=True, forbid_unknown_fields=True, tag="over"):
+    """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
+
+    reason: str
+
+
+HOLDER = "the pointing task"
+
+
+def pressed_devices() -> tuple[tuple[str, str], ...]:
+    """Return the available devices that a person presses."""
+    return tuple((name, about) for name, about in available_devices()[0] if pressed_by_person(name))
+
+
+class Table:
+    """The table beside one page: the device on it is open from its first trial until the page goes.
+
+    Parameters
+    ----------
+    failed : called with one line when the device fell to zero force or is gone, from a thread of the device.
+    """
+
+    def __init__(self, studio: Studio, failed: Callable[[str], None]) -> None:
+        self._locks, self._failed = studio.part(DeviceLocks), failed
+        self._name = ""
+        self._key: DeviceKey | None = None
+
+    def put(self, name: str) -> DeviceKey | None:
+        """Return the key of a listed device, opened if it is not; None and a clear table if name is empty.
+
+        Raises InputError on one that is not listed or in use, DeviceError.
+        """
+        if self._key and (name != self._name or self._key.problem):
+            self.clear()
+        if name and not self._key:
+            self._open(name)
+        return self._key
+
+    def clear(self) -> None:
+        """Set zero force and close the device."""
+        key, name = self._key, self._name
+        self._name, self._key = "", None
+        if key:
+            key.close()
+            self._locks.release(name)
+
+    def _open(self, name: str) -> None:
+        if name not in dict(pressed_devices()):
+            raise InputError("device", "device", f"there is no {name[:80]!r}", "choose one of the list")
+        self._locks.acquire(name, HOLDER)
+        try:
+            self._key = DeviceKey(open_device(name), self._failed)
+        except BaseException:
+            self._locks.release(name)
+            raise
+        self._name = name
+
+
+class DeviceTrial:
+    """A trial on a device: the page leads no finger and shows nothing but the bullet.
+
+    Parameters
+    ----------
+    played : the trial, its rounds and its task. key : of the device, which renders the trial's button.
+
+    Raises InputError, ModelError on a button that the device cannot hold, DeviceError.
+    """
+
+    def __init__(self, played: PlayedTrial, key: DeviceKey) -> None:
+        self._played, self._key = played, key
+        key.render(played.model)
+
+    def down(self, at_ms: float) -> None:
+        """Do nothing: what the hand does on the page is no press."""
+
+    def up(self, at_ms: float) -> None:
+        """Do nothing."""
+
+    def here(self) -> None:
+        """Do nothing: a device renders whether or not a page is looked at."""
+
+    def keep(self, ask: PlayRound) -> PlayKept:
+        """Bring a round to the disk, and score the trial after the last one.
+
+        Raises DeviceError where the device or its line failed, InputError where the clocks are not joined.
+        """
+        if ask.clock_ms is None:
+            reason = "the page's clock is not yet joined with the studio's"
+            raise InputError("round", f"round {ask.number}", reason, "wait a second and play the trial again")
+        timing = RoundTiming(
+            ClockSource.KEY,
+            ask.display.ms,
+            ask.display.error_ms,
+            0.0,
+            self._key.clock_error_ms,
+            ask.clock_ms,
+            ask.clock_error_ms,
+            None,
+            ask.frame_ms,
+            "button",
+        )
+        start_s, end_s = (1e-3 * (at_ms + ask.clock_ms) for at_ms in (ask.start_ms, ask.end_ms))
+        pressed_s = self._key.pressed_s(start_s, end_s)
+        return self._played.over(ask, tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s), timing)
+
+    def close(self) -> None:
+        """Set zero force and close the trial."""
+        self._key.rest()
+        self._played.close()

@@ -1,0 +1,219 @@
+"""The server: the page's files, calls and the live connection, behind the authentication."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import logging
+import socket
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from importlib import resources
+from threading import Thread
+
+import msgspec
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket
+
+from fdvv.errors import BuildError, FdvvError, InputError
+from fdvv.studio.auth import AuthMiddleware, ServerAddress, new_token
+from fdvv.studio.contract import Call, error_line
+from fdvv.studio.live import LiveConnection
+from fdvv.studio.parts import PartLoader
+from fdvv.studio.studio import Studio
+
+TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".json": "application/json",
+}
+
+
+@dataclass(frozen=True)
+class PageFile:
+    """A file of the page, plain and compressed."""
+
+    media_type: str
+    plain: bytes
+    packed: bytes
+    tag: str
+
+
+def page_files() -> dict[str, PageFile]:
+    """Read the built page. BuildError if this installation has none."""
+    folder = resources.files("fdvv.studio").joinpath("static")
+    if not folder.joinpath("index.html").is_file():
+        raise BuildError("the studio's page is not built; run: make web")
+    return {item.name: _read(item.name, item.read_bytes()) for item in folder.iterdir() if item.is_file()}
+
+
+def _read(name: str, content: bytes) -> PageFile:
+    media_type = TYPES.get(name[name.rfind(".") :], "application/octet-stream")
+    tag = f'"{hashlib.sha256(content).hexdigest()[:16]}"'
+    return PageFile(media_type, content, gzip.compress(content, mtime=0), tag)
+
+
+def file_response(files: dict[str, PageFile], request: Request) -> Response:
+    """Return one file; browsers ask again each time and get 304 when nothing changed."""
+    file = files.get(request.path_params.get("name") or "index.html")
+    if file is None:
+        return PlainTextResponse("no such file", 404)
+    headers = {"etag": file.tag, "cache-control": "no-cache", "vary": "accept-encoding"}
+    if request.headers.get("if-none-match") == file.tag:
+        return Response(status_code=304, headers=headers)
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(file.plain, media_type=file.media_type, headers=headers)
+    return Response(file.packed, media_type=file.media_type, headers={**headers, "content-encoding": "gzip"})
+
+
+LARGEST_bytes = 8_000_000
+"""Of a question: a model of many curves is some hundred kB."""
+
+call_log = logging.getLogger("fdvv.studio")
+
+
+class TooLargeError(Exception):
+    """A question is beyond LARGEST_bytes."""
+
+
+async def body_of(request: Request) -> bytes:
+    """Read a body that may claim any length, or none, without holding more than is allowed."""
+    parts: list[bytes] = []
+    size = 0
+    async for part in request.stream():
+        size += len(part)
+        if size > LARGEST_bytes:
+            raise TooLargeError
+        parts.append(part)
+    return b"".join(parts)
+
+
+def error_response(reason: str, status: int) -> Response:
+    return JSONResponse({"error": " ".join(reason.split())}, status)
+
+
+async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
+    """Run a call. 400 a question that is none, 413 too large, 422 the person's mistake, 500 ours."""
+    if not request.headers.get("content-type", "").startswith("application/json"):
+        return error_response("the question must be application/json", 415)
+    try:
+        ask = msgspec.json.decode(await body_of(request), type=call.ask)
+    except ClientDisconnect:
+        return error_response("the page has gone", 400)
+    except TooLargeError:
+        return error_response(f"the question is larger than {LARGEST_bytes // 1_000_000} MB", 413)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        return error_response(f"{call.name}: {error}", 400)
+    try:
+        found = await run_in_threadpool(call.function, studio, ask)
+    except FdvvError as error:
+        return error_response(error_line(error), 422)
+    except OSError as error:
+        call_log.exception("%s failed", call.name)
+        return error_response(f"{call.name}: {error_line(error)}", 500)
+    except Exception:
+        call_log.exception("%s failed", call.name)
+        return error_response(f"{call.name} failed; the studio's terminal tells why", 500)
+    return Response(msgspec.json.encode(found), media_type="application/json")
+
+
+def create_app(studio: Studio, door: ServerAddress) -> Starlette:
+    """Make the server's application. BuildError if the page is not built.
+
+    Parts are imported while the first page is on its way; a call waits for its own.
+    """
+    files = page_files()
+    loader = PartLoader()
+
+    async def page(request: Request) -> Response:
+        return file_response(files, request)
+
+    async def api(request: Request) -> Response:
+        name = request.path_params["name"]
+        call = await run_in_threadpool(loader.call, name)
+        return (
+            await answer_call(studio, call, request) if call else error_response("there is no such call", 404)
+        )
+
+    async def live(socket: WebSocket) -> None:
+        parts = await run_in_threadpool(loader.all)
+        await LiveConnection(studio, parts.channels, socket).serve()
+
+    @asynccontextmanager
+    async def lifespan(_app: Starlette) -> AsyncIterator[None]:
+        loading = Thread(target=loader.load, name="parts of the studio")
+        loading.start()
+        yield
+        await run_in_threadpool(loading.join)
+        studio.close()
+
+    routes = [
+        Route("/", page, methods=["GET"]),
+        Route("/{name}", page, methods=["GET"]),
+        Route("/api/{name}", api, methods=["POST"]),
+        WebSocketRoute("/live", live),
+    ]
+    return Starlette(routes=routes, middleware=[Middleware(AuthMiddleware, door=door)], lifespan=lifespan)
+
+
+LARGEST_MESSAGE_bytes = 2_000_000
+
+
+def bound_socket(host: str, port: int) -> socket.socket:
+    """Take a port; 0 takes any free one. Raises InputError if it cannot be had."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    # asyncio sends at once only where TCP is named; else the end of an answer waits 40 ms for the page
+    taken = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        taken.bind((host, port))
+    except OSError as error:
+        taken.close()
+        remedy = "choose another --port, or 0 for any that is free"
+        raise InputError("--port", f"{host}:{port}", error.strerror or str(error), remedy) from error
+    return taken
+
+
+def address_of(host: str, port: int, token: str | None = None) -> ServerAddress:
+    """Make the door of a studio at a port. token : that opens it; none: a fresh one."""
+    names = {"127.0.0.1", "localhost", "[::1]", f"[{host}]" if ":" in host else host}
+    return ServerAddress(frozenset(f"{name}:{port}" for name in names), token or new_token(), f"fdvv-{port}")
+
+
+def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None], token: str = "") -> None:
+    """Serve a studio until Ctrl-C or SIGTERM.
+
+    ready : called with the address to open, once it can be opened. token : that opens it; empty: a fresh
+    one. Raises InputError, BuildError.
+    """
+    import uvicorn
+
+    taken = bound_socket(host, port)
+    port = taken.getsockname()[1]
+    door = address_of(host, port, token)
+    shown = f"[{host}]" if ":" in host else host
+    config = uvicorn.Config(
+        create_app(studio, door),
+        log_level="warning",
+        ws="websockets-sansio",
+        ws_max_size=LARGEST_MESSAGE_bytes,
+        timeout_graceful_shutdown=3,
+        server_header=False,
+    )
+
+    class Server(uvicorn.Server):
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            await super().startup(sockets)
+            ready(f"http://{shown}:{port}/?token={door.token}")
+
+    # uvicorn ends in order and then raises Ctrl-C once more; here that is how a studio ends
+    with suppress(KeyboardInterrupt):
+        Server(config).run(sockets=[taken])

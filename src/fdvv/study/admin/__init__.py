@@ -1,0 +1,1 @@
+"""What the operator of a study does: declare, freeze, enrol, watch, withdraw."""

@@ -1,0 +1,285 @@
+"""A readable preview of a study before it is frozen: what a person goes through, and what will count."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from typing import Any
+
+import msgspec
+
+from fdvv.report.report import Section, Table, render_html
+from fdvv.stats.orders import williams_orders
+from fdvv.study.admin.review import StudyReview
+from fdvv.study.plan.plan import Item, Page, StudyPlan
+from fdvv.study.plan.plan_words import (
+    asked_texts,
+    claim_text,
+    exclusion_texts,
+    question_line,
+    reference_text,
+    staircase_texts,
+    stimulus_text,
+    task_text,
+)
+from fdvv.study.plan.schedule import item_orders
+
+TRIAL_s = {
+    # the paper's: 60 minutes, less two breaks and about 8 minutes around, over 36 trials
+    "realism": 75.0,
+    "abx": 45.0,
+    "2afc": 25.0,
+    "2ac": 25.0,
+    "preference": 30.0,
+    "staircase": 15.0,
+}
+"""What a trial takes; all but the paper's assumed."""
+
+RATED_s = 30.0
+"""What each stimulus of a MUSHRA trial takes (assumed)."""
+
+PAGE_s, QUESTION_s = 60.0, 10.0
+"""What a page and each question on it takes (assumed)."""
+
+SHOWN = 12
+"""People whose orders are listed."""
+
+ORDERS_WIDE = 84
+"""Characters of a line that orders may take."""
+
+EXCERPT = 60
+"""Characters of a page's text that are shown."""
+
+MEANT = "FD: one curve for all speeds, no vibration. FDVV: the whole model."
+
+
+@dataclass(frozen=True)
+class PlanSummary:
+    """What one person goes through, and how well the whole is balanced.
+
+    Attributes
+    ----------
+    trials : of a person without practice, at most. trial_s : that one takes (assumed). breaks : that fall
+        due. minutes : of a person, pages and breaks included.
+    places, follows : fewest and most times that a button has a place in a round, and that it follows
+        another one, over all people and rounds; None where orders are random or there is one button.
+    notes : what is allowed but may not be meant.
+    """
+
+    trials: int
+    practice: int
+    trial_s: float
+    breaks: int
+    minutes: float
+    places: tuple[int, int] | None
+    follows: tuple[int, int] | None
+    notes: tuple[str, ...]
+
+
+def summarise_plan(plan: StudyPlan) -> PlanSummary:
+    """Work out what a checked plan comes to."""
+    trial_s, trials = trial_time_s(plan), trial_count(plan)
+    breaks = _breaks(plan, trials, trial_s)
+    page_s = sum(PAGE_s + QUESTION_s * len(page.questions) for page in plan.pages)
+    whole_s = page_s + (trials + plan.practice) * trial_s + 60.0 * breaks * plan.break_min
+    places, follows = _balance(plan)
+    return PlanSummary(
+        trials, plan.practice, trial_s, breaks, whole_s / 60.0, places, follows, tuple(_notes(plan, places))
+    )
+
+
+def trial_count(plan: StudyPlan) -> int:
+    """Return how many trials a person has at most, practice left out."""
+    block = plan.staircase.trials if plan.kind == "staircase" and plan.staircase else 1
+    return len(plan.items) * plan.rounds * block
+
+
+def trial_time_s(plan: StudyPlan) -> float:
+    """Return what a trial of that kind takes (assumed)."""
+    return RATED_s * len(plan.items[0].stimuli) if plan.kind == "mushra" else TRIAL_s[plan.kind]
+
+
+def _breaks(plan: StudyPlan, trials: int, trial_s: float) -> int:
+    if plan.break_every_min == 0:
+        return 0
+    # the first trial that ends after so long
+    between = max(1, -int(-60.0 * plan.break_every_min // trial_s))
+    return max(0, (trials + plan.practice - 1) // between)
+
+
+def _balance(plan: StudyPlan) -> tuple[tuple[int, int] | None, tuple[int, int] | None]:
+    count = len(plan.items)
+    if plan.order == "random" or count == 1:
+        return None, None
+    orders = [order for person in range(plan.people) for order in item_orders(plan, person)]
+    places = Counter((place, one) for order in orders for place, one in enumerate(order))
+    follows = Counter(pair for order in orders for pair in pairwise(order))
+    stood = [places[place, one] for place in range(count) for one in range(count)]
+    followed = [follows[one, other] for one in range(count) for other in range(count) if one != other]
+    return (min(stood), max(stood)), (min(followed), max(followed))
+
+
+def _notes(plan: StudyPlan, places: tuple[int, int] | None) -> Iterator[str]:
+    if places and places[0] != places[1]:
+        rows = len(williams_orders(len(plan.items)))
+        yield (
+            f"orders are not balanced exactly: people times rounds would have to be a multiple of {rows}, "
+            f"{plan.people} times {plan.rounds} is {plan.people * plan.rounds}"
+        )
+    if not any(page.when == "consent" for page in plan.pages):
+        yield "there is no consent page"
+    if plan.claim is None and plan.kind != "staircase":
+        yield "there is no claim: what is tested is then chosen after the answers are seen"
+    if plan.rounds == 2 and plan.kind not in ("mushra", "staircase"):
+        yield "with two rounds, who sees through a label of the first knows that of the second"
+    if plan.practice == 0:
+        yield "there is no practice: first trials differ from later ones"
+    if plan.switch_s == 0:
+        yield "switch_s = 0: how long a change of what is rendered takes may tell which it is"
+    if not plan.ties and plan.kind == "realism":
+        yield 'without "equal" this is a 2-AFC, not the paper\'s task'
+
+
+def preview_sections(review: StudyReview) -> tuple[Section, ...]:
+    """Return a study in sections of text and tables. For a plan without problems."""
+    plan, summary = review.plan, summarise_plan(review.plan)
+    notes = (*review.notes, *summary.notes)
+    return (
+        Section("A person", _person(plan, summary), (), (_pages(plan),) if plan.pages else ()),
+        Section("A trial", (task_text(plan), *staircase_texts(plan)), (), (_asked(plan),)),
+        Section("Buttons", (), (), (_items(review),)),
+        Section("Orders", _order_texts(plan, summary), (), _orders(plan)),
+        Section("What will not count", tuple(f"– {text}" for text in exclusion_texts(plan))),
+        Section("The claim", (claim_text(plan),)),
+        *([Section("To think about", tuple(f"– {note}" for note in notes))] if notes else ()),
+    )
+
+
+def preview_title(plan: StudyPlan) -> str:
+    """Name a study with its title, in its first language."""
+    return plan.title[plan.languages[0]]
+
+
+def preview_summary(plan: StudyPlan) -> str:
+    """Return in a line what the study is."""
+    languages = ", ".join(plan.languages)
+    kind = f"kind {plan.kind}, {plan.people} people planned"
+    return f"Study {plan.name!r}, {kind}, in {languages}. Nothing is drawn yet."
+
+
+def preview_html(review: StudyReview) -> str:
+    """Return the preview as one HTML page."""
+    plan = review.plan
+    return render_html(preview_title(plan), preview_summary(plan), preview_sections(review))
+
+
+def preview_dict(review: StudyReview) -> dict[str, Any]:
+    """Return the preview for programs, the plan with every default filled in among it."""
+    summary = summarise_plan(review.plan)
+    return {
+        **asdict(summary),
+        "notes": [*review.notes, *summary.notes],
+        "differences_cN": review.differences_cN,
+        "plan": msgspec.to_builtins(review.plan),
+    }
+
+
+def _person(plan: StudyPlan, summary: PlanSummary) -> tuple[str, ...]:
+    buttons = f"{len(plan.items)} buttons, {plan.rounds} rounds"
+    if plan.staircase:
+        count = len(plan.items) * plan.rounds
+        trials = f"{count} staircases of at most {plan.staircase.trials} trials ({buttons})"
+    else:
+        trials = f"{summary.trials} trials ({buttons})"
+    practice = f"{summary.practice} trials of practice, then " if summary.practice else ""
+    most = "at most " if plan.staircase else ""
+    return (
+        f"{practice}{trials}: {most}about {summary.minutes:.0f} minutes, pages and breaks included "
+        f"(assumed: {summary.trial_s:.0f} s a trial).",
+        _break_text(plan, summary),
+        f"Every change of what is rendered takes {plan.switch_s:g} s.",
+    )
+
+
+def _break_text(plan: StudyPlan, summary: PlanSummary) -> str:
+    if plan.break_every_min == 0:
+        return "No breaks."
+    due = {0: "none falls due", 1: "one falls due"}.get(summary.breaks, f"{summary.breaks} fall due")
+    return (
+        f"A break of {plan.break_min:g} minutes after the first trial that ends {plan.break_every_min:g} "
+        f"minutes after the beginning or the last break: {due}."
+    )
+
+
+def _pages(plan: StudyPlan) -> Table:
+    rows = [row for page in plan.pages for row in _page_rows(plan, page)]
+    return Table(("page", "when", "what is on it"), tuple(rows), "Pages outside the trials.")
+
+
+def _page_rows(plan: StudyPlan, page: Page) -> list[tuple[str, str, str]]:
+    language = plan.languages[0]
+    text = " ".join(page.text.get(language, "").split())
+    lines = [text[:EXCERPT] + "…" if len(text) > EXCERPT else text] if text else []
+    lines += ["asks for agreement"] if page.when == "consent" else []
+    lines += [question_line(question, language) for question in page.questions]
+    rows = enumerate(lines or [page.title[language]])
+    return [("" if i else page.name, "" if i else page.when, line) for i, line in rows]
+
+
+def _asked(plan: StudyPlan) -> Table:
+    rows = []
+    for language in plan.languages:
+        lines = asked_texts(plan, language)
+        rows += [(language if not i else "", line) for i, line in enumerate(lines)]
+    return Table(("language", "asked"), tuple(rows), "What is asked in every trial.")
+
+
+def _items(review: StudyReview) -> Table:
+    rows = [row for item in review.plan.items for row in _item_rows(review, item)]
+    if not review.differences_cN:
+        return Table(("button", "what", "rendered"), tuple(row[:3] for row in rows), MEANT)
+    caption = f"{MEANT} Apart: rms difference of force of the two nearest, both strokes at 50 to 200 mm/s."
+    return Table(("button", "what", "rendered", "apart (cN)"), tuple(rows), caption)
+
+
+def _item_rows(review: StudyReview, item: Item) -> list[tuple[str, str, str, str]]:
+    x = reference_text(review.plan, item)
+    rows = [("X", x)] if x else []
+    rows += [(stimulus.name, stimulus_text(stimulus)) for stimulus in item.stimuli]
+    apart = review.differences_cN.get(item.name)
+    text = "" if apart is None else f"{apart:.1f}"
+    return [(item.name if not i else "", *row, text if not i else "") for i, row in enumerate(rows)]
+
+
+def _order_texts(plan: StudyPlan, summary: PlanSummary) -> tuple[str, ...]:
+    if summary.places is None:
+        return ("One button." if len(plan.items) == 1 else "Drawn at random for every round.",)
+    assert summary.follows is not None
+    return (
+        f"Williams' orders over people and rounds. With {plan.people} people each button stands "
+        f"{_span(summary.places)} in every place of a round, and follows every other one "
+        f"{_span(summary.follows)}.",
+    )
+
+
+def _orders(plan: StudyPlan) -> tuple[Table, ...]:
+    if plan.order == "random" or len(plan.items) == 1:
+        return ()
+    shown = max(1, min(plan.rounds, ORDERS_WIDE // (max(2 * len(plan.items) - 1, 8) + 2)))
+    rows = tuple(
+        (
+            f"{person + 1}",
+            *("-".join(f"{i + 1}" for i in order) for order in item_orders(plan, person)[:shown]),
+        )
+        for person in range(min(plan.people, SHOWN))
+    )
+    columns = ("person", *(f"round {i + 1}" for i in range(shown)))
+    named = ", ".join(f"{i + 1} {item.name}" for i, item in enumerate(plan.items))
+    return (Table(columns, rows, f"Orders of buttons in the first rounds and people: {named}."),)
+
+
+def _span(counts: tuple[int, int]) -> str:
+    low, high = counts
+    return f"{low} times" if low == high else f"{low} to {high} times"

@@ -1,0 +1,274 @@
+"""Figures of an analysis: ratings, choices, distances, staircases, timing and the multiverse."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.report import style
+from fdvv.report.prose import stars
+from fdvv.report.score_figures import ScoreBars, plot_score_bars
+from fdvv.study.analysis.answer_figures import (
+    PALE,
+    ForestRow,
+    RatingBars,
+    plot_choices,
+    plot_forest,
+    plot_rating_bars,
+    say_proxy,
+)
+from fdvv.study.analysis.multiverse import Multiverse
+from fdvv.study.analysis.ratings import people_means, spread_of
+from fdvv.study.analysis.records import StudyAnalysis, ThresholdResult, TimingResult
+from fdvv.study.analysis.sentences import name_rows
+from fdvv.study.analysis.words import button_name
+from fdvv.study.plan.answers import Answers
+from fdvv.units import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_TRACKS = 12
+"""Staircases that are drawn; more would be too small to read."""
+
+CHOICES = {
+    "left out": "exclusions",
+    "measure": "measure",
+    "counted as one": "unit",
+    "ties": "ties",
+    "test": "test",
+}
+"""Fields of a specification, by what the figure calls them."""
+
+
+def draw_ratings(found: StudyAnalysis, rating: str, scale: tuple[float, float]) -> Any:
+    """Draw mean ratings by button, marks of Holm's correction above."""
+    answers = found.screening.answers
+    shown = _shown_stimuli(found)
+    columns = answers.ratings[rating][:, [answers.stimuli.index(name) for name in shown]]
+    means = people_means(answers, columns)
+    spreads = [[spread_of(means[:, i, j]) for j in range(len(shown))] for i in range(len(found.buttons))]
+    marks = {one.button: stars(one.p_holm) for one in found.tests if one.rating == rating and one.test.n > 1}
+    if found.rated:
+        marks = {}
+    bars = RatingBars(
+        found.buttons,
+        shown,
+        means,
+        np.array([[one.low for one in row] for row in spreads]),
+        np.array([[one.high for one in row] for row in spreads]),
+        scale,
+        tuple(marks.get(name, "") for name in found.buttons) if marks else (),
+    )
+    return plot_rating_bars(bars, rating, found.simulated)
+
+
+def _shown_stimuli(found: StudyAnalysis) -> tuple[str, ...]:
+    if found.claim is None or found.kind == "mushra":
+        return found.stimuli
+    return found.claim.claim.less, found.claim.claim.more
+
+
+def scale_of(answers: Answers, rating: str, points: int | None) -> tuple[float, float]:
+    """Return the ends of a rating's axis: the scale's, or, where none is known, what holds every answer."""
+    if points:
+        return (0.0, 100.0) if points == 101 else (1.0, float(points))
+    values = answers.ratings[rating]
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if low >= 1 and high <= 9:
+        return 1.0, max(7.0, math.ceil(high))
+    if low >= 0 and high <= 100:
+        return 0.0, 100.0 if high > 10 else math.ceil(high) or 1.0
+    return math.floor(low), math.ceil(high)
+
+
+def draw_choices(found: StudyAnalysis) -> Any:
+    """Draw what was chosen, all buttons and each."""
+    return plot_choices(name_rows(found), found.simulated)
+
+
+def draw_distances(found: StudyAnalysis) -> Any:
+    """Draw d' by button, all buttons as a diamond."""
+    rows = [
+        ForestRow(button_name(one), one.d[0].d, one.d[0].low, one.d[0].high, not one.button)
+        for one in name_rows(found)
+    ]
+    return plot_forest(rows, "d′ (standard deviations)", "distance felt", simulated=found.simulated)
+
+
+def draw_people(found: StudyAnalysis) -> Any:
+    """Draw every person's share, and that of all."""
+    rows = [
+        ForestRow(one.person, 100 * one.share, math.nan, math.nan)
+        for one in found.people
+        if not one.reason and not math.isnan(one.share)
+    ]
+    whole = found.preference
+    assert whole is not None
+    middle = ForestRow("all people", 100 * whole.split, math.nan, math.nan, True)
+    axis = f"answers for {whole.more}, ties as halves (%)"
+    return plot_forest([*rows, middle], axis, "person by person", 50.0, found.simulated)
+
+
+def draw_tracks(found: StudyAnalysis) -> Any:
+    """Draw the first staircases."""
+    return plot_tracks(found.thresholds[:MOST_TRACKS], found.simulated, len(found.buttons) > 1)
+
+
+def draw_thresholds(found: StudyAnalysis) -> Any:
+    """Draw every threshold with its interval, and the mean over people."""
+    several = len(found.buttons) > 1
+    rows = [
+        ForestRow(
+            _staircase_name(one, several),
+            100 * one.threshold.value, _percent(one.threshold.low), _percent(one.threshold.high),
+        )
+        for one in found.thresholds
+    ]  # fmt: skip
+    if found.threshold is not None:
+        mean = found.threshold
+        rows.append(ForestRow("all people", 100 * mean.mean, 100 * mean.low, 100 * mean.high, True))
+    return plot_forest(rows, "force added that is discriminated (%)", "thresholds", None, found.simulated)
+
+
+def _percent(value: float | None) -> float:
+    return math.nan if value is None else 100 * value
+
+
+def draw_timing(found: TimingResult, simulated: bool) -> Any:
+    """Draw mean scores by level."""
+    panels = [
+        ScoreBars(level, found.buttons, found.scores[:, :, i], _sd(found.scores[:, :, i]))
+        for i, level in enumerate(found.levels)
+    ]
+    return plot_score_bars(panels, found.measure_text, simulated=simulated)
+
+
+def _sd(scores: FloatArray) -> FloatArray:
+    return scores.std(axis=0, ddof=1) if len(scores) > 1 else np.zeros(scores.shape[1])
+
+
+def draw_multiverse(found: Multiverse, registered: bool, claim: str, simulated: bool) -> Any:
+    """Draw the specification curve, the registered specification marked."""
+    marked = "as registered" if registered else "main analysis (not registered)"
+    return plot_specifications(found, f"{claim} (%)", marked, simulated)
+
+
+@style.in_house_style
+def plot_tracks(tracks: Sequence[ThresholdResult], simulated: bool = False, by_button: bool = False) -> Any:
+    """Draw every staircase as a small panel: filled where the answer was right, open where it was wrong.
+
+    The dashed line is the threshold. All share one logarithmic scale. by_button : name the button too.
+    Returns the array of axes.
+    """
+    if not tracks:
+        raise ModelError("a figure of staircases needs at least one")
+    columns = min(3, len(tracks))
+    rows = -(-len(tracks) // columns)
+    fig = style.new_figure(max(6.4, 3.1 * columns), 0.6 + 2.2 * rows)
+    axes = fig.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for ax, track in zip(axes.flat, tracks, strict=False):
+        _draw_track(ax, track)
+        style.set_titles(ax, style.name_text(_staircase_name(track, by_button)), False)
+    say_proxy(axes[0, 0], simulated)
+    for ax in axes.flat[len(tracks) :]:
+        ax.axis("off")
+    axes[0, 0].set_yscale("log")
+    _label_ratios(axes[0, 0], np.concatenate([one.ratios for one in tracks]))
+    fig.supxlabel("trial (count)", fontsize=10)
+    fig.supylabel("force added (%)", fontsize=10)
+    return axes
+
+
+def _staircase_name(one: ThresholdResult, by_button: bool) -> str:
+    return f"{one.person}, {one.button}" if by_button else one.person
+
+
+def _draw_track(ax: Axes, track: ThresholdResult) -> None:
+    trials = np.arange(1, track.ratios.size + 1)
+    right = track.correct == 1
+    ax.plot(trials, 100 * track.ratios, color=PALE, linewidth=1.2, zorder=1.0)
+    ax.plot(trials[right], 100 * track.ratios[right], "o", color=style.PALETTE[0], markersize=3.5)
+    wrong: Any = {"markerfacecolor": "white", "markersize": 4.0, "color": style.PALETTE[1]}
+    ax.plot(trials[~right], 100 * track.ratios[~right], "o", **wrong)
+    if np.isfinite(track.threshold.value):
+        ax.axhline(100 * track.threshold.value, color=style.INK, linestyle="--", linewidth=1.0)
+
+
+def _label_ratios(ax: Axes, ratios: FloatArray) -> None:
+    from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+    found = 100 * ratios[np.isfinite(ratios) & (ratios > 0)]
+    low, high = (found.min() / 1.3, found.max() * 1.3) if found.size else (1.0, 100.0)
+    steps = 2.0 ** np.arange(np.floor(np.log2(low)), np.ceil(np.log2(high)) + 1)
+    ax.set_ylim(low, high)
+    ax.yaxis.set_major_locator(FixedLocator([one for one in steps if low <= one <= high]))
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+    ax.yaxis.set_minor_locator(NullLocator())
+
+
+@style.in_house_style
+def plot_specifications(found: Multiverse, axis: str, marked: str, simulated: bool = False) -> Any:
+    """Draw the share of every specification above and, below each, what was chosen for it.
+
+    axis : name of the share. marked : what the registered specification is called. Returns both axes.
+    """
+    choices = {name: [getattr(one, field) for one in found.specifications] for name, field in CHOICES.items()}
+    rows = len(choices) + sum(len(set(values)) for values in choices.values())
+    fig = style.new_figure(8.6, 3.0 + 0.23 * rows)
+    top, below = fig.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": [2.6, 0.23 * rows + 0.1]})
+    _draw_shares(top, found, marked)
+    top.set_ylabel(axis)
+    style.set_titles(top, f"{len(found.specifications)} specifications of the main claim", False)
+    say_proxy(top, simulated)
+    _draw_specifications(below, choices, found.specifications.index(found.registered))
+    fig.legend(loc="outside lower center", ncols=3)
+    return np.array([top, below])
+
+
+def _draw_shares(ax: Axes, found: Multiverse, marked: str) -> None:
+    places = np.arange(1, len(found.specifications) + 1)
+    share, low, high = (
+        100 * np.array([getattr(one, field) for one in found.specifications])
+        for field in ("share", "low", "high")
+    )
+    significant = np.array([one.p < found.alpha for one in found.specifications])
+    ax.axhline(50.0, color=style.QUIET, linestyle=":", linewidth=1.2)
+    for yes, colour, label in (
+        (True, style.PALETTE[0], "significant"),
+        (False, style.QUIET, "not significant"),
+    ):
+        some = significant == yes
+        if some.any():
+            ax.vlines(places[some], low[some], high[some], color=colour, linewidth=1.2, alpha=0.5)
+            ax.plot(places[some], share[some], "o", color=colour, markersize=3.6, label=label)
+    at = found.specifications.index(found.registered)
+    look: Any = {"color": style.PALETTE[1], "markersize": 9.0, "zorder": 4.0, "label": marked}
+    ax.plot(places[at : at + 1], share[at : at + 1], "D", **look)
+    ax.margins(x=0.02)
+
+
+def _draw_specifications(ax: Axes, choices: Mapping[str, Sequence[str]], registered: int) -> None:
+    ticks, labels, place = [], [], 0
+    for name, values in choices.items():
+        ticks.append(place)
+        labels.append(name)
+        for value in dict.fromkeys(values):
+            place += 1
+            some = 1 + np.flatnonzero(np.array(values) == value)
+            ax.plot(some, np.full(some.size, place), "|", color=style.INK, markersize=7.0)
+            ticks.append(place)
+            labels.append(style.name_text(value))
+        place += 1
+    ax.axvline(registered + 1, color=style.PALETTE[1], linewidth=1.0, alpha=0.6, zorder=0.5)
+    ax.set_ylim(place - 0.3, -0.7)
+    ax.set_yticks(ticks, labels, fontsize=8.5)
+    for label in ax.get_yticklabels():
+        label.set_fontweight("bold" if label.get_text() in choices else "normal")
+    ax.set_xlabel("specification (by rising estimate)")
+    ax.grid(visible=False)
+    ax.tick_params(axis="y", length=0)

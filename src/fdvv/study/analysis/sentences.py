@@ -1,0 +1,253 @@
+"""What an analysis found, in sentences: written from the numbers, whatever they are."""
+
+from __future__ import annotations
+
+import math
+
+from fdvv.report.prose import effect_text, listed, sphericity_text
+from fdvv.study.analysis.multiverse import Multiverse
+from fdvv.study.analysis.records import (
+    ButtonTest,
+    ChoiceResult,
+    ClaimResult,
+    RatedResult,
+    ScaleResult,
+    StudyAnalysis,
+    TimingResult,
+)
+from fdvv.study.analysis.words import (
+    distance_text,
+    exact_p,
+    fixed,
+    interval_of,
+    listing,
+    many,
+    people_text,
+    percent,
+    rule_text,
+    span,
+    spread_text,
+    test_text,
+    unbroken,
+)
+
+ALPHA = 0.05
+"""Level of everything but the main claim, which has its own."""
+
+HALF = 0.5
+
+
+def claim_sentence(found: ClaimResult) -> str:
+    """Return the main claim and what the answers say of it."""
+    claim, test = found.claim, found.test
+    stated = "stated before the first person" if found.registered else "not registered beforehand"
+    text = f"Main claim ({stated}): {_claimed(found)}."
+    if test.n < 2:
+        return f"{text} One person cannot support it or speak against it."
+    numbers = f"{test_text(test)}, {people_text(test.n)}, level {claim.alpha:g}"
+    if test.n == test.zeros:
+        return f"{text} The answers neither support it nor speak against it: nobody differs either way."
+    if found.supported:
+        return f"{text} The answers support it ({numbers})."
+    if found.opposed:
+        return f"{text} The answers say the opposite ({numbers})."
+    return f"{text} The answers do not settle it ({numbers}); that is no proof that there is no difference."
+
+
+def _claimed(found: ClaimResult) -> str:
+    claim = found.claim
+    if found.measure == "correct":
+        return "answers are right more often than by guessing"
+    if found.measure == "choice":
+        return f"{claim.more} is chosen more often than {claim.less}"
+    return f"{claim.more} is rated higher than {claim.less} in {found.measure}"
+
+
+def choice_sentence(one: ChoiceResult) -> str:
+    """Return what was chosen of all answers."""
+    n = one.share.n
+    text = (
+        f"Of {many(n, 'answer')}, {one.more_count} ({percent(one.share.share)}; {interval_of(one.interval)})"
+    )
+    if one.more == "right":
+        return f"{text} were right; guessing gives {percent(0.5, 0)}."
+    rest = [f"{one.less_count} chose {one.less}"]
+    rest += [f"{one.equal_count} said equal"] if one.equal_count else []
+    return f"{text} chose {one.more}, {listed(rest)}."
+
+
+def choice_asides(one: ChoiceResult) -> tuple[str, ...]:
+    """Return what depends on how answers and ties are counted."""
+    texts = []
+    if one.people_share is not None:
+        texts.append(f"Were all answers independent, the interval would be {_bounds(one)}.")
+    if one.dropped is not None:
+        texts.append(
+            f"With ties split the share is {percent(one.split)}, with ties dropped "
+            f"{percent(one.dropped.share)} of {many(one.dropped.n, 'answer')}."
+        )
+    if one.test is not None and one.more != "right":
+        counted = f"{people_text(one.sign.plus)} more often for {one.more}, {one.sign.minus} for {one.less}"
+        texts.append(f"Person by person: {counted}, {one.sign.zeros} even; {test_text(one.test)}.")
+    return tuple(texts)
+
+
+def _bounds(one: ChoiceResult) -> str:
+    return f"{fixed(100 * one.share.low, 1)} to {percent(one.share.high, 1)}"
+
+
+def button_sentence(one: ButtonTest) -> str:
+    """Return the ratings of one button as the paper does."""
+    numbers = f"({spread_text(one.more_spread)})", f"({spread_text(one.less_spread)})"
+    if one.test.n < 2:
+        return f"For {one.button}, the one person rated {one.more} {numbers[0]} and {one.less} {numbers[1]}."
+    who = people_text(one.test.n)
+    if one.test.n == one.test.zeros:
+        return f"For {one.button}, all {who} rated {one.more} {numbers[0]} and {one.less} alike."
+    significant = one.p_holm < ALPHA
+    how = "higher" if one.test.effect > 0 else "lower"
+    were = f"were significantly {how} than" if significant else "did not differ significantly from"
+    zeros = f", {one.test.zeros} of them without a difference" if one.test.zeros else ""
+    return (
+        f"For {one.button}, ratings of {one.more} {numbers[0]} {were} those of {one.less} {numbers[1]}, with "
+        f"{test_text(one.test)}; {who}{zeros}; with Holm's correction {unbroken(exact_p(one.p_holm))}."
+    )
+
+
+def ratings_sentence(tests: tuple[ButtonTest, ...]) -> str:
+    """Return for which buttons ratings differ, Holm's correction over all of them."""
+    if max(one.test.n for one in tests) < 2:
+        return "One person's ratings are below; nothing is tested."
+    yes = [one for one in tests if one.p_holm < ALPHA]
+    if not yes:
+        return (
+            f"For none of {many(len(tests), 'button')} do ratings differ significantly (Holm's correction)."
+        )
+    parts = []
+    for higher, word in ((True, "higher"), (False, "lower")):
+        names = [one.button for one in yes if (one.test.effect > 0) == higher]
+        every = "every button" if len(names) == len(tests) > 1 else listing(names)
+        parts += [f"{tests[0].more} is rated {word} than {tests[0].less} for {every}"] if names else []
+    rest = [one.button for one in tests if one not in yes]
+    tail = f"; for {listing(rest)} there is no significant difference" if rest else ""
+    return f"{' and '.join(parts)}{tail} (signed-rank tests of people's means, Holm's correction)."
+
+
+def scale_sentence(one: ScaleResult) -> str:
+    """Return the difference of ratings taken as ordered categories."""
+    model, effect = one.model, one.model.of(one.more)
+    if model.problem:
+        return f"Taken as ordered categories, ratings show no difference: {model.problem}."
+    text = (
+        f"Taken as ordered categories over all buttons (cumulative probit, {people_text(model.people)} with "
+        f"their own use of the scale and their own difference), the difference of {one.more} from {one.less} "
+        f"is {fixed(effect.value)} {span(effect.low, effect.high)} standard deviations of a feeling, "
+        f"z = {fixed(effect.z)}, {exact_p(effect.p)}; its SD between people is {fixed(model.person_sd[-1])}."
+    )
+    return unbroken(text)
+
+
+def smallest_sentence(tests: tuple[ButtonTest, ...]) -> str:
+    """Return where the difference is smallest and largest; nothing where it is the same."""
+    if len(tests) < 2 or all(one.test.zeros == one.test.n for one in tests):
+        return ""
+    by_size = sorted(tests, key=lambda one: abs(one.more_spread.mean - one.less_spread.mean))
+    sizes = [fixed(one.more_spread.mean - one.less_spread.mean) for one in (by_size[0], by_size[-1])]
+    if sizes[0] == sizes[1]:
+        return ""
+    return (
+        f"The smallest difference of means is that of {by_size[0].button} ({sizes[0]}), "
+        f"the largest that of {by_size[-1].button} ({sizes[1]})."
+    )
+
+
+def distance_sentences(one: ChoiceResult) -> tuple[str, ...]:
+    """Return how far apart the renderings feel, by each rule."""
+    what = "the renderings lie apart" if one.more == "right" else f"{one.more} lies above {one.less}"
+    texts = [f"{rule_text(d)}: {distance_text(d)}" for d in one.d]
+    return (
+        f"In standard deviations of a single feeling, {what} by: {'; '.join(texts)}. A d′ of 0 is no "
+        "difference, 1 is discriminated in 76 % of forced choices between two.",
+    )
+
+
+def name_rows(found: StudyAnalysis) -> tuple[ChoiceResult, ...]:
+    """Return the rows of a table of choices: all buttons, then each where there are several."""
+    rows = found.by_button if len(found.by_button) > 1 else ()
+    return (found.preference, *rows) if found.preference else ()
+
+
+def rated_sentence(one: RatedResult) -> str:
+    """Return what Friedman's test and the pairs say of all renderings."""
+    where = f"over all buttons, {one.rating}" if not one.button else f"{one.button}, {one.rating}"
+    means = [f"{name} {fixed(spread.mean, 1)}" for name, spread in one.spreads.items()]
+    text = f"Means, {where}: {', '.join(means)}."
+    if one.friedman is not None:
+        f = one.friedman
+        text += (
+            f" Friedman's test of {people_text(f.people)}: χ²({f.df}) = {fixed(f.chi2)}, "
+            f"{exact_p(f.p)}, W = {fixed(f.W)}."
+        )
+    alike = [f"{p.first} and {p.second}" for p in one.pairs if p.holm_p >= ALPHA]
+    if one.pairs and not alike:
+        return f"{text} All pairs differ significantly (Holm's correction)."
+    if not alike:
+        return text
+    if len(alike) == len(one.pairs) > 1:
+        return f"{text} No pair differs significantly (Holm's correction)."
+    return f"{text} No significant difference between {listing(alike)} (Holm's correction)."
+
+
+def threshold_sentences(found: StudyAnalysis) -> tuple[str, ...]:
+    """Return the threshold over people, and how many staircases have none."""
+    texts = []
+    one = found.threshold
+    without = sum(math.isnan(t.threshold.value) for t in found.thresholds)
+    if one is not None:
+        ends = f"{fixed(100 * one.low, 1)} to {percent(one.high, 1)}"
+        bounds = "" if math.isnan(one.low) else f"; 95 % interval {ends}"
+        texts.append(
+            f"Added force is discriminated from {percent(one.mean, 1)} on (geometric mean of "
+            f"{people_text(one.people)}{bounds}; median {percent(one.median, 1)})."
+        )
+    if without:
+        texts.append(f"{many(without, 'staircase')} reversed too seldom to give a threshold.")
+    return tuple(texts)
+
+
+def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:
+    """Return how far the main claim depends on how it is analysed."""
+    shares = [one.share for one in found.specifications]
+    main, count = found.registered, len(found.specifications)
+    ends = [percent(min(shares), 1), percent(max(shares), 1)]
+    ranges = f"is {ends[0]} in each" if ends[0] == ends[1] else f"ranges from {ends[0]} to {ends[1]}"
+    said = _agreement(found) if main.share != HALF else "the main analysis finds no difference"
+    return (
+        f"{many(count, 'specification')} of the main claim: the share for it {ranges}; {said}.",
+        "Specifications differ in who and what is left out, in the measure, in what is counted as one "
+        "(people, people and buttons, trials), in ties split or dropped, and in the test. Those that count "
+        "trials treat one person's answers as independent, which they are not; they are shown because they "
+        "are often used.",
+    )
+
+
+def _agreement(found: Multiverse) -> str:
+    main, count = found.registered, len(found.specifications)
+    every = "all" if found.agreeing == count else str(found.agreeing)
+    significant = "all" if found.significant == count else f"{found.significant} of them"
+    same = f"{every} agree in direction with the main analysis"
+    return f"{same} ({percent(main.share, 1)}, {exact_p(main.p)}), {significant} with p < {found.alpha:g}"
+
+
+def timing_sentences(found: TimingResult) -> tuple[str, ...]:
+    """Return every effect of the analysis of variance, significant or not, and sphericity."""
+    if found.anova is None:
+        return ()
+    texts = []
+    for effect in found.anova.effects:
+        what = "interaction" if "×" in effect.name else "main effect"
+        verdict = "is significant" if effect.corrected_p < ALPHA else "is not significant"
+        texts.append(f"The {what} of {effect.name} {verdict}, {effect_text(effect)}.")
+    text = f"{found.measure_text.capitalize()} of {people_text(found.anova.people)}: {' '.join(texts)}"
+    spheres = " ".join(filter(None, map(sphericity_text, found.anova.effects)))
+    return tuple(unbroken(one) for one in (text, spheres) if one)

@@ -1,0 +1,1 @@
+"""A study on disk: plan, hash-chained logs, sealed assignments, verification."""

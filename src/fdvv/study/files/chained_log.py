@@ -1,0 +1,283 @@
+"""Hash-chained event logs: a changed, cut, moved or added line is detected.
+
+An event log (see `fdvv.eventlog`). Its first record is ``{"begin": {"about": …, "salt": …, "marked": …}}``;
+every other one is ``{"entry": {"record": …, "chain": …, "mark": …}}``. chain is SHA-256 of the chain before
+and the record. mark, in a log with a key, is BLAKE2b of the chain under that key: such a line cannot be
+written without the key.
+
+Beside it lies the **head**, ``<name>.head``: the number of lines, and the last chain. A marked log writes it
+after each line, so that a killed process leaves at most one line more, which is verified by its mark. A log
+without marks writes it before each line too, with the chain that comes next: no other line may follow.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import json
+import secrets
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import InputError
+from fdvv.eventlog import Journal, JournalKind, line_of, read_records
+from fdvv.io.files import sync_folder, write_atomic
+
+REMEDY = "take the study's folder from a backup; fdvv study verify lists all that is wrong"
+KIND = JournalKind({"begin": Any, "entry": Any}, REMEDY)
+HEAD_SUFFIX = ".head"
+LINE_BEGINS = b'{"crc32": '
+AT_WORK = "another process is at work on it"
+PATIENCE_s = 10.0
+"""Wait for another process that writes the log."""
+
+
+class LogHead(Struct, frozen=True, forbid_unknown_fields=True):
+    """The end of a log; next is announced before the line is written, else empty."""
+
+    lines: int
+    chain: str
+    next: str = ""
+
+    @property
+    def text(self) -> str:
+        """The text as its file holds it."""
+        return json.dumps({"lines": self.lines, "chain": self.chain, "next": self.next}) + "\n"
+
+
+@dataclass(frozen=True)
+class ChainRead:
+    """Content of a log.
+
+    Attributes
+    ----------
+    about : what its first line says it belongs to. records : that were written, in order.
+    chains : of each line. end : the byte where it ends. problems : what is wrong with it, in words.
+    """
+
+    about: Mapping[str, Any]
+    records: tuple[dict[str, Any], ...]
+    chains: tuple[str, ...]
+    end: int
+    problems: tuple[str, ...]
+
+    @property
+    def chain(self) -> str:
+        """The chain of the last line; empty if there is none."""
+        return self.chains[-1] if self.chains else ""
+
+
+def head_path(path: Path) -> Path:
+    """Return the path of a log's head file."""
+    return path.with_suffix(HEAD_SUFFIX)
+
+
+def read_chained(path: Path, key: bytes = b"") -> ChainRead:
+    """Read a log as far as it is whole, with a list of what is wrong with it.
+
+    key : marks are verified with it; empty: they are not. A log that another process writes at the
+    moment is read again until its head no longer changes.
+    """
+    for _ in range(20):
+        before = bytes_of(head_path(path))
+        found = _read(path, key, before)
+        if bytes_of(head_path(path)) == before:
+            break
+    return found
+
+
+def _read(path: Path, key: bytes, head: bytes | None) -> ChainRead:
+    data = bytes_of(path)
+    if data is None:
+        return ChainRead({}, (), (), 0, ("is missing",))
+    reader = _Reader(key)
+    try:
+        for record, end in read_records(path, KIND):
+            # what another process has written since is read next time
+            if end > len(data) or not reader.take(record, data[reader.end : end], end):
+                break
+    except InputError as error:
+        reader.problems.append(f"{error.place}: {error.reason}")
+    return reader.compared_with(head, data[reader.end :])
+
+
+class _Reader:
+    """What was read so far."""
+
+    def __init__(self, key: bytes) -> None:
+        self.key, self.end, self.marked = key, 0, False
+        self.chains: list[str] = []
+        self.about: dict[str, Any] = {}
+        self.records: list[dict[str, Any]] = []
+        self.problems: list[str] = []
+
+    def take(self, line: dict[str, Any], text: bytes, end: int) -> bool:
+        """Take a line; return False where it does not follow the one before."""
+        number = len(self.chains) + 1
+        try:
+            whole = line_of(line) == text and (self._entry(line) if self.chains else self._begin(line))
+        except (KeyError, TypeError, ValueError, AttributeError):
+            whole = False
+        if whole:
+            self.end = end
+        else:
+            self.problems.append(f"line {number} was changed, moved or added")
+        return whole
+
+    def _begin(self, line: dict[str, Any]) -> bool:
+        begin = line["begin"]
+        if set(begin) != {"about", "salt", "marked"}:
+            return False
+        self.about, self.marked = dict(begin["about"]), begin["marked"]
+        self.chains.append(first_chain(line))
+        return True
+
+    def _entry(self, line: dict[str, Any]) -> bool:
+        entry = line["entry"]
+        chain = next_chain(self.chains[-1], entry["record"])
+        known = not self.key or hmac.compare_digest(entry["mark"], mark_of(chain, self.key))
+        fits = known and bool(entry["mark"]) == self.marked and set(entry) == {"record", "chain", "mark"}
+        if entry["chain"] != chain or not fits:
+            return False
+        self.chains.append(chain)
+        self.records.append(entry["record"])
+        return True
+
+    def compared_with(self, head_text: bytes | None, rest: bytes) -> ChainRead:
+        """Compare what was read with the head. rest : of the file, which is no line."""
+        head = _head(head_text)
+        if head is None:
+            self.problems.append("its head is missing or was changed")
+        elif not self.problems:
+            self.problems += self._beside(head, rest)
+        return ChainRead(self.about, tuple(self.records), tuple(self.chains), self.end, tuple(self.problems))
+
+    def _beside(self, head: LogHead, rest: bytes) -> list[str]:
+        lines, last = len(self.chains), self.chains[-1] if self.chains else ""
+        one_more = lines == head.lines + 1 > 1 and self.chains[-2] == head.chain
+        one_more = one_more and (self.marked or last == head.next)
+        if not one_more and (lines, last) != (head.lines, head.chain):
+            return [f"has {lines} lines, {head.lines} were written"]
+        # a line may have been cut short when its process was killed; nothing else may follow
+        torn = not one_more and (self.marked or bool(head.next)) and rest[:10] == LINE_BEGINS[: len(rest)]
+        return ["something was added to its end"] if rest and not (torn and b"\n" not in rest) else []
+
+
+def _head(text: bytes | None) -> LogHead | None:
+    try:
+        head = msgspec.json.decode(text or b"", type=LogHead)
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return None
+    return head if head.text.encode() == text else None
+
+
+def bytes_of(path: Path) -> bytes | None:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        return None
+
+
+def first_chain(begin: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(begin).encode()).hexdigest()
+
+
+def next_chain(chain: str, record: Any) -> str:
+    return hashlib.sha256(f"{chain} {json.dumps(record)}".encode()).hexdigest()
+
+
+def mark_of(chain: str, key: bytes) -> str:
+    return hashlib.blake2b(chain.encode(), key=key, digest_size=32).hexdigest() if key else ""
+
+
+class ChainedLog:
+    """A chained log opened to append, by this process alone; a context manager.
+
+    Parameters
+    ----------
+    path : of the journal, which was made by `create`.
+    key : lines are marked with it; empty: they are not.
+
+    Attributes
+    ----------
+    about : what the log belongs to. records : so far.
+
+    InputError where the log was changed, or is at work elsewhere. OSError.
+    """
+
+    def __init__(self, path: Path, key: bytes = b"") -> None:
+        self.path, self._key = Path(path), key
+        if not self.path.exists():
+            raise InputError(self.path, "whole file", "is missing", REMEDY)
+        busy = InputError(self.path, "whole file", AT_WORK, "close the other one")
+        self._journal = Journal(self.path, busy)
+        try:
+            found = read_chained(self.path, key)
+            for problem in found.problems:
+                raise InputError(self.path, "whole file", problem, REMEDY)
+            self._journal.cut(found.end)
+            self.about, self.records = found.about, list(found.records)
+            self._head = LogHead(len(self.records) + 1, found.chain)
+            if bytes_of(head_path(self.path)) != self._head.text.encode():
+                self._keep_head(self._head)
+        except BaseException:
+            self._journal.close()
+            raise
+
+    @classmethod
+    def create(cls, path: Path, about: Mapping[str, Any], key: bytes = b"") -> ChainedLog:
+        """Create a log where there is none. about : what it belongs to: no other can take its place."""
+        path = Path(path)
+        begin = {"begin": {"about": dict(about), "salt": secrets.token_hex(16), "marked": bool(key)}}
+        head = LogHead(1, first_chain(begin))
+        write_atomic(path, line_of(begin))
+        write_atomic(head_path(path), head.text)
+        sync_folder(path.parent)
+        return cls(path, key)
+
+    def write(self, record: Mapping[str, Any]) -> None:
+        """Append a record and force it to the disk. OSError; ValueError where JSON cannot hold it."""
+        plain = json.loads(json.dumps(dict(record), allow_nan=False))
+        chain = next_chain(self._head.chain, plain)
+        line = {"entry": {"record": plain, "chain": chain, "mark": mark_of(chain, self._key)}}
+        if not self._key:
+            self._keep_head(LogHead(self._head.lines, self._head.chain, chain))
+            sync_folder(self.path.parent)
+        self._journal.write(line)
+        self._head = LogHead(self._head.lines + 1, chain)
+        self._keep_head(self._head)
+        self.records.append(plain)
+
+    def _keep_head(self, head: LogHead) -> None:
+        write_atomic(head_path(self.path), head.text)
+
+    def close(self) -> None:
+        """Close the file; idempotent."""
+        self._journal.close()
+
+    def __enter__(self) -> ChainedLog:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def open_when_free(path: Path, patience_s: float = PATIENCE_s) -> ChainedLog:
+    """Open a log without marks; wait while another process writes it. InputError, OSError."""
+    until = time.monotonic() + patience_s
+    while True:
+        try:
+            return ChainedLog(path)
+        except InputError as error:
+            if AT_WORK not in error.reason or time.monotonic() > until:
+                raise
+        time.sleep(0.02)

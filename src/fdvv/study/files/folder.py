@@ -1,0 +1,229 @@
+"""A study in a folder: what its files say, and whether they are as they were written. Read only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from fdvv.errors import InputError
+from fdvv.study.files import layout
+from fdvv.study.files.chained_log import ChainRead, read_chained
+from fdvv.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
+from fdvv.study.files.people import Person, no_person, open_schedule, paused_of, people_of
+from fdvv.study.files.seal import KeyHolder, SealingKey
+from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
+
+
+class StudyFolder:
+    """A study that lies in a folder, to be read; no file is held open between two calls.
+
+    Attributes
+    ----------
+    folder : of the study.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = Path(folder)
+        self._plan: tuple[bytes, StudyPlan] | None = None
+
+    @property
+    def plan(self) -> StudyPlan:
+        """The plan. InputError where it cannot be read, or is not what was frozen."""
+        path = self.folder / STUDY_FILE
+        data = layout.content(path)
+        frozen = self.frozen
+        if frozen and frozen.files.get(STUDY_FILE) != layout.digest(data):
+            raise InputError(path, "whole file", "was changed since the study was frozen", layout.REMEDY)
+        if self._plan is None or self._plan[0] != data:
+            self._plan = data, read_plan_text(data.decode(errors="replace"), path)
+        return self._plan[1]
+
+    @property
+    def frozen(self) -> Frozen | None:
+        """What is frozen; None before. InputError where it cannot be read."""
+        found = layout.read_frozen(self.folder)
+        return found[0] if found else None
+
+    @property
+    def fingerprint(self) -> str:
+        """What people write into their preregistration; empty before the study is frozen."""
+        found = layout.read_frozen(self.folder)
+        return layout.fingerprint_of(found[1]) if found else ""
+
+    @property
+    def seal(self) -> SealingKey:
+        """The public half of the keys. InputError where the study is not frozen."""
+        return SealingKey.of(self.require_frozen().seal, self.folder / FROZEN_FILE)
+
+    def require_frozen(self) -> Frozen:
+        """Return what is frozen. InputError of a study that is not."""
+        frozen = self.frozen
+        if frozen is None:
+            raise InputError(self.folder, "study", "is not frozen", "freeze it: fdvv study freeze FOLDER")
+        return frozen
+
+    def history(self) -> tuple[dict[str, Any], ...]:
+        """Return the records of the study's log, each an object with one key; empty before it is frozen."""
+        return read_chained(self.folder / LOG_FILE).records
+
+    def people(self) -> tuple[Person, ...]:
+        """Return everybody who was enrolled, in that order."""
+        return people_of(self.history())
+
+    @property
+    def simulated(self) -> bool:
+        """Whether its people are simulated: a study has these, or people, and never both."""
+        return any(person.simulated for person in self.people())
+
+    @property
+    def paused(self) -> frozenset[str]:
+        """The people who wait; an empty name among them: everybody."""
+        return paused_of(self.history())
+
+    def person(self, name: str) -> Person:
+        """Return a person by name. InputError."""
+        people = self.people()
+        found = next((person for person in people if person.name == name), None)
+        if found is None:
+            raise no_person(name, people)
+        return found
+
+    def person_folder(self, name: str) -> Path:
+        """Return the folder of a person's files. InputError on a name that nobody has."""
+        return self.folder / PEOPLE / self.person(name).name
+
+    @property
+    def record_end(self) -> str:
+        """Fingerprint of the end of the study's log; empty before it is frozen.
+
+        Written down, it can be compared with a later log: all that was recorded until then is still in it.
+        """
+        chain = read_chained(self.folder / LOG_FILE).chain
+        return layout.fingerprint_of(chain) if chain else ""
+
+    def verify(
+        self, fingerprint: str = "", passphrase: str = "", keeper: Path | None = None, record: str = ""
+    ) -> tuple[str, ...]:
+        """Return all that is not as it was written, a line each; empty: the study is whole.
+
+        fingerprint : written down when the study was frozen. passphrase, keeper : with the key holder's key
+        the marks of people's lines are verified too. record : a `record_end` that was written down.
+        """
+        opened = self.key_holder(passphrase, keeper) if passphrase else None
+        return study_problems(self.folder, fingerprint, opened, record=record)
+
+    def require_whole(self, person: str = "") -> None:
+        """Raise InputError if the study is not as it was frozen. person : whose files are verified too."""
+        for problem in study_problems(self.folder, people=(person,) if person else ()):
+            raise InputError(self.folder, "study", problem, layout.REMEDY)
+
+    def key_holder(self, passphrase: str, path: Path | None = None) -> KeyHolder:
+        """Open keeper.json. path : where it is, if it was moved. InputError on a wrong passphrase."""
+        path = path or self.folder / KEEPER_FILE
+        holder = KeyHolder.open(layout.content(path), passphrase, path)
+        if holder.seal != self.seal:
+            reason = "is the keeper's file of another study"
+            raise InputError(path, "$.seal", reason, "name that of this study")
+        return holder
+
+
+def study_problems(
+    folder: Path,
+    fingerprint: str = "",
+    holder: KeyHolder | None = None,
+    people: Sequence[str] | None = None,
+    record: str = "",
+) -> tuple[str, ...]:
+    """Return all that is not as it was written, a line each.
+
+    people : whose files are verified; None: everybody's. fingerprint, record : that were written down.
+    """
+    try:
+        found = layout.read_frozen(folder)
+    except InputError as error:
+        return (f"{FROZEN_FILE}: {error.reason}",)
+    if found is None:
+        return ("is not frozen",)
+    frozen, sha256 = found
+    log = read_chained(folder / LOG_FILE)
+    problems = [*_frozen(folder, frozen, sha256, fingerprint), *_log(log, sha256, record)]
+    try:
+        enrolled = people_of(log.records) if not log.problems else ()
+    except InputError as error:
+        return (*problems, f"{LOG_FILE}: {error.place} {error.reason}")
+    for person in enrolled:
+        if people is None or person.name in people:
+            where = f"{PEOPLE}/{person.name}"
+            problems += [where + problem for problem in _person(folder, person, sha256, holder, log)]
+    return tuple(problems)
+
+
+def _frozen(folder: Path, frozen: Frozen, sha256: str, fingerprint: str) -> Iterator[str]:
+    found = layout.fingerprint_of(sha256)
+    if fingerprint and plain(fingerprint) != plain(found):
+        yield f"{FROZEN_FILE}: its fingerprint is {found}, not the one that was written down"
+    if layout.digest(frozen.text) != sha256:
+        yield f"{FROZEN_FILE}: was changed since the study was frozen"
+    for name, wanted in frozen.files.items():
+        path = folder / name
+        if not path.is_file():
+            if name != KEEPER_FILE:  # which may lie elsewhere
+                yield f"{name}: is missing"
+        elif layout.digest(path.read_bytes()) != wanted:
+            yield f"{name}: was changed since the study was frozen"
+    for name, wanted in frozen.builtins.items():
+        if layout.builtin_digest(name) != wanted:
+            yield f"built-in button {name}: is not the one of fdvv {frozen.fdvv}, which froze the study"
+
+
+def _log(log: ChainRead, sha256: str, record: str) -> Iterator[str]:
+    for problem in log.problems:
+        yield f"{LOG_FILE}: {problem}"
+    if record and plain(record) not in {plain(layout.fingerprint_of(chain)) for chain in log.chains}:
+        yield f"{LOG_FILE}: never ended in {record}, which was written down"
+    if not log.problems:
+        first = log.records[0].get("frozen", {}) if log.records else {}
+        if log.about.get("study") != sha256 or first.get("sha256") != sha256:
+            yield f"{FROZEN_FILE}: is not the one that {LOG_FILE} began with"
+
+
+def _person(
+    folder: Path, person: Person, sha256: str, holder: KeyHolder | None, log: ChainRead
+) -> Iterator[str]:
+    own = folder / PEOPLE / person.name
+    if person.state == "deleted":
+        if own.exists():
+            yield ": was deleted, and files are still there; withdraw again"
+        return
+    schedule = own / SCHEDULE_FILE
+    if not schedule.is_file() or layout.digest(schedule.read_bytes()) != person.schedule:
+        yield f"/{SCHEDULE_FILE}: is missing or was changed"
+        return
+    try:
+        key = bytes.fromhex(open_schedule(schedule, holder).key) if holder else b""
+    except InputError as error:
+        yield f"/{SCHEDULE_FILE}: {error.reason}"
+        return
+    for name in (layout.SESSION_FILE, layout.SEALED_FILE):
+        for problem in _person_log(own / name, key, person, sha256, log):
+            yield f"/{name}: {problem}"
+
+
+def _person_log(path: Path, key: bytes, person: Person, sha256: str, log: ChainRead) -> Iterator[str]:
+    found = read_chained(path, key)
+    if found.problems:
+        yield from found.problems
+        return
+    about = {"study": sha256, "person": person.name, "log": path.stem}
+    if any(found.about.get(name) != value for name, value in about.items()):
+        yield "belongs to another person or study"
+    ends = [r["finished"]["ends"] for r in log.records if r.get("finished", {}).get("person") == person.name]
+    if ends and ends[-1].get(path.name) != found.chain:
+        yield "is not as it was when the person was done"
+
+
+def plain(fingerprint: str) -> str:
+    """Return a fingerprint as typed by people in its plain form: lower case, no blanks, no hyphens."""
+    return "".join(fingerprint.lower().split()).replace("-", "")

@@ -1,0 +1,173 @@
+"""People of a study: their state and pauses in the study's log, and their locked schedules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import InputError
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.rendering.session import now
+from fdvv.study.files.chained_log import ChainedLog
+from fdvv.study.files.layout import LOG_FILE, REMEDY, content
+from fdvv.study.files.seal import CODE_COST, Cost, KeyHolder, SealingKey, lock_with_code, unlock_with_code
+from fdvv.study.plan.trial import Rendered, StudyTrial
+
+PersonState = Literal["enrolled", "finished", "withdrawn", "deleted"]
+SCHEDULE = Kind("fdvv-schedule", 1, "a locked schedule", REMEDY)
+STEP_bytes = 1024
+PAUSED, CONTINUED = "paused", "continued"
+EVERYBODY = ""
+"""Name in a pause of all."""
+
+
+class Person(Struct, frozen=True):
+    """A person who takes part, without anything secret.
+
+    Attributes
+    ----------
+    name : P01, P02, ... place : 0, 1, ...: which orders of items; the place of a person who
+        withdrew is given to the next one. simulated : it is a simulated participant.
+    schedule : SHA-256 of the locked schedule.
+    state : withdrawn: what was given until then is kept; deleted: it is not.
+    """
+
+    name: str
+    language: str
+    place: int
+    simulated: bool
+    when: str
+    schedule: str
+    state: PersonState = "enrolled"
+
+
+class Schedule(Struct, frozen=True, forbid_unknown_fields=True):
+    """All trials of a person. **Secret.**
+
+    Attributes
+    ----------
+    study : SHA-256 of frozen.json. key : hexadecimal, marks the lines of the person's logs.
+    """
+
+    study: str
+    person: str
+    key: str
+    trials: tuple[StudyTrial, ...]
+
+
+class SealedTrial(Struct, frozen=True, forbid_unknown_fields=True):
+    """What was rendered in a trial. ratio : of its staircase there."""
+
+    number: int
+    ratio: float
+    rendered: tuple[Rendered, ...]
+
+
+class LockedSchedule(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Content of schedule.json: the schedule locked for the key holder, and with the person's code."""
+
+    format: Literal["fdvv-schedule"] = "fdvv-schedule"
+    version: Literal[1] = 1
+    person: str
+    sealed: str
+    locked: str
+
+
+def people_of(records: Iterable[Mapping[str, Any]]) -> tuple[Person, ...]:
+    """Return the people in a study's log, in the order of their enrolment.
+
+    InputError on an unknown record.
+    """
+    found: dict[str, Person] = {}
+    for number, record in enumerate(records, 1):
+        try:
+            _take(record, found)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise InputError(LOG_FILE, f"record {number}", "is none of a study", REMEDY) from error
+    return tuple(found.values())
+
+
+def _take(record: Mapping[str, Any], found: dict[str, Person]) -> None:
+    ((event, body),) = record.items()
+    if event == "enrolled":
+        fields = {"name": body["person"], **{k: v for k, v in body.items() if k != "person"}}
+        found[body["person"]] = msgspec.convert(fields, Person)
+    elif event in ("finished", "withdrawn"):
+        person = found[body["person"]]
+        state = "deleted" if body.get("deleted") else event
+        found[person.name] = msgspec.structs.replace(person, state=state)
+
+
+def free_place(people: Iterable[Person]) -> int:
+    """Return the first place that is not taken by a person who is still in the study."""
+    taken = {person.place for person in people if person.state in ("enrolled", "finished")}
+    return next(place for place in range(len(taken) + 1) if place not in taken)
+
+
+def lock_schedule(schedule: Schedule, seal: SealingKey, code: str, cost: Cost = CODE_COST) -> str:
+    """Return the text of schedule.json: the schedule locked for the key holder and with the person's code."""
+    data, room = msgspec.json.encode(schedule), room_bytes(schedule)
+    locked = LockedSchedule(
+        person=schedule.person, sealed=seal.lock(data, room), locked=lock_with_code(data, code, room, cost)
+    )
+    return pretty(msgspec.to_builtins(locked)) + "\n"
+
+
+def room_bytes(schedule: Schedule) -> int:
+    """Return a length that any schedule of the plan fits in: every label may hide the longest name.
+
+    So it depends on what everybody knows, and not on what was drawn.
+    """
+    names = {name for trial in schedule.trials for name in trial.labels.values()}
+    longest = max(names, key=lambda name: len(msgspec.json.encode(name)), default="")
+    public = msgspec.structs.replace(
+        schedule,
+        trials=tuple(
+            msgspec.structs.replace(trial, labels=dict.fromkeys(trial.labels, longest), correct="A")
+            for trial in schedule.trials
+        ),
+    )
+    whole = len(msgspec.json.encode(public)) + 4
+    return whole + -whole % STEP_bytes
+
+
+def open_schedule(path: Path, key: str | KeyHolder) -> Schedule:
+    """Open a schedule with its person's code, or with the key holder's key. InputError on a wrong one."""
+    decode = msgspec.json.Decoder(LockedSchedule).decode
+    found = read_document(content(path), path, SCHEDULE, decode, lambda _: None)
+    if isinstance(key, str):
+        return msgspec.json.decode(unlock_with_code(found.locked, key, path), type=Schedule)
+    return msgspec.json.decode(key.unlock(found.sealed, path), type=Schedule)
+
+
+def no_person(name: str, people: Iterable[Person]) -> InputError:
+    """Return the error that lists who is in the study."""
+    known = ", ".join(person.name for person in people) or "nobody yet"
+    return InputError(name, "person", "is not in this study", f"name one of: {known}")
+
+
+def paused_of(records: Iterable[Mapping[str, Any]]) -> frozenset[str]:
+    """Return the people whom a study's log has paused; `EVERYBODY` among them for all."""
+    found = set[str]()
+    for record in records:
+        for event, change in ((PAUSED, found.add), (CONTINUED, found.discard)):
+            if event in record:
+                change(record[event].get("person", EVERYBODY))
+    return frozenset(found)
+
+
+def pause_person(log: ChainedLog, person: str, on: bool) -> None:
+    """Pause or continue a person; a state that holds already is not logged again. log : of the study, open.
+
+    person : `EVERYBODY` for all. InputError on a person who is not in the study.
+    """
+    people = people_of(log.records)
+    if person != EVERYBODY and all(one.name != person for one in people):
+        raise no_person(person, people)
+    if on != (person in paused_of(log.records)):
+        about = {"person": person} if person != EVERYBODY else {}
+        log.write({PAUSED if on else CONTINUED: {"when": now(), **about}})

@@ -1,0 +1,1 @@
+"""Plans, schedules, staircases and simulated participants, as plain records."""

@@ -1,0 +1,258 @@
+"""What happens in a person's session, event by event.
+
+Events are what the session's log holds: plain, answers by label only. With the plan they determine the state
+of the session; they do not reveal what a label hid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import InputError, ModelError
+from fdvv.study.plan.plan import Page, Question, Rating, StudyPlan
+from fdvv.study.plan.plan_words import asks_choice, offers_equal
+from fdvv.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
+
+Value = str | float | None
+"""Of a question: the text of a choice in the study's first language, a number, free text, or nothing."""
+
+LONGEST_TEXT = 2000
+CHOOSE = "answer it again"
+
+
+class TrialFace(Struct, frozen=True, forbid_unknown_fields=True):
+    """All of a trial that may be seen.
+
+    Attributes
+    ----------
+    number, item, round, practice : see StudyTrial. labels : between which a person switches, "X" first.
+    """
+
+    number: int
+    item: str
+    round: int
+    labels: tuple[str, ...]
+    practice: bool = False
+
+
+class _Event(Struct, frozen=True, forbid_unknown_fields=True):
+    """What all events have. at_s : wall time."""
+
+    at_s: float
+
+
+class SessionStarted(_Event, frozen=True):
+    """The session started, with its trials. simulated : the participant is simulated."""
+
+    person: str
+    language: str
+    trials: tuple[TrialFace, ...]
+    simulated: bool = False
+
+
+class PageAnswered(_Event, frozen=True):
+    """A page was read and its questions were answered. agreed : False on a consent page ends it all."""
+
+    name: str
+    values: dict[str, Value] = {}
+    agreed: bool = True
+
+
+class TrialShown(_Event, frozen=True):
+    """A trial was shown.
+
+    attempt : 1, and one more each time it had to be shown again. simulated : on a simulated rig.
+    """
+
+    number: int
+    attempt: int
+    simulated: bool = False
+
+
+class TrialAnswered(_Event, frozen=True):
+    """A trial was answered, in that attempt; it is never shown again."""
+
+    number: int
+    attempt: int
+    answer: TrialAnswer
+
+
+class TrialInterrupted(_Event, frozen=True):
+    """The device went away in a trial, which is shown again. The reason could reveal a label, and is sealed.
+
+    felt : a label had been felt by then.
+    """
+
+    number: int
+    felt: bool = False
+
+
+class TrialSkipped(_Event, frozen=True):
+    """The device went away in a trial again and again: it is given up, and missing in the analysis."""
+
+    number: int
+
+
+class StaircaseConverged(_Event, frozen=True):
+    """The staircase of an item in a round ended: its other trials are passed over."""
+
+    item: str
+    round: int
+
+
+class BreakEnded(_Event, frozen=True):
+    """The person ended a break."""
+
+
+class SessionClosed(_Event, frozen=True):
+    """The session was closed in order; time until it is resumed is not work."""
+
+
+class SessionResumed(_Event, frozen=True):
+    """The session was opened again, with the person's code or by the key holder."""
+
+    by: Literal["code", "keeper"]
+
+
+class ParticipantWithdrew(_Event, frozen=True):
+    """The person left the study for good."""
+
+
+Event = (
+    SessionStarted
+    | PageAnswered
+    | TrialShown
+    | TrialAnswered
+    | TrialInterrupted
+    | TrialSkipped
+    | StaircaseConverged
+    | BreakEnded
+    | SessionClosed
+    | SessionResumed
+    | ParticipantWithdrew
+)
+"""What can happen in a session, as its journal keeps it."""
+
+EVENTS: dict[str, type[Event]] = {
+    "began": SessionStarted,
+    "page": PageAnswered,
+    "shown": TrialShown,
+    "answered": TrialAnswered,
+    "interrupted": TrialInterrupted,
+    "skipped": TrialSkipped,
+    "settled": StaircaseConverged,
+    "break_ended": BreakEnded,
+    "left": SessionClosed,
+    "resumed": SessionResumed,
+    "withdrawn": ParticipantWithdrew,
+}
+"""Events by the key of their record."""
+
+WORD = {kind: word for word, kind in EVENTS.items()}
+
+
+def record_of(event: Event) -> dict[str, Any]:
+    """Return the journal's record of an event: an object with one key."""
+    return {WORD[type(event)]: msgspec.to_builtins(event)}
+
+
+def event_of(record: dict[str, Any]) -> Event:
+    """Read a journal's record. ModelError where it is none."""
+    ((word, body),) = record.items()
+    try:
+        return msgspec.convert(body, EVENTS[word])
+    except (KeyError, msgspec.ValidationError) as error:
+        raise ModelError(f"no event of a session: {error}") from error
+
+
+def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:
+    """Return what may be seen of a trial."""
+    labels = set(trial.labels) | ({"X"} if _names_x(plan, trial.item) else set())
+    ordered = tuple(sorted(labels, key=lambda label: (label != "X", label)))
+    return TrialFace(trial.number, trial.item, trial.round, ordered, trial.practice)
+
+
+def _names_x(plan: StudyPlan, item: str) -> bool:
+    return plan.kind == "mushra" or any(one.name == item and one.reference for one in plan.items)
+
+
+def choices_of(plan: StudyPlan) -> tuple[str, ...]:
+    """Return the answers that a trial offers; none where only ratings are asked."""
+    if not asks_choice(plan):
+        return ()
+    return ("A", EQUAL, "B") if offers_equal(plan) else ("A", "B")
+
+
+def rated_labels(trial: TrialFace) -> tuple[str, ...]:
+    """Return the labels that are rated: all that hide something."""
+    return tuple(label for label in trial.labels if label != "X")
+
+
+def check_answer(plan: StudyPlan, trial: TrialFace, answer: TrialAnswer) -> None:
+    """See that an answer is one that the trial asks for. InputError."""
+    place = f"trial {trial.number}"
+    choices = choices_of(plan)
+    if answer.choice not in (choices or ("",)):
+        offered = ", ".join(choices) or "ratings only"
+        raise InputError("answer", place, f"{answer.choice!r:.40} is not offered ({offered})", CHOOSE)
+    if set(answer.ratings) != {rating.name for rating in plan.ratings}:
+        raise InputError("answer", place, "not every scale was rated, or one that is not asked", CHOOSE)
+    for rating in plan.ratings:
+        _check_rating(rating, answer.ratings[rating.name], rated_labels(trial), place)
+    felt = {label for _, label in answer.switches} | set(answer.presses)
+    if not felt <= set(trial.labels):
+        raise InputError("answer", place, "tells of a label that the trial does not have", CHOOSE)
+
+
+def _check_rating(rating: Rating, given: Mapping[str, float], labels: tuple[str, ...], place: str) -> None:
+    low, high = (0, 100) if rating.points == 101 else (1, rating.points)
+    if set(given) != set(labels):
+        raise InputError("answer", place, f"{rating.name} is not rated for {', '.join(labels)}", CHOOSE)
+    for label, points in given.items():
+        if not (low <= points <= high and points == round(points)):
+            reason = f"{rating.name} of {label} is {points:g}, not a whole number from {low} to {high}"
+            raise InputError("answer", place, reason, CHOOSE)
+
+
+def checked_page(plan: StudyPlan, page: Page, values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return a page's answers as they are kept; a choice in the study's first language. InputError."""
+    asked = {question.name: question for question in page.questions}
+    for name in set(values) - set(asked):
+        raise InputError("answer", f"page {page.name}", f"does not ask {name!r:.60}", CHOOSE)
+    return {name: _kept(plan, page, one, values.get(name)) for name, one in asked.items()}
+
+
+def _kept(plan: StudyPlan, page: Page, question: Question, value: Value) -> Value:
+    place = f"page {page.name}, {question.name}"
+    if value is None or value == "":
+        if question.required:
+            raise InputError("answer", place, "is not answered", CHOOSE)
+        return None
+    if question.choices:
+        return _choice(plan, question, value, place)
+    if question.low is not None or question.high is not None:
+        return _number(question, value, place)
+    if not isinstance(value, str) or len(value) > LONGEST_TEXT:
+        raise InputError("answer", place, f"is not a text of at most {LONGEST_TEXT} letters", CHOOSE)
+    return value
+
+
+def _choice(plan: StudyPlan, question: Question, value: Value, place: str) -> str:
+    first = question.choices.get(plan.languages[0]) or next(iter(question.choices.values()))
+    for choices in question.choices.values():
+        if value in choices:
+            return first[choices.index(str(value))]
+    raise InputError("answer", place, f"{value!r:.60} is none of {', '.join(first)}", CHOOSE)
+
+
+def _number(question: Question, value: Value, place: str) -> float:
+    low = -math.inf if question.low is None else question.low
+    high = math.inf if question.high is None else question.high
+    if isinstance(value, str) or value is None or not (low <= value <= high and math.isfinite(value)):
+        raise InputError("answer", place, f"{value!r:.40} is no number from {low:g} to {high:g}", CHOOSE)
+    return float(value)

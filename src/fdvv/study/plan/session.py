@@ -1,0 +1,278 @@
+"""The state of a session after its events, and the step that is due."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from msgspec import Struct
+
+from fdvv.errors import ModelError
+from fdvv.study.plan import events
+from fdvv.study.plan.events import Event, SessionStarted, TrialFace
+from fdvv.study.plan.plan import StudyPlan
+
+MOST_FALLS = 3
+"""Losses of the device while a trial was felt, after which the trial is given up."""
+
+StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
+"""What a step of a session can be."""
+
+ENDS: tuple[StepKind, ...] = ("done", "declined", "withdrawn")
+"""Steps after which nothing comes."""
+
+
+@dataclass(frozen=True)
+class SessionState:
+    """The state of a session.
+
+    Attributes
+    ----------
+    plan, started : of the session.
+    pages : that were answered, by name. answers : by the trial's number. attempts : how often each was
+        shown. open : the trial that is shown, or None.
+    converged : item and round of staircases that have ended.
+    work_since_s : since when the person works without a break. break_since_s : when a break began that has
+        not ended. left_s : when the session was closed. last_s : when anything happened last.
+    declined, withdrawn : it is over. interruptions, resumptions : how often.
+    falls : how often the device went away while a trial was felt, by number. skipped : trials given up for
+        that.
+    """
+
+    plan: StudyPlan
+    started: SessionStarted
+    pages: dict[str, events.PageAnswered] = field(default_factory=dict)
+    answers: dict[int, events.TrialAnswered] = field(default_factory=dict)
+    attempts: dict[int, int] = field(default_factory=dict)
+    open: int | None = None
+    converged: frozenset[tuple[str, int]] = frozenset()
+    work_since_s: float | None = None
+    break_since_s: float | None = None
+    left_s: float | None = None
+    last_s: float = 0.0
+    declined: bool = False
+    withdrawn: bool = False
+    interruptions: int = 0
+    resumptions: int = 0
+    falls: dict[int, int] = field(default_factory=dict)
+    skipped: frozenset[int] = frozenset()
+
+    @property
+    def over(self) -> bool:
+        """Whether the person declined or withdrew."""
+        return self.declined or self.withdrawn
+
+    @property
+    def next_trial(self) -> TrialFace | None:
+        """The first trial that is neither answered nor passed over."""
+        return next((trial for trial in self.started.trials if self._is_left(trial)), None)
+
+    @property
+    def trials_left(self) -> int:
+        """How many trials may still be shown."""
+        return sum(self._is_left(trial) for trial in self.started.trials)
+
+    def _is_left(self, trial: TrialFace) -> bool:
+        converged = not trial.practice and (trial.item, trial.round) in self.converged
+        return trial.number not in self.answers and trial.number not in self.skipped and not converged
+
+    def next_page(self, *whens: str) -> str | None:
+        """Return the name of the first page of these times that was not answered."""
+        pages = (page.name for when in whens for page in self.plan.pages if page.when == when)
+        return next((name for name in pages if name not in self.pages), None)
+
+    def after(self, event: Event) -> SessionState:
+        """Return the state after an event. ModelError where it cannot follow."""
+        if self.over:
+            raise ModelError(f"the session of {self.started.person} is over")
+        return replace(_AFTER[type(event)](self, event), last_s=event.at_s)
+
+
+def state_of(plan: StudyPlan, happened: Sequence[Event]) -> SessionState:
+    """Return the state after events. ModelError where one cannot follow the ones before."""
+    if not happened or not isinstance(happened[0], SessionStarted):
+        raise ModelError("a session begins with its trials")
+    state = SessionState(plan, happened[0], last_s=happened[0].at_s)
+    for event in happened[1:]:
+        state = state.after(event)
+    return state
+
+
+def _again(state: SessionState, event: SessionStarted) -> SessionState:
+    raise ModelError(f"the session of {state.started.person} has begun already")
+
+
+def _page(state: SessionState, event: events.PageAnswered) -> SessionState:
+    before = ("consent", "before") if state.next_trial else ("consent", "before", "after")
+    if event.name != state.next_page(*before):
+        raise ModelError(f"page {event.name} is not the one that was asked")
+    (page,) = (one for one in state.plan.pages if one.name == event.name)
+    declined = page.when == "consent" and not event.agreed
+    return replace(state, pages={**state.pages, event.name: event}, declined=declined)
+
+
+def _shown(state: SessionState, event: events.TrialShown) -> SessionState:
+    due = state.next_trial
+    attempt = state.attempts.get(event.number, 0) + 1
+    if state.break_since_s is not None or state.next_page("consent", "before"):
+        raise ModelError(f"trial {event.number} cannot be shown now")
+    if due is None or due.number != event.number or event.attempt != attempt:
+        raise ModelError(f"trial {event.number}, attempt {event.attempt}, is not the next one")
+    since = event.at_s if state.work_since_s is None else state.work_since_s
+    attempts = {**state.attempts, event.number: attempt}
+    return replace(state, open=event.number, attempts=attempts, work_since_s=since)
+
+
+def _answered(state: SessionState, event: events.TrialAnswered) -> SessionState:
+    if state.open != event.number or state.attempts[event.number] != event.attempt:
+        raise ModelError(f"trial {event.number} is not the one that is shown")
+    after = replace(state, open=None, answers={**state.answers, event.number: event})
+    return replace(after, break_since_s=event.at_s) if _break_is_due(after, event.at_s) else after
+
+
+def _break_is_due(state: SessionState, at_s: float) -> bool:
+    plan, since_s = state.plan, state.work_since_s
+    if not plan.break_every_min or not plan.break_min or since_s is None or not state.trials_left:
+        return False
+    return at_s - since_s >= 60.0 * plan.break_every_min
+
+
+def _interrupted(state: SessionState, event: events.TrialInterrupted) -> SessionState:
+    due = state.next_trial
+    if due is None or due.number != event.number:
+        raise ModelError(f"trial {event.number} is not the next one")
+    falls = {**state.falls, event.number: state.falls.get(event.number, 0) + event.felt}
+    return replace(state, open=None, interruptions=state.interruptions + 1, falls=falls)
+
+
+def _skipped(state: SessionState, event: events.TrialSkipped) -> SessionState:
+    due = state.next_trial
+    if due is None or due.number != event.number or state.falls.get(event.number, 0) < MOST_FALLS:
+        raise ModelError(f"trial {event.number} is not to be given up")
+    return replace(state, open=None, skipped=state.skipped | {event.number})
+
+
+def _converged(state: SessionState, event: events.StaircaseConverged) -> SessionState:
+    after = replace(state, converged=state.converged | {(event.item, event.round)})
+    return after if after.trials_left else replace(after, break_since_s=None)
+
+
+def _break_ended(state: SessionState, event: events.BreakEnded) -> SessionState:
+    if state.break_since_s is None:
+        raise ModelError("there is no break to end")
+    if event.at_s < state.break_since_s + 60.0 * state.plan.break_min:
+        raise ModelError("the break is not over yet")
+    return replace(state, break_since_s=None, work_since_s=None)
+
+
+def _left(state: SessionState, event: events.SessionClosed) -> SessionState:
+    return replace(state, left_s=event.at_s, open=None)
+
+
+def _resumed(state: SessionState, event: events.SessionResumed) -> SessionState:
+    """Go on. Time away is no work where the session was closed in order, and a break if it was long enough.
+
+    Of a session that was killed nobody knows when work ended: all that time counts as work.
+    """
+    after = replace(state, open=None, left_s=None, resumptions=state.resumptions + 1)
+    if state.left_s is None or state.work_since_s is None:
+        return after
+    away_s = max(0.0, event.at_s - state.left_s)
+    rested = away_s >= 60.0 * state.plan.break_min
+    return replace(after, work_since_s=None if rested else state.work_since_s + away_s)
+
+
+def _withdrawn(state: SessionState, event: events.ParticipantWithdrew) -> SessionState:
+    return replace(state, withdrawn=True, open=None)
+
+
+_AFTER: dict[type, Callable[[SessionState, Any], SessionState]] = {
+    SessionStarted: _again,
+    events.PageAnswered: _page,
+    events.TrialShown: _shown,
+    events.TrialAnswered: _answered,
+    events.TrialInterrupted: _interrupted,
+    events.TrialSkipped: _skipped,
+    events.StaircaseConverged: _converged,
+    events.BreakEnded: _break_ended,
+    events.SessionClosed: _left,
+    events.SessionResumed: _resumed,
+    events.ParticipantWithdrew: _withdrawn,
+}
+
+
+class Step(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What is before a participant; nothing in it is secret.
+
+    Attributes
+    ----------
+    kind : what it is. page : the name of the page.
+    number, item, labels : of the trial; between labels a person switches, "X" first. again : it was shown
+        before and not answered.
+    at, of : which it is, from 1, among the trials that count or among those of practice; of is 0 where a
+        staircase may end before.
+    left_s : seconds of the break that are left; 0: the person may go on.
+    answered, trials : how many trials are done with, and how many there are at most, practice included.
+    progress : from 0 to 1, of pages and trials.
+    """
+
+    kind: StepKind
+    page: str = ""
+    number: int = -1
+    item: str = ""
+    labels: tuple[str, ...] = ()
+    again: bool = False
+    at: int = 0
+    of: int = 0
+    left_s: float = 0.0
+    answered: int = 0
+    trials: int = 0
+    progress: float = 0.0
+
+
+def next_step(state: SessionState, now_s: float) -> Step:
+    """Return the step that is due: consent, pages before, practice, trials and breaks, pages after."""
+    if state.over:
+        return _step(state, "withdrawn" if state.withdrawn else "declined")
+    page = state.next_page("consent", "before")
+    if page:
+        return _step(state, "page", page=page)
+    if state.next_trial and state.break_since_s is not None:
+        return _step(state, "break", left_s=_break_left_s(state, now_s))
+    if state.next_trial:
+        return _trial_step(state, state.next_trial)
+    page = state.next_page("after")
+    return _step(state, "page", page=page) if page else _step(state, "done")
+
+
+def _trial_step(state: SessionState, trial: TrialFace) -> Step:
+    kind: StepKind = "practice" if trial.practice else "trial"
+    again = trial.number in state.attempts and state.open != trial.number
+    alike = [one for one in state.started.trials if one.practice == trial.practice]
+    sure = trial.practice or state.plan.kind != "staircase"
+    return _step(
+        state,
+        kind,
+        number=trial.number,
+        item=trial.item,
+        labels=trial.labels,
+        again=again,
+        at=1 + sum(one.number in state.answers for one in alike),
+        of=len(alike) if sure else 0,
+    )
+
+
+def _break_left_s(state: SessionState, now_s: float) -> float:
+    assert state.break_since_s is not None
+    whole_s = 60.0 * state.plan.break_min
+    # a clock that was set back does not make a break longer than it is
+    return min(whole_s, max(0.0, state.break_since_s + whole_s - now_s))
+
+
+def _step(state: SessionState, kind: StepKind, **about: object) -> Step:
+    trials = len(state.started.trials)
+    answered = trials - state.trials_left
+    done, whole = answered + len(state.pages), trials + len(state.plan.pages)
+    counts = {"answered": answered, "trials": trials, "progress": done / whole if whole else 1.0}
+    return Step(kind=kind, **counts, **about)  # type: ignore[arg-type]

@@ -1,0 +1,1 @@
+"""A participant's session, from enrolment to the last answer."""

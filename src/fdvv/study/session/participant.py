@@ -1,0 +1,238 @@
+"""A participant's session: every answer is on the disk before the next step exists."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from types import TracebackType
+from typing import Self
+
+from fdvv.errors import DeviceError, ModelError
+from fdvv.study.admin.study import Study
+from fdvv.study.files.seal import KeyHolder
+from fdvv.study.plan import events
+from fdvv.study.plan.events import Event, TrialFace, Value, check_answer, checked_page
+from fdvv.study.plan.session import ENDS, MOST_FALLS, Step, next_step
+from fdvv.study.plan.trial import StudyTrial, TrialAnswer
+from fdvv.study.session.log import OpenedSession, open_session
+from fdvv.study.session.trial import (
+    GONE,
+    ReconnectableRenderer,
+    RendererLostError,
+    TrialWatch,
+    has_converged,
+    with_ratio,
+)
+from fdvv.study.stimulus.renderer import StimulusRenderer
+
+
+class Participant:
+    """A person, or a simulated one, in a study; made by `enrol` or `resume`, for one process at a time.
+
+    The schedule is in memory only. A context manager; not to be used from two threads at once.
+
+    Attributes
+    ----------
+    study, person, language : who takes part in what. state : of the session; nothing in it is secret.
+    """
+
+    def __init__(
+        self, study: Study, opened: OpenedSession, renderer: StimulusRenderer, clock: Callable[[], float]
+    ) -> None:
+        self.study, self._plan, self._schedule = study, study.plan, opened.schedule.trials
+        self._log, self._sealed, self.state = opened.log, opened.sealed, opened.state
+        self.person, self.language = self.state.started.person, self.state.started.language
+        self._renderer = ReconnectableRenderer(self._plan, renderer)
+        self._clock = clock
+        self._trial: StudyTrial | None = None
+        self._watch = TrialWatch(clock)
+        self._closed = False
+        self._advance()
+
+    @classmethod
+    def enrol(
+        cls,
+        study: Study,
+        language: str,
+        renderer: StimulusRenderer,
+        *,
+        simulated: bool = False,
+        clock: Callable[[], float] = time.time,
+    ) -> tuple[Participant, str]:
+        """Enrol a person and start the session; return the code too, for that person's eyes only.
+
+        language : "": the study's first. renderer : closed with the participant. simulated : no person sits
+        here. clock : wall time in seconds. InputError, OSError.
+        """
+        person, code = study.enrol(language, simulated=simulated)
+        return cls.resume(study, person, code, renderer, clock=clock), code
+
+    @classmethod
+    def resume(
+        cls,
+        study: Study,
+        person: str,
+        code: str | KeyHolder,
+        renderer: StimulusRenderer,
+        *,
+        clock: Callable[[], float] = time.time,
+    ) -> Participant:
+        """Resume a session where its log ends. code : the person's, or the key holder in its place.
+
+        InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
+        study was changed. OSError.
+        """
+        return cls(study, open_session(study, person, code, round(clock(), 1)), renderer, clock)
+
+    @property
+    def trial(self) -> TrialFace | None:
+        """What may be seen of the trial that is shown, or None."""
+        return None if self.state.open is None else self.state.started.trials[self.state.open]
+
+    def step(self, now_s: float | None = None) -> Step:
+        """Return the step that is due. now_s : wall time; the session's clock if None."""
+        return next_step(self.state, self._clock() if now_s is None else now_s)
+
+    def show_trial(self, number: int) -> None:
+        """Log that a trial is shown, and prepare its renderings; no label is rendered yet.
+
+        A second time, after a page was loaded again, does nothing. ModelError where it is not the next one,
+        DeviceError.
+        """
+        if self.state.open == number and self._trial is not None:
+            return
+        simulated = self._renderer.require().simulated
+        attempt = self.state.attempts.get(number, 0) + 1
+        self._watch.begin()
+        # before it is prepared: how long that takes could reveal what is rendered
+        self._add(events.TrialShown(self._now(), number, attempt, simulated))
+        trial = with_ratio(self._plan, self._schedule, self.state, number)
+        self._use(trial, lambda: self._renderer.prepare(trial))
+        self._trial = trial
+        self._watch.begin()
+
+    def go_to(self, label: str) -> None:
+        """Render a label; takes plan.switch_s, whichever it is. InputError, DeviceError, ModelError."""
+        trial = self._open()
+        self._watch.gone_to(label)
+        self._use(trial, lambda: self._renderer.show(label))
+
+    def answer(self, number: int, answer: TrialAnswer) -> Step:
+        """Log an answer and what was rendered; return the step after it.
+
+        Switches, presses and time that the answer lacks are those observed here. The first answer to a trial
+        counts. InputError where the trial does not ask for such an answer, ModelError where it is not shown,
+        OSError where it cannot be written: then it was not answered.
+        """
+        if number in self.state.answers:
+            return self.step()
+        trial = self._open(number)
+        check_answer(self._plan, self.state.started.trials[number], answer)
+        evidence = self._renderer.evidence(trial)
+        self._sealed.add(evidence)
+        attempt = self.state.attempts[number]
+        self._add(events.TrialAnswered(self._now(), number, attempt, self._watch.whole(answer, evidence)))
+        self._trial = None
+        return self._advance()
+
+    def answer_page(self, name: str, values: Mapping[str, Value], agreed: bool = True) -> Step:
+        """Log a page's answers; return the step after it.
+
+        A person who does not agree on a consent page is out: only the enrolment stays on record.
+        InputError, ModelError, OSError.
+        """
+        if name in self.state.pages:
+            return self.step()
+        page = next((page for page in self._plan.pages if page.name == name), None)
+        if page is None:
+            raise ModelError(f"the study has no page {name}")
+        if page.when == "consent" and not agreed:
+            return self._leave(events.PageAnswered(self._now(), name, agreed=False))
+        self._add(events.PageAnswered(self._now(), name, checked_page(self._plan, page, values)))
+        return self._advance()
+
+    def end_break(self) -> Step:
+        """End a break, which began by itself; ModelError while it lasts."""
+        self._add(events.BreakEnded(self._now()))
+        return self.step()
+
+    def reconnect(self, renderer: StimulusRenderer) -> None:
+        """Continue with another renderer; the trial that was shown is shown again."""
+        if self.state.open is not None:
+            self._interrupt(self._schedule[self.state.open], "another stage was taken")
+        self._renderer.replace(renderer)
+
+    def withdraw(self, delete: bool = True) -> Step:
+        """Leave the study for good. delete : all data of the person; only the enrolment stays on record."""
+        return self._leave(events.ParticipantWithdrew(self._now()), delete)
+
+    def close(self) -> None:
+        """Close the session in order: until it is resumed, time does not count as work. Idempotent."""
+        if self._closed:
+            return
+        if self.step().kind not in ENDS:
+            self._add(events.SessionClosed(self._now()))
+        self._release()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _now(self) -> float:
+        # a finer time could reveal what was rendered
+        return round(self._clock(), 1)
+
+    def _add(self, event: Event) -> None:
+        self.state = self._log.add(event)
+
+    def _advance(self) -> Step:
+        """Pass over the trials of staircases that have converged, and log where all is done."""
+        while trial := self.state.next_trial:
+            if not has_converged(self._plan, self._schedule, self.state, trial.number):
+                break
+            self._add(events.StaircaseConverged(self._now(), trial.item, trial.round))
+        step = self.step()
+        if step.kind == "done" and self.study.person(self.person).state == "enrolled":
+            self.study.finished(self.person)
+        return step
+
+    def _leave(self, event: events.PageAnswered | events.ParticipantWithdrew, delete: bool = True) -> Step:
+        self.state = self.state.after(event)
+        self._release()
+        self.study.withdraw(self.person, delete=delete)
+        return self.step()
+
+    def _release(self) -> None:
+        self._closed = True
+        self._log.close()
+        self._sealed.close()
+        self._renderer.drop()
+
+    def _open(self, number: int | None = None) -> StudyTrial:
+        """Return the trial that is shown. ModelError where it is another, or none."""
+        if self._trial is None or self.state.open is None or number not in (None, self.state.open):
+            raise ModelError("no trial is shown" if number is None else f"trial {number} is not shown")
+        return self._trial
+
+    def _use(self, trial: StudyTrial, work: Callable[[], None]) -> None:
+        try:
+            work()
+        except RendererLostError as error:
+            self._interrupt(trial, str(error))
+        else:
+            return
+        # outside of the except block: the cause must not be chained to the public error
+        raise DeviceError(GONE)
+
+    def _interrupt(self, trial: StudyTrial, reason: str) -> None:
+        """Log that a trial is to be shown again, or given up where it brings the device down every time."""
+        felt, self._trial = self._watch.felt, None
+        self._sealed.add(self._renderer.lost(trial, reason))
+        self._add(events.TrialInterrupted(self._now(), trial.number, felt))
+        if self.state.falls[trial.number] >= MOST_FALLS:
+            self._add(events.TrialSkipped(self._now(), trial.number))
+            self._advance()

@@ -1,0 +1,223 @@
+"""One trial while it runs: its stimuli, the renderer that may be lost, what is observed, what is sealed."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+
+import msgspec
+import numpy as np
+
+from fdvv.errors import DeviceError, ModelError
+from fdvv.study.files.people import SealedTrial
+from fdvv.study.plan.plan import Stimulus, StudyPlan
+from fdvv.study.plan.session import SessionState
+from fdvv.study.plan.staircase import next_ratio
+from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
+from fdvv.study.stimulus.renderer import StimulusRenderer
+
+GONE = "the device went away; connect it again: the trial goes on"
+"""All that is reported: the reason could reveal what was rendered, and is sealed."""
+
+SEALED_BYTES = 16_384
+"""Of every trial: its length does not show how many presses or faults there were."""
+
+_LABEL_BYTES, _PRESS_BYTES = 1_200, 22
+_LARGEST, _FAULTS, _FAULT = 99_999.0, 6, 40
+
+
+def trial_stimuli(plan: StudyPlan, trial: StudyTrial) -> dict[str, Stimulus]:
+    """Return the stimulus of each label, in the labels' order; X too where it is rendered. **Secret.**
+
+    The comparison of a staircase, its second stimulus, is stronger by the trial's ratio.
+    """
+    item = next((item for item in plan.items if item.name == trial.item), None)
+    if item is None:
+        raise ModelError(f"the plan has no item {trial.item}")
+    named = {stimulus.name: stimulus for stimulus in item.stimuli}
+    if plan.kind == "staircase":
+        second = item.stimuli[1]
+        ratio = second.force_ratio * (1.0 + trial.ratio)
+        named[second.name] = msgspec.structs.replace(second, force_ratio=ratio)
+    found = {label: named[name] for label, name in trial.labels.items()}
+    reference = item.reference or (item.stimuli[0] if plan.kind == "mushra" else None)
+    if reference and "X" not in found:
+        found["X"] = reference
+    return dict(sorted(found.items()))
+
+
+def with_ratio(
+    plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int
+) -> StudyTrial:
+    """Return a trial with the ratio that its staircase has reached; of other kinds it is as drawn."""
+    trial = schedule[number]
+    if plan.kind != "staircase" or plan.staircase is None or trial.practice:
+        return trial
+    ratio = next_ratio(plan.staircase, _history(plan, schedule, state, trial))
+    if ratio is None:
+        raise ModelError(f"the staircase of trial {number} has ended")
+    return msgspec.structs.replace(trial, ratio=ratio)
+
+
+def has_converged(plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int) -> bool:
+    """Return whether the staircase of a trial has ended, with its answer if it has one."""
+    trial = schedule[number]
+    if plan.kind != "staircase" or plan.staircase is None or trial.practice:
+        return False
+    return next_ratio(plan.staircase, _history(plan, schedule, state, trial)) is None
+
+
+def _history(
+    plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, trial: StudyTrial
+) -> list[tuple[float, bool]]:
+    """Replay a staircase: ratios are not logged, they follow from the answers."""
+    assert plan.staircase is not None
+    history: list[tuple[float, bool]] = []
+    for one in schedule:
+        answered = state.answers.get(one.number)
+        if answered and not one.practice and (one.item, one.round) == (trial.item, trial.round):
+            ratio = next_ratio(plan.staircase, history)
+            assert ratio is not None
+            history.append((ratio, answered.answer.choice == one.correct))
+    return history
+
+
+def sealed_bytes(trial: SealedTrial) -> bytes:
+    """Return a trial as exactly SEALED_BYTES. ModelError where it has too many labels for that.
+
+    Of very many presses as many as fit are kept, evenly spaced: their median error decides whether a trial
+    counts.
+    """
+    room = SEALED_BYTES // max(1, len(trial.rendered)) - _LABEL_BYTES
+    kept = tuple(_short(one, max(1, room // _PRESS_BYTES)) for one in trial.rendered)
+    text = msgspec.json.encode(msgspec.structs.replace(trial, rendered=kept))
+    if len(text) > SEALED_BYTES:
+        raise ModelError(f"a trial of {len(trial.rendered)} renderings is too much to be sealed")
+    # blanks at the end of JSON mean nothing
+    return text.ljust(SEALED_BYTES)
+
+
+def lost_trial(trial: SealedTrial, stimuli: dict[str, str], reason: str) -> SealedTrial:
+    """Return the record of a trial whose renderer was lost. stimuli : names, by label."""
+    faults = ("device lost", reason)
+    rendered = tuple(Rendered(label, name, faults=faults) for label, name in stimuli.items())
+    return msgspec.structs.replace(trial, rendered=rendered)
+
+
+def _short(one: Rendered, presses: int) -> Rendered:
+    count = len(one.error_cN)
+    even = np.unique(np.linspace(0, count - 1, min(count, presses)).astype(int)).tolist()
+    return msgspec.structs.replace(
+        one,
+        error_cN=tuple(_number(one.error_cN[i]) for i in even),
+        velocity_mm_s=tuple(_number(one.velocity_mm_s[i]) for i in even if i < len(one.velocity_mm_s)),
+        faults=tuple(_plain(fault[:_FAULT]) for fault in one.faults[:_FAULTS]),
+    )
+
+
+def _plain(text: str) -> str:
+    # other letters need more bytes than one
+    return "".join(letter if letter.isascii() and letter.isprintable() else "?" for letter in text)
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else round(min(value, _LARGEST), 3)
+
+
+class RendererLostError(Exception):
+    """The renderer cannot be used any more; its text is **secret**."""
+
+
+class ReconnectableRenderer:
+    """A renderer that may be lost; from then on its methods raise RendererLostError."""
+
+    def __init__(self, plan: StudyPlan, renderer: StimulusRenderer) -> None:
+        self._plan = plan
+        self._renderer: StimulusRenderer | None = renderer
+
+    def require(self) -> StimulusRenderer:
+        """Return the renderer. DeviceError where there is none."""
+        if self._renderer is None:
+            raise DeviceError(GONE)
+        return self._renderer
+
+    def prepare(self, trial: StudyTrial) -> None:
+        """Prepare the stimuli of a trial."""
+        stimuli = trial_stimuli(self._plan, trial)
+        self._use(lambda renderer: renderer.prepare(stimuli))
+
+    def show(self, label: str) -> None:
+        """Render a label."""
+        self._use(lambda renderer: renderer.show(label))
+
+    def evidence(self, trial: StudyTrial) -> SealedTrial:
+        """Return what was rendered in a trial; that it was lost, where the renderer is lost now."""
+        try:
+            return SealedTrial(trial.number, trial.ratio, self._connected().rendered())
+        except (DeviceError, RendererLostError) as error:
+            self.drop()
+            return self.lost(trial, str(error))
+
+    def lost(self, trial: StudyTrial, reason: str) -> SealedTrial:
+        """Return the record of a trial whose renderer was lost, with the reason."""
+        names = {label: one.name for label, one in trial_stimuli(self._plan, trial).items()}
+        return lost_trial(SealedTrial(trial.number, trial.ratio, ()), names, reason)
+
+    def replace(self, renderer: StimulusRenderer) -> None:
+        """Close this renderer and use another."""
+        self.drop()
+        self._renderer = renderer
+
+    def drop(self) -> None:
+        """Close the renderer; idempotent."""
+        if self._renderer is not None:
+            # what is gone cannot be closed in order
+            with contextlib.suppress(DeviceError, OSError):
+                self._renderer.close()
+        self._renderer = None
+
+    def _use(self, work: Callable[[StimulusRenderer], None]) -> None:
+        try:
+            work(self._connected())
+        except DeviceError as error:
+            self.drop()
+            raise RendererLostError(str(error)) from None
+
+    def _connected(self) -> StimulusRenderer:
+        if self._renderer is None:
+            raise RendererLostError("it went away before")
+        return self._renderer
+
+
+class TrialWatch:
+    """Observes one trial after the other. clock : wall time in seconds."""
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._shown_s = clock()
+        self._switches: list[tuple[float, str]] = []
+
+    @property
+    def felt(self) -> bool:
+        """Whether any label was rendered since the trial was shown."""
+        return bool(self._switches)
+
+    def begin(self) -> None:
+        """Note that a trial is shown now."""
+        self._shown_s, self._switches = self._clock(), []
+
+    def gone_to(self, label: str) -> None:
+        """Note that a label is asked for."""
+        self._switches.append((self._since_s(), label))
+
+    def whole(self, answer: TrialAnswer, evidence: SealedTrial) -> TrialAnswer:
+        """Return an answer with what it lacks filled in: switches, presses, time."""
+        return msgspec.structs.replace(
+            answer,
+            switches=answer.switches or tuple(self._switches),
+            presses=answer.presses or {one.label: one.presses for one in evidence.rendered},
+            time_s=round(answer.time_s or self._since_s(), 2),
+        )
+
+    def _since_s(self) -> float:
+        return round(self._clock() - self._shown_s, 2)

@@ -1,0 +1,1 @@
+"""Render what a label hides, and keep the evidence of what was rendered."""

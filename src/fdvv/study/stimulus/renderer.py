@@ -1,0 +1,244 @@
+"""Render the stimuli of a trial: the interface, equally long switches, and a stimulus on the twin."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from fdvv.errors import InputError
+from fdvv.live.press import LiveEvent, LiveEventKind, LivePress, PACE_mm_s
+from fdvv.live.press_subject import IDEAL_RIG, PRESS_RIGS, PressSubject, learned_subject, model_subject
+from fdvv.model.file import builtin_names, load_builtin, load_model
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.compensate import CompensationResult
+from fdvv.rendering.probe import fd_only
+from fdvv.study.files.layout import study_file
+from fdvv.study.plan.plan import Stimulus
+from fdvv.study.plan.trial import Rendered
+from fdvv.study.stimulus.evidence import RenderingEvidence, fault_name
+from fdvv.twin.interactive import InteractiveTicks
+
+WORK_s = 0.05
+"""Before the end of a switch, when its second half begins, which takes some milliseconds."""
+
+CLOCK_s = 1e-6
+
+
+class StimulusRenderer(Protocol):
+    """Renders labels, one at a time, and records what was physically rendered.
+
+    Errors are DeviceError in one line: the force is zero then, and the record can still be read. To be used
+    from one thread at a time.
+    """
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the rig is a simulated one; says nothing of who presses."""
+
+    @property
+    def person(self) -> bool:
+        """Whether a person presses; else a simulated finger does."""
+
+    def prepare(self, labels: Mapping[str, Stimulus]) -> None:
+        """Prepare the stimulus of each label, and clear the record; no label is shown.
+
+        Raises InputError on a stimulus that cannot be rendered, DeviceError.
+        """
+        ...
+
+    def show(self, label: str) -> None:
+        """Render a label from now on; takes equally long, whichever it is and whichever was before.
+
+        Raises InputError on a label that was not prepared, DeviceError.
+        """
+        ...
+
+    def rendered(self) -> tuple[Rendered, ...]:
+        """Return the record since prepare(), one for every label, in the order of their names."""
+        ...
+
+    def close(self) -> None:
+        """Fall to zero force and release the rig; idempotent."""
+        ...
+
+
+class ConstantTimeSwitch:
+    """Makes every switch between labels take equally long, whatever is done in it.
+
+    Parameters
+    ----------
+    switch_s : from request to end. clock, sleep : of time.
+
+    Attributes
+    ----------
+    late : switches whose work alone took longer; they took the next whole multiple of switch_s.
+    """
+
+    def __init__(
+        self,
+        switch_s: float,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.switch_s, self._clock, self._sleep = switch_s, clock, sleep
+        self._work_s = min(WORK_s, switch_s / 4)
+        self.late = 0
+
+    def make(self, before: Callable[[], None], after: Callable[[], None] = lambda: None) -> None:
+        """Do the first at once, the second near the end of the time; an error does not shorten it."""
+        began_s = self._clock()
+        try:
+            before()
+            self._wait(began_s, self.switch_s - self._work_s)
+            after()
+        finally:
+            self._end(began_s)
+
+    def _end(self, began_s: float) -> None:
+        worked_s = self._clock() - began_s
+        late = worked_s > self.switch_s + CLOCK_s
+        self.late += late
+        whole = math.ceil(worked_s / self.switch_s) if late and self.switch_s else 1
+        self._wait(began_s, whole * self.switch_s)
+
+    def _wait(self, began_s: float, until_s: float) -> None:
+        self._sleep(max(0.0, began_s + until_s - self._clock()))
+
+
+def stimulus_model(stimulus: Stimulus, folder: Path) -> FDVVModel:
+    """Return the model that a stimulus intends: its button, reduced to FD if it says so, forces in ratio.
+
+    folder : of the study; a button that is not built in is a file in it or in its ``buttons``.
+    Raises InputError.
+    """
+    if stimulus.button in builtin_names():
+        model = load_builtin(stimulus.button)
+    else:
+        model = load_model(study_file(folder, stimulus.button))
+    model = fd_only(model) if stimulus.rendered == "FD" else model
+    return in_ratio(model, stimulus.force_ratio)
+
+
+@lru_cache(maxsize=256)
+def in_ratio(model: FDVVModel, force_ratio: float) -> FDVVModel:
+    """Multiply all forces of a model; vibrations stay, and what was measured of spread is left out."""
+    if force_ratio == 1.0:
+        return model
+    curves = tuple(
+        replace(curve, control_points_cN=force_ratio * curve.control_points_cN, spread=None)
+        for curve in model.curves
+    )
+    return replace(model, curves=curves)
+
+
+def check_label(label: str, labels: Mapping[str, object]) -> None:
+    """Raise InputError on a label that was not prepared."""
+    if label not in labels:
+        known = ", ".join(sorted(labels)) or "none"
+        raise InputError("label", label, "is none of this trial", f"use one of: {known}")
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedStimulus:
+    """A stimulus prepared on the twin. Simulated.
+
+    Attributes
+    ----------
+    name : of the stimulus. model : that is intended. subject : what runs.
+    audible : its vibrations reach the finger, or on the ideal rig, which has no exciter, the ear.
+    """
+
+    name: str
+    model: FDVVModel
+    subject: PressSubject
+    audible: bool
+
+
+def prepare_stimulus(
+    stimulus: Stimulus, folder: Path, rig_name: str = PRESS_RIGS[0], model: FDVVModel | None = None
+) -> PreparedStimulus:
+    """Prepare a stimulus: rendered ideally, or with its actuation on the named rig. Raises InputError.
+
+    model : of `stimulus_model`, if it is known.
+    """
+    model = model or stimulus_model(stimulus, folder)
+    if not stimulus.actuation:
+        subject = _ideal(model)
+    else:
+        learned = stimulus_actuation(stimulus, folder, model)
+        subject = learned_subject(model, learned, rig_name)
+    return PreparedStimulus(stimulus.name, model, subject, _audible(subject))
+
+
+@lru_cache(maxsize=256)
+def _ideal(model: FDVVModel) -> PressSubject:
+    return model_subject(model)
+
+
+def stimulus_actuation(stimulus: Stimulus, folder: Path, model: FDVVModel) -> CompensationResult:
+    """Return the compensation of a rig for a stimulus, its forces in the stimulus's ratio.
+
+    What compensation added stays as it was learned; only the model's own part of the force is multiplied.
+    Raises InputError.
+    """
+    learned = load_actuation(study_file(folder, stimulus.actuation))
+    if abs(learned.travel_mm - model.travel_mm) > 1e-6:
+        reason = f"was learned for a travel of {learned.travel_mm:g} mm, {model.name} has {model.travel_mm:g}"
+        raise InputError(stimulus.actuation, "$.travel_mm", reason, "learn it again for this button")
+    if stimulus.force_ratio == 1.0:
+        return learned
+    surface = learned.surface
+    step_mm = float(surface.displacement_mm[1] - surface.displacement_mm[0])
+    own = ForceSurface.of_model(model, surface.velocity_mm_s, step_mm)
+    part = 1 - 1 / stimulus.force_ratio
+    if own.press_cN.shape != surface.press_cN.shape:
+        reason = "its places are none that a force ratio can be put on"
+        raise InputError(stimulus.actuation, "$.displacement_mm", reason, "learn it again for this button")
+    scaled = replace(
+        surface,
+        press_cN=surface.press_cN + part * own.press_cN,
+        release_cN=surface.release_cN + part * own.release_cN,
+    )
+    return replace(learned, outcome=replace(learned.outcome, surface=scaled))
+
+
+def keep(
+    evidence: RenderingEvidence,
+    of: PreparedStimulus,
+    press: LivePress,
+    columns: InteractiveTicks,
+    events: tuple[LiveEvent, ...],
+) -> str:
+    """Record what the rig did; on a fault, or a warning, end its force and return its name in one line.
+
+    No number goes with the name: force and place of a fault could reveal what a label hides.
+    """
+    evidence.take(columns.t_s, columns.displacement_mm, columns.force_cN)
+    evidence.played(of.audible * sum(event.kind is LiveEventKind.VIBRATION for event in events))
+    found = press.fault()
+    if not found.faults:
+        return ""
+    evidence.failed(found.fault)
+    press.rig.core.disarm()
+    return f"the twin fell to zero force: {fault_name(found.fault)}"
+
+
+def announce(press: LivePress, velocity_mm_s: float) -> None:
+    """Announce the speed of the last press, on whichever label, for the next one; 0: there was none."""
+    if velocity_mm_s:
+        press.rig.announce(float(np.clip(velocity_mm_s, *PACE_mm_s)))
+
+
+def _audible(subject: PressSubject) -> bool:
+    exciter = subject.rig.exciter
+    shakes = exciter.fitted == "yes" and exciter.drive_V * exciter.motor_N_A > 0
+    return subject.rig_name == IDEAL_RIG or shakes

@@ -1,0 +1,1 @@
+"""A simulated capture bench and the person at it."""

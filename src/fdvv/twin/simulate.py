@@ -1,0 +1,138 @@
+"""Simulate presses on the rig, one or many."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import Gesture
+from fdvv.twin.image import image_of
+from fdvv.twin.noise import Noise, count_ticks, settle_ticks
+from fdvv.twin.rig import Rig
+from fdvv.twin.rig_kernel import STEP_s, grid_of, plant_of, run
+from fdvv.twin.settings import settings_of
+from fdvv.twin.trace import Trace
+
+AHEAD = 4
+"""Presses under way or waiting per thread, so that memory does not grow with their number."""
+Plan = TypeVar("Plan")
+Result = TypeVar("Result")
+
+
+def simulate(
+    rig: Rig,
+    finger: Finger,
+    gesture: Gesture,
+    surface: ForceSurface,
+    travel_mm: float,
+    noise: Noise,
+    announced_mm_s: float,
+    step_s: float = STEP_s,
+    audit: bool = False,
+) -> Trace:
+    """Simulate one press on a table of force in compiled C.
+
+    surface : the command table (cN), which the controller reads at the displacement it senses.
+    travel_mm : where the bottom stop is set.
+    announced_mm_s : the speed that the controller takes for granted until it has found its own.
+    audit : also account for the energy of the press.
+
+    The controller is the firmware's own core; the table is rounded to what it holds. Raises ModelError if
+    durations of the rig are no multiples of the step, if the firmware cannot hold table or settings, or if
+    rig or finger are too stiff for the step. Safe to call from threads.
+    """
+    image = image_of(surface, travel_mm).image
+    return simulate_program(rig, finger, gesture, image, noise, announced_mm_s, step_s, audit)
+
+
+def simulate_program(
+    rig: Rig,
+    finger: Finger,
+    gesture: Gesture,
+    image: bytes,
+    noise: Noise,
+    announced_mm_s: float,
+    step_s: float = STEP_s,
+    audit: bool = False,
+    settings: Settings | None = None,
+) -> Trace:
+    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it), as simulate() does.
+
+    settings : of the firmware; settings_of(rig) if None.
+    """
+    n = settle_ticks(rig) + count_ticks(rig, gesture)
+    if noise.force_N.size != n:
+        raise ModelError(f"noise must last {n} ticks, got {noise.force_N.size}")
+    grid = replace(grid_of(rig, step_s), audit=int(audit))
+    plant = plant_of(rig, finger, step_s)
+    rows = run(
+        plant,
+        grid,
+        settings or settings_of(rig),
+        image,
+        gesture,
+        noise,
+        settle_ticks(rig),
+        announced_mm_s,
+    )
+    if not np.isfinite(rows.physics[-1]).all():
+        raise ModelError(
+            f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "
+            "raise the lightest mass or lower the largest stiffness, damping or loss"
+        )
+    return Trace.of_rows(rows, audit, plant.drive_low)
+
+
+def in_threads(one: Callable[[Plan], Result], plans: Iterable[Plan], threads: int = 2) -> Iterator[Result]:
+    """Call a function on each of many plans in a pool of threads; give what it gives, in order, one by one.
+
+    Only a few are under way or waiting at a time. An error of one call is raised where its result would be.
+    """
+    from concurrent.futures import Future, ThreadPoolExecutor
+
+    waiting: deque[Future[Result]] = deque()
+    with ThreadPoolExecutor(threads) as pool:
+        for plan in plans:
+            waiting.append(pool.submit(one, plan))
+            if len(waiting) > AHEAD * threads:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
+@dataclass(frozen=True, eq=False)
+class RigPress:
+    """One press to simulate; image and settings are what the firmware holds (settings_of(rig) if None)."""
+
+    rig: Rig
+    finger: Finger
+    gesture: Gesture
+    image: bytes
+    noise: Noise
+    announced_mm_s: float
+    settings: Settings | None = None
+
+    def simulate(self) -> Trace:
+        """Simulate it."""
+        return simulate_program(
+            self.rig,
+            self.finger,
+            self.gesture,
+            self.image,
+            self.noise,
+            self.announced_mm_s,
+            settings=self.settings,
+        )
+
+
+def simulate_rig_batch(presses: Iterable[RigPress], threads: int = 2) -> Iterator[Trace]:
+    """Simulate many presses on the rig, as they are asked for; give them in the order of presses."""
+    return in_threads(RigPress.simulate, presses, threads)

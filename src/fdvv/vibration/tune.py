@@ -1,0 +1,251 @@
+"""Tuning of a vibration by a person's ratings: questions, answers and the ranking of templates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from fdvv.errors import ModelError
+from fdvv.units import FloatArray
+
+S = TypeVar("S")
+LOWEST, HIGHEST = 1, 7
+SCALE = 1.5
+"""Ratings per unit of how much a template is liked."""
+
+
+class Preferred(StrEnum):
+    """What a person says of two: the first, the second, or neither is closer."""
+
+    FIRST = "first"
+    SECOND = "second"
+    NEITHER = "neither"
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked next; the person is shown neither templates nor how often they were chosen.
+
+    Attributes
+    ----------
+    place : number of the velocity. templates : one to rate, or two to compare in that order.
+    number, total : of this question, from 1; the total is the most that it can become.
+    """
+
+    place: int
+    templates: tuple[int, ...]
+    number: int
+    total: int
+
+
+@dataclass(frozen=True)
+class Answered:
+    """A question's velocity and templates, and the answer: a rating, or who is preferred."""
+
+    place: int
+    templates: tuple[int, ...]
+    answer: int | Preferred
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """What answers at one velocity say.
+
+    Attributes
+    ----------
+    best : the template kept. The one that scored highest, even where others cannot be distinguished from
+        it; the first, which is as measured, where nothing can be distinguished.
+    scores, errors : per template, with standard errors: mean rating, or Bradley-Terry log-odds.
+    alike : templates that cannot be distinguished from the highest at 95 %, that one among them, rising.
+    answers : how many there are.
+    """
+
+    best: int
+    scores: tuple[float, ...]
+    errors: tuple[float, ...]
+    alike: tuple[int, ...]
+    answers: int
+
+    @property
+    def distinct(self) -> bool:
+        """Return whether anything differs from anything."""
+        return len(self.alike) < len(self.scores)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is tuned: how many templates at each velocity."""
+
+    templates: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "templates", tuple(self.templates))
+        if not self.templates or min(self.templates) < 2:
+            raise ModelError(f"tuning needs 2 templates at every velocity, got {self.templates}")
+
+    @property
+    def places(self) -> int:
+        """Count the velocities."""
+        return len(self.templates)
+
+
+class Method(Protocol[S]):
+    """One shape for ways of asking: settings are the object, all else is in the state."""
+
+    def init(self, job: Job) -> S:
+        """Begin."""
+        ...
+
+    def ask(self, state: S) -> Question | None:
+        """Return what to ask; the same state asks the same. None when done."""
+        ...
+
+    def tell(self, state: S, answer: int | Preferred) -> S:
+        """Take the answer to what is asked; ModelError if it is none."""
+        ...
+
+    def done(self, state: S) -> bool:
+        """Return whether nothing is left to ask."""
+        ...
+
+    def best(self, state: S) -> tuple[Ranking, ...]:
+        """Say per velocity what the answers so far say."""
+        ...
+
+
+def standing(scores: Sequence[float], errors: Sequence[float], alike: Sequence[int], answers: int) -> Ranking:
+    """Choose what is kept."""
+    distinct = len(alike) < len(scores)
+    best = int(np.argmax(scores)) if distinct else 0
+    return Ranking(best, tuple(map(float, scores)), tuple(map(float, errors)), tuple(alike), answers)
+
+
+@dataclass(frozen=True)
+class RatingState:
+    """State of the method: the plan as (velocity, template) in order, and the answers so far."""
+
+    job: Job
+    plan: tuple[tuple[int, int], ...]
+    answers: tuple[Answered, ...] = ()
+
+
+@dataclass(frozen=True)
+class Rating:
+    """Settings.
+
+    Attributes
+    ----------
+    repeats : of each template at each velocity; below 2 nothing is known of the answers' spread.
+    seed : of the order.
+    """
+
+    repeats: int = 3
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.repeats < 2 or self.seed < 0:
+            raise ModelError(
+                f"repeats must be 2 or more and seed 0 or more, got {self.repeats} and {self.seed}"
+            )
+
+    def init(self, job: Job) -> RatingState:
+        """Draw the order: in every round each velocity once, in it each template, none twice in a row."""
+        random = np.random.default_rng(self.seed)
+        plan: list[tuple[int, int]] = []
+        for _ in range(self.repeats):
+            for place in random.permutation(job.places):
+                order = random.permutation(job.templates[place])
+                while plan and plan[-1] == (int(place), int(order[0])):
+                    order = random.permutation(job.templates[place])
+                plan += [(int(place), int(template)) for template in order]
+        return RatingState(job, tuple(plan))
+
+    def ask(self, state: RatingState) -> Question | None:
+        """Return what to rate next."""
+        if self.done(state):
+            return None
+        place, template = state.plan[len(state.answers)]
+        return Question(place, (template,), len(state.answers) + 1, len(state.plan))
+
+    def tell(self, state: RatingState, answer: int | Preferred) -> RatingState:
+        """Take a rating from 1, unlike the real button, to 7."""
+        asked = self.ask(state)
+        if asked is None:
+            raise ModelError("nothing is asked any more")
+        if not isinstance(answer, int) or not LOWEST <= answer <= HIGHEST:
+            raise ModelError(f"a rating is a whole number from {LOWEST} to {HIGHEST}, got {answer!r}")
+        return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
+
+    def done(self, state: RatingState) -> bool:
+        """Return whether everything was rated as often as planned."""
+        return len(state.answers) >= len(state.plan)
+
+    def best(self, state: RatingState) -> tuple[Ranking, ...]:
+        """Compare means; alike is what Student's t at 95 %, shared among comparisons, cannot separate."""
+        return tuple(self._standing(state, place) for place in range(state.job.places))
+
+    def _standing(self, state: RatingState, place: int) -> Ranking:
+        mine = [a for a in state.answers if a.place == place]
+        rated = [
+            np.array([float(a.answer) for a in mine if a.templates[0] == template])
+            for template in range(state.job.templates[place])
+        ]
+        scores = np.array([r.mean() if r.size else np.nan for r in rated])
+        errors = _errors(rated)
+        if np.isnan(scores).any() or np.isnan(errors).any():
+            every = tuple(range(state.job.templates[place]))
+            return standing(np.nan_to_num(scores), np.full(scores.size, np.inf).tolist(), every, len(mine))
+        alike = _alike(scores, errors, sum(r.size - 1 for r in rated))
+        return standing(scores.tolist(), errors.tolist(), alike, len(mine))
+
+
+def _errors(rated: list[FloatArray]) -> FloatArray:
+    """Return standard errors of means with a pooled variance, at least that of rounding to whole ratings."""
+    free = sum(max(r.size - 1, 0) for r in rated)
+    if not free:
+        return np.full(len(rated), np.nan)
+    spread = sum(float(np.sum((r - r.mean()) ** 2)) for r in rated if r.size) / free
+    spread = max(spread, 1 / 12)
+    return np.array([np.sqrt(spread / r.size) if r.size else np.nan for r in rated])
+
+
+def _alike(scores: FloatArray, errors: FloatArray, free: int) -> list[int]:
+    from scipy.special import stdtrit
+
+    top = int(np.argmax(scores))
+    bound = float(stdtrit(max(free, 1), 1 - 0.05 / 2 / max(scores.size - 1, 1)))
+    apart = (scores[top] - scores) > bound * np.hypot(errors[top], errors)
+    return [i for i in range(scores.size) if not apart[i]]
+
+
+@dataclass(frozen=True)
+class SimulatedObserver:
+    """Answers as someone might whose likes are known; a proxy that shows that the machinery works.
+
+    Attributes
+    ----------
+    likes : per velocity and template, in units of the noise of a comparison by Thurstone's model.
+    unsure : difference felt below which neither is preferred.
+    seed : of the noise. noise : standard deviation of what is felt of one template.
+    """
+
+    likes: Sequence[Sequence[float]]
+    unsure: float = 0.2
+    noise: float = 1.0
+    seed: int = 0
+
+    def answer(self, question: Question) -> int | Preferred:
+        """Rate one template, or compare two; the same question, by its number, is answered the same."""
+        random = np.random.default_rng([self.seed, question.number])
+        likes = self.likes[question.place]
+        felt = [likes[i] + self.noise * random.normal() for i in question.templates]
+        if len(felt) == 1:
+            middle = (LOWEST + HIGHEST) / 2
+            return int(np.clip(round(middle + SCALE * felt[0]), LOWEST, HIGHEST))
+        if abs(felt[0] - felt[1]) < self.unsure:
+            return Preferred.NEITHER
+        return Preferred.FIRST if felt[0] > felt[1] else Preferred.SECOND

@@ -1,0 +1,1 @@
+"""Slow readable solvers of the same physics, as oracles for the compiled ones."""

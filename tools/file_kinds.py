@@ -1,0 +1,210 @@
+"""The kinds of files that fdvv writes: title, names, purpose and records."""
+
+from __future__ import annotations
+
+import typing
+from dataclasses import dataclass
+from typing import Any
+
+from fdvv.compensation.identification.rig_file import RigRecord
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.library.build import LibraryManifest
+from fdvv.model.file import ModelRecord
+from fdvv.optimize.experiment.setup import ExperimentSetup
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import ChunkRecord
+from fdvv.optimize.problem import Comparison, Trial
+from fdvv.optimize.run.ledger import Answered, Edited, TrialOutcome
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.run.task_rounds import TaskRound
+from fdvv.program.file import ProgramRecord
+from fdvv.project.history import DocumentBase, HistoryChange
+from fdvv.recording.file import Correction
+from fdvv.recording.records import BenchRecord, HeadRecord, MarkRecord, MendRecord, StreamRecord, TakeRecord
+from fdvv.recording.types import Bench, Mark, Recording, Stream, Take
+from fdvv.rendering.actuation_file import ActuationRecord
+from fdvv.rendering.run_summary import RunSummary
+from fdvv.rendering.session import Manifest
+from fdvv.rendering.session_log import AnswerRecord, PressEntry, SessionRun
+from fdvv.studio.jobs.file import JobRecord
+from fdvv.study.analysis.code_book import CodeBook
+from fdvv.study.files.chained_log import LogHead
+from fdvv.study.files.layout import Frozen
+from fdvv.study.files.people import LockedSchedule, Schedule, SealedTrial
+from fdvv.study.files.seal import KeyHolderFile
+from fdvv.study.plan.events import Event
+from fdvv.study.plan.plan import StudyPlan
+from fdvv.sweep.plan import SweepPlan
+from fdvv.vibration.exciter import ExciterRecord, KnownExciter
+from fdvv_rig.selftest.receipt import SelftestReceipt
+
+
+@dataclass(frozen=True)
+class FileKind:
+    """A kind of file.
+
+    Attributes
+    ----------
+    title : its name in the reference.
+    names : names of such files, in Markdown.
+    purpose : what it is for, in Markdown.
+    records : the records in it, by the place where they are: a file, or the key of a line.
+    """
+
+    title: str
+    names: str
+    purpose: str
+    records: dict[str, Any]
+
+    @property
+    def classes(self) -> tuple[type[Any], ...]:
+        """Return the records; a union is replaced by its members."""
+        return tuple(cls for record in self.records.values() for cls in members(record))
+
+
+def members(record: Any) -> tuple[type[Any], ...]:
+    """Return the members of a union, or the record itself."""
+    return typing.get_args(record) or (record,)
+
+
+FILES = (
+    FileKind("Model", "`*.fdvv.json`", "A button. [More](model-file.md).", {"file": ModelRecord}),
+    FileKind(
+        "Program",
+        "`*.fdvv-program.json`",
+        "A button of several states. [More](program-file.md).",
+        {"file": ProgramRecord},
+    ),
+    FileKind(
+        "Recording",
+        "`*.recording.jsonl`",
+        "An [event log](#journals). [More](recording-file.md).",
+        {"head": HeadRecord, "take": TakeRecord, "mend": MendRecord},
+    ),
+    FileKind(
+        "Actuation",
+        "`*.actuation.json`",
+        "The command table that makes a rig feel like a button, as `fdvv compensate` learned it.",
+        {"file": ActuationRecord},
+    ),
+    FileKind(
+        "Known rig",
+        "`*.rig.json`",
+        "The identified rig ([how](../explanation/identification.md)) and what was learned on it.",
+        {"file": RigRecord},
+    ),
+    FileKind(
+        "Known exciter",
+        "`*.exciter.json`",
+        "The identified exciter of a rig ([how](../explanation/vibration-rendering.md)).",
+        {"file": ExciterRecord},
+    ),
+    FileKind(
+        "Session",
+        "`session.json`, `presses.jsonl`, `answers.jsonl`",
+        "The folder of a compensation, a probe or a tuning. The two logs hold `run`, `press` and `answer` "
+        "records. A `press` also has the columns of its press (`columns`) and of the command (`surface`), "
+        "and the controller's `tuning` where the controller is active.",
+        {"session.json": Manifest, "run": SessionRun, "press": PressEntry, "answer": AnswerRecord},
+    ),
+    FileKind(
+        "Receipt",
+        "`receipt.json`",
+        "How a result was obtained; written when a session ends.",
+        {"file": RunSummary},
+    ),
+    FileKind(
+        "Optimisation",
+        "`optimize.json`, `trials.jsonl`, `rounds.jsonl`",
+        "The folder of a run. `trials.jsonl` is an event log of trials, edits, outcomes, comparisons and "
+        "answers; `rounds.jsonl` is an event log of the rounds that a person played.",
+        {
+            "optimize.json": OptimizeSetup,
+            "trial": Trial,
+            "edit": Edited,
+            "state": TrialOutcome,
+            "pair": Comparison,
+            "answer": Answered,
+            "rounds.jsonl": TaskRound,
+        },
+    ),
+    FileKind(
+        "Experiment",
+        "`experiment.json`",
+        "Training, a week's break, and validation, with simulated people.",
+        {"file": ExperimentSetup},
+    ),
+    FileKind(
+        "Population",
+        "`population.json`, `chunks.jsonl`",
+        "Many simulated people; `chunks.jsonl` is an event log of the finished chunks. Results: "
+        "`population.npz`, `summary.json`.",
+        {"population.json": PopulationPlan, "chunks.jsonl": ChunkRecord},
+    ),
+    FileKind(
+        "Study", "`study.toml`", "The plan of a blind study. [More](study-file.md).", {"file": StudyPlan}
+    ),
+    FileKind(
+        "Frozen study",
+        "`frozen.json`, `keeper.json`, `*.head`",
+        "What was frozen, the key holder's half of the key, and the length of a log "
+        "([how](../explanation/blinding.md)).",
+        {"frozen.json": Frozen, "keeper.json": KeyHolderFile, "*.head": LogHead},
+    ),
+    FileKind(
+        "Participant",
+        "`schedule.json`, `session.jsonl`, `sealed.jsonl`",
+        "One participant's folder. `schedule.json` holds the encrypted schedule, with a sealed trial for "
+        "each of its trials; `session.jsonl` is a chained event log "
+        "([when what is written](../explanation/running-a-study.md)).",
+        {
+            "schedule.json": LockedSchedule,
+            "decrypted": Schedule,
+            "sealed.jsonl": SealedTrial,
+            "session.jsonl": Event,
+        },
+    ),
+    FileKind(
+        "Code book",
+        "`codebook.json`",
+        "Describes the columns of `answers.csv` beside it. [More](answers-file.md).",
+        {"file": CodeBook},
+    ),
+    FileKind(
+        "Draft",
+        "`*.draft.jsonl`",
+        "An [event log](#journals): first `base`, then every `change`. [More](project-folder.md#drafts).",
+        {"base": DocumentBase, "change": HistoryChange},
+    ),
+    FileKind(
+        "Job",
+        "`job.json`, `events.jsonl`",
+        "A folder of the studio's long work. `events.jsonl` is an event log of what was sent to the page "
+        "([messages](studio-messages.md)).",
+        {"job.json": JobRecord},
+    ),
+    FileKind(
+        "Library",
+        "`library.json`",
+        "The sources of a library of measured buttons. [More](library-files.md).",
+        {"file": LibraryManifest},
+    ),
+    FileKind("Sweep", "`*.toml`", "A plan of a sweep. [More](sweep-files.md).", {"file": SweepPlan}),
+    FileKind(
+        "Self-test",
+        "`*.json`",
+        "The receipt of `fdvv hardware selftest` of a rig whose parts all passed.",
+        {"file": SelftestReceipt},
+    ),
+)
+IN_MEMORY: dict[type[Any], type[Any]] = {
+    HeadRecord: Recording,
+    BenchRecord: Bench,
+    TakeRecord: Take,
+    StreamRecord: Stream,
+    MarkRecord: Mark,
+    MendRecord: Correction,
+    RigRecord: RigModel,
+    ExciterRecord: KnownExciter,
+}
+"""Records of files whose fields are documented at the record in memory."""
