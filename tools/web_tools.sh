@@ -16,5 +16,8 @@ fi
 node -e 'process.exit(Number(process.versions.node.split(".")[0]) < 20 ? 1 : 0)' || fail "node is older than 20"
 
 # npm ci only where the lock file is newer than what it made
-[ node_modules/.ready -nt package-lock.json ] || { npm ci --silent && touch node_modules/.ready; }
+if [ ! node_modules/.ready -nt package-lock.json ]; then
+  npm ci --silent
+  touch node_modules/.ready
+fi
 echo "web tools are ready"

@@ -115,8 +115,8 @@ def export_button(
 ) -> Exported:
     """Make the file of another program for what spec names: a button, or a recording.
 
-    spec : as open_button takes it, or a recording's file. to : the format, or None where output's suffix names
-        it. Nothing is written. Raises InputError.
+    spec : as open_button takes it, or a recording's file. to : the format, or None to take it from output's
+        suffix. Nothing is written. Raises InputError.
     """
     chosen = settings or ExportSettings()
     if is_recording(spec):
