@@ -1,4 +1,4 @@
-"""Files that fdvv 0.1.0 wrote are still read, through the command line alone.
+"""Files that fdvv 0.1.0 wrote are still read by the commands.
 
 What they are is in tests/files/old/README.md.
 """
@@ -17,7 +17,10 @@ from http.cookiejar import CookieJar
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+
+from fdvv import Stroke, load_model
 
 OLD = Path(__file__).parent / "files" / "old"
 PASSPHRASE = ("--passphrase-file", "passphrase.txt")
@@ -85,8 +88,12 @@ def test_landmarks_of_models_are_as_they_were(fdvv: Run) -> None:
 
 def test_a_recording_is_processed_into_the_same_model(fdvv: Run) -> None:
     fdvv("process", "pressed.recording.jsonl", "-o", "again.fdvv.json")
-    again, before = (json.loads(Path(f"{name}.fdvv.json").read_text()) for name in ("again", "captured"))
-    assert again["curves"] == before["curves"]
+    again, before = (load_model(f"{name}.fdvv.json") for name in ("again", "captured"))
+    # knots end a few micrometres elsewhere on a processor that rounds otherwise: 0.06 cN were seen
+    x = np.linspace(0.0, 4.0, 401)
+    for stroke in Stroke:
+        (one,), (other,) = again.of(stroke), before.of(stroke)
+        assert np.allclose(one.force_cN(x), other.force_cN(x), rtol=0, atol=0.2)
 
 
 def test_what_a_rig_taught_is_used(fdvv: Run) -> None:
@@ -107,8 +114,9 @@ def test_a_finished_session_is_gone_on_with(fdvv: Run) -> None:
     about = ("--velocity", "100", "--rounds", "1", "--seed", "4", "--session", "session")
     fdvv("compensate", "mx-clear", *about, "-o", "again.actuation.json")
     again, before = (json.loads(Path(f"{name}.actuation.json").read_text()) for name in ("again", "learned"))
-    for key in ("displacement_mm", "press_cN", "release_cN", "presses"):
-        assert again[key] == before[key]
+    assert again["presses"] == before["presses"]
+    for key in ("displacement_mm", "press_cN", "release_cN"):
+        assert np.allclose(again[key], before[key], rtol=0, atol=1 / 64)
 
 
 def test_answers_of_a_tuning_are_kept(fdvv: Run) -> None:

@@ -143,21 +143,31 @@ def test_a_session_goes_on_with_the_board_that_it_configured(tmp_path: Path) -> 
         assert probe(board, MODEL, SURFACE, [50.0], 3, session=session, tuning=TUNING).presses == 3
 
 
-def test_presses_made_under_another_tuning_do_not_count(tmp_path: Path) -> None:
-    probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "s"), tuning=TUNING)
-    path = tmp_path / "s" / PRESSES
-    log = PressLog(tmp_path / "s")
-    found = [replace(kept, tuning=replace(kept.tuning, lead_s=1e-3)) for kept in log.kept()]
+def probed_under(lead_s: float, folder: Path) -> Session:
+    """Return a session of two presses whose file holds this lead."""
+    probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(folder), tuning=TUNING)
+    log = PressLog(folder)
+    found = [replace(kept, tuning=replace(kept.tuning, lead_s=lead_s)) for kept in log.kept()]
     run = log.runs[0]
     log.close()
-    path.unlink()
-    log = PressLog(tmp_path / "s")
+    (folder / PRESSES).unlink()
+    log = PressLog(folder)
     log.begin(run)
     for kept in found:
         log.add(kept)
     log.close()
+    return Session(folder)
+
+
+def test_presses_made_under_another_tuning_do_not_count(tmp_path: Path) -> None:
+    session = probed_under(TUNING.lead_s * 1.001, tmp_path / "s")
     with pytest.raises(InputError, match="another table or tuning"):
-        probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "s"), tuning=TUNING)
+        probe(Told(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING)
+
+
+def test_presses_of_a_processor_that_rounds_otherwise_count(tmp_path: Path) -> None:
+    session = probed_under(TUNING.lead_s * (1 + 1e-14), tmp_path / "s")
+    assert probe(Told(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING).presses == 2
 
 
 @pytest.fixture(scope="module")
