@@ -21,7 +21,7 @@ from fdvv.device.remote import PressedDevice
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Settings
-from fdvv.rendering.session_log import PRESSES, PressLog, read_log
+from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.testing.scripted import ScriptedDevice
 
 from .conftest import Run
@@ -62,7 +62,7 @@ def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
     running.send_signal(how)
     _, told = running.communicate(timeout=20)
     kept = path.read_bytes()
-    _, before, end = read_log(path)
+    _, before, end = PressLog.read(path)
     assert 5 <= len(before) < 48
     if how is signal.SIGINT:
         assert running.returncode == 130
@@ -129,12 +129,12 @@ def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_r
     _, told = full.communicate(timeout=30)
     assert full.returncode == 2
     assert told.splitlines()[-1].startswith("fdvv: s/presses.jsonl: File too large")
-    _, before, end = read_log(tmp_path / "s" / PRESSES)
+    _, before, end = PressLog.read(tmp_path / "s" / PRESSES)
     assert end == (tmp_path / "s" / PRESSES).stat().st_size <= limit
     assert 0 < len(before) < 8
     again = fdvv(*learn)
     assert (again.status, "goes on" in again.err) == (0, True)
-    assert len(read_log(tmp_path / "s" / PRESSES)[1]) == 8
+    assert len(PressLog.read(tmp_path / "s" / PRESSES)[1]) == 8
 
 
 def test_on_a_terminal_the_rows_are_redrawn_in_place(tmp_path: Path) -> None:
@@ -213,7 +213,7 @@ def test_a_probe_keeps_its_presses_and_shows_its_receipt(fdvv: Run, tmp_path: Pa
     probe = ("probe", "mx-clear", "--velocity", "50", "--presses", "3", "--session", "p")
     first = fdvv(*probe)
     assert first.status == 0
-    assert len(read_log(tmp_path / "p" / PRESSES)[1]) == 3
+    assert len(PressLog.read(tmp_path / "p" / PRESSES)[1]) == 3
     assert fdvv(*probe).out == first.out
     shown = fdvv("show", "p")
     assert shown.status == 0
@@ -297,7 +297,7 @@ def test_a_person_is_asked_and_answered_press_by_press_and_nothing_of_it_is_lost
     assert lines[0] == "press 1 of 3: 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go"
     assert re.match(r"1 of 3, 100 mm/s: achieved (9\d|10\d) mm/s; moved the press by up to", lines[1])
     # without a name the presses are kept beside
-    assert len(read_log(tmp_path / "mx-clear.session" / PRESSES)[1]) == 3
+    assert len(PressLog.read(tmp_path / "mx-clear.session" / PRESSES)[1]) == 3
     assert ran.json["receipt"]["device"]["settings"]["force_gain_q14"] == 2000
     # another speed than the cap's is not used, ten times, and the session says how to go on
     slow = fdvv(*ask[:3], "40", *ask[4:], "--session", "slow")

@@ -24,7 +24,7 @@ from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
-from fdvv.rendering.session_log import PRESSES, read_log
+from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.rendering.session_run import Guide
 from fdvv.rendering.tuning import open_device
 from fdvv.testing.scripted import ScriptedDevice
@@ -190,7 +190,7 @@ def test_a_session_that_was_stopped_goes_on_to_the_result_of_one_that_was_not(
         run(PressByPress(rig, finger, stop_at=stop_at), tmp_path / "s")
     # as if it had been killed while it wrote its last record
     path = tmp_path / "s" / PRESSES
-    _, entries, end = read_log(path)
+    _, entries, end = PressLog.read(path)
     path.write_bytes(path.read_bytes() + b'{"record": {"press": ')
     again = run(PressByPress(rig, finger, len(entries)), tmp_path / "s")
     assert len(entries) == stop_at - 1

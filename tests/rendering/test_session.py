@@ -29,7 +29,7 @@ from fdvv.rendering.compensate import compensate
 from fdvv.rendering.probe import ProbeResult, probe
 from fdvv.rendering.run_summary import RECEIPT
 from fdvv.rendering.session import MANIFEST, Session, plain
-from fdvv.rendering.session_log import PRESSES, read_log
+from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest
 from fdvv.testing.scripted import ScriptedDevice
 from tests.support.sessions import LAW, MODEL, SPEEDS, Hand, learn
@@ -104,7 +104,7 @@ def test_a_press_that_cannot_be_used_is_kept_told_and_asked_again(tmp_path: Path
     assert len(result.to_dict()["skipped"]) == 2
     # what cannot be used changes nothing
     assert result.to_dict()["curves"] == RUNS[name](Hand()).to_dict()["curves"]
-    _, entries, _ = read_log(tmp_path / "s" / PRESSES)
+    _, entries, _ = PressLog.read(tmp_path / "s" / PRESSES)
     assert [e.used for e in entries] == [True, False, False, *[True] * 7]
 
 
@@ -291,7 +291,7 @@ def test_ctrl_c_between_a_press_and_its_record_waits_for_the_record(tmp_path: Pa
     with pytest.raises(KeyboardInterrupt, match="interrupted; 1 press is kept"):
         compensate(Hand(), MODEL, SPEEDS, Impatient(LAW), session=Session(tmp_path / "s"))
     assert signal.getsignal(signal.SIGINT) is before
-    assert [e.used for e in read_log(tmp_path / "s" / PRESSES)[1]] == [True]
+    assert [e.used for e in PressLog.read(tmp_path / "s" / PRESSES)[1]] == [True]
 
 
 def test_the_first_run_has_the_seed_of_the_session_and_no_later_one_has_it_again(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.session_log import PRESSES, PressEntry, PressLog, PressRecord, SessionRun, read_log
+from fdvv.rendering.session_log import PRESSES, PressEntry, PressLog, PressRecord, SessionRun
 from fdvv.testing.scripted import ScriptedDevice
 
 SURFACE = ForceSurface.of_model(load_builtin("mx-clear"), [50.0, 100.0])
@@ -116,7 +116,7 @@ def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: P
     # it goes on behind the last whole record
     log.add(kept(len(log.entries) + 1))
     log.close()
-    assert len(read_log(path)[1]) == max(0, whole - 1) + 1
+    assert len(PressLog.read(path)[1]) == max(0, whole - 1) + 1
 
 
 def test_a_record_cut_short_is_told_of_once(tmp_path: Path) -> None:
@@ -147,10 +147,10 @@ def test_a_changed_byte_is_never_read_as_a_press(tmp_path: Path, part: float, fl
     last = written.rfind(b"\n", 0, len(written) - 1)
     if at < last:
         with pytest.raises(InputError, match=r"line .*begin a new session"):
-            read_log(path)
+            PressLog.read(path)
     else:
         # the last record is taken for one that was cut short
-        assert len(read_log(path)[1]) == (at > last)
+        assert len(PressLog.read(path)[1]) == (at > last)
 
 
 def test_a_damaged_record_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
@@ -206,7 +206,7 @@ def test_a_full_disk_leaves_no_half_record_and_names_the_file(
     monkeypatch.undo()
     log.add(kept(4))
     log.close()
-    assert len(read_log(tmp_path / PRESSES)[1]) == 4
+    assert len(PressLog.read(tmp_path / PRESSES)[1]) == 4
 
 
 def test_a_record_is_on_the_disk_before_add_returns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

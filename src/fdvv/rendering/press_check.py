@@ -21,7 +21,7 @@ from fdvv.model.press import Press
 from fdvv.recording.check import FileCheck, FileProblem, unusable
 from fdvv.rendering.run_summary import RECEIPT, read_run_summary
 from fdvv.rendering.session import MANIFEST, Manifest, read_manifest
-from fdvv.rendering.session_log import PRESSES, PressEntry, SessionRun, read_log
+from fdvv.rendering.session_log import PRESSES, PressEntry, PressLog, SessionRun
 from fdvv.units import FloatArray
 
 A_SESSION, A_DEVICE_RECORDING = "a session", "a recording of a device"
@@ -34,7 +34,7 @@ def check_session(folder: Path) -> FileCheck:
     try:
         manifest = read_manifest(folder / MANIFEST)
         there = (folder / PRESSES).is_file()
-        runs, entries, end = read_log(folder / PRESSES) if there else ([], [], 0)
+        runs, entries, end = PressLog.read(folder / PRESSES) if there else ([], [], 0)
         finished = (folder / RECEIPT).is_file()
         if finished:
             read_run_summary(folder)

@@ -9,14 +9,18 @@ from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
+from msgspec import json
 
 from fdvv.compensation.method import CurveOutcome
 from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
-from fdvv.rendering.session import MANIFEST, LARGEST_bytes, Manifest, ModelName, read_manifest
-from fdvv.rendering.session_log import ANSWERS, PRESSES, PressEntry, SessionRun, read_answers, read_log
+from fdvv.model.curve import Stroke
+from fdvv.rendering.session import MANIFEST, MUST_AGREE, LARGEST_bytes, Manifest, ModelName, read_manifest
+from fdvv.rendering.session_log import ANSWERS, PRESSES, AnswerLog, PressEntry, PressLog, SessionRun
 
 RECEIPT = "receipt.json"
+KIND = Kind("fdvv-receipt", 1, "a receipt", "run the session's command again, which writes it anew")
+FROM_MANIFEST = (*MUST_AGREE, "simulated")
 
 
 class NotUsed(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -94,21 +98,14 @@ def make_run_summary(
     return RunSummary(
         "fdvv-receipt",
         1,
-        manifest.task,
-        manifest.model,
-        manifest.device,
-        manifest.method,
-        manifest.settings,
-        manifest.velocities_mm_s,
-        manifest.seed,
-        manifest.simulated,
-        list(runs),
-        sum(e.used for e in entries),
-        [NotUsed(e.number, e.velocity_mm_s, e.reason) for e in entries if not e.used],
-        [_errors(curve) for curve in curves],
-        runs[0].started if runs else manifest.created,
-        entries[-1].made if entries else None,
-        _pressing_s(runs, entries),
+        **{name: getattr(manifest, name) for name in FROM_MANIFEST},
+        runs=list(runs),
+        used=sum(e.used for e in entries),
+        not_used=[NotUsed(e.number, e.velocity_mm_s, e.reason) for e in entries if not e.used],
+        curves=[_errors(curve) for curve in curves],
+        begun=runs[0].started if runs else manifest.created,
+        finished=entries[-1].made if entries else None,
+        pressing_s=_pressing_s(runs, entries),
     )
 
 
@@ -124,27 +121,20 @@ def read_run_summary(path: Path) -> RunSummary | None:
     manifest = read_manifest(path / MANIFEST)
     if (path / RECEIPT).is_file():
         text = read_limited(path / RECEIPT, LARGEST_bytes, KIND.remedy)
-        return read_document(text, path / RECEIPT, KIND, _decoded, lambda _: None)
-    tuning = manifest.task == "tune"
-    runs, entries, _ = read_answers(path / ANSWERS) if tuning else read_log(path / PRESSES)
+        return read_document(text, path / RECEIPT, KIND, json.Decoder(RunSummary).decode, lambda _: None)
+    if manifest.task == "tune":
+        runs, answers, _ = AnswerLog.read(path / ANSWERS)
+        return make_run_summary(manifest, runs, [answer.entry for answer in answers])
+    runs, entries, _ = PressLog.read(path / PRESSES)
     return make_run_summary(manifest, runs, entries)
-
-
-def _decoded(data: bytes) -> RunSummary:
-    return msgspec.json.decode(data, type=RunSummary)
 
 
 def _errors(curve: CurveOutcome) -> CurveErrors:
     errors = curve.error_cN
     summary = (errors[0], errors[-1], min(errors)) if errors else (None, None, None)
     kept = (e if math.isfinite(e) else None for e in (curve.mean_error_cN, curve.max_error_cN))
-    return CurveErrors(
-        "press" if str(curve.stroke) == "press" else "release",
-        curve.velocity_mm_s,
-        len(errors),
-        *summary,
-        *kept,
-    )
+    stroke: Literal["press", "release"] = "press" if curve.stroke is Stroke.PRESS else "release"
+    return CurveErrors(stroke, curve.velocity_mm_s, len(errors), *summary, *kept)
 
 
 def _pressing_s(runs: Sequence[SessionRun], entries: Sequence[PressEntry]) -> float:
@@ -157,6 +147,3 @@ def _pressing_s(runs: Sequence[SessionRun], entries: Sequence[PressEntry]) -> fl
         inside = [made for made in presses if start <= made and (end is None or made <= end)]
         total_s += (max(inside) - start).total_seconds() if inside else 0.0
     return round(total_s, 3)
-
-
-KIND = Kind("fdvv-receipt", 1, "a receipt", "run the session's command again, which writes it anew")

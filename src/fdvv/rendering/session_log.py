@@ -7,11 +7,10 @@ and the table it was made on; ``answers.jsonl`` has ``{"answer": {…}}`` for ev
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import msgspec
 
@@ -21,6 +20,8 @@ from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_bodies
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
+
+Entry = TypeVar("Entry")
 
 
 class SessionRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -32,46 +33,60 @@ class SessionRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     acceptance: dict[str, int | float]
 
 
-class SessionFile(ABC):
-    """A journal of a session, in memory, and on file for one process at a time if there is a path.
+class SessionFile(Generic[Entry]):
+    """A journal of a session, in memory, and on file for one process at a time if there is a folder.
 
     Attributes
     ----------
-    kind, noun : what its records are, and their name for people, as "presses".
-    path : of the journal; None keeps it in memory.
-    runs : including earlier ones.
+    name, noun : of the file, and what people call its entries.
+    kind : the records that it may hold: runs, and entries under another key.
+    folder, path : of the session and of the journal; None keeps it in memory.
+    runs, entries : including earlier ones.
     warnings : about the file, for people.
 
     Raises InputError on a file that is damaged or in use, OSError if it cannot be written.
     """
 
-    kind: ClassVar[JournalKind]
+    name: ClassVar[str]
     noun: ClassVar[str]
+    kind: ClassVar[JournalKind]
 
-    def __init__(self, path: Path | None) -> None:
-        self.path = path
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder, self.path = folder, folder / self.name if folder else None
         self.runs: list[SessionRun] = []
+        self.entries: list[Entry] = []
         self.warnings: list[str] = []
         self._journal: Journal | None = None
-        if path:
-            self._journal = Journal.resume(path, self.kind, _busy(path), self._replay)
+        if self.path:
+            reason = "another process is at work on this session"
+            busy = InputError(folder, "session", reason, "wait for it, or name another folder")
+            self._journal = Journal.resume(self.path, self.kind, busy, self._replay)
             if self._journal.torn:
-                kept = f"{self.noun} kept: {self._count()}"
-                self.warnings.append(f"{path}: the last record is not whole and is left out; {kept}")
+                kept = f"{self.noun} kept: {len(self.entries)}"
+                self.warnings.append(f"{self.path}: the last record is not whole and is left out; {kept}")
+
+    @classmethod
+    def read(cls, path: Path) -> tuple[list[SessionRun], list[Entry], int]:
+        """Return runs, entries, and the byte where the last whole record of a file ends, which stays free.
+
+        Raises InputError on a damaged file.
+        """
+        log, end = cls(), 0
+        log.path = path
+        for key, body, after in read_bodies(path, cls.kind):
+            log._replay(key, body)
+            end = after
+        return log.runs, log.entries, end
 
     def _replay(self, key: str, body: Any) -> None:
         if key == "run":
             self.runs.append(body)
         else:
-            self._take(body)
+            self.entries.append(self._entry(body, len(self.entries) + 1))
 
-    @abstractmethod
-    def _take(self, body: Any) -> None:
-        """Add a record that was read from the file. Raises InputError."""
-
-    @abstractmethod
-    def _count(self) -> int:
-        """Return the number of records without runs."""
+    def _entry(self, body: Any, number: int) -> Entry:
+        """Return the entry of a record on file, which must have this number. Raises InputError."""
+        raise NotImplementedError
 
     def begin(self, run: SessionRun) -> None:
         """Record that the session is begun or continued."""
@@ -87,11 +102,6 @@ class SessionFile(ABC):
         if self._journal:
             self._journal.close()
             self._journal = None
-
-
-def _busy(path: Path) -> InputError:
-    reason = "another process is at work on this session"
-    return InputError(path.parent, "session", reason, "wait for it, or name another folder")
 
 
 PRESSES = "presses.jsonl"
@@ -118,7 +128,6 @@ class PressEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def used(self) -> bool:
-        """Whether the press was used."""
         return not self.reason
 
     def __str__(self) -> str:
@@ -138,41 +147,20 @@ class PressRecord:
     tuning: Tuning = UNTUNED
 
 
-class PressLog(SessionFile):
-    """The presses of a session, in memory, and on file if there is a folder for it.
+class PressLog(SessionFile[PressEntry]):
+    """The presses of a session; in memory only what became of each."""
 
-    Parameters
-    ----------
-    folder : of the session, for one process at a time; None keeps only what became of each press.
+    name, noun, kind = PRESSES, "presses", PRESSES_KIND
 
-    Attributes
-    ----------
-    entries : so far, those of earlier runs among them.
-    """
-
-    kind, noun = PRESSES_KIND, "presses"
-
-    def __init__(self, folder: Path | None = None) -> None:
-        self.folder = folder
-        self.entries: list[PressEntry] = []
-        super().__init__(folder / PRESSES if folder else None)
-
-    def _take(self, body: Any) -> None:
-        assert self.path is not None
-        self.entries.append(_record(self.path, body, len(self.entries) + 1).entry)
-
-    def _count(self) -> int:
-        return len(self.entries)
+    def _entry(self, body: Any, number: int) -> PressEntry:
+        return _record(self.path, body, number).entry
 
     def kept(self) -> Iterator[PressRecord]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""
-        if self.path is None:
-            return
-        number = 0
-        for key, body, _ in read_bodies(self.path, PRESSES_KIND):
-            if key == "press":
-                number += 1
-                yield _record(self.path, body, number)
+        records = read_bodies(self.path, self.kind) if self.path else ()
+        presses = (body for key, body, _ in records if key == "press")
+        for number, body in enumerate(presses, 1):
+            yield _record(self.path, body, number)
 
     @property
     def used(self) -> int:
@@ -185,23 +173,6 @@ class PressLog(SessionFile):
         self.entries.append(kept.entry)
 
 
-def read_log(path: Path) -> tuple[list[SessionRun], list[PressEntry], int]:
-    """Return the runs, what became of each press, and the byte where the last whole record ends.
-
-    Raises InputError on a damaged file.
-    """
-    runs: list[SessionRun] = []
-    entries: list[PressEntry] = []
-    end = 0
-    for key, body, after in read_bodies(path, PRESSES_KIND):
-        end = after
-        if key == "run":
-            runs.append(body)
-        else:
-            entries.append(_record(path, body, len(entries) + 1).entry)
-    return runs, entries, end
-
-
 def _packed(kept: PressRecord) -> dict[str, Any]:
     columns = pack_record(kept.press) if kept.press else None
     tuning = {} if kept.tuning == UNTUNED else {"tuning": asdict(kept.tuning)}
@@ -209,7 +180,7 @@ def _packed(kept: PressRecord) -> dict[str, Any]:
     return found | tuning
 
 
-def _record(path: Path, found: dict[str, Any], number: int) -> PressRecord:
+def _record(path: Path | None, found: dict[str, Any], number: int) -> PressRecord:
     """Unpack a press, which must have this number."""
     try:
         surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
@@ -254,55 +225,16 @@ class AnswerRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 ANSWERS_KIND = JournalKind({"run": SessionRun, "answer": AnswerRecord}, REMEDY)
 
 
-class AnswerLog(SessionFile):
-    """The answers of a session, in memory, and on file if there is a folder for it.
+class AnswerLog(SessionFile[AnswerRecord]):
+    """The answers of a session."""
 
-    Parameters
-    ----------
-    folder : of the session, for one process at a time; None keeps them in memory.
+    name, noun, kind = ANSWERS, "answers", ANSWERS_KIND
 
-    Attributes
-    ----------
-    answers : so far, those of earlier runs among them.
-    """
-
-    kind, noun = ANSWERS_KIND, "answers"
-
-    def __init__(self, folder: Path | None = None) -> None:
-        self.folder = folder
-        self.answers: list[AnswerRecord] = []
-        super().__init__(folder / ANSWERS if folder else None)
-
-    def _take(self, body: AnswerRecord) -> None:
-        assert self.path is not None
-        self.answers.append(_checked(self.path, body, len(self.answers) + 1))
-
-    def _count(self) -> int:
-        return len(self.answers)
+    def _entry(self, body: AnswerRecord, number: int) -> AnswerRecord:
+        if body.number != number:
+            raise InputError(self.path, f"answer {number}", f"bears the number {body.number}", REMEDY)
+        return body
 
     def add(self, given: AnswerRecord) -> None:
         self._write({"answer": msgspec.to_builtins(given)})
-        self.answers.append(given)
-
-
-def read_answers(path: Path) -> tuple[list[SessionRun], list[PressEntry], int]:
-    """Return the runs, each answer as a press of the run summary, and the byte where the last record ends.
-
-    Raises InputError on a damaged file.
-    """
-    runs: list[SessionRun] = []
-    entries: list[PressEntry] = []
-    end = 0
-    for key, body, after in read_bodies(path, ANSWERS_KIND):
-        end = after
-        if key == "run":
-            runs.append(body)
-        else:
-            entries.append(_checked(path, body, len(entries) + 1).entry)
-    return runs, entries, end
-
-
-def _checked(path: Path, answer: AnswerRecord, number: int) -> AnswerRecord:
-    if answer.number != number:
-        raise InputError(path, f"answer {number}", f"bears the number {answer.number}", REMEDY)
-    return answer
+        self.entries.append(given)

@@ -175,7 +175,7 @@ def tune_vibration(
         _greet(guide, log, method.done(state))
         plan = _TuningPlan(device, candidates, upload, answer, session, guide, model.travel_mm, answered)
         state = _asked(plan, method, state, log)
-        receipt = make_run_summary(manifest, log.runs, [given.entry for given in log.answers])
+        receipt = make_run_summary(manifest, log.runs, [given.entry for given in log.entries])
         if session.folder:
             save_run_summary(session.folder, receipt)
     found = _standing(candidates, method, state)
@@ -233,7 +233,7 @@ def _replayed(method: Rating | Comparing, candidates: Sequence[Candidates], log:
     """Rebuild the state from the answers on file. Raises InputError if they belong to other questions."""
     one: Any = method
     state = one.init(Job(tuple(len(c.vibrations) for c in candidates)))
-    for given in log.answers:
+    for given in log.entries:
         asked = one.ask(state)
         try:
             if asked is None or _place(asked, candidates) != (given.velocity_mm_s, given.templates):
@@ -253,9 +253,9 @@ def _place(asked: Question, candidates: Sequence[Candidates]) -> tuple[float, li
 def _greet(guide: Guide, log: AnswerLog, done: bool) -> None:
     for warning in log.warnings:
         guide.notice(f"warning: {warning}")
-    if log.folder and log.answers:
+    if log.folder and log.entries:
         rest = "is finished; this is its result again" if done else "goes on"
-        guide.notice(f"the session in {log.folder}, with {len(log.answers)} answers, {rest}")
+        guide.notice(f"the session in {log.folder}, with {len(log.entries)} answers, {rest}")
 
 
 def _standing(
@@ -315,7 +315,7 @@ def _pressed(plan: _TuningPlan, asked: Question, template: int) -> float | None:
 
 
 def _how_to_resume(log: AnswerLog) -> str:
-    made = f"{len(log.answers)} {'answer is' if len(log.answers) == 1 else 'answers are'}"
+    made = f"{len(log.entries)} {'answer is' if len(log.entries) == 1 else 'answers are'}"
     if log.folder is None:
         return f"{made} lost; name a folder with --session to keep them"
     return f"{made} kept in {log.folder}; run the same command again to go on"
