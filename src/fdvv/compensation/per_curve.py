@@ -91,7 +91,6 @@ class PerCurve:
         return replace(state, pairs=pairs, presses=state.presses + 1, message=message)
 
     def explain(self, state: JobState) -> str:
-        """Return what the last press changed; empty before the first."""
         return state.message
 
     def done(self, state: JobState) -> Outcome:

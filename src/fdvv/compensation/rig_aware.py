@@ -197,7 +197,6 @@ class RigAware:
         return replace(state, errors=errors, tables=tables, message=message)
 
     def explain(self, state: RigState) -> str:
-        """Return what the last press changed; empty before the first."""
         return state.message
 
     def count(self, state: RigState) -> PressCount:

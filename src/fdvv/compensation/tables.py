@@ -137,7 +137,6 @@ def best_of_round(state: CurveState, measured_cN: FloatArray, error: float) -> B
 
 
 def read_only(values: FloatArray) -> FloatArray:
-    """Return a read-only copy."""
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
@@ -196,7 +195,6 @@ class SharedTable:
         return shares
 
     def at(self, speed_mm_s: float) -> FloatArray:
-        """Return the table at a speed, (n,)."""
         return np.asarray(self.shares(speed_mm_s) @ self.rows_cN)
 
     def updated(

@@ -136,7 +136,6 @@ class SerialBench:
         return BenchInfo(self._port.name, False, self._bench)
 
     def take(self, number: int, stage: Stage, velocity_mm_s: float | None, cue: Cue) -> Take:
-        """Record while the cue is shown and a little longer. Raises DeviceError."""
         self._clock = self._clock or ("board" if number == 1 else f"board from take {number}")
         made = datetime.now(UTC).isoformat(timespec="seconds")
         self._drain()
@@ -244,7 +243,6 @@ class TwinBench:
         return BenchInfo("twin", True, self._bench.facts(), self._person)
 
     def take(self, number: int, stage: Stage, velocity_mm_s: float | None, cue: Cue) -> Take:
-        """Make one take; DeviceError on a pace that the bench cannot record."""
         if self._pacing:
             _shown(cue, self._pacing)
         try:

@@ -39,7 +39,6 @@ class LibraryBoard:
         self._plugged = True
 
     def tick(self, inputs: Inputs) -> Outputs:
-        """Run one tick; DeviceError once the board is closed."""
         if not self._handle.value:
             raise DeviceError(f"{self.name}: the board is switched off; open it again")
         self._hand_over()
@@ -116,11 +115,9 @@ class HostBoard:
 
     @property
     def pid(self) -> int:
-        """Number of the process."""
         return self._process.pid
 
     def tick(self, inputs: Inputs) -> Outputs:
-        """Run one tick; DeviceError if the program has ended."""
         try:
             if self._owed:
                 self._take()  # Ctrl-C came between question and answer

@@ -123,7 +123,6 @@ class Client:
         return 1e-6 * clocks.host_us(unwrap_us(time_us, self._exchanges[-1].device_us))
 
     def read_settings(self) -> Settings:
-        """Read calibration and limits."""
         return self._request(Message.READ_SETTINGS, Settings)
 
     def write_settings(self, settings: Settings) -> None:
@@ -139,11 +138,9 @@ class Client:
         self._command(Message.ACTIVATE)
 
     def arm(self) -> None:
-        """Render the active program."""
         self._command(Message.ARM)
 
     def disarm(self) -> None:
-        """Fall to zero force."""
         self._command(Message.DISARM)
 
     def stream(self, every: int) -> None:
@@ -151,7 +148,6 @@ class Client:
         self._command(Message.TELEMETRY, TelemetryRequest(every=every))
 
     def announce(self, velocity_mm_s: float) -> None:
-        """Announce the mean speed of the next press."""
         self._command(Message.ANNOUNCE, AnnounceRequest(velocity_mm_s16=round(16 * velocity_mm_s)))
 
     def event(self, number: int) -> None:
@@ -159,22 +155,18 @@ class Client:
         self._command(Message.EVENT, EventRequest(event=number))
 
     def vibrate(self, slot: int) -> None:
-        """Play a waveform of the active program now."""
         self._command(Message.VIBRATE, VibrateRequest(slot=slot))
 
     def read_fault(self) -> ReadFaultReply:
-        """Read the latched fault and its evidence."""
         return self._request(Message.READ_FAULT, ReadFaultReply)
 
     def clear_fault(self, fault: Fault) -> None:
         self._command(Message.CLEAR_FAULT, ClearFaultRequest(fault=fault))
 
     def selftest(self) -> SelftestReply:
-        """Have the device test its parts."""
         return self._request(Message.SELFTEST, SelftestReply)
 
     def counters(self) -> ReadCountersReply:
-        """Read what went wrong so far."""
         return self._request(Message.READ_COUNTERS, ReadCountersReply)
 
     # -- what comes unasked --------------------------------------------------------------------------------

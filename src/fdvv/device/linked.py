@@ -142,7 +142,6 @@ class LinkedDevice(Remote):
         return replace(super().info(), name=self.board_name, simulated=True)
 
     def upload_program(self, image: bytes) -> None:
-        """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
         super().upload_program(image)
         self._person.load(image)
 
@@ -153,13 +152,11 @@ class LinkedDevice(Remote):
         return name if name == kind else f"{kind} {name}"
 
     def configure(self, settings: Settings) -> None:
-        """Replace calibration and limits, whole or not at all; the device forgets its program."""
         super().configure(settings)
         self.port.tick_us = settings.tick_us
         self.port.connect(self._person.rest(settings))
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Have the simulated person press once; DeviceError if the device faults meanwhile."""
         self._check_press(velocity_mm_s)
         self.client.announce(velocity_mm_s)
         self.client.telemetry.clear()

@@ -32,7 +32,6 @@ class Inputs(NamedTuple):
     board: int = 0
 
     def pack(self) -> bytes:
-        """Return the C structure's bytes."""
         return _INPUTS.pack(*self)
 
 
@@ -185,7 +184,6 @@ class ScriptedPerson:
         self.settle_s = 0.0
 
     def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> ScriptedPlant:
-        """Press once, to the program's travel."""
         travel_mm = travel_mm_of(image)
         down_s = travel_mm / velocity_mm_s
         corners_s = np.cumsum([0.0, 0.01, down_s, 0.02, down_s, 0.04])

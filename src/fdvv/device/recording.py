@@ -43,13 +43,11 @@ def _flat(column: np.ndarray[Any, Any]) -> str:
 
 
 def unpack_press(found: dict[str, Any]) -> Press:
-    """Read a press."""
     fields: dict[str, Any] = {k: unpack_column(v) if isinstance(v, str) else v for k, v in found.items()}
     return Press(**fields)
 
 
 def unpack_surface(found: dict[str, Any]) -> ForceSurface:
-    """Read a surface."""
     columns: dict[str, Any] = {k: unpack_column(v) for k, v in found.items()}
     shape = columns["velocity_mm_s"].size, columns["displacement_mm"].size
     tables = {k: columns[k].reshape(shape) for k in ("press_cN", "release_cN")}
@@ -112,7 +110,6 @@ class Recorder:
         self._recorded(lambda: self._programs().upload_program(image), line)
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Press and write down."""
         press = self._recorded(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
         self._write({"press": pack_record(press)})
         return press
@@ -231,7 +228,6 @@ class ReplayDevice:
         raise DeviceError(f"{self._path}: {what} is not in the rest of the recording; press it on a device")
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Return the next press of this upload; DeviceError at another speed, or if none is left."""
         if not self._active:
             raise DeviceError(f"{self._path}: press before upload; upload a surface first")
         check_speed(str(self._path), velocity_mm_s)

@@ -68,7 +68,6 @@ class Remote:
         )
 
     def settings(self) -> Settings:
-        """Return calibration and limits, as read on opening or written since."""
         return self._settings
 
     def configure(self, settings: Settings) -> None:
@@ -80,12 +79,10 @@ class Remote:
         self._settings, self.travel_mm = settings, None
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
-        """Make surface the active command table and set the stop; DeviceError beyond the limits."""
         check_table(self.info(), surface, travel_mm)
         self.upload_program(surface_image(surface, travel_mm, paced))
 
     def upload_program(self, image: bytes) -> None:
-        """Make a program the active one, whole or not at all; DeviceError with the device's reason."""
         travel_mm = travel_mm_of(image)
         self.client.upload(image)
         self.travel_mm, self.image = travel_mm, image
@@ -111,11 +108,9 @@ class Remote:
         )
 
     def clear_fault(self) -> None:
-        """Clear the latched fault; DeviceError while its cause lasts."""
         self.client.clear_fault(self.fault().fault)
 
     def close(self) -> None:
-        """Stop, and let the device go; a second time does nothing."""
         if self._closed:
             return
         self._closed = True

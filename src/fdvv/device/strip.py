@@ -292,17 +292,14 @@ class LedPointingTask:
         self._wire.command(StripMessage.SHOW, order)
 
     def stop(self) -> None:
-        """End the round or what is shown; the strip goes dark."""
         self._wire.command(StripMessage.STOP)
 
     @property
     def firmware(self) -> str:
-        """Return the version of the board's firmware."""
         return ".".join(str(self._wire.hello.firmware >> shift & 255) for shift in (16, 8, 0))
 
     @property
     def was_reset(self) -> bool:
-        """Return whether its watchdog had reset the board before it was opened."""
         return bool(self._wire.hello.flags & StripBoardFlag.WATCHDOG)
 
     def _s(self, time_us: int) -> float:

@@ -55,7 +55,6 @@ class LibraryStrip:
         insort(self._edges_us, round(1e6 * time_s))
 
     def write(self, data: bytes) -> None:
-        """Send bytes; the board sees them in its next step."""
         self._asked += data
 
     def read(self, until_s: float) -> bytes:

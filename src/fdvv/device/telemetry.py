@@ -44,7 +44,6 @@ class TickColumns:
     flags: IntArray
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> TickColumns:
-        """Return only the chosen ticks."""
         return TickColumns(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
 
@@ -74,7 +73,6 @@ class Telemetry:
         self._sequence = sequence
 
     def add(self, head: RecordsRequest, records: bytes, sequence: int) -> None:
-        """Take one frame."""
         self.heard(sequence)
         if self.last is not None:
             self.lost_records += max(0, head.lost - self.last.lost)
@@ -97,7 +95,6 @@ class Telemetry:
         return found
 
     def columns(self) -> TickColumns:
-        """Return what has arrived as columns."""
         heads = [head for head, _ in self._pieces]
         rows = np.frombuffer(b"".join(records for _, records in self._pieces), TICK_RECORD)
         ticks = [head.first_tick + head.every * np.arange(head.count, dtype=np.int64) for head in heads]

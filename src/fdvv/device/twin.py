@@ -92,7 +92,6 @@ class TwinDevice:
         self._activate(image)
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Have the simulated person press once; DeviceError before an upload or at an absurd speed."""
         return self.press_trace(velocity_mm_s).press(velocity_mm_s)
 
     def press_trace(self, velocity_mm_s: float) -> Trace:

@@ -96,7 +96,6 @@ class Wire:
 
     @property
     def damaged(self) -> int:
-        """Count frames from the device that arrived damaged."""
         return self._decoder.bad
 
     def request(self, message: Message, body: Record | None = None) -> Record | None:
@@ -158,7 +157,6 @@ class Wire:
         return bool(data)
 
     def reset(self) -> None:
-        """Forget half a frame after the line was opened again."""
         self._decoder.reset()
 
 
@@ -197,7 +195,6 @@ class ClockRelation:
     exchanges: int
 
     def host_us(self, device_us: float) -> float:
-        """Turn the device's time into the host's."""
         return self.offset_us + (1 + self.drift_ppm * 1e-6) * device_us
 
 

@@ -185,7 +185,6 @@ def _plan(method: Method[Any], job: CompensationJob, log: PressLog, session: Ses
 def velocity_progress(
     job: CompensationJob, count: PressCount, log: PressLog, curves: Sequence[CurveOutcome]
 ) -> tuple[VelocityProgress, ...]:
-    """Return the progress of every velocity."""
     speeds = job.target.velocity_mm_s.tolist()
     made = [sum(e.used and e.velocity_mm_s == speed for e in log.entries) for speed in speeds]
     wanted = count.wanted or (None,) * len(speeds)

@@ -63,7 +63,6 @@ def _methods(curves: Sequence[RenderedCurve]) -> dict[str, str]:
 
 
 def _draw_cell(ax: Axes, curve: RenderedCurve | None, methods: dict[str, str], simulated: bool) -> None:
-    """Draw one velocity and stroke."""
     if curve is None:
         ax.set_visible(False)
         return
@@ -171,7 +170,6 @@ def plot_feasibility(curves: Sequence[FeasibleCurve], title: str = "") -> Any:
 
 
 def _draw_feasible(ax: Axes, curve: FeasibleCurve | None) -> None:
-    """Draw one velocity and stroke."""
     if curve is None:
         ax.set_visible(False)
         return

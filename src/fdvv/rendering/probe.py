@@ -58,7 +58,6 @@ class ProbePlan:
         return PressCount(sum(map(len, found)), sum(wanted), wanted)
 
     def explain(self, found: Found) -> str:
-        """Return nothing: a probe changes nothing."""
         return ""
 
     def _at(self, found: Found) -> int | None:
@@ -135,7 +134,6 @@ class ProbeCurve:
 
 
 def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
-    """Judge both strokes of the presses at one speed."""
     grid = grid_mm(model.travel_mm, BIN_mm)
     judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
     curves = []

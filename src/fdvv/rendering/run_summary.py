@@ -110,7 +110,6 @@ def make_run_summary(
 
 
 def save_run_summary(folder: Path, receipt: RunSummary) -> None:
-    """Write the summary of a session into its folder. Raises OSError."""
     write_atomic(folder / RECEIPT, pretty(receipt.to_dict()) + "\n")
 
 

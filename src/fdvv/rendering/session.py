@@ -134,13 +134,11 @@ def digest(data: bytes) -> str:
 
 
 def table_digest(surface: ForceSurface) -> str:
-    """Return the SHA-256 of a table's columns."""
     columns = (surface.displacement_mm, surface.velocity_mm_s, surface.press_cN, surface.release_cN)
     return digest(b"".join(np.ascontiguousarray(column, dtype="<f8").tobytes() for column in columns))
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of fdvv, Python and NumPy."""
     return {"fdvv": fdvv.__version__, "python": platform.python_version(), "numpy": np.__version__}
 
 
@@ -150,7 +148,6 @@ def now() -> str:
 
 
 def read_manifest(path: Path) -> Manifest:
-    """Read a manifest. InputError."""
     text = read_limited(path, LARGEST_bytes, KIND.remedy)
     return read_document(
         text, path, KIND, lambda data: msgspec.json.decode(data, type=Manifest), lambda _: None
@@ -158,7 +155,6 @@ def read_manifest(path: Path) -> Manifest:
 
 
 def manifest_text(manifest: Manifest) -> str:
-    """Write a manifest."""
     return pretty(msgspec.to_builtins(manifest)) + "\n"
 
 
@@ -239,7 +235,6 @@ class Session:
         return self._open_log(manifest, PressLog)
 
     def open_answers(self, manifest: Manifest) -> AbstractContextManager[AnswerLog]:
-        """Open the log of a session's answers."""
         return self._open_log(manifest, AnswerLog)
 
     @contextmanager

@@ -52,7 +52,6 @@ class Candidates:
         return found
 
     def plain(self) -> list[dict[str, Any]]:
-        """Return the vibrations as plain values for JSON."""
         return [{**asdict(v), "stroke": str(v.stroke)} for v in self.vibrations]
 
 
@@ -115,7 +114,6 @@ def candidate_image(
 
 
 def _alike(a: Vibration, b: Vibration) -> bool:
-    """Return whether two vibrations are equal within rounding."""
     if len(a.modes) != len(b.modes) or not np.isclose(a.duration_s, b.duration_s):
         return False
     mine, theirs = (

@@ -62,7 +62,6 @@ class TunedVibration:
 
     @property
     def vibration(self) -> Vibration:
-        """The preferred vibration."""
         return self.candidates.vibrations[self.standing.best]
 
     @property
@@ -123,7 +122,6 @@ class TuneResult:
         return self.receipt.used
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the report."""
         head = {
             name: getattr(self, name) for name in ("method", "device", "observer", "simulated", "answers")
         }
@@ -186,8 +184,6 @@ def tune_vibration(
 
 @dataclass(frozen=True, eq=False)
 class _TuningPlan:
-    """What the loop uses."""
-
     device: Device
     candidates: tuple[Candidates, ...]
     upload: Callable[[Vibration], None]

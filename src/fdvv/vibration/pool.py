@@ -129,7 +129,6 @@ class MeasuredVibration:
         return known_rings(self.ring)
 
     def rings_in(self, frequency_Hz: float) -> bool:
-        """Return whether one of rings lies near a frequency."""
         return any(abs(f / frequency_Hz - 1) <= SAME_ratio for f, _ in self.rings)
 
     @property

@@ -223,7 +223,6 @@ class HeardPress:
 
     @property
     def period_s(self) -> float:
-        """Time between samples of the signal."""
         return float(self.t_s[-1] - self.t_s[0]) / (self.t_s.size - 1)
 
     @cached_property
@@ -231,7 +230,6 @@ class HeardPress:
         return noise_rms(self.signal)
 
     def noise_or_own(self) -> float:
-        """Return the noise that was stated, else the record's own."""
         return self._own_noise if self.noise is None else self.noise
 
     def passing_s(self, at_mm: float) -> float | None:
@@ -246,7 +244,6 @@ class HeardPress:
         return float(t[k - 1] + (at_mm - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1]))
 
     def place_at(self, t_s: float) -> float:
-        """Return the displacement at a time."""
         return float(np.interp(t_s, self.place_s, self.place_mm))
 
 

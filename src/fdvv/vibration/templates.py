@@ -41,7 +41,6 @@ class Template:
 
     @property
     def decay_1_s(self) -> float:
-        """Return the decay."""
         return float(np.log(self.start_V / max(self.end_V, SILENT_ratio * self.start_V)) / self.duration_s)
 
     def volts(self, t_s: FloatArray) -> FloatArray:

@@ -118,7 +118,6 @@ class Method(Protocol[S]):
 
 
 def standing(scores: Sequence[float], errors: Sequence[float], alike: Sequence[int], answers: int) -> Ranking:
-    """Choose what is kept."""
     distinct = len(alike) < len(scores)
     best = int(np.argmax(scores)) if distinct else 0
     return Ranking(best, tuple(map(float, scores)), tuple(map(float, errors)), tuple(alike), answers)
@@ -165,7 +164,6 @@ class Rating:
         return RatingState(job, tuple(plan))
 
     def ask(self, state: RatingState) -> Question | None:
-        """Return what to rate next."""
         if self.done(state):
             return None
         place, template = state.plan[len(state.answers)]
@@ -181,7 +179,6 @@ class Rating:
         return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
 
     def done(self, state: RatingState) -> bool:
-        """Return whether everything was rated as often as planned."""
         return len(state.answers) >= len(state.plan)
 
     def best(self, state: RatingState) -> tuple[Ranking, ...]:

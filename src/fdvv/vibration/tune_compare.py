@@ -54,7 +54,6 @@ class Comparing:
             )
 
     def init(self, job: Job) -> ComparingState:
-        """Begin without answers."""
         return ComparingState(job)
 
     def ask(self, state: ComparingState) -> Question | None:
@@ -76,7 +75,6 @@ class Comparing:
         return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
 
     def done(self, state: ComparingState) -> bool:
-        """Return whether every velocity is."""
         return all(self._done(state, place) for place in range(state.job.places))
 
     def best(self, state: ComparingState) -> tuple[Ranking, ...]:

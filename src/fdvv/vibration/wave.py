@@ -40,7 +40,6 @@ class Wav:
     full_scale: float
 
     def save(self, path: Path | str) -> None:
-        """Write the file, whole or not at all. Raises OSError."""
         write_atomic(Path(path), self.data)
 
 

@@ -109,7 +109,6 @@ class Motion:
 
     @property
     def step_s(self) -> float:
-        """Time step."""
         return float(self.t_s[1] - self.t_s[0])
 
     def at_places(self, values: FloatArray, displacement_mm: FloatArray) -> FloatArray:
