@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from tests.support.scripted_person import ScriptedPerson
 
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.remote import surface_image
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Settings

@@ -16,13 +16,13 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LockstepPort
-from fdvv.device.plant import ScriptedPlant
 from fdvv.device.remote import PressedDevice
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.testing.scripted import ScriptedDevice
+from tests.support.scripted_person import ScriptedPlant
 
 from .conftest import Run
 

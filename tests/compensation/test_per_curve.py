@@ -8,7 +8,7 @@ import pytest
 from fdvv.compensation.method import CompensationJob, PressCount
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.per_curve import PerCurve
-from fdvv.compensation.tables import GainSchedule, dense_velocities
+from fdvv.compensation.tables import GainSchedule
 from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
@@ -120,11 +120,3 @@ def test_the_outcome_lists_presses_then_releases_by_speed() -> None:
         ("release", 50.0),
         ("release", 100.0),
     ]
-
-
-def test_dense_tables_are_straight_between_speeds_and_hold_outside() -> None:
-    surface = ForceSurface.of_model(MODEL, [50.0, 100.0])
-    dense = dense_velocities(surface, [20.0, 50.0, 75.0, 100.0, 300.0])
-    np.testing.assert_array_equal(dense.press_cN[0], surface.press_cN[0])
-    np.testing.assert_allclose(dense.release_cN[2], surface.release_cN.mean(axis=0))
-    np.testing.assert_array_equal(dense.press_cN[4], surface.press_cN[1])

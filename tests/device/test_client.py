@@ -9,11 +9,11 @@ import pytest
 from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.client import Client
 from fdvv.device.linked import LinkedDevice, LockstepPort
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError
 from fdvv.protocol.tables import FaultedRequest, Refusal, Settings
 from tests.support.link_rigs import LONG, PROGRAMS, linked
+from tests.support.scripted_person import ScriptedPerson
 
 
 class BadLine(LibraryBoard):

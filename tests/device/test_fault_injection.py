@@ -18,7 +18,6 @@ import pytest
 
 from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.linked import Board, LockstepPort
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.wire import REASONS
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import data_request, read_notice, read_reply, request_frame
@@ -37,6 +36,7 @@ from fdvv.protocol.tables import (
     Settings,
 )
 from tests.support.link_rigs import PROGRAMS
+from tests.support.scripted_person import ScriptedPerson
 
 ROOT = Path(__file__).resolve().parents[2]
 BASE = Settings()

@@ -17,7 +17,7 @@ from fdvv import _native
 from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.contract import ProgramDevice
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.plant import Inputs
 from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import DeviceError
 from fdvv.model.surface import ForceSurface
@@ -26,6 +26,7 @@ from fdvv.protocol.messages import request_frame
 from fdvv.protocol.tables import HASH, VERSION, Fault, HelloRequest, Message, Settings
 from fdvv.testing.conformance import ProgramConformance, plain_surface
 from tests.support.link_rigs import linked
+from tests.support.scripted_person import ScriptedPerson
 
 AHEAD = {
     "predictor_q16": 6000,

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.plant import Inputs
 from fdvv.device.remote import PressedDevice, find_press
 from fdvv.device.serial import SerialPort
 from fdvv.device.telemetry import TickColumns
@@ -17,6 +17,7 @@ from fdvv.errors import DeviceError
 from fdvv.protocol.tables import Fault
 from fdvv.testing.conformance import plain_surface
 from tests.support.pressed_rig import SETTINGS, Rig
+from tests.support.scripted_person import ScriptedPerson
 
 
 def opened(rig: Rig, patience_s: float = 20.0) -> PressedDevice:

@@ -10,7 +10,6 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import ScriptedPerson, ScriptedPlant
 from fdvv.device.remote import surface_image
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
@@ -20,6 +19,7 @@ from fdvv.testing.conformance import plain_surface
 from fdvv_m0.board import SHARE_OF_TICK, EmulatedBoard
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs
+from tests.support.scripted_person import ScriptedPerson, ScriptedPlant
 
 from ._m0 import CONTROLLER, build, sizes_bytes
 from ._simavr import say

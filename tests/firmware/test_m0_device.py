@@ -10,10 +10,10 @@ import pytest
 from fdvv.device.contract import ProgramDevice
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.open import open_device
-from fdvv.device.plant import ScriptedPerson
 from fdvv.errors import InputError
 from fdvv.testing.conformance import ProgramConformance, plain_surface
 from fdvv_m0.board import EmulatedBoard
+from tests.support.scripted_person import ScriptedPerson
 
 from ._m0 import CONTROLLER, build
 

@@ -10,11 +10,12 @@ import pytest
 
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.open import open_device
-from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.model.file import load_builtin
 from tests.support.pressed_rig import KeyedRig
+from tests.support.scripted_person import ScriptedPerson
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.strip import LedPointingTask, StripResult, StripStart
 from fdvv.device.strip_library import LibraryStrip
 from fdvv.errors import DeviceError, InputError
@@ -28,6 +27,7 @@ from fdvv.optimize.run.strip import (
     try_on_strip,
 )
 from fdvv.optimize.tasks import TaskPress, TemporalPointing
+from tests.support.scripted_person import ScriptedPerson
 
 TASKS = [TemporalPointing(level, quantised=False) for level in ("easy", "hard")]
 SHORT = replace(TASKS[1], rounds=3)

@@ -6,7 +6,6 @@ import pytest
 
 from fdvv.device.boards import HostBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import FitError, InputError
 from fdvv.protocol.messages import head_of
@@ -16,6 +15,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.rig import PositionSensor, Rig
 from fdvv.twin.rig_moves import Exciter
 from fdvv.vibration.exciter import KnownExciter
+from tests.support.scripted_person import ScriptedPerson
 
 RIG = Rig(exciter=Exciter(latency_s=2e-4))
 RESONANCE_Hz, QUALITY, GAIN_m_s2_V = 669.3, 1.96, 19.6

@@ -16,7 +16,7 @@ from fdvv.compensation.tables import GainSchedule
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.contract import DeviceInfo, FaultReport
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.plant import Inputs
 from fdvv.device.recording import Recorder
 from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import DeviceError, InputError, ModelError
@@ -32,6 +32,7 @@ from fdvv.rendering.session import MANIFEST, Session, plain
 from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest
 from fdvv.testing.scripted import ScriptedDevice
+from tests.support.scripted_person import ScriptedPerson
 from tests.support.sessions import LAW, MODEL, SPEEDS, Hand, learn
 
 SURFACE = ForceSurface.of_model(MODEL, SPEEDS)

@@ -16,7 +16,7 @@ from fdvv.compensation.method import UNTUNED, Outcome, Tuning
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.linked import LinkedDevice, LockstepPort
-from fdvv.device.plant import Inputs, ScriptedPerson
+from fdvv.device.plant import Inputs
 from fdvv.device.remote import PressedDevice
 from fdvv.device.serial import SerialPort
 from fdvv.device.twin import SimulatedPerson, TwinDevice
@@ -38,6 +38,7 @@ from fdvv.study.stimulus.program import trial_program
 from fdvv.twin.files import load_finger, load_rig
 from tests.support.buttons import line_model
 from tests.support.pressed_rig import SETTINGS, Rig
+from tests.support.scripted_person import ScriptedPerson
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")

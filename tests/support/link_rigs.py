@@ -6,7 +6,6 @@ import numpy as np
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice, LockstepPort
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.remote import surface_image
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
@@ -14,6 +13,7 @@ from fdvv.protocol.messages import request_frame
 from fdvv.protocol.record import Record
 from fdvv.protocol.tables import HASH, VERSION, HelloRequest, Message, Settings
 from fdvv.testing.conformance import plain_surface
+from tests.support.scripted_person import ScriptedPerson
 
 TRAVELS_mm = (3.0, 5.0)
 PROGRAMS = tuple(surface_image(plain_surface(20.0, travel), travel) for travel in TRAVELS_mm)

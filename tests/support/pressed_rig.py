@@ -9,11 +9,11 @@ import tty
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LockstepPort
-from fdvv.device.plant import ScriptedPerson
 from fdvv.device.remote import surface_image
 from fdvv.protocol.frame import FrameDecoder
 from fdvv.protocol.tables import Message, Settings
 from fdvv.testing.conformance import plain_surface
+from tests.support.scripted_person import ScriptedPerson
 
 SETTINGS = Settings(host_timeout_ms=5000)
 """Patient, as this machine may be busy; otherwise the board's own."""

@@ -5,23 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model.bump import find_bump
-from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
-
-
-def _rows(table: FloatArray, at: FloatArray, new: FloatArray) -> FloatArray:
-    return np.stack([np.interp(new, at, column) for column in table.T], axis=1)
-
-
-def dense_velocities(surface: ForceSurface, velocity_mm_s: npt.ArrayLike) -> ForceSurface:
-    """Interpolate the tables linearly to other speeds; beyond the learned ones the end table is used."""
-    new = np.asarray(velocity_mm_s, dtype=np.float64)
-    tables = [_rows(t, surface.velocity_mm_s, new) for t in (surface.press_cN, surface.release_cN)]
-    return ForceSurface(surface.displacement_mm, new, *tables)
 
 
 def grid_mm(travel_mm: float, bin_mm: float) -> FloatArray:

@@ -80,13 +80,6 @@ def board_wav(counts: npt.NDArray[np.uint16], rate_Hz: int) -> Wav:
     return Wav(_packed(centred.astype("<i2"), rate_Hz), FULL / COUNT_STEP)
 
 
-def board_counts(sound: Sound) -> npt.NDArray[np.uint16]:
-    """Return the board's samples of a sound that board_wav wrote; ModelError if it is another sound."""
-    if np.any(sound.samples % COUNT_STEP):
-        raise ModelError("not a sound of the vibration board: samples are no multiples of 16")
-    return (sound.samples // COUNT_STEP + SILENCE_counts).astype(np.uint16)
-
-
 def _packed(samples: npt.NDArray[np.int16], rate_Hz: int) -> bytes:
     held = io.BytesIO()
     with wave.open(held, "wb") as sound:
