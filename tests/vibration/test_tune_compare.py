@@ -10,13 +10,13 @@ from scipy.optimize import minimize
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration.tune import Job, Preferred, SimulatedObserver
-from fdvv.vibration.tune_compare import PRIOR, Comparing, ComparingState, posterior, wins
+from fdvv.vibration.tune import Job, Preferred, SimulatedObserver, TuningState
+from fdvv.vibration.tune_compare import PRIOR, Comparing, posterior, wins
 
 JOB = Job((5,))
 
 
-def run(method: Comparing, job: Job, observer: SimulatedObserver) -> ComparingState:
+def run(method: Comparing, job: Job, observer: SimulatedObserver) -> TuningState:
     state = method.init(job)
     while (asked := method.ask(state)) is not None:
         state = method.tell(state, observer.answer(asked))
@@ -33,7 +33,7 @@ def test_the_same_answers_ask_the_same_so_that_a_session_can_go_on(
     for answer in answers:
         if method.done(state):
             break
-        assert method.ask(state) == Comparing(seed=seed).ask(ComparingState(JOB, state.answers))
+        assert method.ask(state) == Comparing(seed=seed).ask(TuningState(JOB, answers=state.answers))
         state = method.tell(state, answer)
 
 

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.vibration.tune import Job, Preferred, Rating, RatingState, SimulatedObserver
+from fdvv.vibration.tune import Job, Preferred, Rating, SimulatedObserver, TuningState
 
 JOB = Job((4, 3))
 
 
-def answered(method: Rating, job: Job, answers: list[int]) -> RatingState:
+def answered(method: Rating, job: Job, answers: list[int]) -> TuningState:
     state = method.init(job)
     for answer in answers:
         state = method.tell(state, answer)

@@ -52,8 +52,6 @@ class Tuning:
 
 UNTUNED = Tuning()
 """No feed-forward."""
-
-
 S = TypeVar("S")
 
 
@@ -138,27 +136,15 @@ class PressCount:
     wanted: tuple[int, ...] = ()
 
 
-class Method(Protocol[S]):
-    """Settings of a method: call init, then trial, press and step until trial returns None."""
-
-    @property
-    def name(self) -> str:
-        """Name of the method with its additions, for records."""
-        ...
-
-    @property
-    def bin_mm(self) -> float:
-        """Step of the tables it learns."""
-        ...
-
-    def init(self, job: CompensationJob) -> S: ...
+class TrialSource(Protocol[S]):
+    """What a session presses: call trial, press and step until trial returns None."""
 
     def trial(self, state: S) -> Trial | None:
         """Return the next press; None when finished."""
         ...
 
     def step(self, press: Press, state: S) -> S:
-        """Learn from the press of the last trial, which ``judge_press`` accepted.
+        """Use the press of the last trial, which ``judge_press`` accepted.
 
         Raises ModelError with the reason if nothing can be learned from it; the press is then repeated.
         """
@@ -171,6 +157,24 @@ class Method(Protocol[S]):
     def explain(self, state: S) -> str:
         """Return in a few words what the last press changed; empty if there is nothing."""
         ...
+
+
+class Method(TrialSource[S], Protocol[S]):
+    """Settings of a method, whose state begins with init.
+
+    Attributes
+    ----------
+    name : with its additions, for records.
+    bin_mm : step of the tables it learns.
+    """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def bin_mm(self) -> float: ...
+
+    def init(self, job: CompensationJob) -> S: ...
 
     def done(self, state: S) -> Outcome:
         """Return what has been learned so far; valid at any time."""

@@ -195,10 +195,8 @@ class PaperLaw:
 
 HOLDS_cN = (50.0, 65.0, 80.0)
 """To be tried in turn: a smaller one renders better, a larger one holds up heavier caps."""
-
 FASTER_LOOP_s = 0.0005
 """Loops with a shorter period have the delays of the 4 kHz rig."""
-
 FAST_DELAYS = Delays(position_s=0.0003, command_s=0.00125)
 
 

@@ -12,13 +12,10 @@ from fdvv.units import FloatArray
 
 EDGE_mm = 0.1
 """Guard at both ends of the travel: initial contact at the top, bounce at the stop."""
-
 HOME_mm = 0.1
 """A resting cap is above this displacement, outside the range that is learned."""
-
 FROM_mm, STOP_GUARD_mm = 0.3, 0.1
 """Errors count from 0.3 mm, after contact, to 0.1 mm before the stop."""
-
 SHORT_mm = 0.3
 """A press that ends this far before the stop did not reach it; a servo sets its stop to 0.1 mm."""
 
@@ -82,7 +79,6 @@ def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, span: Span) ->
 
 PAUSE_WINDOW_ratio = 1 / 16
 """Part of the travel within which a finger counts as paused: 0.25 of 4 mm."""
-
 MS_PER_s = 1000.0
 
 

@@ -71,7 +71,6 @@ def value_of(rig: RigModel, name: str, middle_mm: float) -> float:
 
 ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio = float("inf"), 0.6
 """Identification accepts any speed: on a heavy rig that is not compensated yet, no person can keep a pace."""
-
 MAX_SPEED_DEVIATION_ratio = 0.5
 """A press further from its requested speed informs the rig model, but not the tables of that speed."""
 

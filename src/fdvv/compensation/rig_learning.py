@@ -74,15 +74,11 @@ def predicted_change(
 
 LIFT_cN = 50.0
 """Least force in the first 0.1 mm: a table of displacement does not see whether the cap rests or moves."""
-
 TYPICAL_m_s2, TYPICAL_mm_s = 14.0, 200.0
 """Mean size of the acceleration of a stroke, which grows with the square of speed; on the twin, simulated."""
-
 SPREAD_mm_s = (0.0, 50.0, 100.0, 150.0, 200.0, 300.0)
-
 SPREAD_m_s2 = (0.3, 1.0, 1.3, 3.0, 3.5, 7.0)
 """Spread of acceleration between presses at one displacement and requested speed; on the twin, simulated."""
-
 PACE_ratio = 0.03
 """Spread of speed that remains where the controller compensates drag."""
 
@@ -266,7 +262,6 @@ def command_surface(job: CompensationJob, rig: RigModel, tables: Pair, friction_
 WORSE_ratio = 1.5
 """A last press this much worse than the best one of its speed means that learning diverged there; the spread
 between a person's presses alone seldom does that."""
-
 PressErrors = tuple[tuple[tuple[PressError, PressError], ...], ...]
 """Per speed, for each press on an identified rig: press and release."""
 

@@ -131,7 +131,6 @@ def read_only(values: FloatArray) -> FloatArray:
 
 EXTRAPOLATION_ratio = 0.3
 """Speeds up to this part of the interval beyond the outer ones are extrapolated."""
-
 GATE_sigma = 2.0
 """An innovation beyond this many standard deviations is a bounce or a slip, and is clipped to it."""
 

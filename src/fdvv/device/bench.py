@@ -125,11 +125,10 @@ class SerialBench:
             self._feed(self._heard())
             self._capture.take(1)
             self._bench = self._capture.bench
-        except ModelError as error:
+        except BaseException as error:
             port.close()
-            raise DeviceError(f"{port.name}: {error}") from error
-        except BaseException:
-            port.close()
+            if isinstance(error, ModelError):
+                raise DeviceError(f"{port.name}: {error}") from error
             raise
 
     def facts(self) -> BenchInfo:
@@ -150,9 +149,8 @@ class SerialBench:
         marks = [replace(mark, clock=self._clock) for mark in take.marks if mark.name != ANCHOR]
         marks += [Mark(name, self._clock, begun_s + t_s) for name, t_s in cue.events]
         streams = tuple(replace(stream, clock=self._clock) for stream in take.streams)
-        return replace(
-            take, streams=streams, marks=tuple(marks), remark="; ".join(self._capture.warnings[known:])
-        )
+        remark = "; ".join(self._capture.warnings[known:])
+        return replace(take, streams=streams, marks=tuple(marks), remark=remark)
 
     def close(self) -> None:
         self._port.close()
@@ -170,9 +168,8 @@ class SerialBench:
                 if body == BODY:
                     return lines
         found = "something else than a capture bench writes there" if heard else "no answer"
-        raise DeviceError(
-            f"{self._port.name}: {found}; check the port's name, the cable and the board's program"
-        )
+        remedy = "check the port's name, the cable and the board's program"
+        raise DeviceError(f"{self._port.name}: {found}; {remedy}")
 
     def _recorded(self, cue: Cue) -> list[str]:
         begun_s = heard_s = self._port.now_s()
@@ -258,7 +255,7 @@ class TwinBench:
         return replace(made.take, marks=(*made.take.marks, *cues))
 
     def close(self) -> None:
-        """Let it go."""
+        """Do nothing: there is no line."""
 
 
 def _shown(cue: Cue, pacing: Pacing) -> None:

@@ -157,44 +157,36 @@ class LinkedDevice(Remote):
         self.port.connect(self._person.rest(settings))
 
     def press(self, velocity_mm_s: float) -> Press:
-        self._check_press(velocity_mm_s)
-        self.client.announce(velocity_mm_s)
-        self.client.telemetry.clear()
-        self.client.stream(1)
-        try:
-            self.client.arm()
-            truth, ticks = self._pressed(velocity_mm_s)
-        finally:
-            self.stop()
-            self.port.connect(self._person.rest(self._settings))
-        self._fail_on_fault()
-        return self._joined(truth, ticks, velocity_mm_s)
+        return self._press(velocity_mm_s, armed=False)
 
     def press_armed(self, velocity_mm_s: float) -> Press:
         """Have the simulated person press once while the device renders, which it goes on with.
 
         It must be armed and stream its records. DeviceError if it faults meanwhile.
         """
+        return self._press(velocity_mm_s, armed=True)
+
+    def _press(self, velocity_mm_s: float, armed: bool) -> Press:
         self._check_press(velocity_mm_s)
         self.client.announce(velocity_mm_s)
         self.client.telemetry.clear()
+        if not armed:
+            self.client.stream(1)
         try:
-            truth, ticks = self._pressed(velocity_mm_s)
+            if not armed:
+                self.client.arm()
+            # the cap comes up before anyone presses
+            self.client.listen(self.port.now_s() + self._person.settle_s)
+            plant = self._person.press(self.image, velocity_mm_s, self._settings)
+            self.port.connect(plant)
+            self.client.listen(self.port.now_s() + plant.ticks * self._settings.tick_us * 1e-6)
+            truth, ticks = plant.record(), np.array(self.port.ticks)
         finally:
+            if not armed:
+                self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
         return self._joined(truth, ticks, velocity_mm_s)
-
-    def _pressed(self, velocity_mm_s: float) -> tuple[Truth, IntArray]:
-        """Let the cap come up and the person press; give what happened and the board's ticks of it."""
-        self._listen(self._person.settle_s)
-        plant = self._person.press(self.image, velocity_mm_s, self._settings)
-        self.port.connect(plant)
-        self._listen(plant.ticks * self._settings.tick_us * 1e-6)
-        return plant.record(), np.array(self.port.ticks)
-
-    def _listen(self, duration_s: float) -> None:
-        self.client.listen(self.port.now_s() + duration_s)
 
     def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
         """Join the telemetry of the board with the truth at the same ticks."""

@@ -5,11 +5,9 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
+from fdvv.model.press import Press
 from fdvv.protocol.tables import NONE, Settings
-from fdvv.units import FloatArray
+from fdvv.twin.trace import Trace
 
 _INPUTS = struct.Struct("<IIHHHHHBx")
 _OUTPUTS = struct.Struct("<hBBHBB6xh4x")
@@ -56,24 +54,8 @@ class Plant(Protocol):
         """Move on to the next tick with these outputs, and read the sensors there."""
 
 
-class Truth(Protocol):
-    """What really happened, all on one clock; every column (n,)."""
-
-    @property
-    def t_s(self) -> FloatArray:
-        """From 0."""
-
-    @property
-    def displacement_mm(self) -> FloatArray:
-        """Of the cap."""
-
-    @property
-    def force_cN(self) -> FloatArray:
-        """Between finger and cap."""
-
-    @property
-    def tick(self) -> npt.NDArray[np.bool_] | None:
-        """Rows at which the board read its sensors."""
+Truth = Press | Trace
+"""What really happened, all on one clock; `tick` marks the rows at which the board read its sensors."""
 
 
 class PressedPlant(Plant, Protocol):

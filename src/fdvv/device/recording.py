@@ -14,8 +14,8 @@ import dataclasses
 import json
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -98,11 +98,8 @@ class Recorder:
         self._recorded(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
-        upload = {
-            "surface": pack_record(surface),
-            "travel_mm": travel_mm,
-            **({"paced": True} if paced else {}),
-        }
+        upload = {"surface": pack_record(surface), "travel_mm": travel_mm}
+        upload |= {"paced": True} if paced else {}
         self._recorded(lambda: self._device.upload(surface, travel_mm, paced), {"upload": upload})
 
     def upload_program(self, image: bytes) -> None:
@@ -138,9 +135,7 @@ class Recorder:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 
@@ -167,19 +162,12 @@ def read_session(path: Path) -> list[dict[str, Any]]:
 
 def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
     """Read a line; None if it was cut short, as the last line of a killed session is."""
-    try:
+    found = None
+    with suppress(json.JSONDecodeError):
         found = json.loads(line)
-    except json.JSONDecodeError:
-        if not line.startswith("{"):
-            raise _no_record(path, number) from None
-        return None
-    if not isinstance(found, dict):
-        raise _no_record(path, number)
-    return found
-
-
-def _no_record(path: Path, number: int) -> InputError:
-    return InputError(path, f"line {number}", "is no record", "name a file that --record wrote")
+    if isinstance(found, dict) or (found is None and line.startswith("{")):
+        return found
+    raise InputError(path, f"line {number}", "is no record", "name a file that --record wrote")
 
 
 class ReplayDevice:
@@ -206,9 +194,8 @@ class ReplayDevice:
 
     def configure(self, settings: Settings) -> None:
         """Find these settings in what follows; DeviceError if they were not written then."""
-        self._find(
-            "settings", lambda found: found == dataclasses.asdict(settings), "a device with such settings"
-        )
+        wanted = dataclasses.asdict(settings)
+        self._find("settings", lambda found: found == wanted, "a device with such settings")
         self._settings, self._active = settings, False
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
@@ -262,8 +249,7 @@ class ReplayDevice:
 
 
 def _same(found: dict[str, Any], surface: ForceSurface, travel_mm: float, paced: bool) -> bool:
-    then = unpack_surface(found["surface"])
-    names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
-    pairs = [(getattr(then, name), getattr(surface, name)) for name in names]
-    same = found["travel_mm"] == travel_mm and found.get("paced", False) == paced
-    return bool(same and all(np.array_equal(a, b) for a, b in pairs))
+    if found["travel_mm"] != travel_mm or found.get("paced", False) != paced:
+        return False
+    then = vars(unpack_surface(found["surface"]))
+    return all(np.array_equal(then[name], column) for name, column in vars(surface).items())

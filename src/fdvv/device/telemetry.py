@@ -98,16 +98,12 @@ class Telemetry:
         heads = [head for head, _ in self._pieces]
         rows = np.frombuffer(b"".join(records for _, records in self._pieces), TICK_RECORD)
         ticks = [head.first_tick + head.every * np.arange(head.count, dtype=np.int64) for head in heads]
-        return _columns(np.concatenate(ticks) if ticks else np.empty(0, np.int64), rows)
-
-
-def _columns(tick: IntArray, rows: npt.NDArray[np.void]) -> TickColumns:
-    return TickColumns(
-        tick,
-        rows["displacement_um16"] / UM16_PER_mm,
-        rows["velocity_mm_s16"] / 16.0,
-        rows["commanded_cN64"] / CN64_PER_cN,
-        rows["force_cN64"] / CN64_PER_cN,
-        rows["state"].astype(np.int64),
-        rows["flags"].astype(np.int64),
-    )
+        return TickColumns(
+            np.concatenate(ticks) if ticks else np.empty(0, np.int64),
+            rows["displacement_um16"] / UM16_PER_mm,
+            rows["velocity_mm_s16"] / 16.0,
+            rows["commanded_cN64"] / CN64_PER_cN,
+            rows["force_cN64"] / CN64_PER_cN,
+            rows["state"].astype(np.int64),
+            rows["flags"].astype(np.int64),
+        )

@@ -20,12 +20,9 @@ from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.run_summary import RunSummary, read_run_summary
 
 FORMAT = "fdvv-actuation"
-
 VERSION = 2
-
 READ = (1, 2)
 """Version 1 had no receipt."""
-
 SUFFIX = ".actuation.json"
 
 

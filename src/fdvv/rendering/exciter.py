@@ -39,7 +39,6 @@ SETTLE_s, START_s, END_s = 0.6, 0.1, 0.02
 LONGEST_s = 4.0
 COUNTS = 2047
 KNOWN_LAG_ratio = 0.1
-
 Progress = Callable[[int, int], None]
 Record = tuple[FloatArray, FloatArray]
 

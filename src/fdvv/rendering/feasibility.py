@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from fdvv.compensation.feasibility.verdict import ExpectedError, FollowVerdict, 
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.contract import DeviceInfo
 from fdvv.errors import ModelError
-from fdvv.model.curve import Stroke
+from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import check_speeds
@@ -70,7 +70,7 @@ class CurveFeasibility:
             "bump_drop_cN": reached.drop_cN,
             "bump_kept_ratio": reached.kept_ratio,
             "stability": self.stable.to_dict(),
-            "expected_error": self.expected.to_dict(),
+            "expected_error": asdict(self.expected),
             **{name: getattr(reached, name).tolist() for name in columns},
             "measured": None if measured is None else measured.to_dict(),
         }
@@ -106,7 +106,7 @@ class FeasibilityReport:
             "travel_mm": self.travel_mm,
             "rig_presses": self.rig_presses,
             "curves": [curve.to_dict() for curve in self.curves],
-            "thermal": [{"velocity_mm_s": v, **dose.to_dict()} for v, dose in warmth],
+            "thermal": [{"velocity_mm_s": v, **asdict(dose)} for v, dose in warmth],
         }
 
     def to_json(self) -> str:
@@ -115,26 +115,19 @@ class FeasibilityReport:
 
 def feasible_curves(report: FeasibilityReport) -> list[FeasibleCurve]:
     """Return the curves for fdvv.report; a measured band is the quartiles of the presses."""
-    return [_drawn(curve, report.simulated) for curve in report.curves]
-
-
-def _drawn(curve: CurveFeasibility, simulated: bool) -> FeasibleCurve:
-    reached, found, band = curve.reached, curve.measured, None
-    if found is not None:
-        low, middle, high = np.percentile(found.rendered_cN, [25, 50, 75], axis=0)
-        band = RenderedBand("measured", middle, low, high)
-    return FeasibleCurve(
-        curve.stroke,
-        curve.velocity_mm_s,
-        reached.displacement_mm,
-        reached.intended_cN,
-        reached.achievable_cN,
-        reached.saturated | reached.slewed,
-        str(curve.verdict),
-        None if found is None else found.displacement_mm,
-        band,
-        simulated and found is not None,
-    )
+    drawn = []
+    for curve in report.curves:
+        reached = curve.reached
+        measured: dict[str, Any] = {}
+        if found := curve.measured:
+            low, middle, high = np.percentile(found.rendered_cN, [25, 50, 75], axis=0)
+            measured = {"band_mm": found.displacement_mm, "band": RenderedBand("measured", middle, low, high)}
+        columns = reached.displacement_mm, reached.intended_cN, reached.achievable_cN
+        cut, text = reached.saturated | reached.slewed, str(curve.verdict)
+        simulated = report.simulated and bool(measured)
+        place = curve.stroke, curve.velocity_mm_s
+        drawn.append(FeasibleCurve(*place, *columns, cut, text, **measured, simulated=simulated))
+    return drawn
 
 
 def feasibility(
@@ -159,59 +152,37 @@ def feasibility(
     speeds = check_speeds(velocities_mm_s)
     if not model.of(Stroke.PRESS):
         raise ModelError(f"{model.name}: it has no press curve; merge one into it")
-    limits = RigLimits.of_settings(settings)
-    case = _Case(model, known, limits, measured, info, finger, motions or {})
-    rows = [_at_speed(case, speed) for speed in speeds]
-    doses = tuple(dose for dose, _ in rows)
-    curves = tuple(curves[i] for i in range(len(Stroke)) for _, curves in rows)
-    simulated = bool(info and info.simulated) or bool(measured and measured.simulated)
-    name = info.name if info else "rig"
+    limits, made = RigLimits.of_settings(settings), motions or {}
+    stop_mm = info.travel_limit_mm if info else None
+    x = np.linspace(0.0, model.travel_mm, 1 + max(2, round(model.travel_mm / STEP_mm)))
+    doses, found = [], []
+    for speed in speeds:
+        # without a release curve the press serves for both
+        forces = [model.force_cN(x, speed, stroke if model.of(stroke) else Stroke.PRESS) for stroke in Stroke]
+        paths = [
+            made.get((stroke, speed)) or minimum_jerk(stroke, model.travel_mm, speed, limits.tick_s)
+            for stroke in Stroke
+        ]
+        doses.append(_dose(known, limits, x, forces, paths))
+        for stroke, force, motion in zip(Stroke, forces, paths, strict=True):
+            reached = achievable_stroke(known, limits, motion, x, force)
+            # the step between the strokes is reported once, with the release
+            over = forces[0] if stroke is Stroke.RELEASE else None
+            stable = stability(known, limits, x, force, over, finger)
+            verdict = follow_verdict(reached, limits, stable, doses[-1], stop_mm)
+            expected = expected_error(known, reached, motion, speed)
+            seen = _measured(measured, stroke, speed)
+            found.append(CurveFeasibility(stroke, speed, verdict, reached, stable, expected, seen))
     return FeasibilityReport(
-        model.name, model.travel_mm, tuple(speeds), curves, doses, known.presses, name, simulated
+        model.name,
+        model.travel_mm,
+        tuple(speeds),
+        tuple(sorted(found, key=reading_order)),
+        tuple(doses),
+        known.presses,
+        info.name if info else "rig",
+        bool(info and info.simulated) or bool(measured and measured.simulated),
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Case:
-    """Everything that is common to all speeds."""
-
-    model: FDVVModel
-    known: RigModel
-    limits: RigLimits
-    measured: ProbeResult | None
-    info: DeviceInfo | None
-    finger: NominalFinger | None
-    motions: Mapping[tuple[Stroke, float], Motion]
-
-    def motion(self, stroke: Stroke, speed_mm_s: float) -> Motion:
-        known = self.motions.get((stroke, speed_mm_s))
-        return known or minimum_jerk(stroke, self.model.travel_mm, speed_mm_s, self.limits.tick_s)
-
-
-def _at_speed(case: _Case, speed_mm_s: float) -> tuple[ThermalDose, list[CurveFeasibility]]:
-    travel_mm = case.model.travel_mm
-    x = np.linspace(0.0, travel_mm, 1 + max(2, round(travel_mm / STEP_mm)))
-    forces = _forces(case.model, x, speed_mm_s)
-    motions = [case.motion(stroke, speed_mm_s) for stroke in Stroke]
-    dose = _dose(case.known, case.limits, x, forces, motions)
-    curves = []
-    for stroke, force, motion in zip(Stroke, forces, motions, strict=True):
-        reached = achievable_stroke(case.known, case.limits, motion, x, force)
-        # the step between the strokes is reported once, with the release
-        over = forces[0] if stroke is Stroke.RELEASE else None
-        stable = stability(case.known, case.limits, x, force, over, case.finger)
-        stop_mm = case.info.travel_limit_mm if case.info else None
-        verdict = follow_verdict(reached, case.limits, stable, dose, stop_mm)
-        expected = expected_error(case.known, reached, motion, speed_mm_s)
-        found = _measured(case.measured, stroke, speed_mm_s)
-        curves.append(CurveFeasibility(stroke, speed_mm_s, verdict, reached, stable, expected, found))
-    return dose, curves
-
-
-def _forces(model: FDVVModel, x: FloatArray, speed_mm_s: float) -> list[FloatArray]:
-    """Return press and release; without a release curve the press serves for both."""
-    served = [stroke if model.of(stroke) else Stroke.PRESS for stroke in Stroke]
-    return [model.force_cN(x, speed_mm_s, stroke) for stroke in served]
 
 
 def _dose(

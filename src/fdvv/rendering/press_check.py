@@ -25,7 +25,6 @@ from fdvv.rendering.session_log import PRESSES, PressEntry, PressLog, SessionRun
 from fdvv.units import FloatArray
 
 A_SESSION, A_DEVICE_RECORDING = "a session", "a recording of a device"
-
 GO_ON = "run the session's command again, which goes on"
 
 
@@ -109,7 +108,6 @@ def _unpacked(key: str, found: Any) -> None:
 
 
 BIN_mm = 0.05
-
 FORCE_JND_ratio = 0.07
 """Just noticeable difference of force, of 2.5 to 10 N at 25 to 160 mm/s (Pang, Tan and Durlach 1991)."""
 

@@ -65,7 +65,6 @@ class ProbePlan:
 
 
 BIN_mm = 0.05
-
 ALPHA = 0.7
 """Weight of eq. 3, so that the probe's error_k reads like the paper's."""
 

@@ -34,11 +34,8 @@ SHIPPED_RIGS = {
     "light": "current drive, mover of 6 g, loop of 10 kHz",
 }
 """Rigs that come with the package, and what each is."""
-
 OWN_ABOUT = "your rig file; limits of force and time are those of the shipped default rig"
-
 SUFFIX, SIMULATED = ".rig.json", ".simulated.rig.json"
-
 IDENTIFIED_ON, IDENTIFIED_AT_mm_s, IDENTIFIED_SEED = "mx-clear", (50.0, 100.0, 150.0, 200.0), 1
 """Button, speeds and seed that identify a shipped rig."""
 
@@ -143,13 +140,10 @@ class RigCatalog:
 
 
 Limit = Literal["force", "slew"]
-
 DEFAULT_SPEED_mm_s = 50.0
 """Speed of curves of unknown velocity."""
-
 POINTS = 201
 """Points of a curve: 0.02 mm on a button of 4 mm."""
-
 STEPS, STEPS_A_TICK = 2500, 8
 """Largest number of time steps of a stroke; a report takes eight per tick, too slow for an editor."""
 

@@ -30,11 +30,8 @@ from fdvv.rendering.session_log import ANSWERS, PRESSES, AnswerLog, PressLog, Se
 from fdvv.rendering.tuning import TUNED, open_device
 
 MANIFEST = "session.json"
-
 KIND = Kind("fdvv-session", 1, "a session", "name the folder of a session, or one that is new or empty")
-
 LARGEST_bytes = 4_000_000
-
 MUST_AGREE = ("task", "model", "device", "method", "settings", "velocities_mm_s", "seed")
 
 
@@ -178,7 +175,6 @@ def _short(value: Any) -> str:
 
 
 LOGS = (PRESSES, ANSWERS)
-
 Log = TypeVar("Log", PressLog, AnswerLog)
 
 

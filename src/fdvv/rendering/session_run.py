@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import astuple, dataclass, field
-from typing import Any, Generic, NoReturn, Protocol, TypeVar, cast
+from typing import Any, Generic, NoReturn, TypeVar, cast
 
 import numpy as np
 
-from fdvv.compensation.method import CurveOutcome, PressCount, Trial
+from fdvv.compensation.method import CurveOutcome, Trial, TrialSource
 from fdvv.compensation.presses import PressAcceptance
 from fdvv.device.contract import Device, FaultReport, ProgramDevice
 from fdvv.errors import DeviceError, InputError, ModelError
@@ -16,7 +17,7 @@ from fdvv.io.files import defer_interrupt
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.session import now
-from fdvv.rendering.session_log import REMEDY, PressEntry, PressLog, PressRecord
+from fdvv.rendering.session_log import REMEDY, PressEntry, PressLog, PressRecord, SessionFile
 from fdvv.rendering.tuning import tune
 
 
@@ -90,32 +91,10 @@ class Guide:
 
 
 S = TypeVar("S")
-
 SAME_TABLE_cN = 1 / 64
 """Resolution of a device's commands: tables that differ by less are equal."""
-
 SAME_TUNING_ratio = 1e-6
 """Tunings that differ by less are equal: another processor rounds the last digits otherwise."""
-
-
-class TrialSource(Protocol[S]):
-    """The part of a method, or of a probe, that the loop uses."""
-
-    def trial(self, state: S) -> Trial | None:
-        """Return the next press; None when finished."""
-        ...
-
-    def step(self, press: Press, state: S) -> S:
-        """Use the press. Raises ModelError with the reason if it is unusable."""
-        ...
-
-    def count(self, state: S) -> PressCount:
-        """Return the number of presses made and needed."""
-        ...
-
-    def explain(self, state: S) -> str:
-        """Return what the last press changed."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,16 +142,21 @@ def run(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
     for text in (*(f"warning: {warning}" for warning in log.warnings), _resume_notice(plan, state, log)):
         if text:
             plan.guide.notice(text)
-    try:
+    with released(device, lambda: how_to_resume(log, log.used, "press", "presses")):
         return _pressed(device, plan, state, log)
-    except KeyboardInterrupt:
+
+
+@contextmanager
+def released(device: Device, resume: Callable[[], str]) -> Iterator[None]:
+    """Leave a device at zero force where the block fails; Ctrl-C and DeviceError then say how to resume."""
+    try:
+        yield
+    except BaseException as error:
         release_force(device)
-        raise KeyboardInterrupt(f"interrupted; {_how_to_resume(plan, log)}") from None
-    except DeviceError as error:
-        release_force(device)
-        raise DeviceError(f"{error}; {_how_to_resume(plan, log)}") from error
-    except BaseException:
-        release_force(device)
+        if isinstance(error, KeyboardInterrupt):
+            raise KeyboardInterrupt(f"interrupted; {resume()}") from None
+        if isinstance(error, DeviceError):
+            raise DeviceError(f"{error}; {resume()}") from error
         raise
 
 
@@ -209,8 +193,7 @@ def _same(trial: Trial, kept: PressRecord) -> bool:
         return False
     if not np.allclose(astuple(trial.tuning), astuple(kept.tuning), rtol=SAME_TUNING_ratio, atol=0):
         return False
-    names = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
-    pairs = [(getattr(trial.surface, name), getattr(kept.surface, name)) for name in names]
+    pairs = [(column, getattr(kept.surface, name)) for name, column in vars(trial.surface).items()]
     return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=SAME_TABLE_cN) for a, b in pairs)
 
 
@@ -295,19 +278,9 @@ def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | No
     count = plan.source.count(state)
     achieved = float("nan") if entry.achieved_mm_s is None else entry.achieved_mm_s
     message = plan.source.explain(state) if entry.used else ""
-    plan.progress(
-        PressDone(
-            plan.stage,
-            entry.velocity_mm_s,
-            count.made,
-            count.total,
-            press,
-            entry.reason,
-            achieved,
-            message,
-            lambda: plan.velocity_progress(state),
-        )
-    )
+    place = plan.stage, entry.velocity_mm_s, count.made, count.total
+    found = press, entry.reason, achieved, message
+    plan.progress(PressDone(*place, *found, lambda: plan.velocity_progress(state)))
 
 
 def release_force(device: Any) -> None:
@@ -319,8 +292,8 @@ def release_force(device: Any) -> None:
         pass  # disconnected, or at zero force already
 
 
-def _how_to_resume(plan: SessionPlan[Any], log: PressLog) -> str:
-    made = f"{log.used} {'press is' if log.used == 1 else 'presses are'}"
+def how_to_resume(log: SessionFile[Any], count: int, noun: str, nouns: str) -> str:
+    made = f"{count} {f'{noun} is' if count == 1 else f'{nouns} are'}"
     if log.folder is None:
         return f"{made} lost; name a folder with --session to keep them"
     return f"{made} kept in {log.folder}; run the same command again to go on"

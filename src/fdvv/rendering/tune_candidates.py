@@ -23,7 +23,6 @@ from fdvv.vibration.templates import TemplateGrid, templates_around
 from fdvv.vibration.tune import SimulatedObserver
 
 SCORE_Hz = 16_000
-
 RING_s = 0.01
 
 
@@ -123,7 +122,6 @@ def _alike(a: Vibration, b: Vibration) -> bool:
 
 
 TIMES_s = np.arange(800) / 8000
-
 FOR_SHAPE, FOR_STRENGTH = 4.0, 1.5
 """Loss of preference, in units of the noise: for an uncorrelated shape, for twice the strength."""
 

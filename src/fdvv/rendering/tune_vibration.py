@@ -21,12 +21,11 @@ from fdvv.rendering.exciter import prepare_exciter
 from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
 from fdvv.rendering.session import Session, make_manifest, now, plain, table_digest
 from fdvv.rendering.session_log import REMEDY, AnswerLog, AnswerRecord
-from fdvv.rendering.session_run import Guide, PressRequest, clear_latched, release_force
+from fdvv.rendering.session_run import Guide, PressRequest, clear_latched, how_to_resume, released
 from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
 from fdvv.vibration.exciter import KnownExciter
 from fdvv.vibration.templates import TemplateGrid
-from fdvv.vibration.tune import Job, Preferred, Question, Ranking, Rating
-from fdvv.vibration.tune_compare import Comparing
+from fdvv.vibration.tune import Job, Method, Preferred, Question, Ranking, Rating, TuningState
 
 OBSERVERS = ("person", "simulated observer")
 
@@ -128,11 +127,8 @@ class TuneResult:
         return {"model": self.model.name, **head, "velocities": [t.to_dict() for t in self.tuned]}
 
 
-State = Any
-
 Answerer = Callable[[Question], int | Preferred | None]
 """Asks a person or a simulated observer after the presses; None: press again."""
-
 PATIENCE = 10
 
 
@@ -140,7 +136,7 @@ def tune_vibration(
     device: Device,
     model: FDVVModel,
     velocities_mm_s: Sequence[float],
-    method: Rating | Comparing,
+    method: Method,
     answer: Answerer,
     setup: TuneSetup | None = None,
     session: Session | None = None,
@@ -213,7 +209,7 @@ def _uploader(
 
 
 def _about(
-    method: Rating | Comparing, setup: TuneSetup, candidates: Sequence[Candidates], surface: ForceSurface
+    method: Method, setup: TuneSetup, candidates: Sequence[Candidates], surface: ForceSurface
 ) -> dict[str, Any]:
     """Return the settings in which a session must agree to be resumed."""
     return {
@@ -225,18 +221,16 @@ def _about(
     }
 
 
-def _replayed(method: Rating | Comparing, candidates: Sequence[Candidates], log: AnswerLog) -> State:
+def _replayed(method: Method, candidates: Sequence[Candidates], log: AnswerLog) -> TuningState:
     """Rebuild the state from the answers on file. Raises InputError if they belong to other questions."""
-    one: Any = method
-    state = one.init(Job(tuple(len(c.vibrations) for c in candidates)))
+    state = method.init(Job(tuple(len(c.vibrations) for c in candidates)))
     for given in log.entries:
-        asked = one.ask(state)
+        asked = method.ask(state)
         try:
             if asked is None or _place(asked, candidates) != (given.velocity_mm_s, given.templates):
                 raise ModelError("was asked another question; another version of fdvv made it")
-            state = one.tell(
-                state, Preferred(given.answer) if isinstance(given.answer, str) else given.answer
-            )
+            answer = given.answer
+            state = method.tell(state, Preferred(answer) if isinstance(answer, str) else answer)
         except ValueError as error:
             raise InputError(log.folder, f"answer {given.number}", str(error), REMEDY) from error
     return state
@@ -255,35 +249,25 @@ def _greet(guide: Guide, log: AnswerLog, done: bool) -> None:
 
 
 def _standing(
-    candidates: Sequence[Candidates], method: Rating | Comparing, state: State
+    candidates: Sequence[Candidates], method: Method, state: TuningState
 ) -> tuple[TunedVibration, ...]:
     return tuple(TunedVibration(c, s) for c, s in zip(candidates, method.best(state), strict=True))
 
 
-def _asked(plan: _TuningPlan, method: Rating | Comparing, state: State, log: AnswerLog) -> State:
-    one: Any = method
+def _asked(plan: _TuningPlan, method: Method, state: TuningState, log: AnswerLog) -> TuningState:
     clear_latched(plan.device, plan.guide.notice)
-    try:
-        while (asked := one.ask(state)) is not None:
+    with released(plan.device, lambda: how_to_resume(log, len(log.entries), "answer", "answers")):
+        while (asked := method.ask(state)) is not None:
             reply, speeds = _answered(plan, asked)
             with defer_interrupt():
-                after = one.tell(state, reply)
+                after = method.tell(state, reply)
                 stored = str(reply) if isinstance(reply, Preferred) else reply
                 velocity, templates = _place(asked, plan.candidates)
                 given = AnswerRecord(asked.number, velocity, templates, stored, speeds, now())
                 log.add(given)
                 state = after
             plan.answered(AnswerEvent(given, asked.total, _standing(plan.candidates, method, state)))
-        return state
-    except KeyboardInterrupt:
-        release_force(plan.device)
-        raise KeyboardInterrupt(f"interrupted; {_how_to_resume(log)}") from None
-    except DeviceError as error:
-        release_force(plan.device)
-        raise DeviceError(f"{error}; {_how_to_resume(log)}") from error
-    except BaseException:
-        release_force(plan.device)
-        raise
+    return state
 
 
 def _answered(plan: _TuningPlan, asked: Question) -> tuple[int | Preferred, list[float | None]]:
@@ -308,13 +292,6 @@ def _pressed(plan: _TuningPlan, asked: Question, template: int) -> float | None:
         plan.guide.notice(f"not used, {verdict.reason}")
     name = plan.device.info().name
     raise DeviceError(f"{name}: {PATIENCE} presses in a row could not be used; the last {verdict.reason}")
-
-
-def _how_to_resume(log: AnswerLog) -> str:
-    made = f"{len(log.entries)} {'answer is' if len(log.entries) == 1 else 'answers are'}"
-    if log.folder is None:
-        return f"{made} lost; name a folder with --session to keep them"
-    return f"{made} kept in {log.folder}; run the same command again to go on"
 
 
 def _with_provenance(result: TuneResult) -> FDVVModel:

@@ -82,7 +82,6 @@ def open_device(name: str, rig: Path | None = None, finger: Path | None = None, 
 
 
 MAGIC = IMAGE_MAGIC.to_bytes(4, "little")
-
 STEP_mm = 0.05
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Protocol, TypeVar
 
 import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
-S = TypeVar("S")
 LOWEST, HIGHEST = 1, 7
 SCALE = 1.5
 """Ratings per unit of how much a template is liked."""
@@ -87,54 +86,62 @@ class Job:
         if not self.templates or min(self.templates) < 2:
             raise ModelError(f"tuning needs 2 templates at every velocity, got {self.templates}")
 
-    @property
-    def places(self) -> int:
-        """Count the velocities."""
-        return len(self.templates)
-
-
-class Method(Protocol[S]):
-    """One shape for ways of asking: settings are the object, all else is in the state."""
-
-    def init(self, job: Job) -> S:
-        """Begin."""
-        ...
-
-    def ask(self, state: S) -> Question | None:
-        """Return what to ask; the same state asks the same. None when done."""
-        ...
-
-    def tell(self, state: S, answer: int | Preferred) -> S:
-        """Take the answer to what is asked; ModelError if it is none."""
-        ...
-
-    def done(self, state: S) -> bool:
-        """Return whether nothing is left to ask."""
-        ...
-
-    def best(self, state: S) -> tuple[Ranking, ...]:
-        """Say per velocity what the answers so far say."""
-        ...
-
-
-def standing(scores: Sequence[float], errors: Sequence[float], alike: Sequence[int], answers: int) -> Ranking:
-    distinct = len(alike) < len(scores)
-    best = int(np.argmax(scores)) if distinct else 0
-    return Ranking(best, tuple(map(float, scores)), tuple(map(float, errors)), tuple(alike), answers)
-
 
 @dataclass(frozen=True)
-class RatingState:
-    """State of the method: the plan as (velocity, template) in order, and the answers so far."""
+class TuningState:
+    """The answers so far, and of ratings the plan as (velocity, template) in order."""
 
     job: Job
-    plan: tuple[tuple[int, int], ...]
+    plan: tuple[tuple[int, int], ...] = ()
     answers: tuple[Answered, ...] = ()
+
+    def answered(self, place: int) -> list[Answered]:
+        return [a for a in self.answers if a.place == place]
+
+
+class Method(ABC):
+    """One shape for ways of asking: settings are the object, all else is in the state."""
+
+    def init(self, job: Job) -> TuningState:
+        """Begin without answers."""
+        return TuningState(job)
+
+    @abstractmethod
+    def ask(self, state: TuningState) -> Question | None:
+        """Return what to ask; the same state asks the same. None when done."""
+
+    def tell(self, state: TuningState, answer: int | Preferred) -> TuningState:
+        """Take the answer to what is asked; ModelError if it is none."""
+        asked = self.ask(state)
+        if asked is None:
+            raise ModelError("nothing is asked any more")
+        self._check(answer)
+        return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
+
+    @abstractmethod
+    def _check(self, answer: int | Preferred) -> None:
+        """Raise ModelError if it is no answer."""
+
+    def done(self, state: TuningState) -> bool:
+        return self.ask(state) is None
+
+    def best(self, state: TuningState) -> tuple[Ranking, ...]:
+        """Return per velocity what the answers so far say."""
+        return tuple(self.ranking(state, place) for place in range(len(state.job.templates)))
+
+    @abstractmethod
+    def ranking(self, state: TuningState, place: int) -> Ranking: ...
+
+
+def standing(scores: FloatArray, errors: FloatArray, alike: Sequence[int], answers: int) -> Ranking:
+    distinct = len(alike) < len(scores)
+    best = int(np.argmax(scores)) if distinct else 0
+    return Ranking(best, tuple(scores.tolist()), tuple(errors.tolist()), tuple(alike), answers)
 
 
 @dataclass(frozen=True)
-class Rating:
-    """Settings.
+class Rating(Method):
+    """Rate from 1, unlike the real button, to 7.
 
     Attributes
     ----------
@@ -151,53 +158,38 @@ class Rating:
                 f"repeats must be 2 or more and seed 0 or more, got {self.repeats} and {self.seed}"
             )
 
-    def init(self, job: Job) -> RatingState:
+    def init(self, job: Job) -> TuningState:
         """Draw the order: in every round each velocity once, in it each template, none twice in a row."""
         random = np.random.default_rng(self.seed)
         plan: list[tuple[int, int]] = []
         for _ in range(self.repeats):
-            for place in random.permutation(job.places):
+            for place in random.permutation(len(job.templates)):
                 order = random.permutation(job.templates[place])
                 while plan and plan[-1] == (int(place), int(order[0])):
                     order = random.permutation(job.templates[place])
                 plan += [(int(place), int(template)) for template in order]
-        return RatingState(job, tuple(plan))
+        return TuningState(job, tuple(plan))
 
-    def ask(self, state: RatingState) -> Question | None:
-        if self.done(state):
+    def ask(self, state: TuningState) -> Question | None:
+        made = len(state.answers)
+        if made >= len(state.plan):
             return None
-        place, template = state.plan[len(state.answers)]
-        return Question(place, (template,), len(state.answers) + 1, len(state.plan))
+        place, template = state.plan[made]
+        return Question(place, (template,), made + 1, len(state.plan))
 
-    def tell(self, state: RatingState, answer: int | Preferred) -> RatingState:
-        """Take a rating from 1, unlike the real button, to 7."""
-        asked = self.ask(state)
-        if asked is None:
-            raise ModelError("nothing is asked any more")
+    def _check(self, answer: int | Preferred) -> None:
         if not isinstance(answer, int) or not LOWEST <= answer <= HIGHEST:
             raise ModelError(f"a rating is a whole number from {LOWEST} to {HIGHEST}, got {answer!r}")
-        return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
 
-    def done(self, state: RatingState) -> bool:
-        return len(state.answers) >= len(state.plan)
-
-    def best(self, state: RatingState) -> tuple[Ranking, ...]:
+    def ranking(self, state: TuningState, place: int) -> Ranking:
         """Compare means; alike is what Student's t at 95 %, shared among comparisons, cannot separate."""
-        return tuple(self._standing(state, place) for place in range(state.job.places))
-
-    def _standing(self, state: RatingState, place: int) -> Ranking:
-        mine = [a for a in state.answers if a.place == place]
-        rated = [
-            np.array([float(a.answer) for a in mine if a.templates[0] == template])
-            for template in range(state.job.templates[place])
-        ]
+        mine, every = state.answered(place), range(state.job.templates[place])
+        rated = [np.array([float(a.answer) for a in mine if a.templates[0] == i]) for i in every]
         scores = np.array([r.mean() if r.size else np.nan for r in rated])
         errors = _errors(rated)
         if np.isnan(scores).any() or np.isnan(errors).any():
-            every = tuple(range(state.job.templates[place]))
-            return standing(np.nan_to_num(scores), np.full(scores.size, np.inf).tolist(), every, len(mine))
-        alike = _alike(scores, errors, sum(r.size - 1 for r in rated))
-        return standing(scores.tolist(), errors.tolist(), alike, len(mine))
+            return standing(np.nan_to_num(scores), np.full(scores.size, np.inf), every, len(mine))
+        return standing(scores, errors, _alike(scores, errors, sum(r.size - 1 for r in rated)), len(mine))
 
 
 def _errors(rated: list[FloatArray]) -> FloatArray:
@@ -205,8 +197,7 @@ def _errors(rated: list[FloatArray]) -> FloatArray:
     free = sum(max(r.size - 1, 0) for r in rated)
     if not free:
         return np.full(len(rated), np.nan)
-    spread = sum(float(np.sum((r - r.mean()) ** 2)) for r in rated if r.size) / free
-    spread = max(spread, 1 / 12)
+    spread = max(sum(float(np.sum((r - r.mean()) ** 2)) for r in rated if r.size) / free, 1 / 12)
     return np.array([np.sqrt(spread / r.size) if r.size else np.nan for r in rated])
 
 

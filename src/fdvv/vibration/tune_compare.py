@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
-from fdvv.vibration.tune import Answered, Job, Preferred, Question, Ranking, standing
+from fdvv.vibration.tune import Job, Method, Preferred, Question, Ranking, TuningState, standing
 
 PRIOR = 1.5
 """Standard deviation of the log-odds before any answer: 3 to 1 is usual, 20 to 1 is rare."""
@@ -20,16 +20,8 @@ SHARE = {Preferred.FIRST: 1.0, Preferred.SECOND: 0.0, Preferred.NEITHER: 0.5}
 
 
 @dataclass(frozen=True)
-class ComparingState:
-    """State of the method: the answers so far."""
-
-    job: Job
-    answers: tuple[Answered, ...] = ()
-
-
-@dataclass(frozen=True)
-class Comparing:
-    """Settings.
+class Comparing(Method):
+    """Say which of two is closer.
 
     Attributes
     ----------
@@ -53,63 +45,51 @@ class Comparing:
                 f"sure must be above 0.5 to 1 and seed 0 or more, got {self.sure} and {self.seed}"
             )
 
-    def init(self, job: Job) -> ComparingState:
-        return ComparingState(job)
-
-    def ask(self, state: ComparingState) -> Question | None:
+    def ask(self, state: TuningState) -> Question | None:
         """Choose the pair of the first velocity that is not done; the same answers ask the same."""
-        total = sum(self._most(state.job, place) for place in range(state.job.places))
-        for place in range(state.job.places):
-            if not self._done(state, place):
-                pair = self._pair(state, place)
-                return Question(place, pair, len(state.answers) + 1, total)
-        return None
+        places = range(len(state.job.templates))
+        place = next((place for place in places if not self._done(state, place)), None)
+        if place is None:
+            return None
+        total = sum(self._most(state.job, each) for each in places)
+        return Question(place, self._pair(state, place), len(state.answers) + 1, total)
 
-    def tell(self, state: ComparingState, answer: int | Preferred) -> ComparingState:
-        """Take who is preferred, or that neither is."""
-        asked = self.ask(state)
-        if asked is None:
-            raise ModelError("nothing is asked any more")
+    def done(self, state: TuningState) -> bool:
+        return all(self._done(state, place) for place in range(len(state.job.templates)))
+
+    def _check(self, answer: int | Preferred) -> None:
         if not isinstance(answer, Preferred):
             raise ModelError(f"an answer is one of {', '.join(Preferred)}, got {answer!r}")
-        return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
-
-    def done(self, state: ComparingState) -> bool:
-        return all(self._done(state, place) for place in range(state.job.places))
-
-    def best(self, state: ComparingState) -> tuple[Ranking, ...]:
-        """Return log-odds by the posterior; alike is what has 5 % of the likeliest's chance or more."""
-        return tuple(self._standing(state, place) for place in range(state.job.places))
 
     def _most(self, job: Job, place: int) -> int:
         return self.comparisons or 3 * job.templates[place]
 
-    def _done(self, state: ComparingState, place: int) -> bool:
-        made = sum(a.place == place for a in state.answers)
+    def _done(self, state: TuningState, place: int) -> bool:
+        made = len(state.answered(place))
         if made >= self._most(state.job, place):
             return True
         if made < (self.fewest or state.job.templates[place]):
             return False
         return bool(self._chances(state, place).max() >= self.sure)
 
-    def _standing(self, state: ComparingState, place: int) -> Ranking:
+    def ranking(self, state: TuningState, place: int) -> Ranking:
+        """Return log-odds by the posterior; alike is what has 5 % of the likeliest's chance or more."""
         mean, spread = posterior(wins(state, place))
         chances = self._chances(state, place)
-        alike = [i for i in range(mean.size) if chances[i] >= 0.05 * chances.max()]
-        made = sum(a.place == place for a in state.answers)
-        return standing(mean.tolist(), np.sqrt(np.diag(spread)).tolist(), alike, made)
+        alike = np.flatnonzero(chances >= 0.05 * chances.max()).tolist()
+        return standing(mean, np.sqrt(np.diag(spread)), alike, len(state.answered(place)))
 
-    def _random(self, state: ComparingState, place: int) -> np.random.Generator:
+    def _random(self, state: TuningState, place: int) -> np.random.Generator:
         """Return a generator seeded by the answers, so that a resumed session asks the same."""
-        return np.random.default_rng([self.seed, place, sum(a.place == place for a in state.answers)])
+        return np.random.default_rng([self.seed, place, len(state.answered(place))])
 
-    def _chances(self, state: ComparingState, place: int) -> FloatArray:
+    def _chances(self, state: TuningState, place: int) -> FloatArray:
         mean, spread = posterior(wins(state, place))
         drawn = self._random(state, place).multivariate_normal(mean, spread, DRAWS, method="cholesky")
         found: FloatArray = np.bincount(np.argmax(drawn, axis=1), minlength=mean.size) / DRAWS
         return found
 
-    def _pair(self, state: ComparingState, place: int) -> tuple[int, int]:
+    def _pair(self, state: TuningState, place: int) -> tuple[int, int]:
         """Choose the most informative pair by the spreads of difference and answer, near the best."""
         mean, spread = posterior(wins(state, place))
         chances = self._chances(state, place) + 1 / DRAWS
@@ -122,22 +102,20 @@ class Comparing:
         return self._ordered(state, place, int(first), int(second), bool(random.integers(2)))
 
     @staticmethod
-    def _ordered(state: ComparingState, place: int, a: int, b: int, swap: bool) -> tuple[int, int]:
+    def _ordered(state: TuningState, place: int, a: int, b: int, swap: bool) -> tuple[int, int]:
         """Put first what was second more often, so that order favours nobody; chance decides a draw."""
-        mine = [x.templates for x in state.answers if x.place == place]
+        mine = [x.templates for x in state.answered(place)]
         lead = {i: sum(t[0] == i for t in mine) - sum(t[1] == i for t in mine) for i in (a, b)}
         if lead[a] != lead[b]:
             return (a, b) if lead[a] < lead[b] else (b, a)
         return (b, a) if swap else (a, b)
 
 
-def wins(state: ComparingState, place: int) -> FloatArray:
+def wins(state: TuningState, place: int) -> FloatArray:
     """Count how often each template (row) was preferred to each other; neither is half for both."""
     size = state.job.templates[place]
     count = np.zeros((size, size))
-    for answered in state.answers:
-        if answered.place != place:
-            continue
+    for answered in state.answered(place):
         first, second = answered.templates
         share = SHARE[Preferred(str(answered.answer))]
         count[first, second] += share

@@ -74,9 +74,7 @@ class RigLimits:
 
 FINEST = 8
 """Time steps per tick."""
-
 MOST_STEPS = 20_000
-
 FULL_SPEED = 30.0
 """Speed of a minimum jerk is 30 s^2 (1 - s)^2 of its mean: 1.875 times it at the middle."""
 
@@ -136,12 +134,9 @@ def minimum_jerk(stroke: Stroke, travel_mm: float, velocity_mm_s: float, tick_s:
 
 
 BoolArray = npt.NDArray[np.bool_]
-
 NOTICED_cN = 1.0
 """A smaller saturation is imperceptible."""
-
 LEAST_GAIN = 0.05
-
 NEAR_mm = 0.2
 """A smeared bump is searched this far beyond its peak and valley."""
 

@@ -20,11 +20,8 @@ from fdvv.units import FloatArray
 
 SHORTEST_s = 1e-5
 """Lower bound of lags: far below a tick, and avoids division by 0."""
-
 LEAST_kg = 5e-4
-
 Steps = tuple[FloatArray, FloatArray, FloatArray, int]
-
 PLACE, SPEED, COIL, SEEN, FINGER, FINGER_SPEED, ARM = range(7)
 
 
@@ -195,17 +192,13 @@ def stiffness_limit_N_m(loop: SampledLoop, least_N_m: float = 1.0, most_N_m: flo
 
 
 cN_mm_PER_N_m = 0.1
-
 SPAN_mm = 0.05
 """Slopes are those of the force averaged over this length, the step of a table."""
-
 HUNTS = 0.55
 """A step with a smaller margin may limit-cycle: on most rigs drag and friction damp a smaller one
 (simulated, seeds 300 to 329 of the benchmark)."""
-
 END_mm = 0.1
 """Within this distance of either end of the travel a stop carries the cap."""
-
 ENOUGH, BUZZES = 1.2, 0.5
 """From the first margin on a curve is stable, below the second it buzzes. In between it depends on fingers
 that differ from the nominal one, and on friction, which the linear loop leaves out."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,9 +37,6 @@ class ThermalDose:
     held_rise_K: float
     presses_per_min: float | None
     held_s: float | None
-
-    def to_dict(self) -> dict[str, float | None]:
-        return asdict(self)
 
 
 def rise_K(limits: RigLimits, square_cN2: float) -> float:

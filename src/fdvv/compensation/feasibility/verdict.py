@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -17,13 +17,10 @@ from fdvv.units import FloatArray
 
 KEPT_RATIO, LOST_RATIO = 0.9, 0.5
 """Parts of the bump's drop: below the first the rig follows in part, below the second it cannot."""
-
 MISSED_RATIO = 0.25
 """A mean error by limits and lag beyond this part of the curve's mean force means "cannot"."""
-
 MISSED_cN = 2.0
 """A larger mean error means "follows in part"."""
-
 BUSY_1_min, HELD_s = 120.0, 10.0
 """A button should withstand two presses a second, and a finger resting on it for this long."""
 
@@ -143,25 +140,20 @@ def _warmth(dose: ThermalDose) -> Iterator[InfeasibilityReason]:
 
 
 def _between(displacement_mm: FloatArray, rows: BoolArray) -> str:
-    ranges = [(float(displacement_mm[a]), float(displacement_mm[b - 1])) for a, b in true_runs(rows)]
-    texts = [
+    ranges = [(displacement_mm[a], displacement_mm[b - 1]) for a, b in true_runs(rows)]
+    return " and ".join(
         f"between {low:.2f} and {high:.2f} mm" if high > low else f"at {low:.2f} mm" for low, high in ranges
-    ]
-    return " and ".join(texts)
+    )
 
 
 SPREAD_SPEEDS_mm_s = (0.0, 50.0, 100.0, 150.0, 200.0)
-
 SPREAD_m_s2 = (0.0, 1.0, 1.3, 3.0, 3.1)
 """Mean absolute difference of the acceleration at one displacement between presses at one requested speed;
 medians over random fingers on the twin, simulated. Press and release are equal."""
-
 PACE_RATIO = 0.1
 """Relative standard deviation of the speed between presses at one requested speed; assumed."""
-
 MEAN_OF_RMS = float(np.sqrt(2 / np.pi))
 """Mean absolute value of a normal quantity, per its standard deviation."""
-
 CALIBRATION_RATIO = 0.03
 """Calibration error of a class of finger force sensors, from data sheets: presses cannot reveal it."""
 
@@ -187,9 +179,6 @@ class ExpectedError:
     mean_cN: float
     play_cN: float
     calibration_cN: float
-
-    def to_dict(self) -> dict[str, float]:
-        return asdict(self)
 
 
 def acceleration_spread_m_s2(velocity_mm_s: float) -> float:

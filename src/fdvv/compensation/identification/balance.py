@@ -22,21 +22,16 @@ from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
-
 cN_PER_N = 100.0
 cN_PER_g_m_s2 = 0.1
 """A gram accelerated by 1 m/s2 needs 0.1 cN."""
 DRAG_cN = cN_PER_N / 1000.0
 """A drag of 1 N s/m at 1 mm/s."""
-
 DEGREE = 5
-
 KNOT_s = 1e-3
 """Spacing of the window's knots; it extends three of them to both sides."""
-
 NOISE_CUT_percentile = 98.0
 """Larger differences are impacts, not noise."""
-
 SHORTEST_ticks = 40
 
 
@@ -122,33 +117,22 @@ PARAMETERS = (
     *("half_play_cN", "position_lag_s", "command_delay_s", "electric_lag_s"),
 )
 """Estimated parameters, in the order of every vector; the last three are nonlinear."""
-
 GAIN = slice(0, 3)
-
 VISCOUS, BACK_EMF, FRICTION, WEIGHT, MASS, PLAY, LAG, DELAY, ELECTRIC = range(3, 12)
-
 LINEAR = slice(0, LAG)
-
 MOVING = (VISCOUS, BACK_EMF, MASS, LAG)
 """Parameters whose columns contain the noise of the sensed position."""
-
 MASS_cN = cN_PER_g_m_s2 / 1000.0
 """A gram accelerated by 1 mm/s2."""
-
 SLIDING_mm_s = 4.0
 """Width of the smoothed sign function of dry friction."""
-
 STILL_mm_s = 15.0
 """A slower cap may stick, and friction then takes any value up to its limit."""
-
 MARGIN_mm = 0.1
 """Distance to the stops; bounce there is left out."""
-
 LEAST_cN = 5.0
 """Below this force the finger may have left the cap."""
-
 NUDGE_s = 2e-5
-
 EVEN_s, TURN_cN = 1e-3, 0.5
 """Smoothing of the reading, to both sides, and half of the change that counts as a reversal."""
 

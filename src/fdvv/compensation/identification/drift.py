@@ -44,7 +44,6 @@ LEAST_CHANGE = {
     "lag": 2e-4,
 }
 """Smaller changes are not reported: ratios of gain and drag, else in the unit of the parameter."""
-
 LEAST_drag_N_s_m = 0.2
 ERRORS = {
     0: "gain",

@@ -47,21 +47,15 @@ from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
 
 STEPS, DAMPINGS = 4, 6
-
 SETTLED = 1e-3
 """Iterations end when a step lowers the cost, in squared standard deviations, by less."""
-
 FEWEST_windows = 12
-
 SPACING_s = 7.5e-4
 """Spacing of the windows used; closer ones are redundant."""
-
 LEAST_NOISE_cN = 0.2
-
 FASTEST_Hz = 25.0
 """Above it the weight of windows falls: position noise, which the controller passes
 into its command, would be mistaken for a response of the rig."""
-
 UNMODELLED_cN, UNMODELLED_s = 0.3, 0.006
 """Rms and correlation time of unmodelled force."""
 
@@ -197,10 +191,8 @@ class RigEstimation:
 
 ROUNDS = 5
 """Windows and their weights depend on the parameters; they are recomputed at most this often."""
-
 SETTLED_ratio = 0.02
 """Of the prior's spread."""
-
 RESIDUAL_s = 8e-3
 
 
@@ -295,14 +287,10 @@ def parameter_vector(rig: RigModel) -> FloatArray:
 
 HOLD_cN = 80.0
 """Twice the heaviest mover of the class: the weight to hold up is not known yet."""
-
 FADE_mm = 0.3
-
 RIPPLES_mm = ((0.9, 0.55), (0.75, 0.6))
 """Wavelengths of the ripples over displacement, press and release."""
-
 PHASES_rad = ((0.0, 1.0), (2.0, 0.0))
-
 SMALLER_ratio = 0.7
 
 

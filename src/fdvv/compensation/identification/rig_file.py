@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 import numpy as np
+from msgspec.json import Decoder
 
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import InputError, ModelError
@@ -72,15 +73,9 @@ class LearnedRig:
         return np.stack([np.interp(wanted, squares, column) for column in rows.T], axis=1)
 
 
-FORMAT, VERSION, SUFFIX = "fdvv-rig", 1, ".rig.json"
-
 LIMIT_bytes = 4_000_000
-
 _REMEDY = "identify the rig again"
-
-_KIND = Kind(FORMAT, VERSION, "an identified rig", _REMEDY)
-
-_TABLES = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
+_KIND = Kind("fdvv-rig", 1, "an identified rig", _REMEDY)
 
 
 class LearnedRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -117,67 +112,43 @@ class RigRecord(msgspec.Struct, forbid_unknown_fields=True):
     learned: LearnedRecord | None = None
 
 
-def rig_to_json(rig: RigModel | LearnedRig) -> str:
-    """Return a rig, or a learned rig, as the text of a ``*.rig.json`` file."""
+def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
+    """Write a rig, or a learned rig, to a ``*.rig.json`` file, atomically. Raises OSError."""
     model = rig.rig if isinstance(rig, LearnedRig) else rig
     numbers = {f.name: getattr(model, f.name) for f in fields(model)}
     numbers |= {"gain": list(model.gain), "error": dict(model.error)}
-    learned = {"learned": _learned(rig)} if isinstance(rig, LearnedRig) else {}
-    return pretty({"format": FORMAT, "version": VERSION, **numbers, **learned}) + "\n"
+    if isinstance(rig, LearnedRig):
+        tables = {name: column.tolist() for name, column in vars(rig.residual).items()}
+        numbers["learned"] = {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}
+    write_atomic(Path(path), pretty({"format": _KIND.format, "version": _KIND.version, **numbers}) + "\n")
 
 
-def _learned(rig: LearnedRig) -> dict[str, Any]:
-    tables = {name: getattr(rig.residual, name).tolist() for name in _TABLES}
-    return {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}
+def load_rig(path: Path | str) -> RigModel:
+    """Read a rig from a ``*.rig.json`` file. Raises InputError, also if it cannot be read."""
+    return _read(path)[0]
 
 
-def rig_from_json(text: str | bytes, source: object = "rig") -> RigModel:
-    """Read a rig from its text. Raises InputError with source, place and remedy."""
-    return _read(text, source)[0]
-
-
-def learned_rig_from_json(text: str | bytes, source: object = "rig") -> LearnedRig:
-    """Read a learned rig from its text. Raises InputError, also if the text holds a rig's model alone."""
-    _, learned = _read(text, source)
+def load_learned_rig(path: Path | str) -> LearnedRig:
+    """Read a learned rig from a file. Raises InputError, also if the file holds the model alone."""
+    _, learned = _read(path)
     if learned is None:
         reason = "holds the rig's model, but nothing learned on it"
-        raise InputError(source, "$.learned", reason, "save it with fdvv compensate --save-rig")
+        raise InputError(path, "$.learned", reason, "save it with fdvv compensate --save-rig")
     return learned
 
 
-def _read(text: str | bytes, source: object) -> tuple[RigModel, LearnedRig | None]:
-    return read_document(text, source, _KIND, lambda data: _rig(data, source), lambda _place: None)
-
-
-def _rig(data: bytes, source: object) -> tuple[RigModel, LearnedRig | None]:
-    record, place = msgspec.json.decode(data, type=RigRecord), "$"
+def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
+    text = read_limited(path, LIMIT_bytes, "pass a *.rig.json file")
+    record = read_document(text, path, _KIND, Decoder(RigRecord).decode, lambda _place: None)
+    place = "$"
     try:
         rig = RigModel(**{f.name: getattr(record, f.name) for f in fields(RigModel)})
         place = "$.learned"
         return rig, _learned_rig(rig, record.learned) if record.learned else None
     except ValueError as error:  # rows of different lengths, or values the records reject
-        raise InputError(source, place, str(error), _REMEDY) from error
+        raise InputError(path, place, str(error), _REMEDY) from error
 
 
 def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
-    residual = ForceSurface(*(np.array(getattr(learned, name), dtype=np.float64) for name in _TABLES))
-    return LearnedRig(rig, residual, learned.travel_mm, np.array(learned.error_cN, dtype=np.float64))
-
-
-def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
-    """Write a rig, or a learned rig, to a file, atomically. Raises OSError."""
-    write_atomic(Path(path), rig_to_json(rig))
-
-
-def load_rig(path: Path | str) -> RigModel:
-    """Read a rig from a ``*.rig.json`` file. Raises InputError, also if it cannot be read."""
-    return rig_from_json(_text(path), path)
-
-
-def load_learned_rig(path: Path | str) -> LearnedRig:
-    """Read a learned rig from a file. Raises InputError, also if the file holds the model alone."""
-    return learned_rig_from_json(_text(path), path)
-
-
-def _text(path: Path | str) -> bytes:
-    return read_limited(path, LIMIT_bytes, "pass a *.rig.json file")
+    columns = {f.name: np.array(getattr(learned, f.name)) for f in fields(ForceSurface)}
+    return LearnedRig(rig, ForceSurface(**columns), learned.travel_mm, np.array(learned.error_cN))
