@@ -200,7 +200,7 @@ def bound(found: list[Case], sensor: str, button: ButtonPhysics) -> str:
     if not times:
         return "bound: the stop follows too soon"
     scale = {"mic_1k": 2.0 * 0.84, "mic_10k": 2.0, "plate": 2 * math.pi * f}[sensor]
-    noise = found[0].press.noise_or_own()
+    noise = found[0].press.noise_rms
     f_sd, d_sd = cramer_rao(times, (f, d, scale * float(np.median(weights)), 0.0), noise, 2)
     return f"bound of the pooled: {100 * f_sd / f:.1f} % of frequency, {100 * d_sd / d:.0f} % of duration"
 

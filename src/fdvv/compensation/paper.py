@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -130,12 +130,10 @@ class PaperLaw:
         errors = (*state.errors_cN, error)
         if len(errors) % self.presses_per_round:
             command = self._correct(measured_cN, error, state)
-            state = replace(state, command_cN=command, errors_cN=errors, best=best)
-        else:
-            rounds = (*state.rounds, best)
-            state = replace(state, errors_cN=errors, best=None, rounds=rounds)
-            state = replace(state, command_cN=self._start(state))
-        return state.command_cN, state
+            return command, replace(state, command_cN=command, errors_cN=errors, best=best)
+        state = replace(state, errors_cN=errors, best=None, rounds=(*state.rounds, best))
+        command = self._start(state)
+        return command, replace(state, command_cN=command)
 
     def finished(self, state: CurveState) -> bool:
         """Return whether all rounds are done."""
@@ -145,10 +143,8 @@ class PaperLaw:
         """Return the smoothed average of the rounds' best commands; valid at any time."""
         bests = (*state.rounds, *([state.best] if state.best else []))
         if not bests:
-            nan = float("nan")
-            return LearnedCurve(
-                state.command_cN, (), nan, nan, "no press was learned from; the target itself"
-            )
+            nan, sentence = float("nan"), "no press was learned from; the target itself"
+            return LearnedCurve(state.command_cN, (), nan, nan, sentence)
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         table = smooth(np.mean([b.command_cN for b in bests], axis=0), self.smoothing_mm, step_mm)
         return LearnedCurve(
@@ -218,18 +214,12 @@ def tuned_paper_law(
     built-in buttons, at 50 to 200 mm/s, against fresh presses in true displacement, at 1 and 4 kHz.
     Results: docs/explanation/paper-law.md. Many settings are equal within its noise.
     """
+    budget: dict[str, Any] = (
+        {"rounds": 1, "presses_per_round": 5} if presses == 20 else {"rounds": 4, "presses_per_round": 15}
+    )
     if not additions:
-        return _printed(presses)
+        return PaperLaw.literal(gain=GainSchedule(most=0.6 if presses == 20 else 0.4), **budget)
+    if presses == 20:
+        budget |= {"gain": GainSchedule(most=0.8), "smoothing_mm": 0.0}
     delays = RIG_DELAYS if tick_s > FASTER_LOOP_s else FAST_DELAYS
-    if presses == 20:
-        few = GainSchedule(most=0.8)
-        return PaperLaw(
-            gain=few, rounds=1, presses_per_round=5, smoothing_mm=0.0, delays=delays, hold_cN=hold_cN
-        )
-    return PaperLaw(rounds=4, presses_per_round=15, delays=delays, hold_cN=hold_cN)
-
-
-def _printed(presses: int) -> PaperLaw:
-    if presses == 20:
-        return PaperLaw.literal(gain=GainSchedule(most=0.6), rounds=1, presses_per_round=5)
-    return PaperLaw.literal(gain=GainSchedule(most=0.4), rounds=4, presses_per_round=15)
+    return PaperLaw(delays=delays, hold_cN=hold_cN, **budget)

@@ -50,7 +50,8 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
     """Summarize a rig with standard errors, and which estimates are weak; the gain at middle_mm."""
     found, weak = [], []
     for name, (words, unit) in QUANTITIES.items():
-        value, error = value_of(rig, name, middle_mm), rig.error.get(name, 0.0)
+        value = float(rig.gain_at(np.array(middle_mm))) if name == "gain" else float(getattr(rig, name))
+        error = rig.error.get(name, 0.0)
         scale = 1000.0 if unit == "ms" else 1.0
         digits = 2 if unit in ("", "ms") else 1
         end = f" {unit}" if unit else ""
@@ -59,14 +60,6 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
             weak.append(words)
     text = f"{', '.join(found)}, from {rig.presses} presses; {rig.residual_cN:.1f} cN rms unexplained"
     return f"{text}; weak: {', '.join(weak)}" if weak else text
-
-
-def value_of(rig: RigModel, name: str, middle_mm: float) -> float:
-    """Return a parameter of a rig by its name; the gain at middle_mm."""
-    if name != "gain":
-        return float(getattr(rig, name))
-    c0, c1, c2 = rig.gain
-    return c0 + middle_mm * (c1 + middle_mm * c2)
 
 
 ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio = float("inf"), 0.6
@@ -148,13 +141,9 @@ class RigAware:
     @property
     def name(self) -> str:
         # part of session.json: a session is resumed only under the same name
-        met = (
-            "a rig known before"
-            if self.learned_rig
-            else f"a rig identified from {self.identification_presses} presses"
-        )
+        met = "known before" if self.learned_rig else f"identified from {self.identification_presses} presses"
         rounds = "1 round" if self.rounds == 1 else f"{self.rounds} rounds"
-        return f"rig-aware: {met}, look-ahead and feed-forward, {rounds} of learning what is left"
+        return f"rig-aware: a rig {met}, look-ahead and feed-forward, {rounds} of learning what is left"
 
     def init(self, job: CompensationJob) -> RigState:
         state = RigState(job, ((),) * job.target.velocity_mm_s.size)
@@ -178,12 +167,8 @@ class RigAware:
         at = state.turn
         if len(state.errors[at]) >= self.rounds:
             return None
-        return Trial(
-            self._surface(state, state.identified[1]),
-            float(speeds[at]),
-            self._tuning(state),
-            LOOSE_SPEED_TOLERANCE_ratio,
-        )
+        surface = self._surface(state, state.identified[1])
+        return Trial(surface, float(speeds[at]), self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
 
     def step(self, press: Press, state: RigState) -> RigState:
         """Identify the rig, or learn from a press on it. Raises ModelError on an uninformative press."""
@@ -201,11 +186,8 @@ class RigAware:
     def count(self, state: RigState) -> PressCount:
         """Return the count of presses; identification presses count for the speed they are requested at."""
         size = state.job.target.velocity_mm_s.size
-        needed = (
-            0
-            if self.learned_rig
-            else max(self.identification_presses, len(state.identification) + (state.rig is None))
-        )
+        needed = max(self.identification_presses, len(state.identification) + (state.rig is None))
+        needed = 0 if self.learned_rig else needed
         first = [needed // size + (i < needed % size) for i in range(size)]
         made = len(state.identification) + sum(map(len, state.errors))
         return PressCount(made, needed + size * self.rounds, tuple(n + self.rounds for n in first))
@@ -274,15 +256,12 @@ class RigAware:
     ) -> tuple[tuple[PressError, PressError], Pair]:
         """Return the errors of a press of speed number ``at``, and the tables after it."""
         rig, tables = state.identified
-        job, rig_and_tuning = state.job, (rig, self._tuning(state))
+        job, known = state.job, (rig, self._tuning(state))
         targets = (job.target.press_cN[at], job.target.release_cN[at])
         each = tuple(zip(tables, strokes, targets, strict=True))
         down, up = (press_error(stroke, force, table, at, job.travel_mm) for table, stroke, force in each)
-        press_table, release_table = (
-            learn_stroke(table, stroke, force, at, rig_and_tuning, self.learning)
-            for table, stroke, force in each
-        )
-        return (down, up), (press_table, release_table)
+        press, release = (learn_stroke(*parts, at, known, self.learning) for parts in each)
+        return (down, up), (press, release)
 
     def _tuning(self, state: RigState) -> Tuning:
         if state.rig is None:

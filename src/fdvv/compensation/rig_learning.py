@@ -52,11 +52,8 @@ def predicted_change(
     target_cN, grid_mm : (g,) intended force.
     """
     # unit forces: cN over mm, so 1 N s/m is 0.1 cN s/mm and 1 g is 1e-4 cN s2/mm
-    mass, damping, stiffness = (
-        1e-4 * finger.mass_g,
-        0.1 * finger.damping_N_s_m,
-        0.1 * finger.stiffness_N_m,
-    )
+    mass, damping = 1e-4 * finger.mass_g, 0.1 * finger.damping_N_s_m
+    stiffness = 0.1 * finger.stiffness_N_m
     parts = max(1, round(stroke.tick_s / LONGEST_STEP_s))
     step = stroke.tick_s / parts
     slope = np.gradient(target_cN, grid_mm)
@@ -88,15 +85,10 @@ def tuning_of(rig: RigModel, travel_mm: float, bandwidth_Hz: float, friction_mm_
     middle = np.array([0.5 * travel_mm])
     gain = float(rig.gain_at(middle)[0])
     brake_lead_s = rig.position_lag_s + rig.delay_s - rig.electric_lag_s
-    return Tuning(
-        bandwidth_Hz,
-        brake_lead_s + rig.electric_lag_s,
-        brake_lead_s,
-        max(0.0, float(rig.drag_at(middle)[0])) / gain,
-        max(0.0, rig.friction_cN) / gain,
-        friction_mm_s,
-        paced=True,
-    )
+    drag_N_s_m = max(0.0, float(rig.drag_at(middle)[0])) / gain
+    friction_cN = max(0.0, rig.friction_cN) / gain
+    leads_s = brake_lead_s + rig.electric_lag_s, brake_lead_s
+    return Tuning(bandwidth_Hz, *leads_s, drag_N_s_m, friction_cN, friction_mm_s, paced=True)
 
 
 def added_cN(tuning: Tuning, velocity_mm_s: FloatArray) -> FloatArray:
@@ -250,13 +242,9 @@ def command_surface(job: CompensationJob, rig: RigModel, tables: Pair, friction_
         command = command_cN(rig, grid, force_cN) - down * rub + learned_cN
         return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
 
-    press, release = tables
-    return ForceSurface(
-        grid,
-        target.velocity_mm_s,
-        rows(target.press_cN, press.rows_cN, 1.0),
-        rows(target.release_cN, release.rows_cN, -1.0),
-    )
+    press = rows(target.press_cN, tables[0].rows_cN, 1.0)
+    release = rows(target.release_cN, tables[1].rows_cN, -1.0)
+    return ForceSurface(grid, target.velocity_mm_s, press, release)
 
 
 WORSE_ratio = 1.5
@@ -278,20 +266,15 @@ def minimum_lift_surface(job: CompensationJob) -> ForceSurface:
 
 def best_rows(tables: Pair, felt: PressErrors) -> Pair:
     """Return the tables, with the row of the best press where the last press was far worse."""
-    press, release = (
-        _best_table(table, [[pair[j] for pair in presses] for presses in felt])
-        for j, table in enumerate(tables)
-    )
+    made = []
+    for j, table in enumerate(tables):
+        rows = table.rows_cN.copy()
+        for at, presses in enumerate(felt):
+            if better := _better([pair[j] for pair in presses]):
+                rows[at] = better.row_cN
+        made.append(replace(table, rows_cN=rows))
+    press, release = made
     return press, release
-
-
-def _best_table(table: SharedTable, felt: list[list[PressError]]) -> SharedTable:
-    rows = table.rows_cN.copy()
-    for at, errors in enumerate(felt):
-        better = _better(errors)
-        if better is not None:
-            rows[at] = better.row_cN
-    return replace(table, rows_cN=rows)
 
 
 def _better(errors: list[PressError]) -> PressError | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,7 +125,9 @@ def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -
         theta = at.theta.copy()
         theta[free] = np.maximum(theta[free] + np.linalg.solve(stiff, slope), 0.0)
         theta[theta.size // 2 :] = np.minimum(theta[theta.size // 2 :], records.most_decay_1_s)
-        tried = _try(records, theta)
+        tried = None
+        with suppress(np.linalg.LinAlgError):
+            tried = records.at(theta)
         if tried is None or tried.power > at.power:
             damping *= 10
         else:
@@ -136,13 +139,6 @@ def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -
         if damping > MOST_DAMPING:
             break
     return at
-
-
-def _try(records: Records, theta: FloatArray) -> Solved | None:
-    try:
-        return records.at(theta)
-    except np.linalg.LinAlgError:
-        return None
 
 
 def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> DampedFit:
@@ -177,15 +173,10 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
         )
         for k in order
     ]  # fmt: skip
-    mean_power = max(records.size**2 * found.power / records.samples, 1e-300)
-    bic = records.samples * math.log(mean_power) + needed * math.log(records.samples)
-    return DampedFit(
-        tuple(made),
-        records.size * amplitudes[:, order],
-        records.size * math.sqrt(power),
-        records.samples,
-        bic,
-    )
+    size, samples = records.size, records.samples
+    mean_power = max(size**2 * found.power / samples, 1e-300)
+    bic = samples * math.log(mean_power) + needed * math.log(samples)
+    return DampedFit(tuple(made), size * amplitudes[:, order], size * math.sqrt(power), samples, bic)
 
 
 def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
@@ -264,16 +255,10 @@ def fit_decaying_sinusoid(
     if t.shape != y.shape or t.ndim != 1 or t.size < 2 or np.any(np.diff(t) <= 0):
         raise ModelError(f"a signal needs one value at each of rising times, got {y.shape} at {t.shape}")
     length = float(t[-1] - t[0])
-    fits = [
-        fit_damped(
-            [t],
-            [y],
-            [_loudest_Hz(t, y * np.exp(-lives * (t - t[0]) / length), lowest_Hz)],
-            [lives / length],
-            degree,
-        )
-        for lives in DECAYS
-    ]
+    fits = []
+    for lives in DECAYS:
+        loudest_Hz = _loudest_Hz(t, y * np.exp(-lives * (t - t[0]) / length), lowest_Hz)
+        fits.append(fit_damped([t], [y], [loudest_Hz], [lives / length], degree))
     return min(fits, key=lambda fit: fit.bic)
 
 

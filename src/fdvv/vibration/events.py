@@ -125,7 +125,7 @@ def bursts(signal: FloatArray, rate_Hz: float) -> list[Burst]:
     k = np.arange(power.size)
     ahead = (sums[np.minimum(k + short, power.size)] - sums[k]) / short
     behind = (sums[k] - sums[np.maximum(k - long, 0)]) / np.maximum(np.minimum(k, long), 1)
-    floor = max(_floor(ahead), QUIET_ratio * float(ahead.max()), 1e-300)
+    floor = max(float(np.percentile(ahead, 10)), QUIET_ratio * float(ahead.max()), 1e-300)
     rising = (ahead > RISE_ratio * np.maximum(behind, floor / RISE_ratio)) & (ahead > floor)
     # a file that begins inside a sound has nothing before it
     rising[:short] = False
@@ -143,10 +143,6 @@ def bursts(signal: FloatArray, rate_Hz: float) -> list[Burst]:
         else:
             found.append(Burst(onset, peak))
     return found
-
-
-def _floor(ahead: FloatArray) -> float:
-    return float(np.percentile(ahead, 10))
 
 
 def _first_loud(power: FloatArray, start: int, end: int, peak: float) -> int:

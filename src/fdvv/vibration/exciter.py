@@ -10,6 +10,7 @@ from typing import Literal
 import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.json import Decoder
 
 from fdvv.errors import FitError, InputError, ModelError
 from fdvv.io.documents import Kind, pretty, read_document
@@ -193,7 +194,10 @@ def fit_exciter(
         )
     before = np.log([{**USUAL, "lag_s": bench.lag_s}[name] for name in FITTED])
     spread = np.array([{**SPREAD, "lag_s": bench.lag_ratio}[name] for name in FITTED])
-    frequency_Hz, moved_m, error_m = (np.array(column) for column in zip(*_unbiased(tones), strict=True))
+    # without what noise adds to an amplitude (Rice)
+    clean_m = [float(np.sqrt(max(t.amplitude**2 - 2 * t.error**2, t.error**2))) for t in tones]
+    frequency_Hz, moved_m = np.array([t.frequency_Hz for t in tones]), np.array(clean_m)
+    error_m = np.hypot([t.error for t in tones], MODEL_ratio * moved_m)
 
     def rest(logs: FloatArray) -> FloatArray:
         off = (_moved_m(np.exp(logs), frequency_Hz, bench) - moved_m) / error_m
@@ -207,25 +211,10 @@ def fit_exciter(
     errors = np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
     numbers = np.exp(found.x)
     ratio = moved_m / _moved_m(numbers, frequency_Hz, bench) - 1
-    return KnownExciter(
-        float(numbers[0]),
-        float(numbers[1]),
-        float(numbers[2]),
-        latency_s=latency_s,
-        error={name: float(e) for name, e in zip(FITTED[:3], errors, strict=False)},
-        residual_ratio=float(np.sqrt(np.mean(ratio**2))),
-        tones=len(tones),
-        simulated=simulated,
-    )
-
-
-def _unbiased(tones: Sequence[Tone]) -> list[tuple[float, float, float]]:
-    """Return frequency, amplitude without what noise adds to it (Rice), and its error with the model's."""
-    clean = [np.sqrt(max(t.amplitude**2 - 2 * t.error**2, t.error**2)) for t in tones]
-    return [
-        (t.frequency_Hz, float(a), float(np.hypot(t.error, MODEL_ratio * a)))
-        for t, a in zip(tones, clean, strict=True)
-    ]
+    named = {name: float(e) for name, e in zip(FITTED[:3], errors, strict=False)}
+    residual_ratio = float(np.sqrt(np.mean(ratio**2)))
+    gain, resonance, quality = numbers[:3].tolist()
+    return KnownExciter(gain, resonance, quality, latency_s, named, residual_ratio, len(tones), simulated)
 
 
 def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) -> FloatArray:
@@ -234,8 +223,7 @@ def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) ->
     gripped = response / (1 - (grip_Hz / frequency_Hz) ** 2)
     turn = 2 * np.pi * frequency_Hz
     seen = np.sinc(frequency_Hz * bench.burst_s) / np.hypot(1.0, turn * lag_s)
-    moved: FloatArray = bench.drive_V * gripped / turn**2 * seen
-    return moved
+    return np.asarray(bench.drive_V * gripped / turn**2 * seen)
 
 
 class ExciterRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -262,13 +250,9 @@ def save_exciter(exciter: KnownExciter, path: Path | str) -> None:
 def load_exciter(path: Path | str) -> KnownExciter:
     """Read an ``*.exciter.json`` file. InputError names the place in it and the remedy."""
     text = read_limited(path, LIMIT_bytes, _REMEDY)
-    found = read_document(text, path, _KIND, _decoded, lambda _: None)
+    found = read_document(text, path, _KIND, Decoder(ExciterRecord).decode, lambda _: None)
     numbers = {f.name: getattr(found, f.name) for f in fields(KnownExciter)}
     try:
         return KnownExciter(**numbers)
     except ModelError as error:
         raise InputError(path, "numbers", str(error), _REMEDY) from error
-
-
-def _decoded(data: bytes) -> ExciterRecord:
-    return msgspec.json.decode(data, type=ExciterRecord)

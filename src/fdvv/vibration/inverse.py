@@ -41,9 +41,7 @@ def correlation(felt: FloatArray, target: FloatArray) -> float:
     of them is silent.
     """
     scale = float(np.linalg.norm(felt) * np.linalg.norm(target))
-    if not scale:
-        return 0.0
-    return float(np.abs(_correlated(felt, target)).max()) / scale
+    return float(np.abs(_correlated(felt, target)).max()) / scale if scale else 0.0
 
 
 def delay_samples(felt: FloatArray, target: FloatArray) -> int:
@@ -102,8 +100,7 @@ def spqi(
 def _correlated(felt: FloatArray, target: FloatArray) -> FloatArray:
     """Return the correlation at every delay of felt, circular over a length that keeps them apart."""
     size = felt.size + target.size
-    found: FloatArray = np.fft.irfft(np.fft.rfft(felt, size) * np.conj(np.fft.rfft(target, size)), size)
-    return found
+    return np.asarray(np.fft.irfft(np.fft.rfft(felt, size) * np.conj(np.fft.rfft(target, size)), size))
 
 
 def _blocks(felt: FloatArray, target: FloatArray, rate_Hz: float) -> tuple[FloatArray, FloatArray]:
@@ -127,8 +124,7 @@ def _audible_dB(blocks: FloatArray) -> FloatArray:
     from scipy.fft import dct
 
     spectrum = np.abs(dct(blocks, norm="ortho", axis=1))
-    found: FloatArray = 20 * np.log10(np.maximum(spectrum, TINY)) - threshold_dB()
-    return found
+    return np.asarray(20 * np.log10(np.maximum(spectrum, TINY)) - threshold_dB())
 
 
 def threshold_dB() -> FloatArray:
@@ -143,8 +139,7 @@ def threshold_dB() -> FloatArray:
 
 def _standard(blocks: FloatArray) -> FloatArray:
     centred = blocks - blocks.mean(axis=1, keepdims=True)
-    found: FloatArray = centred / (blocks.std(axis=1, keepdims=True) + TINY)
-    return found
+    return np.asarray(centred / (blocks.std(axis=1, keepdims=True) + TINY))
 
 
 def _similar(reference: FloatArray, other: FloatArray) -> float:
@@ -220,7 +215,8 @@ def drive_for(exciter: KnownExciter, vibration: Vibration, settings: InverseSett
             f"a drive of {length_s:g} s holds frequencies below {rate_Hz / 2:g} Hz, got {fastest_Hz:g} Hz; "
             "shorten it or leave out that mode"
         )
-    wanted = _wanted(vibration, chosen.lead_s, round((length_s + RING_s) * RATE_Hz))
+    times_s = (np.arange(round((length_s + RING_s) * RATE_Hz)) + 0.5) / RATE_Hz
+    wanted = vibration.acceleration_m_s2(times_s - chosen.lead_s)
     drives = _hats(int(length_s * rate_Hz) + 1, rate_Hz, wanted.size)
     moves = acceleration_m_s2(exciter, drives)
     volts = _nearest(drives, moves, wanted, exciter, chosen)
@@ -240,15 +236,10 @@ def acceleration_m_s2(exciter: KnownExciter, volts: FloatArray) -> FloatArray:
     return found[..., :count].T
 
 
-def _wanted(vibration: Vibration, lead_s: float, count: int) -> FloatArray:
-    return vibration.acceleration_m_s2((np.arange(count) + 0.5) / RATE_Hz - lead_s)
-
-
 def _hats(count: int, rate_Hz: float, rows: int) -> FloatArray:
     """Return what each sample of a wave does to the board's output, as its columns."""
     places = (np.arange(rows) + 0.5) / RATE_Hz * rate_Hz
-    found: FloatArray = np.maximum(0.0, 1.0 - np.abs(places[:, None] - np.arange(count)))
-    return found
+    return np.asarray(np.maximum(0.0, 1.0 - np.abs(places[:, None] - np.arange(count))))
 
 
 def _nearest(

@@ -57,15 +57,15 @@ def fit_modes(
     if not rate_Hz > 0:
         raise ModelError(f"rate_Hz must be above 0, got {rate_Hz}")
     times = [np.arange(records.shape[1]) / rate_Hz] * len(records)
-    rows, empty = list(records), _nothing(records, degree)
     if count is not None:
-        fit = _with(records, times, rows, rate_Hz, count, degree)
+        fit = _with(records, times, rate_Hz, count, degree)
         if fit is None:
             raise FitError(
                 f"no {count} modes that ring and decay in {records.shape[1]} samples; ask for fewer"
             )
         return fit
-    fits = [_with(records, times, rows, rate_Hz, k, degree) for k in range(1, most + 1)]
+    fits = [_with(records, times, rate_Hz, k, degree) for k in range(1, most + 1)]
+    empty = _nothing(records, degree)
     return min([empty, *(fit for fit in fits if fit is not None)], key=lambda fit: fit.bic)
 
 
@@ -80,12 +80,7 @@ def _nothing(records: FloatArray, degree: int) -> DampedFit:
 
 
 def _with(
-    records: FloatArray,
-    times: list[FloatArray],
-    rows: list[FloatArray],
-    rate_Hz: float,
-    count: int,
-    degree: int,
+    records: FloatArray, times: list[FloatArray], rate_Hz: float, count: int, degree: int
 ) -> DampedFit | None:
     """Fit a number of modes from the pencil's poles; None if there are not so many that ring."""
     # a polynomial beneath takes poles near 1 of its own
@@ -96,7 +91,7 @@ def _with(
     logs = rate_Hz * np.log(np.array(sorted(ringing, key=lambda z: -abs(z))[:count]))
     decays = np.maximum(-logs.real, 1e-3)
     try:
-        fit = fit_damped(times, rows, list(logs.imag / (2 * np.pi)), list(decays), degree)
+        fit = fit_damped(times, list(records), list(logs.imag / (2 * np.pi)), list(decays), degree)
     except (FitError, np.linalg.LinAlgError):
         return None
     return fit if all(0 < mode.frequency_Hz < 0.5 * rate_Hz for mode in fit.modes) else None
@@ -175,14 +170,11 @@ def sound(fit: DampedFit, longest_s: float, period_s: float, most_drives: int) -
     modes = [mode for mode in fit.modes if not drives(mode)]
     apart = bool(np.all(np.diff(np.sort([mode.frequency_Hz for mode in modes])) >= 1 / longest_s))
     lowest = max(LOWEST_Hz, 1 / longest_s)
-    return (
-        apart
-        and len(fit.modes) - len(modes) <= most_drives
-        and all(
-            lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and m.decay_1_s * longest_s >= LEAST_FALL
-            for m in modes
-        )
+    heard = all(
+        lowest <= m.frequency_Hz <= HIGHEST_ratio / period_s and m.decay_1_s * longest_s >= LEAST_FALL
+        for m in modes
     )
+    return apart and heard and len(fit.modes) - len(modes) <= most_drives
 
 
 def _one_more(

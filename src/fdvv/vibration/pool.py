@@ -233,8 +233,7 @@ def measure_vibration(
         again = [find_snap(press, energy.window_mm, known) for press in presses]
         if len(_shown(presses, again)[0]) < len(heard):
             break
-        before = [snap.onset_s for snap in snaps]
-        looked = again
+        before, looked = [snap.onset_s for snap in snaps], again
         heard, snaps = _shown(presses, looked)
         if before == [snap.onset_s for snap in snaps]:
             break
@@ -242,19 +241,11 @@ def measure_vibration(
     if len(snaps) < LEAST_SHARE * len(presses):
         reasons = [snap.reason for snap in looked if isinstance(snap, NotFound)]
         return NotFound(f"{len(snaps)} of {len(presses)} presses show a snap; of the others: {reasons[0]}")
-    return MeasuredVibration(
-        presses[0].stroke,
-        velocity_mm_s,
-        energy,
-        _median(np.array([snap.onset_mm for snap in snaps])),
-        _median(np.array([snap.velocity_mm_s for snap in snaps])),
-        len(snaps),
-        len(presses),
-        tuple(heard),
-        tuple(snaps),
-        ring,
-        acceleration,
+    place, speed = (
+        _median(np.array([getattr(snap, name) for snap in snaps])) for name in ("onset_mm", "velocity_mm_s")
     )
+    told = presses[0].stroke, velocity_mm_s, energy, place, speed, len(snaps), len(presses)
+    return MeasuredVibration(*told, tuple(heard), tuple(snaps), ring, acceleration)
 
 
 def _shown(

@@ -73,15 +73,19 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     found = _best(presses, snaps)
     if found is None:
         return NotFound("the stop follows too soon: the snap leaves too few samples to fit")
-    delay, fit, ratio = found
+    delay_s, fit, ratio = found
     if not fit.modes and ratio <= FITS_ratio:
         return NotFound(f"nothing rings above a noise of {fit.noise:.2g} per sample in {len(snaps)} presses")
     if ratio > FITS_ratio:
         return NotFound(
             f"no free ring: what modes leave is {ratio:.1f} times the noise, something keeps driving"
         )
-    ring = _ring_of(fit, delay, ratio, acceleration)
-    return NotFound(f"{ring} in {len(snaps)} presses") if isinstance(ring, str) else ring
+    energies = [-_energy(mode, delay_s, acceleration) for mode in fit.modes]
+    order = [int(k) for k in np.argsort(energies) if not drives(fit.modes[k])]
+    if not order:
+        return NotFound(f"nothing rings freely, only a drive fades in {len(snaps)} presses")
+    reason = _unknown(fit.modes[order[0]], delay_s)
+    return NotFound(f"{reason} in {len(snaps)} presses") if reason else _ring(fit, order, delay_s, ratio)
 
 
 def refit_ring(
@@ -104,17 +108,6 @@ def refit_ring(
                 order = [first, *(k for k in range(len(fit.modes)) if k != first)]
                 return _ring(fit, order, delay, fit.noise / noise)
     return None
-
-
-def _ring_of(fit: DampedFit, delay_s: float, ratio: float, acceleration: bool) -> Ring | str:
-    """Return the ring of a fit, the principal mode first, or why there is none."""
-    order = [k for k in _order(fit, delay_s, acceleration) if not drives(fit.modes[k])]
-    if not order:
-        return "nothing rings freely, only a drive fades"
-    reason = _unknown(fit.modes[order[0]], delay_s)
-    if reason is not None:
-        return reason
-    return _ring(fit, order, delay_s, ratio)
 
 
 def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
@@ -150,18 +143,15 @@ def _unknown(mode: DampedMode, delay_s: float) -> str | None:
 def _best(presses: Sequence[HeardPress], snaps: Sequence[Snap]) -> tuple[float, DampedFit, float] | None:
     """Return delay, fit and noise ratio of the shortest delay that leaves only noise, or of the best."""
     least = None
-    for delay in DELAYS_s:
-        found = _fit_after(presses, snaps, delay)
-        if found is not None and (least is None or found[2] < least[2]):
-            least = found
+    for delay_s in DELAYS_s:
+        times, signals, noise = _after(presses, snaps, delay_s)
+        if times:
+            fit = most_likely(times, signals, presses[0].period_s)
+            if least is None or fit.noise / noise < least[2]:
+                least = delay_s, fit, fit.noise / noise
         if least is not None and least[2] <= FITS_ratio:
             break
     return least
-
-
-def _order(fit: DampedFit, delay_s: float, acceleration: bool) -> list[int]:
-    energies = [-_energy(mode, delay_s, acceleration) for mode in fit.modes]
-    return [int(k) for k in np.argsort(energies)]
 
 
 def _energy(mode: DampedMode, delay_s: float, acceleration: bool) -> float:
@@ -170,28 +160,16 @@ def _energy(mode: DampedMode, delay_s: float, acceleration: bool) -> float:
     return velocity**2 * float(np.exp(-2 * mode.decay_1_s * delay_s)) / max(mode.decay_1_s, 1 / LONGEST_s)
 
 
-def _fit_after(
-    presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
-) -> tuple[float, DampedFit, float] | None:
-    """Fit from a delay after the onsets on; give delay, fit and its noise over the sensor's."""
-    times, signals, noise = _after(presses, snaps, delay_s)
-    if not times:
-        return None
-    best = most_likely(times, signals, presses[0].period_s)
-    return delay_s, best, best.noise / noise
-
-
 def _after(
     presses: Sequence[HeardPress], snaps: Sequence[Snap], delay_s: float
 ) -> tuple[list[FloatArray], list[FloatArray], float]:
     """Cut out what is free from a delay after the onsets on: times after the onset, signals, noise."""
     times, signals, noises = [], [], []
     for press, snap in zip(presses, snaps, strict=True):
-        low, high = np.searchsorted(
-            press.t_s, [snap.onset_s + delay_s, min(snap.stop_s, snap.onset_s + LONGEST_s)]
-        )
+        ends_s = snap.onset_s + delay_s, min(snap.stop_s, snap.onset_s + LONGEST_s)
+        low, high = np.searchsorted(press.t_s, ends_s)
         if high - low > BACKGROUND_DEGREE + 4:
             times.append(press.t_s[low:high] - snap.onset_s)
             signals.append(press.signal[low:high])
-            noises.append(press.noise_or_own())
+            noises.append(press.noise_rms)
     return times, signals, float(np.sqrt(np.mean(np.square(noises)))) if noises else 0.0

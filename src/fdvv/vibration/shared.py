@@ -43,12 +43,12 @@ def shared_mode(rings: Sequence[Ring]) -> SharedMode | None:
     modes = [ring.mode for ring in rings]
     if len(modes) < 2:
         return None
-    middle, _ = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes], FLOOR_ratio[0])
+    middle, _ = _middle([(m.frequency_Hz, m.frequency_sd_Hz) for m in modes], FLOOR_ratio[0])
     modes = [m for m in modes if abs(m.frequency_Hz / middle - 1) <= SAME_ratio]
     if len(modes) < 2:
         return None
-    f, f_sd = _middle([m.frequency_Hz for m in modes], [m.frequency_sd_Hz for m in modes], FLOOR_ratio[0])
-    d, d_sd = _middle([m.decay_1_s for m in modes], [m.decay_sd_1_s for m in modes], FLOOR_ratio[1])
+    f, f_sd = _middle([(m.frequency_Hz, m.frequency_sd_Hz) for m in modes], FLOOR_ratio[0])
+    d, d_sd = _middle([(m.decay_1_s, m.decay_sd_1_s) for m in modes], FLOOR_ratio[1])
     return SharedMode(f, d, f_sd, d_sd, len(modes))
 
 
@@ -57,18 +57,14 @@ def shared_rings(rings: Sequence[Ring]) -> tuple[tuple[float, float], ...]:
 
     The principal one that is known best, and the one of the others that most rings have.
     """
-    known = [known_rings(ring) for ring in rings]
-    first = [
-        (ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz, t[0])
-        for ring, t in zip(rings, known, strict=True)
-        if t
-    ]
+    known = [(ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz, known_rings(ring)) for ring in rings]
+    first = [(doubt, modes[0]) for doubt, modes in known if modes]
     if not first:
         return ()
-    others = [mode for t in known for mode in t[1:]]
+    others = [mode for _, modes in known for mode in modes[1:]]
     votes = [sum(abs(other[0] / mode[0] - 1) <= SAME_ratio for other in others) for mode in others]
-    second = others[int(np.argmax(votes))] if others else None
-    return (min(first)[1], second) if second else (min(first)[1],)
+    second = [others[int(np.argmax(votes))]] if others else []
+    return (min(first)[1], *second)
 
 
 def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration:
@@ -92,11 +88,10 @@ def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration
     return replace(found, ring=replace(again, mode=first, modes=(first, *again.modes[1:])))
 
 
-def _middle(values: Sequence[float], sds: Sequence[float], floor_ratio: float) -> tuple[float, float]:
-    """Return the weighted median of values and its standard error, from the errors or from the scatter."""
-    order = np.argsort(values)
-    value: FloatArray = np.asarray(values, dtype=np.float64)[order]
-    sd = np.maximum(np.asarray(sds, dtype=np.float64)[order], floor_ratio * np.median(value))
+def _middle(values: Sequence[tuple[float, float]], floor_ratio: float) -> tuple[float, float]:
+    """Return the weighted median of values with errors, and its standard error, from these or the scatter."""
+    value, sd = np.array(values)[np.argsort([each for each, _ in values])].T
+    sd = np.maximum(sd, floor_ratio * np.median(value))
     weight = 1 / sd**2
     share = (np.cumsum(weight) - 0.5 * weight) / weight.sum()
     middle = float(np.interp(0.5, share, value))

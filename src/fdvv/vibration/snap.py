@@ -82,11 +82,9 @@ def find_turn(
     if t_s.size < 2:
         return None
     period = float(t_s[-1] - t_s[0]) / (t_s.size - 1)
-    if rings:
-        return _search(
-            t_s, signal, (start_s, end_s), noise, max(RING_REACH_s, REACHES_samples[0] * period), rings
-        )
     shortest, *longer = (count * period for count in REACHES_samples)
+    if rings:
+        return _search(t_s, signal, (start_s, end_s), noise, max(RING_REACH_s, shortest), rings)
     reaches = [shortest, *(reach for reach in longer if reach <= LONGEST_REACH_s)]
     found = []
     for reach in reaches:
@@ -226,11 +224,9 @@ class HeardPress:
         return float(self.t_s[-1] - self.t_s[0]) / (self.t_s.size - 1)
 
     @cached_property
-    def _own_noise(self) -> float:
-        return noise_rms(self.signal)
-
-    def noise_or_own(self) -> float:
-        return self._own_noise if self.noise is None else self.noise
+    def noise_rms(self) -> float:
+        """The noise that was stated, else the record's own."""
+        return noise_rms(self.signal) if self.noise is None else self.noise
 
     def passing_s(self, at_mm: float) -> float | None:
         """Return when the stroke passes a displacement; None if it never does."""
@@ -284,7 +280,7 @@ def find_snap(
     start, end = sorted((passed[0], passed[1]))
     stop = stop_s(press, end)
     free = press.t_s < stop
-    noise = press.noise_or_own()
+    noise = press.noise_rms
     if not noise > 0:
         return NotFound("the signal does not change: the sensor heard nothing at all")
     turn = find_turn(press.t_s[free], press.signal[free], start, min(end, stop), noise, rings)
@@ -316,5 +312,5 @@ def stop_s(press: HeardPress, after_s: float) -> float:
         return after_s
     loud = third[later]
     largest = float(loud.max())
-    level = min(max(6 * np.sqrt(20.0) * press.noise_or_own(), largest / 30), largest / 2)
+    level = min(max(6 * np.sqrt(20.0) * press.noise_rms, largest / 30), largest / 2)
     return float(at[later][int(np.argmax(loud >= level))] - GUARD_samples * press.period_s)

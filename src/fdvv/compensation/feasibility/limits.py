@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -46,7 +46,7 @@ class RigLimits:
     derate_start_K: float
 
     def __post_init__(self) -> None:
-        values = [getattr(self, f.name) for f in fields(self)]
+        values = list(vars(self).values())
         if not np.isfinite(values).all() or min(values) <= 0:
             raise ModelError(f"limits of a rig must be finite and above 0, got {self}")
 
@@ -222,12 +222,11 @@ def smeared(signal: FloatArray, lag_s: float, step_s: float, tick_s: float) -> F
 
     What remains is the smearing that a known delay cannot compensate.
     """
-    # hold the last value until the lag has settled
     lag_s = max(0.0, lag_s)
+    # hold the last value until the lag has settled
     more = 1 + int(np.ceil(lag_s / step_s))
-    lagged = first_order_lag(
-        np.pad(zero_order_hold(signal, step_s, tick_s), (0, more), mode="edge"), lag_s, step_s
-    )
+    held = np.pad(zero_order_hold(signal, step_s, tick_s), (0, more), mode="edge")
+    lagged = first_order_lag(held, lag_s, step_s)
     rows = np.arange(signal.size) + lag_s / step_s
     return np.asarray(np.interp(rows, np.arange(lagged.size), lagged))
 

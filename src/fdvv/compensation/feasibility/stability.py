@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,6 @@ from fdvv.units import FloatArray
 SHORTEST_s = 1e-5
 """Lower bound of lags: far below a tick, and avoids division by 0."""
 LEAST_kg = 5e-4
-Steps = tuple[FloatArray, FloatArray, FloatArray, int]
 PLACE, SPEED, COIL, SEEN, FINGER, FINGER_SPEED, ARM = range(7)
 
 
@@ -102,7 +102,7 @@ class SampledLoop:
             held_cN,
         )
 
-    @property
+    @cached_property
     def rates(self) -> FloatArray:
         """A of s' = A s + b u: position, speed, coil, sensed position, finger, its speed, relaxation."""
         out = np.zeros((7, 7))
@@ -118,25 +118,21 @@ class SampledLoop:
         out[SPEED, [PLACE, FINGER, ARM]] = np.array([-kept, kept, 1.0]) / self.mass_kg
         joint = -finger.stiffness_N_m - kept
         out[FINGER, FINGER_SPEED] = 1.0
-        out[FINGER_SPEED, [PLACE, FINGER, FINGER_SPEED, ARM]] = (
-            np.array([kept, joint, -finger.damping_N_s_m, -1.0]) / finger.mass_kg
-        )
+        forces = np.array([kept, joint, -finger.damping_N_s_m, -1.0])
+        out[FINGER_SPEED, [PLACE, FINGER, FINGER_SPEED, ARM]] = forces / finger.mass_kg
         out[ARM, [SPEED, FINGER_SPEED, ARM]] = -arm, arm, -1 / finger.relax_s
         return out
 
-    @property
-    def push(self) -> FloatArray:
-        """b of s' = A s + b u, (states,): a commanded force, already times the gain, in N."""
-        out = np.zeros(self.rates.shape[0])
-        out[COIL] = 1 / self.lag_s
-        return out
-
-    def steps(self) -> Steps:
+    @cached_property
+    def steps(self) -> tuple[FloatArray, FloatArray, FloatArray, int]:
         """Return (transition of a tick, input of older command, of newer command, whole ticks of delay)."""
+        # b of s' = A s + b u: a commanded force, already times the gain, in N
+        push = np.zeros(self.rates.shape[0])
+        push[COIL] = 1 / self.lag_s
         whole = int(self.compute_s / self.tick_s + 1e-9)
         old_s = max(0.0, self.compute_s - whole * self.tick_s)
-        first, older = _held(self.rates, self.push, old_s)
-        second, newer = _held(self.rates, self.push, self.tick_s - old_s)
+        first, older = _held(self.rates, push, old_s)
+        second, newer = _held(self.rates, push, self.tick_s - old_s)
         return second @ first, second @ older, newer, whole
 
 
@@ -151,12 +147,9 @@ def _held(rates: FloatArray, push: FloatArray, span_s: float) -> tuple[FloatArra
     return out[:n, :n], out[:n, n]
 
 
-def tick_matrix(loop: SampledLoop, stiffness_N_m: float, steps: Steps | None = None) -> FloatArray:
-    """Map state and pending commands, newest first, from one tick to the next, for a table of constant slope.
-
-    steps : loop.steps(), if already computed.
-    """
-    over, older, newer, whole = steps or loop.steps()
+def tick_matrix(loop: SampledLoop, stiffness_N_m: float) -> FloatArray:
+    """Map state and pending commands, newest first, over one tick, for a table of constant slope."""
+    over, older, newer, whole = loop.steps
     n, count = over.shape[0], int(whole) + 1
     out = np.zeros((n + count, n + count))
     out[:n, :n] = over
@@ -172,10 +165,9 @@ def tick_matrix(loop: SampledLoop, stiffness_N_m: float, steps: Steps | None = N
     return out
 
 
-def spectral_radius(loop: SampledLoop, stiffness_N_m: float, steps: Steps | None = None) -> float:
+def spectral_radius(loop: SampledLoop, stiffness_N_m: float) -> float:
     """Return the spectral radius of one tick: the loop is unstable above 1."""
-    values: FloatArray = np.abs(np.linalg.eigvals(tick_matrix(loop, stiffness_N_m, steps)))
-    return float(values.max())
+    return float(np.abs(np.linalg.eigvals(tick_matrix(loop, stiffness_N_m))).max())
 
 
 def stiffness_limit_N_m(loop: SampledLoop, least_N_m: float = 1.0, most_N_m: float = 1e6) -> float:
@@ -183,11 +175,10 @@ def stiffness_limit_N_m(loop: SampledLoop, least_N_m: float = 1.0, most_N_m: flo
 
     Exact for the linear loop; least_N_m if no larger stiffness is stable.
     """
-    steps = loop.steps()
     low, high = least_N_m, most_N_m
     for _ in range(36):
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if spectral_radius(loop, middle, steps) > 1 else (middle, high)
+        low, high = (low, middle) if spectral_radius(loop, middle) > 1 else (middle, high)
     return low
 
 
@@ -330,14 +321,13 @@ def stability(
     """
     slope, hand, tick_s = steepest(displacement_mm, force_cN), finger or NominalFinger(), limits.tick_s
     place, held_cN = slope.rise_mm, slope.rise_cN
-    alone, onset = (
-        stiffness_limit_N_m(SampledLoop.of_rig(rig, tick_s, place, who, held_cN)) for who in (None, hand)
-    )
-    bounds = passive_limit_N_m(rig, tick_s, place), grain_limit_N_m(rig, limits, place), alone, onset
+    loops = [SampledLoop.of_rig(rig, tick_s, place, who, held_cN) for who in (None, hand)]
+    bounds = [passive_limit_N_m(rig, tick_s, place), grain_limit_N_m(rig, limits, place)]
+    bounds += [stiffness_limit_N_m(loop) for loop in loops]
     over = force_cN if over_cN is None else over_cN
-    step, step_mm, quiet = _step(rig, limits, displacement_mm, over, force_cN, hand)
+    step = _step(rig, limits, displacement_mm, over, force_cN, hand)
     passive, grain, bare, hand_on = (cN_mm_PER_N_m * bound for bound in bounds)
-    return Stability(slope, passive, grain, bare, hand_on, step, step_mm, quiet)
+    return Stability(slope, passive, grain, bare, hand_on, *step)
 
 
 def _step(

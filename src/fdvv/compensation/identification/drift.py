@@ -34,17 +34,8 @@ SHARED_ratio = 0.25
 """Part of a standard error that counts against a change: errors are correlated, and a press repeats most."""
 UNINFORMATIVE_VARIANCE = 1e6
 """Variance of a change already reported, in squares of the prior's spread."""
-LEAST_CHANGE = {
-    "gain": 0.03,
-    "drag": 0.15,
-    "friction": 1.5,
-    "weight": 3.0,
-    "mass": 2.0,
-    "play": 2.0,
-    "lag": 2e-4,
-}
-"""Smaller changes are not reported: ratios of gain and drag, else in the unit of the parameter."""
-LEAST_drag_N_s_m = 0.2
+LEAST_drag_ratio, LEAST_drag_N_s_m = 0.15, 0.2
+LEAST_lag_ms = 0.2
 ERRORS = {
     0: "gain",
     VISCOUS: "drag_N_s_m",
@@ -60,7 +51,10 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """A possible change: name, unit, direction in parameter space, old value, least size, lower bound."""
+    """A possible change: name, unit, direction in parameter space, old value, least size, lower bound.
+
+    A smaller change is not reported. The gain's is relative; the others are in the unit.
+    """
 
     name: str
     unit: str
@@ -140,18 +134,16 @@ def _changes(rig: RigModel) -> list[_Change]:
 
     # a warm coil pushes and brakes less, and braking counts at gain 1 with the square of the gain
     coil = along((GAIN, numbers[GAIN]), (BACK_EMF, -numbers[BACK_EMF]))
-    least_drag = max(LEAST_CHANGE["drag"] * rig.drag_N_s_m, LEAST_drag_N_s_m)
+    least_drag = max(LEAST_drag_ratio * rig.drag_N_s_m, LEAST_drag_N_s_m)
     return [
-        _Change("gain", "", coil, 0.0, LEAST_CHANGE["gain"], -1.0),
+        _Change("gain", "", coil, 0.0, 0.03, -1.0),
         _Change("drag", "N s/m", along((VISCOUS, 1.0)), rig.drag_N_s_m, least_drag),
-        _Change("friction", "cN", along((FRICTION, 1.0)), rig.friction_cN, LEAST_CHANGE["friction"]),
-        _Change("weight", "cN", along((WEIGHT, 1.0)), rig.weight_cN, LEAST_CHANGE["weight"], -np.inf),
-        _Change("mass", "g", along((MASS, 1.0)), rig.mass_g, LEAST_CHANGE["mass"]),
-        _Change("play", "cN", along((PLAY, 0.5)), rig.play_cN, LEAST_CHANGE["play"]),
-        _Change(
-            "position lag", "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, 1e3 * LEAST_CHANGE["lag"]
-        ),
-        _Change("delay", "ms", along((DELAY, 1e-3)), 1e3 * rig.delay_s, 1e3 * LEAST_CHANGE["lag"]),
+        _Change("friction", "cN", along((FRICTION, 1.0)), rig.friction_cN, 1.5),
+        _Change("weight", "cN", along((WEIGHT, 1.0)), rig.weight_cN, 3.0, -np.inf),
+        _Change("mass", "g", along((MASS, 1.0)), rig.mass_g, 2.0),
+        _Change("play", "cN", along((PLAY, 0.5)), rig.play_cN, 2.0),
+        _Change("position lag", "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, LEAST_lag_ms),
+        _Change("delay", "ms", along((DELAY, 1e-3)), 1e3 * rig.delay_s, LEAST_lag_ms),
     ]
 
 
