@@ -30,7 +30,7 @@ def kept(project: Path, text: str) -> Path:
 
 
 def test_the_bands_are_the_quartiles_of_the_presses(tmp_path: Path, probed: ProbeResult) -> None:
-    kept(tmp_path, probed.to_json())
+    kept(tmp_path, json.dumps(probed.to_dict()))
     found = measured_button(tmp_path, "my-button")
     assert found is not None
     assert (found.device_name, found.presses, found.simulated) == (probed.device_name, 6, True)
@@ -44,7 +44,7 @@ def test_the_bands_are_the_quartiles_of_the_presses(tmp_path: Path, probed: Prob
 
 @pytest.mark.parametrize("name", ["other", "../measured/my-button", "my-button.json", ""])
 def test_a_button_without_a_file_has_no_bands(tmp_path: Path, probed: ProbeResult, name: str) -> None:
-    kept(tmp_path, probed.to_json())
+    kept(tmp_path, json.dumps(probed.to_dict()))
     assert measured_button(tmp_path, name) is None
 
 
@@ -52,7 +52,7 @@ def test_a_broken_file_is_named_with_its_remedy(tmp_path: Path, probed: ProbeRes
     kept(tmp_path, "{}")
     with pytest.raises(InputError, match=r"my-button\.json.*probe the button again"):
         measured_button(tmp_path, "my-button")
-    document = json.loads(probed.to_json())
+    document = probed.to_dict()
     document["curves"][1]["displacement_mm"].pop()
     kept(tmp_path, json.dumps(document))
     with pytest.raises(InputError, match=r"\$\.curves\[1\].*different length"):

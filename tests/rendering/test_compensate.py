@@ -79,7 +79,7 @@ def test_progress_is_told_after_every_press() -> None:
 
 
 def test_the_report_has_the_agreed_shape(result: CompensationResult) -> None:
-    report = json.loads(result.to_json())
+    report = json.loads(json.dumps(result.to_dict(), allow_nan=False))
     assert report["presses"] == 16
     assert report["simulated"] is True
     assert "paper law" in report["method"]

@@ -80,7 +80,7 @@ def test_the_step_between_strokes_is_told_with_the_release_alone(report: Feasibi
 
 
 def test_the_report_is_a_document_without_nan(report: FeasibilityReport) -> None:
-    read = json.loads(report.to_json())
+    read = json.loads(json.dumps(report.to_dict(), allow_nan=False))
     assert read == report.to_dict()
     assert [c["verdict"] for c in read["curves"]] == [str(c.verdict.following) for c in report.curves]
     assert read["curves"][0]["measured"] is None

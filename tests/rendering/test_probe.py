@@ -75,7 +75,7 @@ def test_where_the_cap_did_not_come_back_the_finger_felt_nothing() -> None:
 
 
 def test_the_report_has_the_agreed_shape() -> None:
-    report = json.loads(probe(ScriptedDevice(), MODEL, SURFACE, SPEEDS, 3).to_json())
+    report = json.loads(json.dumps(probe(ScriptedDevice(), MODEL, SURFACE, SPEEDS, 3).to_dict()))
     assert report["simulated"] is True
     assert report["presses"] == 6
     assert len(report["curves"]) == 4

@@ -73,7 +73,7 @@ def test_what_was_measured_is_told_once_there_is_a_file(client: TestClient, own_
     probed = probe(device, model, uncompensated(device, model, [50.0]), [50.0], presses=2)
     folder = own_studio.project / "measured"
     folder.mkdir(parents=True)
-    (folder / "mine.json").write_text(probed.to_json())
+    (folder / "mine.json").write_text(json.dumps(probed.to_dict()))
     found = asked(client, "measured", {"name": "mine"})["found"]
     assert (found["presses"], found["simulated"], len(found["curves"])) == (2, True, 2)
     for curve in found["curves"]:

@@ -43,18 +43,13 @@ KEEP_ALIVE_s = 0.05
 
 
 class Client:
-    """A connection to a device.
-
-    Parameters
-    ----------
-    port : an open line.
-    on_key, on_fault : called with notices as they come.
+    """A connection to a device over an open line.
 
     Attributes
     ----------
     hello : name, version and limits of the device.
     telemetry : records received so far.
-    on_key, on_fault : as above; may be set later.
+    on_key, on_fault : called with notices as they come; may be set later.
     """
 
     def __init__(
@@ -92,23 +87,24 @@ class Client:
 
     # -- requests ------------------------------------------------------------------------------------------
 
-    def _request(self, message: Message, kind: type[Kind], body: Record | None = None) -> Kind:
+    def _command(self, message: Message, body: Record | None = None) -> Record | None:
         reply = self._wire.request(message, body)
-        assert isinstance(reply, kind)
         self._heard_s = self.port.now_s()
         return reply
 
-    def _command(self, message: Message, body: Record | None = None) -> None:
-        self._wire.request(message, body)
-        self._heard_s = self.port.now_s()
+    def _request(self, message: Message, kind: type[Kind], body: Record | None = None) -> Kind:
+        reply = self._command(message, body)
+        assert isinstance(reply, kind)
+        return reply
 
     def ping(self) -> PingReply:
         """Show that the host is there, and compare the clocks."""
         sent_us = self.port.now_s() * 1e6
-        reply = self._request(Message.PING, PingReply, PingRequest(host_us=int(sent_us) % 2**32))
-        last_us = self._exchanges[-1] if self._exchanges else None
-        near_us = last_us.device_us + sent_us - last_us.sent_us if last_us else reply.device_us
-        if reply.host_us == int(sent_us) % 2**32:
+        shown_us = int(sent_us) % 2**32
+        reply = self._request(Message.PING, PingReply, PingRequest(host_us=shown_us))
+        last = self._exchanges[-1] if self._exchanges else None
+        near_us = last.device_us + sent_us - last.sent_us if last else reply.device_us
+        if reply.host_us == shown_us:
             device_us = unwrap_us(reply.device_us, near_us)
             self._exchanges.append(Exchange(sent_us, self.port.now_s() * 1e6, device_us))
         return reply

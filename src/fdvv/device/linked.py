@@ -208,15 +208,7 @@ def join(truth: Truth, rows: IntArray, telemetry: TickColumns, velocity_mm_s: fl
     held = np.maximum(np.searchsorted(rows, np.arange(truth.t_s.size), side="right") - 1, 0)
     marked = np.zeros(truth.t_s.size, dtype=np.bool_)
     marked[rows] = True
-    return Press(
-        truth.t_s,
-        truth.displacement_mm,
-        truth.force_cN,
-        velocity_mm_s,
-        telemetry.displacement_mm[held],
-        telemetry.force_cN[held],
-        telemetry.commanded_cN[held],
-        (telemetry.flags[held] & TickFlag.LIMITED) > 0,
-        marked,
-        simulated=True,
-    )
+    sensed = telemetry.displacement_mm[held], telemetry.force_cN[held], telemetry.commanded_cN[held]
+    limited = (telemetry.flags[held] & TickFlag.LIMITED) > 0
+    what = truth.t_s, truth.displacement_mm, truth.force_cN, velocity_mm_s
+    return Press(*what, *sensed, limited, marked, simulated=True)

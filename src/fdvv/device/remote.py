@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Self
 
 import numpy as np
@@ -96,15 +97,9 @@ class Remote:
 
     def fault(self) -> FaultReport:
         reply = self.client.read_fault()
-        return FaultReport(
-            Fault(reply.fault),
-            reply.value,
-            reply.bound,
-            reply.time_us * 1e-6,
-            reply.displacement_um16 / UM16_PER_mm,
-            reply.commanded_cN64 / CN64_PER_cN,
-            reply.count,
-        )
+        at = reply.displacement_um16 / UM16_PER_mm, reply.commanded_cN64 / CN64_PER_cN
+        found = Fault(reply.fault), reply.value, reply.bound
+        return FaultReport(*found, reply.time_us * 1e-6, *at, reply.count)
 
     def clear_fault(self) -> None:
         self.client.clear_fault(self.fault().fault)
@@ -114,9 +109,8 @@ class Remote:
             return
         self._closed = True
         try:
-            self.stop()
-        except DeviceError:
-            pass  # it is gone, or in fault, and then at zero force already
+            with suppress(DeviceError):  # it is gone, or in fault, and then at zero force already
+                self.stop()
         finally:
             self.client.close()
 
@@ -202,25 +196,16 @@ class PressedDevice(Remote):
                 return columns.part(rows)
             if telemetry.last is not None and telemetry.last.mode == Mode.FAULT:
                 self._fail_on_fault()
-        raise DeviceError(
-            f"{port.name}: nobody pressed within {self._patience_s:g} s; press the button fully"
-        )
+        waited = f"nobody pressed within {self._patience_s:g} s"
+        raise DeviceError(f"{port.name}: {waited}; press the button fully")
 
     def _record(self, columns: TickColumns, velocity_mm_s: float) -> Press:
         t_s = (columns.tick - columns.tick[0]) * self._settings.tick_us * 1e-6
+        sensed = columns.displacement_mm, columns.force_cN, columns.commanded_cN
         force_cN = columns.force_cN if self._settings.force_gain_q14 else columns.commanded_cN
-        return Press(
-            t_s,
-            columns.displacement_mm,
-            force_cN,
-            velocity_mm_s,
-            columns.displacement_mm,
-            columns.force_cN,
-            columns.commanded_cN,
-            (columns.flags & TickFlag.LIMITED) > 0,
-            np.ones(t_s.size, dtype=np.bool_),
-            simulated=self.info().simulated,
-        )
+        limited, every = (columns.flags & TickFlag.LIMITED) > 0, np.ones(t_s.size, dtype=np.bool_)
+        simulated = self.info().simulated
+        return Press(t_s, sensed[0], force_cN, velocity_mm_s, *sensed, limited, every, simulated)
 
 
 def find_press(columns: TickColumns, travel_mm: float) -> np.ndarray[tuple[int], np.dtype[np.bool_]] | None:
@@ -230,10 +215,8 @@ def find_press(columns: TickColumns, travel_mm: float) -> np.ndarray[tuple[int],
     if down.size and down[0]:
         edges = edges[1:]  # it was held as the records began
     for left, back in zip(edges[::2], edges[1::2], strict=False):
-        if (
-            columns.displacement_mm[left:back].max() >= DEEP_RATIO * travel_mm
-            and back + LEAD_TICKS <= down.size
-        ):
+        deepest_mm = columns.displacement_mm[left:back].max()
+        if deepest_mm >= DEEP_RATIO * travel_mm and back + LEAD_TICKS <= down.size:
             chosen = np.zeros(down.size, dtype=np.bool_)
             chosen[max(0, left - LEAD_TICKS) : back + LEAD_TICKS] = True
             return chosen

@@ -88,12 +88,11 @@ class SerialPort:
         while True:
             try:
                 self._line = self._opened()
+                return
             except DeviceError:
                 if time.monotonic() >= until_s:
                     raise
                 time.sleep(0.1)
-            else:
-                return
 
     def close(self) -> None:
         self._line.close()

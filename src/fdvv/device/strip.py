@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
 from fdvv.device.wire import Port, unwrap_us
-from fdvv.errors import DeviceError, ModelError
+from fdvv.errors import DeviceError
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import REPLY
 from fdvv.protocol.record import Record
@@ -117,7 +118,7 @@ class StripWire:
         try:
             body = StripRefusedReply.unpack(frame.payload)
             reason = REASONS[StripRefusal(body.refusal)]
-        except (ModelError, ValueError):
+        except ValueError:  # ModelError too
             return
         if body.request == message:
             where = f" (field {body.detail})" if body.refusal == StripRefusal.BAD_VALUE else ""
@@ -163,17 +164,9 @@ class StripRound:
 
     def request(self, number: int) -> StripBeginRequest:
         """Return the request for it. ModelError for a number beyond the wire's range."""
-        return StripBeginRequest(
-            round=number,
-            speed_px_s=self.speed_px_s,
-            delay_ms=round(1e3 * self.delay_s),
-            after_ms=round(1e3 * self.after_s),
-            pixels=self.pixels,
-            zone_px=self.zone_px,
-            zone_half_px=self.zone_half_px,
-            brightness=self.brightness,
-            led=self.led,
-        )
+        same = {k: v for k, v in vars(self).items() if k not in ("delay_s", "after_s")}
+        delay_ms, after_ms = round(1e3 * self.delay_s), round(1e3 * self.after_s)
+        return StripBeginRequest(round=number, delay_ms=delay_ms, after_ms=after_ms, **same)
 
 
 @dataclass(frozen=True)
@@ -257,9 +250,8 @@ class LedPointingTask:
         errors_us = struct.unpack(f"<{STRIP_PRESSES}i", reply.asynchronies_us)
         activations_s = tuple(target_s + 1e-6 * us for us in errors_us[: min(reply.presses, STRIP_PRESSES)])
         whole, late_s = reply.mode == StripMode.OVER, 1e-6 * reply.late_us
-        return StripResult(
-            self._s(reply.start_us), target_s, activations_s, reply.presses, reply.frames, late_s, whole
-        )
+        counts = reply.presses, reply.frames
+        return StripResult(self._s(reply.start_us), target_s, activations_s, *counts, late_s, whole)
 
     def play(self, order: StripRound) -> StripResult:
         """Start a round and wait for its end."""
@@ -284,11 +276,8 @@ class LedPointingTask:
 
         It goes dark by itself where `status` is not asked for half a second.
         """
-        red, green, blue = colour
-        order = StripShowRequest(
-            first=first, count=count, red=red, green=green, blue=blue, brightness=brightness
-        )
-        self._wire.command(StripMessage.SHOW, order)
+        light = {"red": colour[0], "green": colour[1], "blue": colour[2], "brightness": brightness}
+        self._wire.command(StripMessage.SHOW, StripShowRequest(first=first, count=count, **light))
 
     def stop(self) -> None:
         self._wire.command(StripMessage.STOP)
@@ -311,9 +300,8 @@ class LedPointingTask:
     def close(self) -> None:
         """Go dark and let the line go; a second time does nothing."""
         try:
-            self.stop()
-        except DeviceError:
-            pass  # it is gone, and dark by itself
+            with suppress(DeviceError):  # it is gone, and dark by itself
+                self.stop()
         finally:
             self.port.close()
 

@@ -66,8 +66,8 @@ class TwinDevice:
         The rig reads its sensor as it did: tick_us and reads stay what they are.
         """
         for name in ("tick_us", "reads"):
-            if getattr(settings, name) != getattr(self._settings, name):
-                kept, asked = getattr(self._settings, name), getattr(settings, name)
+            kept, asked = getattr(self._settings, name), getattr(settings, name)
+            if kept != asked:
                 raise DeviceError(f"twin: {name} is {kept} in this rig and cannot be {asked}")
         try:
             Core(settings)
@@ -106,9 +106,10 @@ class TwinDevice:
         trace = simulate_program(
             self._rig, self._finger, gesture, self._active, noise, velocity_mm_s, settings=self._settings
         )
-        if (trace.mode == Mode.FAULT).any():
+        fault = trace.mode == Mode.FAULT
+        if fault.any():
             raise DeviceError(
-                f"twin: the supervisor let go after {trace.t_s[np.argmax(trace.mode == Mode.FAULT)]:.3f} s; "
+                f"twin: the supervisor let go after {trace.t_s[np.argmax(fault)]:.3f} s; "
                 "look for a rig whose sensor, supply or heat is beyond its limits"
             )
         return trace

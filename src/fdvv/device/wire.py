@@ -102,29 +102,26 @@ class Wire:
         """Ask and give the reply's body. RefusedError, or DeviceError if none comes."""
         self._sequence = (self._sequence + 1) % 256
         data = encode(request_frame(message, self._sequence, body))
+        timeout_s = SLOW_s.get(message, TIMEOUT_s)
         for attempt in range(TRIES):
             self.repeated += attempt > 0
             # zeros end whatever half a frame the device still holds
             self.port.write(b"\0" + data if attempt else data)
-            found = self._await(message, SLOW_s.get(message, TIMEOUT_s))
-            if found is not None:
+            if found := self._await(message, timeout_s):
                 return found[0]
-        spent = TRIES * SLOW_s.get(message, TIMEOUT_s)
         raise DeviceError(
-            f"{self.port.name}: no answer to {message.name.lower()} in {spent:g} s; "
+            f"{self.port.name}: no answer to {message.name.lower()} in {TRIES * timeout_s:g} s; "
             "is it powered, and is this the right port?"
         )
 
     def _await(self, message: Message, timeout_s: float) -> tuple[Record | None] | None:
         until_s = self.port.now_s() + timeout_s
-        while True:
-            data = self.port.read(until_s)
-            if not data:
-                return None
+        while data := self.port.read(until_s):
             replies = [frame for frame in self._decoder.feed(data) if not self._notify(frame)]
             for frame in replies:
                 if frame.sequence == self._sequence and (found := self._reply(frame, message)):
                     return found
+        return None
 
     def _reply(self, frame: Frame, message: Message) -> tuple[Record | None] | None:
         """Return the body of the reply to message; None if this frame is another's."""
@@ -220,6 +217,5 @@ def relate(exchanges: Sequence[Exchange]) -> ClockRelation:
     drift = 0.0 if steady else float(span @ (host - host.mean() - span) / (span @ span))
     offset = float(host.mean() - (1 + drift) * device.mean())
     residual = host - offset - (1 + drift) * device
-    return ClockRelation(
-        offset, drift * 1e6, float(np.sqrt(np.mean(residual**2))), float(trips.min()), quick.size
-    )
+    rms = float(np.sqrt(np.mean(residual**2)))
+    return ClockRelation(offset, drift * 1e6, rms, float(trips.min()), quick.size)

@@ -61,14 +61,12 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
 
 def save_actuation(result: CompensationResult, path: Path | str) -> None:
     """Write a result to an ``*.actuation.json`` file, whole or not at all. Raises OSError."""
-    surface = result.surface
-    columns = ("displacement_mm", "velocity_mm_s", "press_cN", "release_cN")
     record: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
         **result.to_dict(),
         "travel_mm": result.travel_mm,
-        **{name: getattr(surface, name).tolist() for name in columns},
+        **{name: column.tolist() for name, column in vars(result.surface).items()},
         "tuning": asdict(result.outcome.tuning),
         "receipt": result.receipt.to_dict() if result.receipt else None,
     }
@@ -105,8 +103,7 @@ def open_run_summary(path: Path) -> RunSummary | None:
 
 
 def _result(record: ActuationRecord) -> CompensationResult:
-    columns = (record.displacement_mm, record.velocity_mm_s, record.press_cN, record.release_cN)
-    surface = ForceSurface(*(np.array(column, dtype=np.float64) for column in columns))
+    surface = ForceSurface(**{f.name: np.array(getattr(record, f.name)) for f in fields(ForceSurface)})
     nan = float("nan")
     curves = tuple(
         CurveOutcome(
@@ -120,14 +117,10 @@ def _result(record: ActuationRecord) -> CompensationResult:
         for c in record.curves
     )
     learned = record.presses - len(record.skipped)
-    outcome = Outcome(surface, curves, learned, True, record.explanation, _tuning(record.tuning))
-    names = record.method, record.model, record.device, record.travel_mm
-    return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)
-
-
-def _tuning(found: dict[str, float | bool]) -> Tuning:
-    """Return the tuning of a file, none if empty. Raises ModelError on an unknown name."""
-    unknown = sorted(set(found) - {f.name for f in fields(Tuning)})
+    unknown = sorted(set(record.tuning) - {f.name for f in fields(Tuning)})
     if unknown:
         raise ModelError(f"unknown field {unknown[0]!r} - at `$.tuning`")
-    return msgspec.convert(found, Tuning)
+    tuning = msgspec.convert(record.tuning, Tuning)
+    outcome = Outcome(surface, curves, learned, True, record.explanation, tuning)
+    names = record.method, record.model, record.device, record.travel_mm
+    return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from contextlib import suppress
@@ -29,11 +28,6 @@ from fdvv.rendering.session_run import Guide, PressDone, Progress, SessionPlan, 
 REMEDY = "leave out its rig file to identify it again"
 
 
-def learned_rig(method: Method[Any], state: Any) -> LearnedRig | None:
-    """Return the rig as a method learned it; None for a method that learns tables only."""
-    return method.learned(state) if isinstance(method, RigAware) else None
-
-
 def warn_on_drift(method: Method[Any], plan: SessionPlan[Any], log: PressLog) -> Progress:
     """Wrap a plan's progress so that the first used press on a rig identified earlier is checked for drift.
 
@@ -52,9 +46,8 @@ def warn_on_drift(method: Method[Any], plan: SessionPlan[Any], log: PressLog) ->
                 change = detect_drift(learned.rig, done.press, plan.travel_mm)
                 checked = True
                 if change:
-                    plan.guide.notice(
-                        f"warning: the rig has changed since its identification: {change}; {REMEDY}"
-                    )
+                    text = f"the rig has changed since its identification: {change}; {REMEDY}"
+                    plan.guide.notice(f"warning: {text}")
         plan.progress(done)
 
     return progress
@@ -103,23 +96,19 @@ class CompensationResult:
             "presses": self.presses,
             "skipped": list(self.skipped),
             "explanation": self.outcome.sentence,
-            "curves": [_curve_dict(c) for c in self.outcome.curves],
+            "curves": [
+                {
+                    "stroke": str(curve.stroke),
+                    "velocity_mm_s": curve.velocity_mm_s,
+                    "error_cN": list(curve.error_cN),
+                    "mean_error_cN": _known(curve.mean_error_cN),
+                    "max_error_cN": _known(curve.max_error_cN),
+                    "explanation": curve.sentence,
+                }
+                for curve in self.outcome.curves
+            ],
             "simulated": self.simulated,
         }
-
-    def to_json(self) -> str:
-        return json.dumps(self.to_dict(), allow_nan=False)
-
-
-def _curve_dict(curve: CurveOutcome) -> dict[str, Any]:
-    return {
-        "stroke": str(curve.stroke),
-        "velocity_mm_s": curve.velocity_mm_s,
-        "error_cN": list(curve.error_cN),
-        "mean_error_cN": _known(curve.mean_error_cN),
-        "max_error_cN": _known(curve.max_error_cN),
-        "explanation": curve.sentence,
-    }
 
 
 def _known(error_cN: float) -> float | None:
@@ -150,12 +139,19 @@ def compensate(
     if method.trial(start) is not None:
         check_force_sensor(device)
     speeds = job.target.velocity_mm_s.tolist()
-    manifest = make_manifest(
-        "compensate", device, model, speeds, (method.name, method), (session.seed, session.parts)
-    )
+    origin = session.seed, session.parts
+    manifest = make_manifest("compensate", device, model, speeds, (method.name, method), origin)
     with session.open_presses(manifest) as log:
-        plan = _plan(method, job, log, session)
-        plan = replace(plan, progress=progress or plan.progress, guide=guide or plan.guide)
+        plan = SessionPlan(
+            "compensate",
+            method,
+            job.travel_mm,
+            lambda press, pace: judge_press(press, job.travel_mm, session.acceptance.with_pace(pace)),
+            session.acceptance.patience,
+            lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
+            progress or (lambda _done: None),
+            guide or Guide(),
+        )
         plan = replace(plan, progress=warn_on_drift(method, plan, log))
         state = run(device, plan, start, log)
         outcome = method.done(state)
@@ -167,19 +163,9 @@ def compensate(
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm
-    learned = learned_rig(method, state)
+    # other methods learn tables only
+    learned = method.learned(state) if isinstance(method, RigAware) else None
     return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned)
-
-
-def _plan(method: Method[Any], job: CompensationJob, log: PressLog, session: Session) -> SessionPlan[Any]:
-    return SessionPlan(
-        "compensate",
-        method,
-        job.travel_mm,
-        lambda press, pace_ratio: judge_press(press, job.travel_mm, session.acceptance.with_pace(pace_ratio)),
-        session.acceptance.patience,
-        lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
-    )
 
 
 def velocity_progress(

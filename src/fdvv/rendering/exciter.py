@@ -21,7 +21,6 @@ from fdvv.units import FloatArray
 from fdvv.vibration.exciter import (
     FULL_SCALE_V,
     KnownExciter,
-    Tone,
     ToneBench,
     clear_frequencies_Hz,
     clock_ratio,
@@ -68,18 +67,16 @@ def identify_exciter(
     device.upload_program(tone_image(frequencies, tone_s))
     records = _records(device, len(frequencies), tone_s, progress)
     ratio = clock_ratio(records, frequencies)
-    tones = [_tone(record, f * ratio) for record, f in zip(records, frequencies, strict=True)]
-    drive_V = COUNTS * FULL_SCALE_V / 2048
-    known = (
-        {"lag_s": rig.position_lag_s, "lag_ratio": KNOWN_LAG_ratio} if rig and rig.position_lag_s > 0 else {}
-    )
-    bench = replace(ToneBench(drive_V), **known)
+    tones = [measure_tone(*record, f * ratio) for record, f in zip(records, frequencies, strict=True)]
+    bench = ToneBench(COUNTS * FULL_SCALE_V / 2048)
+    if rig and rig.position_lag_s > 0:
+        bench = replace(bench, lag_s=rig.position_lag_s, lag_ratio=KNOWN_LAG_ratio)
+    info = device.info()
     try:
-        return fit_exciter(tones, bench, 1e-6 * settings.vibration_latency_us, device.info().simulated)
+        return fit_exciter(tones, bench, 1e-6 * settings.vibration_latency_us, info.simulated)
     except FitError as error:
-        raise FitError(
-            f"{device.info().name}: {error}; check that the exciter plays and nobody touches"
-        ) from error
+        reason = f"{error}; check that the exciter plays and nobody touches"
+        raise FitError(f"{info.name}: {reason}") from error
 
 
 def tone_image(frequencies_Hz: Sequence[float], tone_s: float) -> bytes:
@@ -132,7 +129,3 @@ def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> l
         return found
     finally:
         device.stop()
-
-
-def _tone(record: Record, frequency_Hz: float) -> Tone:
-    return measure_tone(*record, frequency_Hz)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -108,9 +107,6 @@ class FeasibilityReport:
             "curves": [curve.to_dict() for curve in self.curves],
             "thermal": [{"velocity_mm_s": v, **asdict(dose)} for v, dose in warmth],
         }
-
-    def to_json(self) -> str:
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
 
 
 def feasible_curves(report: FeasibilityReport) -> list[FeasibleCurve]:

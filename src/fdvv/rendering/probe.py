@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -20,8 +19,7 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
 from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
-from fdvv.rendering.session import Manifest, Session, make_manifest, table_digest
-from fdvv.rendering.session_log import PressLog
+from fdvv.rendering.session import Session, make_manifest, table_digest
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 from fdvv.units import FloatArray
 
@@ -135,28 +133,28 @@ class ProbeCurve:
 def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
     grid = grid_mm(model.travel_mm, BIN_mm)
     judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
-    curves = []
+    x, curves = grid[judged], []
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
-        rows, speeds = [], []
+        felt, speeds = [], []
         for press, strokes in zip(presses, spans, strict=True):
-            span = strokes[i]
-            felt = bin_force(press.displacement_mm[span.rows], press.force_cN[span.rows], grid)
-            rows.append(felt[judged])
-            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, span))
-        felt_rows, achieved = np.stack(rows), np.array(speeds)
+            rows = strokes[i].rows
+            felt.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
+            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, strokes[i]))
+        rendered, achieved = np.stack(felt), np.array(speeds)
+        # without a release curve the press serves for both
         served = stroke if model.of(stroke) else Stroke.PRESS
-        x = grid[judged]
+        paces = np.nan_to_num(achieved, nan=velocity_mm_s)[:, None]
         curves.append(
             ProbeCurve(
                 stroke,
                 velocity_mm_s,
                 x,
                 model.force_cN(x, velocity_mm_s, served),
-                np.nan_to_num(felt_rows, nan=0.0),
+                np.nan_to_num(rendered, nan=0.0),
                 achieved,
-                model.force_cN(x[np.newaxis], np.nan_to_num(achieved, nan=velocity_mm_s)[:, None], served),
-                float(np.isfinite(felt_rows).mean(axis=1).min()),
+                model.force_cN(x[np.newaxis], paces, served),
+                float(np.isfinite(rendered).mean(axis=1).min()),
             )
         )
     return curves
@@ -198,9 +196,6 @@ class ProbeResult:
             "simulated": self.simulated,
         }
 
-    def to_json(self) -> str:
-        return json.dumps(self.to_dict(), allow_nan=False)
-
 
 def fd_only(model: FDVVModel) -> FDVVModel:
     """Reduce a model to force and displacement: the slowest curve of each stroke, no vibration."""
@@ -237,31 +232,29 @@ def probe(
     settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
     if tuning != UNTUNED:
         settings["tuning"] = asdict(tuning)
-    manifest = make_manifest(
-        "probe", device, model, plan.velocities_mm_s, (method, settings), (session.seed, session.parts)
-    )
-    with session.open_presses(manifest) as log:
-        session_plan = _session_plan(plan, model, session)
-        session_plan = replace(
-            session_plan, progress=progress or session_plan.progress, guide=guide or session_plan.guide
-        )
-        found = run(device, session_plan, plan.init(), log)
-        result = _result(device, model, method, _all_curves(model, plan, found), log, manifest)
-        if session.folder:
-            save_run_summary(session.folder, result.receipt)
-    return result
-
-
-def _session_plan(plan: ProbePlan, model: FDVVModel, session: Session) -> SessionPlan[Found]:
+    origin = session.seed, session.parts
+    manifest = make_manifest("probe", device, model, plan.velocities_mm_s, (method, settings), origin)
     bounds = replace(session.acceptance, saturated_ratio=1.0)
-    return SessionPlan(
+    session_plan = SessionPlan(
         "probe",
         plan,
         model.travel_mm,
         lambda press, _pace_ratio: judge_press(press, model.travel_mm, bounds, true_position=True),
         bounds.patience,
         lambda found: _standings(model, plan, found),
+        progress or (lambda _done: None),
+        guide or Guide(),
     )
+    with session.open_presses(manifest) as log:
+        found = run(device, session_plan, plan.init(), log)
+        curves = _all_curves(model, plan, found)
+        receipt = make_run_summary(manifest, log.runs, log.entries, [curve.outcome for curve in curves])
+        if session.folder:
+            save_run_summary(session.folder, receipt)
+        skipped = tuple(str(entry) for entry in log.entries if not entry.used)
+    info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
+    presses, names = len(log.entries), (method, model.name, info.name)
+    return ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt)
 
 
 def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
@@ -275,26 +268,4 @@ def _standings(model: FDVVModel, plan: ProbePlan, found: Found) -> tuple[Velocit
     return tuple(
         VelocityProgress(speed, len(made), plan.presses, tuple(c for c in curves if c.velocity_mm_s == speed))
         for speed, made in zip(plan.velocities_mm_s, found, strict=True)
-    )
-
-
-def _result(
-    device: Device,
-    model: FDVVModel,
-    method: str,
-    curves: Sequence[ProbeCurve],
-    log: PressLog,
-    manifest: Manifest,
-) -> ProbeResult:
-    info = device.info()
-    return ProbeResult(
-        method,
-        model.name,
-        info.name,
-        (FROM_mm, model.travel_mm - STOP_GUARD_mm),
-        tuple(curves),
-        len(log.entries),
-        tuple(str(entry) for entry in log.entries if not entry.used),
-        info.simulated,
-        make_run_summary(manifest, log.runs, log.entries, [curve.outcome for curve in curves]),
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
-from msgspec import json
+from msgspec.json import Decoder
 
 from fdvv.compensation.method import CurveOutcome
 from fdvv.io.documents import Kind, pretty, read_document
@@ -120,7 +120,7 @@ def read_run_summary(path: Path) -> RunSummary | None:
     manifest = read_manifest(path / MANIFEST)
     if (path / RECEIPT).is_file():
         text = read_limited(path / RECEIPT, LARGEST_bytes, KIND.remedy)
-        return read_document(text, path / RECEIPT, KIND, json.Decoder(RunSummary).decode, lambda _: None)
+        return read_document(text, path / RECEIPT, KIND, Decoder(RunSummary).decode, lambda _: None)
     if manifest.task == "tune":
         runs, answers, _ = AnswerLog.read(path / ANSWERS)
         return make_run_summary(manifest, runs, [answer.entry for answer in answers])

@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 import numpy as np
+from msgspec.json import Decoder
 
 import fdvv
 from fdvv.compensation.presses import AcceptanceLimits
@@ -131,7 +132,7 @@ def digest(data: bytes) -> str:
 
 
 def table_digest(surface: ForceSurface) -> str:
-    columns = (surface.displacement_mm, surface.velocity_mm_s, surface.press_cN, surface.release_cN)
+    columns = vars(surface).values()
     return digest(b"".join(np.ascontiguousarray(column, dtype="<f8").tobytes() for column in columns))
 
 
@@ -146,13 +147,7 @@ def now() -> str:
 
 def read_manifest(path: Path) -> Manifest:
     text = read_limited(path, LARGEST_bytes, KIND.remedy)
-    return read_document(
-        text, path, KIND, lambda data: msgspec.json.decode(data, type=Manifest), lambda _: None
-    )
-
-
-def manifest_text(manifest: Manifest) -> str:
-    return pretty(msgspec.to_builtins(manifest)) + "\n"
+    return read_document(text, path, KIND, Decoder(Manifest).decode, lambda _: None)
 
 
 def differences(there: Manifest, now: Manifest) -> list[str]:
@@ -266,9 +261,13 @@ def _open(folder: Path, manifest: Manifest, kind: type[Log]) -> Log:
     try:
         # checked again under the lock: another process may have started the session
         if (folder / MANIFEST).exists():
-            _check(folder, manifest)
+            found = differences(read_manifest(folder / MANIFEST), manifest)
+            if found:
+                more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+                reason = f"is another session: {found[0]}{more}"
+                raise InputError(folder, "session", reason, "repeat its options, or name another folder")
         else:
-            write_atomic(folder / MANIFEST, manifest_text(manifest))
+            write_atomic(folder / MANIFEST, pretty(msgspec.to_builtins(manifest)) + "\n")
     except BaseException:
         log.close()
         raise
@@ -277,15 +276,5 @@ def _open(folder: Path, manifest: Manifest, kind: type[Log]) -> Log:
 
 def _foreign(folder: Path) -> bool:
     """Return whether a folder holds more than the empty logs that a killed process leaves."""
-    if not folder.exists():
-        return False
-    return any(path.name not in LOGS or path.stat().st_size for path in folder.iterdir())
-
-
-def _check(folder: Path, manifest: Manifest) -> None:
-    """Raise InputError for a session with another manifest."""
-    found = differences(read_manifest(folder / MANIFEST), manifest)
-    if found:
-        more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-        reason = f"is another session: {found[0]}{more}"
-        raise InputError(folder, "session", reason, "repeat its options, or name another folder")
+    paths = folder.iterdir() if folder.exists() else ()
+    return any(path.name not in LOGS or path.stat().st_size for path in paths)
