@@ -46,27 +46,25 @@ def why_incomplete(displacement_mm: FloatArray, travel_mm: float) -> str:
     return ""
 
 
-def split_strokes(
-    displacement_mm: FloatArray, travel_mm: float, edge_mm: float = EDGE_mm
-) -> tuple[Span, Span]:
+def split_strokes(displacement_mm: FloatArray, travel_mm: float) -> tuple[Span, Span]:
     """Return the rows of press and release of a record that reached the stop, each between the guards.
 
     The press runs from the last time at the upper guard to the first time at the lower one, the release
     from the last time at the lower guard to the next time at the upper one: dwell, impact and what came
-    before contact belong to neither. The lower guard lies edge_mm before the stop, or before the deepest
-    point where that is less deep; the upper one at edge_mm, or that far below where the cap rests.
+    before contact belong to neither. The lower guard lies 0.1 mm before the stop, or before the deepest
+    point where that is less deep; the upper one at 0.1 mm, or that far below where the cap rests.
     """
-    deep = np.flatnonzero(displacement_mm >= min(travel_mm, float(displacement_mm.max())) - edge_mm)
+    deep = np.flatnonzero(displacement_mm >= min(travel_mm, float(displacement_mm.max())) - EDGE_mm)
     first, last = int(deep[0]), int(deep[-1])
-    before = np.flatnonzero(displacement_mm[:first] <= _upper(displacement_mm[0], edge_mm))
-    after = np.flatnonzero(displacement_mm[last:] <= _upper(displacement_mm[-1], edge_mm))
+    before = np.flatnonzero(displacement_mm[:first] <= _upper(displacement_mm[0]))
+    after = np.flatnonzero(displacement_mm[last:] <= _upper(displacement_mm[-1]))
     start = int(before[-1]) + 1 if before.size else 0
     end = last + int(after[0]) if after.size else displacement_mm.size
     return Span(start, first), Span(last + 1, max(last + 1, end))
 
 
-def _upper(rest_mm: float, edge_mm: float) -> float:
-    return edge_mm if rest_mm <= edge_mm else rest_mm + edge_mm
+def _upper(rest_mm: float) -> float:
+    return EDGE_mm if rest_mm <= EDGE_mm else rest_mm + EDGE_mm
 
 
 def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, span: Span) -> float:

@@ -109,13 +109,7 @@ class SerialBench:
     """A bench that writes the text of docs/reference/capture-serial.md, and a person who follows the cue.
 
     Times run on from the first line that was heard, through all takes; takes after another start of the
-    program are on a clock of their own.
-
-    Parameters
-    ----------
-    port : an open line; closed if the bench does not answer.
-
-    Raises DeviceError if nothing comes or something else.
+    program are on a clock of their own. Raises DeviceError, and closes the line, if no bench answers.
     """
 
     def __init__(self, port: Port) -> None:

@@ -118,13 +118,7 @@ class LockstepPort:
 
 
 class LinkedDevice(Remote):
-    """A board in lockstep; someone on the plant presses when asked.
-
-    Parameters
-    ----------
-    board : with the firmware.
-    person : plants to press on; the board gets their settings.
-    """
+    """A board in lockstep; the person presses when asked, on plants whose settings the board gets."""
 
     def __init__(self, board: Board, person: Person) -> None:
         self._person = person

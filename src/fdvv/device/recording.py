@@ -57,10 +57,7 @@ def unpack_surface(found: dict[str, Any]) -> ForceSurface:
 class Recorder:
     """A device whose session is written down while it lasts; it is used like the device itself.
 
-    Parameters
-    ----------
-    device : what is recorded.
-    path : file to append to; a session begins with a line of its own.
+    The file is appended to; a session begins with a line of its own.
     """
 
     def __init__(self, device: Device, path: Path) -> None:
@@ -171,11 +168,9 @@ def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
 
 
 class ReplayDevice:
-    """Replays the presses of a recording to the same requests in the same order.
+    """Replays the last session of a file that `Recorder` wrote to the same requests in the same order.
 
-    Parameters
-    ----------
-    path : a file that `Recorder` wrote; its last session is replayed. InputError.
+    Raises InputError if it is none.
     """
 
     def __init__(self, path: Path) -> None:
@@ -193,21 +188,19 @@ class ReplayDevice:
         return self._settings
 
     def configure(self, settings: Settings) -> None:
-        """Find these settings in what follows; DeviceError if they were not written then."""
         wanted = dataclasses.asdict(settings)
         self._find("settings", lambda found: found == wanted, "a device with such settings")
         self._settings, self._active = settings, False
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
-        """Find this table in what follows; DeviceError if it was not uploaded then."""
         check_table(self._info, surface, travel_mm)
         self._find("upload", lambda found: _same(found, surface, travel_mm, paced), "this table")
 
     def upload_program(self, image: bytes) -> None:
-        """Find this program in what follows; DeviceError if it was not uploaded then."""
         self._find("program", lambda found: base64.b64decode(found) == image, "this program")
 
     def _find(self, kind: str, same: Any, what: str) -> None:
+        """Go to the next such line of the recording; DeviceError if none follows."""
         for place in range(self._place, len(self._lines)):
             if kind in self._lines[place] and same(self._lines[place][kind]):
                 self._place, self._active = place + 1, True

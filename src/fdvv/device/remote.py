@@ -30,11 +30,7 @@ POLL_s = 0.02
 
 
 def surface_image(surface: ForceSurface, travel_mm: float, paced: bool = False) -> bytes:
-    """Make a program of one state that follows the surface.
-
-    Its row is that of the decided velocity, or of the announced one if paced.
-    As `fdvv.twin.image.image_of` packs it; DeviceError if a device cannot hold it.
-    """
+    """Make a program of one state that follows the surface; DeviceError if a device cannot hold it."""
     try:
         return image_of(surface, travel_mm, paced=paced).image
     except ModelError as error:
@@ -153,15 +149,10 @@ def watch(device: Remote, duration_s: float, every: int = 1) -> Iterator[TickCol
 
 
 class PressedDevice(Remote):
-    """A device on a line, and someone at it.
+    """A device on an open line, and someone at it, who presses within patience_s.
 
     Its records hold what the rig sensed: true displacement is not known, and without a force sensor on the
     cap the force is the commanded one.
-
-    Parameters
-    ----------
-    port : an open line.
-    patience_s : how long to wait for a press.
     """
 
     def __init__(self, port: Port, patience_s: float = 30.0) -> None:

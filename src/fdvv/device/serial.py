@@ -27,12 +27,7 @@ def serial_ports() -> list[tuple[str, str]]:
 
 
 class SerialPort:
-    """A line through the system's serial driver; needs the extra `serial`.
-
-    Parameters
-    ----------
-    path : of the port, such as /dev/ttyACM0.
-    """
+    """A line through the system's serial driver, such as /dev/ttyACM0; needs the extra `serial`."""
 
     def __init__(self, path: str) -> None:
         self._path = path

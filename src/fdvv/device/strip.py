@@ -59,13 +59,7 @@ PLAYING = StripMode.WAITING, StripMode.MOVING
 class StripWire:
     """Sends requests one at a time, again if need be. A board that carried one out answers the same again.
 
-    Parameters
-    ----------
-    port : an open line. DeviceError without an answer, or from another board or version.
-
-    Attributes
-    ----------
-    hello : what the board said of itself.
+    `hello` is what the board said of itself. DeviceError without an answer, or from another board or version.
     """
 
     def __init__(self, port: Port) -> None:
@@ -202,13 +196,10 @@ class StripResult:
 
 
 class LedPointingTask:
-    """The board with the LED strip.
+    """The board with the LED strip at an open line.
 
-    Parameters
-    ----------
-    port : an open line, closed if the board cannot be used.
-
-    Raises DeviceError if the board is silent, another one, of another version, or at another's round.
+    Raises DeviceError, and closes the line, if the board is silent, another one, of another version, or at
+    another's round.
     """
 
     def __init__(self, port: Port) -> None:

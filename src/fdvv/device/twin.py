@@ -130,13 +130,7 @@ class TwinDevice:
 
 
 class SimulatedPerson:
-    """Presses the twin's rig as the person of `TwinDevice` does, but on whatever board drives it. Simulated.
-
-    Parameters
-    ----------
-    rig, finger : the default ones if None.
-    seed : of everything random.
-    """
+    """Presses the twin's rig as the person of `TwinDevice` does, but on any board; all simulated."""
 
     def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
         self._plant = RigPlant(rig, finger, seed)

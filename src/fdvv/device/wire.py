@@ -94,10 +94,6 @@ class Wire:
         self._decoder = FrameDecoder()
         self._sequence = 0
 
-    @property
-    def damaged(self) -> int:
-        return self._decoder.bad
-
     def request(self, message: Message, body: Record | None = None) -> Record | None:
         """Ask and give the reply's body. RefusedError, or DeviceError if none comes."""
         self._sequence = (self._sequence + 1) % 256

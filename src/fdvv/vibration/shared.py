@@ -183,18 +183,6 @@ class Scaling:
         drive = 1.0 if self.energy_mJ is None or energy_mJ is None else math.sqrt(energy_mJ / self.energy_mJ)
         return float(self.amplitude_at_100 * (velocity_mm_s / REFERENCE_mm_s) ** self.exponent * drive)
 
-    def remark(self, velocity_mm_s: float) -> str:
-        """Say where an amplitude at a velocity comes from: measured there, between, or beyond what was."""
-        if any(math.isclose(velocity_mm_s, v, rel_tol=1e-6) for v in self.velocities_mm_s):
-            return f"measured at {velocity_mm_s:g} mm/s"
-        low, high = min(self.velocities_mm_s), max(self.velocities_mm_s)
-        where = "interpolated" if low < velocity_mm_s < high else "extrapolated"
-        known = "an assumed" if math.isinf(self.exponent_sd) else "the measured"
-        return (
-            f"{where} to {velocity_mm_s:g} mm/s by {known} exponent of {self.exponent:.2f}: "
-            "no snap was found there"
-        )
-
 
 def fit_scaling(
     velocity_mm_s: Sequence[float], amplitude: Sequence[float], energy_mJ: Sequence[float] | None = None
@@ -222,7 +210,7 @@ def fit_scaling(
         y = y - 0.5 * np.log(energy / mean)
     exponent, sd, log_sd = _slope(x, y)
     level = math.exp(float(np.mean(y - exponent * x)))
-    return Scaling(level, exponent, sd, log_sd, mean, tuple(float(u) for u in v))
+    return Scaling(level, exponent, sd, log_sd, mean, tuple(v.tolist()))
 
 
 def _slope(x: FloatArray, y: FloatArray) -> tuple[float, float, float]:

@@ -82,19 +82,14 @@ class RigModel:
         return np.asarray(self.drag_N_s_m - self.back_emf_N_s_m + braking)
 
     def opposing_cN(
-        self,
-        velocity_mm_s: FloatArray,
-        acceleration_m_s2: FloatArray,
-        displacement_mm: FloatArray | None = None,
+        self, velocity_mm_s: FloatArray, acceleration_m_s2: FloatArray, displacement_mm: FloatArray
     ) -> FloatArray:
         """Return the force on the finger that the rig itself adds in this motion, at zero command.
 
-        All of one shape; without displacement_mm the gain is taken as 1. The coil's lag is first order.
+        All of one shape. The coil's lag is first order.
         """
-        drag, emf = np.asarray(self.drag_N_s_m), np.asarray(self.back_emf_N_s_m)
-        if displacement_mm is not None:
-            drag = self.drag_at(displacement_mm)
-            emf = drag - (self.drag_N_s_m - self.back_emf_N_s_m)
+        drag = self.drag_at(displacement_mm)
+        emf = drag - (self.drag_N_s_m - self.back_emf_N_s_m)
         rub = self.friction_cN * np.sign(velocity_mm_s)
         late_g = 1000.0 * emf * self.electric_lag_s
         inertia = cN_PER_g_m_s2 * (self.mass_g - late_g) * acceleration_m_s2
