@@ -85,8 +85,6 @@ class Client:
         self._exchanges.clear()
         return self.connect()
 
-    # -- requests ------------------------------------------------------------------------------------------
-
     def _command(self, message: Message, body: Record | None = None) -> Record | None:
         reply = self._wire.request(message, body)
         self._heard_s = self.port.now_s()
@@ -164,8 +162,6 @@ class Client:
 
     def counters(self) -> ReadCountersReply:
         return self._request(Message.READ_COUNTERS, ReadCountersReply)
-
-    # -- what comes unasked --------------------------------------------------------------------------------
 
     def listen(self, until_s: float) -> None:
         """Take telemetry and notices until the port's clock is there, and keep the device's watch fed."""

@@ -79,13 +79,10 @@ class StripWire:
         self, message: StripMessage, kind: type[Kind], body: Record | None = None, tries: int = TRIES
     ) -> Kind:
         """Ask and give the reply's body. DeviceError if it is refused, or no answer comes."""
-        return kind.unpack(self._exchange(message, body, tries))
+        return kind.unpack(self.command(message, body, tries))
 
-    def command(self, message: StripMessage, body: Record | None = None) -> None:
-        """Ask for what has no answer but that it is done. DeviceError as `ask`."""
-        self._exchange(message, body, TRIES)
-
-    def _exchange(self, message: StripMessage, body: Record | None, tries: int) -> bytes:
+    def command(self, message: StripMessage, body: Record | None = None, tries: int = TRIES) -> bytes:
+        """Ask, and give the bytes of the answer, none where it only says that it is done."""
         self._sequence = (self._sequence + 1) % 256
         data = encode(Frame(message, self._sequence, body.pack() if body else b""))
         heard = False

@@ -20,8 +20,8 @@ from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FitError, InputError
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
-from fdvv.rendering.session import Session, make_manifest
+from fdvv.rendering.run_summary import RunSummary, write_run_summary
+from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PressLog
 from fdvv.rendering.session_run import Guide, PressDone, Progress, SessionPlan, VelocityProgress, run
 
@@ -139,9 +139,8 @@ def compensate(
     if method.trial(start) is not None:
         check_force_sensor(device)
     speeds = job.target.velocity_mm_s.tolist()
-    origin = session.seed, session.parts
-    manifest = make_manifest("compensate", device, model, speeds, (method.name, method), origin)
-    with session.open_presses(manifest) as log:
+    manifest = session.manifest("compensate", device, model, speeds, method.name, method)
+    with session.open_log(manifest, PressLog) as log:
         plan = SessionPlan(
             "compensate",
             method,
@@ -157,9 +156,7 @@ def compensate(
         outcome = method.done(state)
         if not outcome.complete:
             raise DeviceError(f"{device.info().name}: {outcome.sentence}")
-        receipt = make_run_summary(manifest, log.runs, log.entries, outcome.curves)
-        if session.folder:
-            save_run_summary(session.folder, receipt)
+        receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcome.curves)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm

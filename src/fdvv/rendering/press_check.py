@@ -130,10 +130,8 @@ class FeltPress:
 def felt_press(press: Press, travel_mm: float) -> FeltPress:
     """Bin the force on the finger of both strokes; a press that turned early has what it has."""
     grid = grid_mm(travel_mm, BIN_mm)
-    spans = split_strokes(press.displacement_mm, travel_mm)
-    down, up = (
-        bin_force(press.displacement_mm[span.rows], press.force_cN[span.rows], grid) for span in spans
-    )
+    x, force = press.displacement_mm, press.force_cN
+    down, up = (bin_force(x[s.rows], force[s.rows], grid) for s in split_strokes(x, travel_mm))
     return FeltPress(grid, down, up)
 
 
@@ -152,7 +150,6 @@ def noticeable_cN(model: FDVVModel, velocity_mm_s: float) -> tuple[float, float]
     """Return the just noticeable difference of force, press and release: a part of the mean judged force."""
     wanted = intended_press(model, velocity_mm_s)
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
-    down, up = (
-        FORCE_JND_ratio * float(abs(row[judged]).mean()) for row in (wanted.press_cN, wanted.release_cN)
-    )
+    forces = (wanted.press_cN, wanted.release_cN)
+    down, up = (FORCE_JND_ratio * float(abs(row[judged]).mean()) for row in forces)
     return down, up

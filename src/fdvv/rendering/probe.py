@@ -18,8 +18,9 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
-from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
-from fdvv.rendering.session import Session, make_manifest, table_digest
+from fdvv.rendering.run_summary import RunSummary, write_run_summary
+from fdvv.rendering.session import Session, table_digest
+from fdvv.rendering.session_log import PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 from fdvv.units import FloatArray
 
@@ -232,8 +233,7 @@ def probe(
     settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
     if tuning != UNTUNED:
         settings["tuning"] = asdict(tuning)
-    origin = session.seed, session.parts
-    manifest = make_manifest("probe", device, model, plan.velocities_mm_s, (method, settings), origin)
+    manifest = session.manifest("probe", device, model, plan.velocities_mm_s, method, settings)
     bounds = replace(session.acceptance, saturated_ratio=1.0)
     session_plan = SessionPlan(
         "probe",
@@ -245,12 +245,11 @@ def probe(
         progress or (lambda _done: None),
         guide or Guide(),
     )
-    with session.open_presses(manifest) as log:
+    with session.open_log(manifest, PressLog) as log:
         found = run(device, session_plan, plan.init(), log)
         curves = _all_curves(model, plan, found)
-        receipt = make_run_summary(manifest, log.runs, log.entries, [curve.outcome for curve in curves])
-        if session.folder:
-            save_run_summary(session.folder, receipt)
+        outcomes = [curve.outcome for curve in curves]
+        receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcomes)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
     presses, names = len(log.entries), (method, model.name, info.name)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.compensation.feasibility.limits import Motion, minimum_jerk
+from fdvv.compensation.identification.balance import true_runs
 from fdvv.compensation.identification.rig_file import load_rig, save_rig
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.rig_aware import RigAware
@@ -113,30 +114,31 @@ class RigCatalog:
     def lend(self, rig_id: str, project: Path) -> None:
         """Copy the file of a rig to another project. Raises InputError on an unknown id, OSError."""
         self.rig(rig_id)
-        kind, _, name = rig_id.partition(":")
-        file = f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}"
+        file = _file_of(rig_id)
         write_atomic(project / "rigs" / file, self._files()[file].read_bytes())
 
     def _load(self, entry: RigEntry) -> AvailableRig:
-        kind, _, name = entry.rig_id.partition(":")
-        device = TwinDevice(load_plant(name if kind == "shipped" else "default"), seed=IDENTIFIED_SEED)
-        files = self._files()
-        path = files.get(f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}")
-        known = load_rig(path) if path else self._identify(device, name)
-        return AvailableRig(entry, known, device.settings(), device.info())
-
-    def _identify(self, device: TwinDevice, name: str) -> RigModel:
-        """Identify a shipped rig by simulated presses, and save it."""
+        """Read a rig's file; a shipped rig without one is identified by simulated presses, and saved."""
+        plant = entry.rig_id.removeprefix("shipped:") if entry.simulated else "default"
+        device = TwinDevice(load_plant(plant), seed=IDENTIFIED_SEED)
+        file = _file_of(entry.rig_id)
+        if path := self._files().get(file):
+            return AvailableRig(entry, load_rig(path), device.settings(), device.info())
         learned = compensate(device, load_builtin(IDENTIFIED_ON), IDENTIFIED_AT_mm_s, RigAware()).learned_rig
         assert learned is not None  # RigAware always returns one
-        save_rig(learned, self._folder / f"{name}{SIMULATED}")
-        return learned.rig
+        save_rig(learned, self._folder / file)
+        return AvailableRig(entry, learned.rig, device.settings(), device.info())
 
     def _files(self) -> dict[str, Path]:
         """Return the rig files by name; an id is looked up here, never made into a path."""
         if not self._folder.is_dir():
             return {}
         return {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
+
+
+def _file_of(rig_id: str) -> str:
+    kind, _, name = rig_id.partition(":")
+    return f"{name}{SIMULATED if kind == 'shipped' else SUFFIX}"
 
 
 Limit = Literal["force", "slew"]
@@ -218,6 +220,4 @@ def _curve(curve: CurveFeasibility) -> AchievableCurve:
 
 
 def _ranges(x: FloatArray, rows: npt.NDArray[np.bool_], limit: Limit) -> list[LimitedRange]:
-    """Return the ranges of x, (n,), where rows, (n,), are True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(np.int8)))
-    return [LimitedRange(float(x[a]), float(x[b - 1]), limit) for a, b in edges.reshape(-1, 2)]
+    return [LimitedRange(float(x[a]), float(x[b - 1]), limit) for a, b in true_runs(rows)]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import UTC, datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,7 +16,15 @@ from fdvv.compensation.method import CurveOutcome
 from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.curve import Stroke
-from fdvv.rendering.session import MANIFEST, MUST_AGREE, LARGEST_bytes, Manifest, ModelName, read_manifest
+from fdvv.rendering.session import (
+    MANIFEST,
+    MUST_AGREE,
+    LARGEST_bytes,
+    Manifest,
+    ModelName,
+    Task,
+    read_manifest,
+)
 from fdvv.rendering.session_log import ANSWERS, PRESSES, AnswerLog, PressEntry, PressLog, SessionRun
 
 RECEIPT = "receipt.json"
@@ -66,7 +75,7 @@ class RunSummary(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     format: Literal["fdvv-receipt"]
     version: Literal[1]
-    task: Literal["compensate", "probe", "tune"]
+    task: Task
     model: ModelName
     device: dict[str, Any]
     method: str
@@ -109,8 +118,18 @@ def make_run_summary(
     )
 
 
-def save_run_summary(folder: Path, receipt: RunSummary) -> None:
-    write_atomic(folder / RECEIPT, pretty(receipt.to_dict()) + "\n")
+def write_run_summary(
+    folder: Path | None,
+    manifest: Manifest,
+    runs: Sequence[SessionRun],
+    entries: Sequence[PressEntry],
+    curves: Sequence[CurveOutcome] = (),
+) -> RunSummary:
+    """Return the summary of a session, written into its folder if it has one. Raises OSError."""
+    summary = make_run_summary(manifest, runs, entries, curves)
+    if folder:
+        write_atomic(folder / RECEIPT, pretty(summary.to_dict()) + "\n")
+    return summary
 
 
 def read_run_summary(path: Path) -> RunSummary | None:
@@ -141,8 +160,7 @@ def _pressing_s(runs: Sequence[SessionRun], entries: Sequence[PressEntry]) -> fl
     starts = [datetime.fromisoformat(run.started) for run in runs]
     presses = [datetime.fromisoformat(entry.made) for entry in entries]
     total_s = 0.0
-    for i, start in enumerate(starts):
-        end = starts[i + 1] if i + 1 < len(starts) else None
-        inside = [made for made in presses if start <= made and (end is None or made <= end)]
+    for start, end in pairwise([*starts, datetime.max.replace(tzinfo=UTC)]):
+        inside = [made for made in presses if start <= made <= end]
         total_s += (max(inside) - start).total_seconds() if inside else 0.0
     return round(total_s, 3)

@@ -7,7 +7,7 @@ import hashlib
 import json
 import platform
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -36,6 +36,9 @@ LARGEST_bytes = 4_000_000
 MUST_AGREE = ("task", "model", "device", "method", "settings", "velocities_mm_s", "seed")
 
 
+Task = Literal["compensate", "probe", "tune"]
+
+
 class ModelName(msgspec.Struct, forbid_unknown_fields=True):
     """A model's name and the digest of its file."""
 
@@ -56,7 +59,7 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
     format: Literal["fdvv-session"]
     version: Literal[1]
-    task: Literal["compensate", "probe", "tune"]
+    task: Task
     model: ModelName
     device: dict[str, Any]
     method: str
@@ -66,38 +69,6 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
     simulated: bool
     versions: dict[str, str]
     created: str
-
-
-def make_manifest(
-    task: Literal["compensate", "probe", "tune"],
-    device: Device,
-    model: FDVVModel,
-    velocities_mm_s: Sequence[float],
-    method: tuple[str, Any],
-    origin: tuple[int | None, dict[str, str]],
-) -> Manifest:
-    """Return the manifest of a session.
-
-    method : name and settings, a dataclass or a mapping; origin : seed of a simulated device, and
-    digests of the files it was made from.
-    """
-    info = device.info()
-    name, settings = method
-    seed, parts = origin
-    return Manifest(
-        "fdvv-session",
-        1,
-        task,
-        ModelName(model.name, digest(model_to_json(model).encode())),
-        {**identity(device), **parts},
-        name,
-        plain(settings),
-        list(velocities_mm_s),
-        seed if info.simulated else None,
-        info.simulated,
-        versions(),
-        now(),
-    )
 
 
 def identity(device: Device) -> dict[str, Any]:
@@ -217,19 +188,29 @@ class Session:
         files = {"rig_toml_sha256": self.rig, "finger_toml_sha256": self.finger}
         return {name: digest(path.read_bytes()) for name, path in files.items() if path}
 
-    def open_presses(self, manifest: Manifest) -> AbstractContextManager[PressLog]:
-        """Open the log of a session's presses, locked until closed.
+    def manifest(
+        self,
+        task: Task,
+        device: Device,
+        model: FDVVModel,
+        velocities_mm_s: Sequence[float],
+        method: str,
+        settings: Any,
+    ) -> Manifest:
+        """Return the manifest of a session; settings : of the method, a dataclass or a mapping."""
+        info, about = device.info(), ModelName(model.name, digest(model_to_json(model).encode()))
+        seed = self.seed if info.simulated else None
+        what = method, plain(settings), list(velocities_mm_s), seed, info.simulated
+        who = {**identity(device), **self.parts}
+        return Manifest("fdvv-session", 1, task, about, who, *what, versions(), now())
+
+    @contextmanager
+    def open_log(self, manifest: Manifest, kind: type[Log]) -> Iterator[Log]:
+        """Open the log of a session's presses or answers, locked until closed.
 
         Raises InputError if the folder holds something else, a session about something else, or one that is
         damaged or in use; OSError if it cannot be written.
         """
-        return self._open_log(manifest, PressLog)
-
-    def open_answers(self, manifest: Manifest) -> AbstractContextManager[AnswerLog]:
-        return self._open_log(manifest, AnswerLog)
-
-    @contextmanager
-    def _open_log(self, manifest: Manifest, kind: type[Log]) -> Iterator[Log]:
         seed = self.run_seed() if manifest.simulated else None
         log = _open(self.folder, manifest, kind) if self.folder else kind()
         try:

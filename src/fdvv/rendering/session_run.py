@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import astuple, dataclass, field
 from typing import Any, Generic, NoReturn, TypeVar, cast
 
@@ -179,11 +179,9 @@ def _resume_notice(plan: SessionPlan[S], state: S, log: PressLog) -> str:
     """Return a notice that a session is resumed or already finished; empty for a fresh one."""
     if log.folder is None or not log.entries:
         return ""
-    count = plan.source.count(state)
-    if plan.source.trial(state) is None:
-        rest = "is finished; this is its result again, name another folder for a new one"
-    else:
-        rest = "goes on"
+    count, finished = plan.source.count(state), plan.source.trial(state) is None
+    over = "is finished; this is its result again, name another folder for a new one"
+    rest = over if finished else "goes on"
     return f"the session in {log.folder}, with {count.made} of {count.total} presses, {rest}"
 
 
@@ -209,7 +207,13 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
         prepare(device, trial, plan.travel_mm, before)
         count = plan.source.count(state)
         plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
-        press, fault = _made(device, trial)
+        press, fault = None, ""
+        try:
+            press = device.press(trial.velocity_mm_s)
+        except DeviceError as error:
+            if not _faulted(device):
+                raise
+            fault = str(error)
         with defer_interrupt():
             entry, state = _taken(plan, state, trial, (press, fault), log)
         _report(plan, state, entry, press)
@@ -222,16 +226,6 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
             name = device.info().name
             raise DeviceError(f"{name}: {in_a_row} presses in a row could not be used; the last {entry}")
     return state
-
-
-def _made(device: Device, trial: Trial) -> tuple[Press | None, str]:
-    """Return a press and no message, or no press and the message of the device's fault."""
-    try:
-        return device.press(trial.velocity_mm_s), ""
-    except DeviceError as error:
-        if not _faulted(device):
-            raise
-        return None, str(error)
 
 
 def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
@@ -285,11 +279,9 @@ def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | No
 
 def release_force(device: Any) -> None:
     """Set the device to zero force, if it is connected."""
-    try:
+    with suppress(DeviceError):  # disconnected, or at zero force already
         if hasattr(device, "stop"):
             device.stop()
-    except DeviceError:
-        pass  # disconnected, or at zero force already
 
 
 def how_to_resume(log: SessionFile[Any], count: int, noun: str, nouns: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,17 +38,14 @@ class Candidates:
         longest_s = max(v.duration_s for v in self.vibrations) + RING_s
         t_s = np.arange(round(longest_s * SCORE_Hz)) / SCORE_Hz
         measured = self.vibrations[0].acceleration_m_s2(t_s)
-        found = []
-        for vibration in self.vibrations:
-            shape = vibration.acceleration_m_s2(t_s)
-            found.append(
-                {
-                    "correlation": correlation(shape, measured),
-                    "spectral_similarity": spectral_similarity(shape, measured, SCORE_Hz),
-                    "st_sim": st_sim(shape, measured, SCORE_Hz),
-                }
-            )
-        return found
+        return [
+            {
+                "correlation": correlation(shape, measured),
+                "spectral_similarity": spectral_similarity(shape, measured, SCORE_Hz),
+                "st_sim": st_sim(shape, measured, SCORE_Hz),
+            }
+            for shape in (vibration.acceleration_m_s2(t_s) for vibration in self.vibrations)
+        ]
 
     def plain(self) -> list[dict[str, Any]]:
         return [{**asdict(v), "stroke": str(v.stroke)} for v in self.vibrations]
@@ -69,12 +66,11 @@ def candidates_for(
     for velocity in velocities_mm_s:
         measured = model.vibration(Stroke.PRESS, velocity)
         if measured is None:
-            raise InputError(
-                model.name, "vibrations", "it has none of the press to tune", "give it one first"
-            )
+            reason = "it has none of the press to tune"
+            raise InputError(model.name, "vibrations", reason, "give it one first")
         own = replace(measured, velocity_mm_s=float(velocity))
-        templates = templates_around(own, acceleration_per_volt(own, exciter), grid)
-        made = [t.vibration(own, acceleration_per_volt(own, exciter)) for t in templates]
+        m_s2_V = acceleration_per_volt(own, exciter)
+        made = [t.vibration(own, m_s2_V) for t in templates_around(own, m_s2_V, grid)]
         found.append(Candidates(float(velocity), (own, *(v for v in made if not _alike(v, own)))))
     return tuple(found)
 
@@ -93,9 +89,8 @@ def tuned_model(model: FDVVModel, chosen: Sequence[Vibration]) -> FDVVModel:
     One that served every velocity is replaced by them all.
     """
     tuned = {v.velocity_mm_s for v in chosen}
-    kept = [
-        v for v in model.vibrations if v.stroke is not Stroke.PRESS or v.velocity_mm_s not in {None, *tuned}
-    ]
+    gone = {None, *tuned}
+    kept = [v for v in model.vibrations if v.stroke is not Stroke.PRESS or v.velocity_mm_s not in gone]
     return replace(model, vibrations=(*kept, *chosen))
 
 
@@ -115,9 +110,7 @@ def candidate_image(
 def _alike(a: Vibration, b: Vibration) -> bool:
     if len(a.modes) != len(b.modes) or not np.isclose(a.duration_s, b.duration_s):
         return False
-    mine, theirs = (
-        [(m.frequency_Hz, m.amplitude_m_s2, m.decay_1_s, m.phase_rad) for m in v.modes] for v in (a, b)
-    )
+    mine, theirs = ([astuple(mode) for mode in v.modes] for v in (a, b))
     return bool(np.allclose(mine, theirs, rtol=1e-3, atol=1e-9))
 
 

@@ -18,8 +18,8 @@ from fdvv.model.surface import ForceSurface
 from fdvv.model.vibration import Vibration
 from fdvv.rendering.compensate import check_speeds
 from fdvv.rendering.exciter import prepare_exciter
-from fdvv.rendering.run_summary import RunSummary, make_run_summary, save_run_summary
-from fdvv.rendering.session import Session, make_manifest, now, plain, table_digest
+from fdvv.rendering.run_summary import RunSummary, write_run_summary
+from fdvv.rendering.session import Session, now, plain, table_digest
 from fdvv.rendering.session_log import REMEDY, AnswerLog, AnswerRecord
 from fdvv.rendering.session_run import Guide, PressRequest, clear_latched, how_to_resume, released
 from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
@@ -121,9 +121,8 @@ class TuneResult:
         return self.receipt.used
 
     def to_dict(self) -> dict[str, Any]:
-        head = {
-            name: getattr(self, name) for name in ("method", "device", "observer", "simulated", "answers")
-        }
+        names = ("method", "device", "observer", "simulated", "answers")
+        head = {name: getattr(self, name) for name in names}
         return {"model": self.model.name, **head, "velocities": [t.to_dict() for t in self.tuned]}
 
 
@@ -160,18 +159,15 @@ def tune_vibration(
         prepare_exciter(device, setup.exciter)
     upload = _uploader(device, model, surface, setup.exciter)
     name = "rating" if isinstance(method, Rating) else "comparing in pairs"
-    manifest = make_manifest(
-        "tune", device, model, speeds, (name, _about(method, setup, candidates, surface)),
-        (session.seed, session.parts),
-    )  # fmt: skip
-    with session.open_answers(manifest) as log:
+    settings = _about(method, setup, candidates, surface)
+    manifest = session.manifest("tune", device, model, speeds, name, settings)
+    with session.open_log(manifest, AnswerLog) as log:
         state = _replayed(method, candidates, log)
         _greet(guide, log, method.done(state))
         plan = _TuningPlan(device, candidates, upload, answer, session, guide, model.travel_mm, answered)
         state = _asked(plan, method, state, log)
-        receipt = make_run_summary(manifest, log.runs, [given.entry for given in log.entries])
-        if session.folder:
-            save_run_summary(session.folder, receipt)
+        entries = [given.entry for given in log.entries]
+        receipt = write_run_summary(session.folder, manifest, log.runs, entries)
     found = _standing(candidates, method, state)
     simulated = device.info().simulated or setup.observer != OBSERVERS[0]
     result = TuneResult(model, name, device.info().name, setup.observer, simulated, found, receipt)
@@ -274,8 +270,7 @@ def _answered(plan: _TuningPlan, asked: Question) -> tuple[int | Preferred, list
     """Have the vibrations pressed, as often as the person wants, until there is an answer."""
     while True:
         speeds = [_pressed(plan, asked, template) for template in asked.templates]
-        reply = plan.answer(asked)
-        if reply is not None:
+        if (reply := plan.answer(asked)) is not None:
             return reply, speeds
 
 
@@ -307,6 +302,5 @@ def _with_provenance(result: TuneResult) -> FDVVModel:
     )
     sentences = [f"At {t.candidates.velocity_mm_s:g} mm/s {t.sentence}." for t in result.tuned]
     method = " ".join(text for text in (about.method, summary, *sentences) if text)
-    return replace(
-        model, provenance=replace(about, method=method, simulated=about.simulated or result.simulated)
-    )
+    simulated = about.simulated or result.simulated
+    return replace(model, provenance=replace(about, method=method, simulated=simulated))

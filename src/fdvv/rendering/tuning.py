@@ -22,14 +22,7 @@ from fdvv.units import cN_from_N
 if TYPE_CHECKING:
     from fdvv.vibration.exciter import KnownExciter
 
-TUNED = (
-    "predictor_q16",
-    "lead_us",
-    "brake_lead_us",
-    "drag_q13",
-    "friction_cN64",
-    "friction_mm_s16",
-)
+TUNED = ("predictor_q16", "lead_us", "brake_lead_us", "drag_q13", "friction_cN64", "friction_mm_s16")
 """Settings that a tuning determines; the others belong to the rig."""
 
 
@@ -43,10 +36,9 @@ def settings_with(settings: Settings, tuning: Tuning) -> Settings:
         return replace(settings, predictor_q16=0)
     # 1 cN64 per mm_s16 in N s/m: a force in cN64 over a speed in mm_s16
     drag_q13 = float(cN_from_N(tuning.drag_N_s_m)) * CN64_PER_cN / (1000 * MM_S16_PER_mm_s) * 2**13
+    kept = exp(-2e-6 * pi * tuning.bandwidth_Hz * settings.tick_us)
     wanted = {
-        "predictor_q16": max(
-            1, round((1 - exp(-2e-6 * pi * tuning.bandwidth_Hz * settings.tick_us)) * 2**16)
-        ),
+        "predictor_q16": max(1, round((1 - kept) * 2**16)),
         "lead_us": round(1e6 * tuning.lead_s),
         "brake_lead_us": round(1e6 * tuning.brake_lead_s),
         "drag_q13": round(drag_q13),

@@ -265,19 +265,10 @@ def achievable_stroke(
         motion.at_places((np.abs(lost) > NOTICED_cN).astype(np.float64), displacement_mm) > 0.5
         for lost in (needed - limited, limited - slewed)
     )
-    achievable = motion.at_places(felt, displacement_mm)
-    drop_cN, kept_ratio = _bump_left(displacement_mm, intended_cN, achievable)
-    return AchievableStroke(
-        displacement_mm,
-        intended_cN,
-        achievable,
-        motion.at_places(needed, displacement_mm),
-        cut,
-        late_by,
-        float(np.abs(motion.velocity_mm_s).max()) * (rig.delay_s + rig.position_lag_s),
-        drop_cN,
-        kept_ratio,
-    )
+    achievable, command = (motion.at_places(c, displacement_mm) for c in (felt, needed))
+    forces = displacement_mm, intended_cN, achievable
+    lag_mm = float(np.abs(motion.velocity_mm_s).max()) * (rig.delay_s + rig.position_lag_s)
+    return AchievableStroke(*forces, command, cut, late_by, lag_mm, *_bump_left(*forces))
 
 
 def _bump_left(

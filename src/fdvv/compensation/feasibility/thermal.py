@@ -70,14 +70,7 @@ def thermal_dose(
     pressed, resting = rise_K(limits, work / cycle_s), rise_K(limits, rest**2)
     start = limits.derate_start_K
     share = (start - resting) / (pressed - resting) if pressed > start else None
+    often = None if share is None else max(0.0, 60 * share / cycle_s)
     down = rise_K(limits, dwell**2)
-    return ThermalDose(
-        math.sqrt(work / cycle_s),
-        cycle_s,
-        dwell,
-        rest,
-        pressed,
-        down,
-        None if share is None else max(0.0, 60 * share / cycle_s),
-        held_until_s(limits, down),
-    )
+    forces = math.sqrt(work / cycle_s), cycle_s, dwell, rest
+    return ThermalDose(*forces, pressed, down, often, held_until_s(limits, down))

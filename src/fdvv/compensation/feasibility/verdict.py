@@ -204,12 +204,6 @@ def expected_error(
     pace = MEAN_OF_RMS * PACE_RATIO * float(np.abs(by_place).mean())
     model = MEAN_OF_RMS * rig.residual_cN
     chance = float(np.sqrt(inertia**2 + pace**2 + model**2))
-    return ExpectedError(
-        limits_cN=reached.missed_cN,
-        inertia_cN=inertia,
-        pace_cN=pace,
-        model_cN=model,
-        mean_cN=reached.missed_cN + chance,
-        play_cN=0.5 * rig.play_cN,
-        calibration_cN=CALIBRATION_RATIO * float(np.abs(reached.intended_cN).mean()),
-    )
+    missed, play = reached.missed_cN, 0.5 * rig.play_cN
+    calibration = CALIBRATION_RATIO * float(np.abs(reached.intended_cN).mean())
+    return ExpectedError(missed, inertia, pace, model, missed + chance, play, calibration)

@@ -189,9 +189,8 @@ def columns(ticks: Ticks, numbers: FloatArray, stretch: FloatArray) -> FloatArra
     v, a = v + lag * a, a + lag * jerk
     command = np.interp(ticks.t_s - numbers[DELAY], ticks.t_s, ticks.commanded_cN)
     x = ticks.ahead_mm(lag)
-    pushes = [
-        windowed(window, first_order_lag(command * x**power, electric, ticks.tick_s)) for power in range(3)
-    ]
+    lagged = (first_order_lag(command * x**power, electric, ticks.tick_s) for power in range(3))
+    pushes = [windowed(window, push) for push in lagged]
     rub = windowed(window, np.tanh(v / SLIDING_mm_s))
     rest = [DRAG_cN * v, braking(ticks, numbers), rub, np.full(v.size, -1.0), MASS_cN * a, -stretch]
     return np.stack([*pushes, *rest], axis=1)
@@ -247,11 +246,8 @@ def slopes(
     linear = columns(ticks, numbers, stretch)
     force = linear @ with_cone(numbers, sensor)
     linear[:, GAIN] += braking_slopes(ticks, numbers)
-    nudged = []
-    for place in (LAG, DELAY, ELECTRIC):
-        other = numbers.copy()
-        other[place] += NUDGE_s
-        nudged.append((predicted(ticks, other, stretch, sensor) - force) / NUDGE_s)
+    nudges = NUDGE_s * np.eye(numbers.size)[[LAG, DELAY, ELECTRIC]]
+    nudged = [(predicted(ticks, numbers + n, stretch, sensor) - force) / NUDGE_s for n in nudges]
     return force, np.column_stack([linear, *nudged])
 
 
@@ -261,10 +257,9 @@ def play_stretch(ticks: Ticks) -> FloatArray:
     1 while the reading follows a rising force, -1 a falling one. Between them the reading is constant; the
     mean of a forward and a backward pass is 0 there.
     """
-    span = max(1, round(EVEN_s / ticks.tick_s))
-    even = windowed(
-        np.full(2 * span + 1, 1.0 / (2 * span + 1)), windowed(windows(ticks.tick_s)[0], ticks.force_cN)
-    )
+    count = 2 * max(1, round(EVEN_s / ticks.tick_s)) + 1
+    force = windowed(windows(ticks.tick_s)[0], ticks.force_cN)
+    even = windowed(np.full(count, 1.0 / count), force)
     return 0.5 * (_stretch(even) - _stretch(even[::-1])[::-1])
 
 

@@ -14,13 +14,12 @@ from fdvv.compensation.identification.balance import (
     GAIN,
     LAG,
     MASS,
-    PARAMETERS,
     PLAY,
     VISCOUS,
     WEIGHT,
     ticks_of,
 )
-from fdvv.compensation.identification.identify import RigEstimation, parameter_vector, residual_cN
+from fdvv.compensation.identification.identify import RigEstimation, along, parameter_vector, residual_cN
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
@@ -125,13 +124,6 @@ def _size(along: FloatArray, slope: FloatArray, curve: FloatArray) -> tuple[floa
 def _changes(rig: RigModel) -> list[_Change]:
     """List the possible changes: gain and drag relative to their old values, the rest in their units."""
     numbers = parameter_vector(rig)
-
-    def along(*parts: tuple[int | slice, FloatArray | float]) -> FloatArray:
-        row = np.zeros(len(PARAMETERS))
-        for place, share in parts:
-            row[place] = share
-        return row
-
     # a warm coil pushes and brakes less, and braking counts at gain 1 with the square of the gain
     coil = along((GAIN, numbers[GAIN]), (BACK_EMF, -numbers[BACK_EMF]))
     least_drag = max(LEAST_drag_ratio * rig.drag_N_s_m, LEAST_drag_N_s_m)
@@ -149,10 +141,7 @@ def _changes(rig: RigModel) -> list[_Change]:
 
 def _errors(rig: RigModel) -> FloatArray:
     """Return the standard error of each parameter, (12,); the gain's is that of its first coefficient."""
-    error = rig.error
-    found = np.zeros(len(PARAMETERS))
-    for place, name in ERRORS.items():
-        found[place] = error.get(name, 0.0)
+    found = along(*((place, rig.error.get(name, 0.0)) for place, name in ERRORS.items()))
     found[PLAY] *= 0.5
     return found
 

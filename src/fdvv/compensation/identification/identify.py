@@ -148,17 +148,14 @@ class RigEstimation:
         return total
 
     def residuals(self, numbers: FloatArray) -> list[FloatArray]:
-        expected = [
-            predicted(t, numbers, s, self.sensor) for t, s in zip(self.ticks, self.stretches, strict=True)
-        ]
-        return [felt - force for felt, force in zip(self.felt, expected, strict=True)]
+        each = zip(self.felt, self.ticks, self.stretches, strict=True)
+        return [felt - predicted(t, numbers, s, self.sensor) for felt, t, s in each]
 
     def normal(self, numbers: FloatArray, runs: list[WindowRun]) -> tuple[FloatArray, FloatArray]:
         """Return the negative gradient, (12,), and normal matrix, (12, 12), both in spreads of the prior."""
         gradient, matrix = (-part for part in self.noise_bias(numbers, runs))
-        predictions = [
-            slopes(t, numbers, s, self.sensor) for t, s in zip(self.ticks, self.stretches, strict=True)
-        ]
+        each = zip(self.ticks, self.stretches, strict=True)
+        predictions = [slopes(t, numbers, s, self.sensor) for t, s in each]
         for run in runs:
             force, slope = predictions[run.press]
             white = run.white @ slope[run.rows]
@@ -189,6 +186,18 @@ class RigEstimation:
         return numbers
 
 
+NUMBERS: dict[str, tuple[tuple[int, float], ...]] = {
+    "delay_s": ((DELAY, 1.0), (ELECTRIC, 1.0)),
+    "electric_lag_s": ((ELECTRIC, 1.0),),
+    "position_lag_s": ((LAG, 1.0),),
+    "drag_N_s_m": ((VISCOUS, 1.0), (BACK_EMF, 1.0)),
+    "back_emf_N_s_m": ((BACK_EMF, 1.0),),
+    "friction_cN": ((FRICTION, 1.0),),
+    "weight_cN": ((WEIGHT, 1.0),),
+    "mass_g": ((MASS, 1.0),),
+    "play_cN": ((PLAY, 2.0),),
+}
+"""Numbers of a RigModel as sums of PARAMETERS."""
 ROUNDS = 5
 """Windows and their weights depend on the parameters; they are recomputed at most this often."""
 SETTLED_ratio = 0.02
@@ -222,47 +231,27 @@ def _rig_model(problem: RigEstimation, numbers: FloatArray) -> RigModel:
     inflated = max(1.0, float(np.mean(white**2)))
     spread = problem.spread
     covariance = inflated * spread[:, np.newaxis] * np.linalg.inv(matrix) * spread
-    middle = 0.5 * problem.travel_mm
-    gain, error = _combined(covariance, middle)
+    middle_mm = 0.5 * problem.travel_mm
+    # the gain's standard error is that at mid travel
+    middle = (0, 1.0), (1, middle_mm), (2, middle_mm**2)
+    rows = {name: along(*parts) for name, parts in {"gain": middle, **NUMBERS}.items()}
     return RigModel(
         gain=(float(numbers[0]), float(numbers[1]), float(numbers[2])),
-        delay_s=float(numbers[DELAY] + numbers[ELECTRIC]),
-        electric_lag_s=float(numbers[ELECTRIC]),
-        position_lag_s=float(numbers[LAG]),
-        drag_N_s_m=float(numbers[VISCOUS] + numbers[BACK_EMF]),
-        back_emf_N_s_m=float(numbers[BACK_EMF]),
-        friction_cN=float(numbers[FRICTION]),
-        weight_cN=float(numbers[WEIGHT]),
-        mass_g=float(numbers[MASS]),
-        play_cN=2.0 * float(numbers[PLAY]),
+        **{name: sum(share * float(numbers[at]) for at, share in parts) for name, parts in NUMBERS.items()},
         position_noise_mm=problem.position_noise_mm,
         force_noise_cN=problem.force_noise_cN,
         residual_cN=residual_cN(problem, numbers, runs),
         presses=len(problem.ticks),
-        error={"gain": gain, **error},
+        error={name: float(np.sqrt(row @ covariance @ row)) for name, row in rows.items()},
     )
 
 
-def _combined(covariance: FloatArray, middle_mm: float) -> tuple[float, dict[str, float]]:
-    """Return the standard errors of a RigModel, the gain's at middle_mm."""
-
-    def of(*parts: tuple[int, float]) -> float:
-        row = np.zeros(len(PARAMETERS))
-        for place, share in parts:
-            row[place] = share
-        return float(np.sqrt(row @ covariance @ row))
-
-    return of((0, 1.0), (1, middle_mm), (2, middle_mm**2)), {
-        "delay_s": of((DELAY, 1.0), (ELECTRIC, 1.0)),
-        "electric_lag_s": of((ELECTRIC, 1.0)),
-        "position_lag_s": of((LAG, 1.0)),
-        "drag_N_s_m": of((VISCOUS, 1.0), (BACK_EMF, 1.0)),
-        "back_emf_N_s_m": of((BACK_EMF, 1.0)),
-        "friction_cN": of((FRICTION, 1.0)),
-        "weight_cN": of((WEIGHT, 1.0)),
-        "mass_g": of((MASS, 1.0)),
-        "play_cN": of((PLAY, 2.0)),
-    }
+def along(*parts: tuple[int | slice, FloatArray | float]) -> FloatArray:
+    """Return a direction in the space of PARAMETERS."""
+    row = np.zeros(len(PARAMETERS))
+    for place, share in parts:
+        row[place] = share
+    return row
 
 
 def residual_cN(problem: RigEstimation, numbers: FloatArray, runs: list[WindowRun]) -> float:
@@ -319,10 +308,11 @@ def identification_surface(
 
 
 def _ripple(x_mm: FloatArray, stroke: int) -> FloatArray:
-    (long, short), (first, second) = RIPPLES_mm[stroke], PHASES_rad[stroke]
-    waves = np.sin(2 * np.pi * x_mm / long + first) + SMALLER_ratio * np.sin(
-        2 * np.pi * x_mm / short + second
+    long, short = (
+        np.sin(2 * np.pi * x_mm / length + phase)
+        for length, phase in zip(RIPPLES_mm[stroke], PHASES_rad[stroke], strict=True)
     )
+    waves = long + SMALLER_ratio * short
     depth = np.minimum(x_mm - x_mm[0] - HOME_mm, x_mm[-1] - x_mm)
     return np.asarray(np.clip(depth / FADE_mm, 0.0, 1.0) * waves)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import astuple, dataclass, field, fields
 
 import numpy as np
 
@@ -177,22 +177,16 @@ class Prior:
     def __post_init__(self) -> None:
         unknown = set(self.ranges) - set(RANGES)
         if unknown:
-            raise ModelError(
-                f"no rig parameter is called {', '.join(sorted(unknown))}; choose from {', '.join(RANGES)}"
-            )
+            names, known = ", ".join(sorted(unknown)), ", ".join(RANGES)
+            raise ModelError(f"no rig parameter is called {names}; choose from {known}")
         if not (0 <= self.compute_ratio <= 1 and self.compute_spread_ratio > 0):
-            raise ModelError(
-                f"compute_ratio must be in 0..1 and its spread above 0, got {self.compute_ratio}"
-            )
+            ratio = self.compute_ratio
+            raise ModelError(f"compute_ratio must be in 0..1 and its spread above 0, got {ratio}")
 
     def vectors(self, tick_s: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return means, spreads, lower and upper bounds, in the order of PARAMETERS."""
-        delay = Plausible(
-            (0.5 + self.compute_ratio) * tick_s,
-            self.compute_spread_ratio * tick_s,
-            0.5 * tick_s,
-            1.5 * tick_s,
-        )
+        mean_s, spread_s = (0.5 + self.compute_ratio) * tick_s, self.compute_spread_ratio * tick_s
+        delay = Plausible(mean_s, spread_s, 0.5 * tick_s, 1.5 * tick_s)
         ranges = {**RANGES, **self.ranges, "command_delay_s": delay}
-        rows = np.array([(p.mean, p.spread, p.low, p.high) for p in (ranges[name] for name in PARAMETERS)])
+        rows = np.array([astuple(ranges[name]) for name in PARAMETERS])
         return rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3]
