@@ -176,6 +176,7 @@ class PaperLaw:
             level = draw.uniform(0.5, 1.0) * float(np.abs(state.target_cN).max())
             return self._limited(np.full(state.grid_mm.size, level), state)
         if self.start == "average" and state.rounds:
+            # these are within the limits, and so is their mean
             return read_only(np.mean([b.command_cN for b in state.rounds], axis=0))
         return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 

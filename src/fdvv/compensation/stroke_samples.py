@@ -53,7 +53,7 @@ def stroke_samples(
     position, *slopes = ticks.motion
     lag = rig.position_lag_s
     x, v, a = (value + lag * rate for value, rate in zip((position, *slopes[:2]), slopes, strict=True))
-    a = a / 1000.0
+    a = a / 1000.0  # from mm/s2
     felt = felt_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
     own = felt - rig.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
 

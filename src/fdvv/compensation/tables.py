@@ -177,7 +177,7 @@ class SharedTable:
         part = (speed_mm_s**2 - squares[low]) / (squares[low + 1] - squares[low])
         part = float(np.clip(part, -EXTRAPOLATION_ratio, 1 + EXTRAPOLATION_ratio))
         shares = np.zeros(squares.size)
-        shares[[low, low + 1]] = 1 - part, part
+        shares[[low, low + 1]] = 1 - part, part  # beyond the outer speeds one of them is negative
         return shares
 
     def at(self, speed_mm_s: float) -> FloatArray:

@@ -82,10 +82,7 @@ class LibraryBoard:
 
 
 class HostBoard:
-    """The firmware as a program of its own, its link a real pseudo-terminal.
-
-    program : another build of firmware/boards/host than the one that came with fdvv.
-    """
+    """The firmware as a program of its own, or another build of it; its link is a real pseudo-terminal."""
 
     name = "host"
     ticks = 0

@@ -46,10 +46,7 @@ class Device(Protocol):
         """Return calibration and limits as the device holds them."""
 
     def configure(self, settings: Settings) -> None:
-        """Replace calibration and limits, whole or not at all; upload again afterwards.
-
-        Raises DeviceError with the device's reason.
-        """
+        """Replace calibration and limits, whole or not at all; upload again afterwards. DeviceError."""
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop, whole or not at all.
@@ -98,10 +95,7 @@ class ProgramDevice(Device, Protocol):
     """A device that runs programs: everything with the firmware in it."""
 
     def upload_program(self, image: bytes) -> None:
-        """Make a program (fdvv.program, protocol/fdvv.toml) the active one, whole or not at all.
-
-        Raises DeviceError with the device's reason.
-        """
+        """Make a program (protocol/fdvv.toml) the active one, whole or not at all. DeviceError."""
 
     def stop(self) -> None:
         """Fall to zero force at once; allowed at any time."""

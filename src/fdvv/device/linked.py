@@ -125,6 +125,7 @@ class LinkedDevice(Remote):
         self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))
+            # to configure a board makes it forget its program
             if self.settings() != person.settings:
                 self.configure(person.settings)
         except BaseException:

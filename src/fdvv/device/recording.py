@@ -55,10 +55,7 @@ def unpack_surface(found: dict[str, Any]) -> ForceSurface:
 
 
 class Recorder:
-    """A device whose session is written down while it lasts; it is used like the device itself.
-
-    The file is appended to; a session begins with a line of its own.
-    """
+    """A device whose session is appended to a file while it lasts; it is used like the device itself."""
 
     def __init__(self, device: Device, path: Path) -> None:
         self._device, self._path = device, Path(path)
@@ -168,10 +165,7 @@ def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
 
 
 class ReplayDevice:
-    """Replays the last session of a file that `Recorder` wrote to the same requests in the same order.
-
-    Raises InputError if it is none.
-    """
+    """Replays the last session that `Recorder` wrote, to the same requests in the same order. InputError."""
 
     def __init__(self, path: Path) -> None:
         head, *self._lines = read_session(path)

@@ -246,10 +246,7 @@ class LedPointingTask:
         return self.wait(self.begin(order))
 
     def wait(self, start: StripStart, meanwhile: Callable[[], None] | None = None) -> StripResult:
-        """Wait for the end of a round, calling `meanwhile` every GLANCE_s or so.
-
-        DeviceError if the board does not end it in its time.
-        """
+        """Wait for a round, calling `meanwhile` every GLANCE_s; DeviceError if it does not end in time."""
         until_s = self.port.now_s() + LONGEST_DELAY_s + (start.end_s - start.start_s) + PATIENCE_s
         while self.port.now_s() < until_s:
             if (found := self.result()) is not None:

@@ -70,7 +70,7 @@ class TwinDevice:
             if kept != asked:
                 raise DeviceError(f"twin: {name} is {kept} in this rig and cannot be {asked}")
         try:
-            Core(settings)
+            Core(settings)  # refuses them as a board does
         except ModelError as error:
             raise DeviceError(f"twin: {error}") from error
         self._settings, self._active = settings, None

@@ -203,10 +203,7 @@ def _job(
 
 
 def check_force_sensor(device: Device, truth_counts: bool = False) -> None:
-    """Raise DeviceError for a board without a force sensor on its cap.
-
-    truth_counts : accept a simulated rig, whose true force is known.
-    """
+    """Raise DeviceError for a board without a force sensor; truth_counts accepts a simulated one."""
     if not isinstance(device, Remote) or device.settings().force_gain_q14:
         return
     info = device.info()

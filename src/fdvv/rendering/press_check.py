@@ -136,14 +136,12 @@ def felt_press(press: Press, travel_mm: float) -> FeltPress:
 
 
 def intended_press(model: FDVVModel, velocity_mm_s: float) -> FeltPress:
-    """Return what a model intends at a speed, on the grid of felt_press.
-
-    Without a release curve the press is used for it, as on a device.
-    """
+    """Return what a model intends at a speed, on the grid of felt_press."""
     grid = grid_mm(model.travel_mm, BIN_mm)
-    down = model.force_cN(grid, velocity_mm_s, Stroke.PRESS)
-    served = Stroke.RELEASE if model.of(Stroke.RELEASE) else Stroke.PRESS
-    return FeltPress(grid, down, model.force_cN(grid, velocity_mm_s, served))
+    # without a release curve the press serves for both, as on a device
+    served = (stroke if model.of(stroke) else Stroke.PRESS for stroke in Stroke)
+    down, up = (model.force_cN(grid, velocity_mm_s, stroke) for stroke in served)
+    return FeltPress(grid, down, up)
 
 
 def noticeable_cN(model: FDVVModel, velocity_mm_s: float) -> tuple[float, float]:

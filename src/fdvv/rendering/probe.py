@@ -133,6 +133,7 @@ class ProbeCurve:
 
 def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
     grid = grid_mm(model.travel_mm, BIN_mm)
+    # a bin at the very edge counts, however its centre was rounded
     judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
     x, curves = grid[judged], []
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
@@ -234,6 +235,7 @@ def probe(
     if tuning != UNTUNED:
         settings["tuning"] = asdict(tuning)
     manifest = session.manifest("probe", device, model, plan.velocities_mm_s, method, settings)
+    # a rig at its limit is part of what is judged
     bounds = replace(session.acceptance, saturated_ratio=1.0)
     session_plan = SessionPlan(
         "probe",

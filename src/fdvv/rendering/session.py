@@ -180,6 +180,7 @@ class Session:
         runs = _runs_of(self.folder)
         if not runs or self.seed is None:
             return self.seed
+        # counted by runs, so that even a killed one never draws its numbers twice
         return int(np.random.SeedSequence([self.seed, runs]).generate_state(1)[0])
 
     @property
@@ -227,6 +228,7 @@ def _runs_of(folder: Path | None) -> int:
         if not path.is_file():
             continue
         with path.open("rb") as stream:
+            # not decoded: a line holds every column of a press, and its key stands at its begin
             runs += sum(b'"record": {"run": ' in line[:80] for line in stream)
     return runs
 

@@ -67,10 +67,7 @@ class SessionFile(Generic[Entry]):
 
     @classmethod
     def read(cls, path: Path) -> tuple[list[SessionRun], list[Entry], int]:
-        """Return runs, entries, and the byte where the last whole record of a file ends, which stays free.
-
-        Raises InputError on a damaged file.
-        """
+        """Return runs, entries, and the byte where the last whole record ends. Raises InputError."""
         log, end = cls(), 0
         log.path = path
         for key, body, after in read_bodies(path, cls.kind):

@@ -125,6 +125,7 @@ def prepare(device: Device, trial: Trial, travel_mm: float, before: Trial | None
 
     Settings are written before the table, only if the tuning changes them, and persist after the session.
     """
+    # a method that changed nothing gives the same object again, so identity is enough
     fresh = before is None or before.surface is not trial.surface
     if before is None or before.tuning != trial.tuning:
         fresh |= tune(device, trial.tuning) or before is None or before.tuning.paced != trial.tuning.paced
@@ -214,6 +215,7 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
             if not _faulted(device):
                 raise
             fault = str(error)
+        # a person cannot repeat a press: Ctrl-C waits until it is on file
         with defer_interrupt():
             entry, state = _taken(plan, state, trial, (press, fault), log)
         _report(plan, state, entry, press)

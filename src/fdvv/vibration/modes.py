@@ -182,6 +182,7 @@ def _one_more(
 ) -> FloatArray:
     """Start one more term where it takes most off the residual. Raises FitError where there is no room."""
     left, basis = records.typical(theta)
+    # rounded, so that presses of one sensor share the cached columns
     f, d, columns = _candidates(round(period_s, 12), left.shape[1])
     known, decays = np.split(theta, 2)
     room = np.all(np.abs(f[:, None] - known) >= 1 / longest_s, axis=1)
@@ -189,6 +190,7 @@ def _one_more(
     room = np.where(fading, drive, room)
     free = columns - basis @ (basis.T @ columns)
     pairs = free.T.reshape(f.size, 2, -1)
+    # candidates that the basis spans already have nothing left to invert
     gram = pairs @ pairs.transpose(0, 2, 1) + 1e-9 * np.eye(2)
     along = pairs @ left.T
     gain = np.sum(along * np.linalg.solve(gram, along), axis=(1, 2))

@@ -244,8 +244,8 @@ def measure_vibration(
     place, speed = (
         _median(np.array([getattr(snap, name) for snap in snaps])) for name in ("onset_mm", "velocity_mm_s")
     )
-    told = presses[0].stroke, velocity_mm_s, energy, place, speed, len(snaps), len(presses)
-    return MeasuredVibration(*told, tuple(heard), tuple(snaps), ring, acceleration)
+    what = presses[0].stroke, velocity_mm_s, energy, place, speed, len(snaps), len(presses)
+    return MeasuredVibration(*what, tuple(heard), tuple(snaps), ring, acceleration)
 
 
 def _shown(

@@ -101,10 +101,7 @@ def _middle(values: Sequence[tuple[float, float]], floor_ratio: float) -> tuple[
 
 @dataclass(frozen=True, eq=False)
 class PacePresses:
-    """The presses of one stroke at one pace, and the fall of force that drives their snap.
-
-    energy : None where force does not fall.
-    """
+    """The presses of one stroke at one pace, and the fall of force that drives their snap, if any."""
 
     stroke: Stroke
     velocity_mm_s: float

@@ -162,6 +162,7 @@ class RigEstimation:
             gradient += white.T @ (run.white @ (self.felt[run.press] - force)[run.rows])
             matrix += white.T @ white
         gradient = self.spread * gradient - (numbers - self.mean) / self.spread
+        # less the noise's mean effect the matrix may bend the wrong way along what no press shows
         size, axes = np.linalg.eigh(self.spread[:, np.newaxis] * matrix * self.spread)
         return gradient, (axes * np.maximum(size, 0.0)) @ axes.T + np.eye(numbers.size)
 

@@ -84,10 +84,7 @@ class RigModel:
     def opposing_cN(
         self, velocity_mm_s: FloatArray, acceleration_m_s2: FloatArray, displacement_mm: FloatArray
     ) -> FloatArray:
-        """Return the force on the finger that the rig itself adds in this motion, at zero command.
-
-        All of one shape. The coil's lag is first order.
-        """
+        """Return the force on the finger that the rig itself adds in a motion at zero command, all (n,)."""
         drag = self.drag_at(displacement_mm)
         emf = drag - (self.drag_N_s_m - self.back_emf_N_s_m)
         rub = self.friction_cN * np.sign(velocity_mm_s)
