@@ -33,11 +33,7 @@ NEXT_ratio, NEXT_DAMPING = 1.06, (0.08, 0.35)
 
 
 def fit_modes(
-    signal: npt.ArrayLike,
-    rate_Hz: float,
-    count: int | None = None,
-    most: int = MOST_MODES,
-    degree: int = -1,
+    signal: npt.ArrayLike, rate_Hz: float, count: int | None = None, most: int = MOST_MODES, degree: int = -1
 ) -> DampedFit:
     """Find the damped modes of one record, or those that several records share.
 

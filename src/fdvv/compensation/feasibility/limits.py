@@ -244,11 +244,7 @@ def rendered_cN(rig: RigModel, motion: Motion, command_cN: FloatArray, tick_s: f
 
 
 def achievable_stroke(
-    rig: RigModel,
-    limits: RigLimits,
-    motion: Motion,
-    displacement_mm: FloatArray,
-    intended_cN: FloatArray,
+    rig: RigModel, limits: RigLimits, motion: Motion, displacement_mm: FloatArray, intended_cN: FloatArray
 ) -> AchievableStroke:
     """Return what a rig renders of a curve, (n,) over rising displacement, in one motion.
 
