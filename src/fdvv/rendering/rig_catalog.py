@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Literal
+from typing import Literal, cast
 
-import numpy as np
-import numpy.typing as npt
-
-from fdvv.compensation.feasibility.limits import Motion, minimum_jerk
+from fdvv.compensation.feasibility.limits import AchievableStroke, Motion, minimum_jerk
 from fdvv.compensation.identification.balance import true_runs
 from fdvv.compensation.identification.rig_file import load_rig, save_rig
 from fdvv.compensation.identification.rig_model import RigModel
@@ -27,7 +24,6 @@ from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import compensate
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.twin.files import load_rig as load_plant
-from fdvv.units import FloatArray
 
 SHIPPED_RIGS = {
     "default": "voltage drive, mover of 20 g",
@@ -144,8 +140,6 @@ def _file_of(rig_id: str) -> str:
 Limit = Literal["force", "slew"]
 DEFAULT_SPEED_mm_s = 50.0
 """Speed of curves of unknown velocity."""
-POINTS = 201
-"""Points of a curve: 0.02 mm on a button of 4 mm."""
 STEPS, STEPS_A_TICK = 2500, 8
 """Largest number of time steps of a stroke; a report takes eight per tick, too slow for an editor."""
 
@@ -159,32 +153,18 @@ class LimitedRange:
     limit: Limit
 
 
-@dataclass(frozen=True, eq=False)
-class AchievableCurve:
-    """One stroke at one speed, computed: no press was made.
-
-    Attributes
-    ----------
-    displacement_mm, intended_cN, achievable_cN : (n,) on the same places.
-    limited : where force, duty or slew limits cut.
-    verdict, reasons : whether the rig follows; per reason one line, the gravest first.
-    expected_mean_cN : mean error that learning would leave, an estimate.
-    """
-
-    stroke: Stroke
-    velocity_mm_s: float
-    displacement_mm: FloatArray
-    intended_cN: FloatArray
-    achievable_cN: FloatArray
-    limited: tuple[LimitedRange, ...]
-    verdict: str
-    reasons: tuple[str, ...]
-    expected_mean_cN: float
+def limited_ranges(reached: AchievableStroke) -> list[LimitedRange]:
+    x, cuts = reached.displacement_mm, {"force": reached.saturated, "slew": reached.slewed}
+    return [
+        LimitedRange(float(x[a]), float(x[b - 1]), cast(Limit, limit))
+        for limit, rows in cuts.items()
+        for a, b in true_runs(rows)
+    ]
 
 
 def achievable(
     model: FDVVModel, rig: AvailableRig, velocities_mm_s: Sequence[float | None]
-) -> tuple[AchievableCurve, ...]:
+) -> tuple[CurveFeasibility, ...]:
     """Return what a rig renders of both strokes of a model at these speeds, in about 10 ms per speed.
 
     velocities_mm_s : of the changed curves; None, an unknown velocity, is judged at 50 mm/s.
@@ -192,32 +172,10 @@ def achievable(
     """
     speeds = list(dict.fromkeys(DEFAULT_SPEED_mm_s if v is None else float(v) for v in velocities_mm_s))
     motions = {(stroke, v): _motion(stroke, model, rig, v) for stroke in Stroke for v in speeds}
-    report = feasibility(model, rig.known, rig.settings, speeds, info=rig.info, motions=motions)
-    return tuple(_curve(curve) for curve in report.curves)
+    return feasibility(model, rig.known, rig.settings, speeds, info=rig.info, motions=motions).curves
 
 
 def _motion(stroke: Stroke, model: FDVVModel, rig: AvailableRig, velocity_mm_s: float) -> Motion:
     """Return a stroke as a report does, in fewer steps if it is slow."""
     coarse_s = STEPS_A_TICK * model.travel_mm / velocity_mm_s / STEPS
     return minimum_jerk(stroke, model.travel_mm, velocity_mm_s, max(1e-6 * rig.settings.tick_us, coarse_s))
-
-
-def _curve(curve: CurveFeasibility) -> AchievableCurve:
-    reached = curve.reached
-    x = reached.displacement_mm
-    places = np.linspace(x[0], x[-1], min(POINTS, x.size))
-    return AchievableCurve(
-        curve.stroke,
-        curve.velocity_mm_s,
-        places,
-        np.interp(places, x, reached.intended_cN),
-        np.interp(places, x, reached.achievable_cN),
-        (*_ranges(x, reached.saturated, "force"), *_ranges(x, reached.slewed, "slew")),
-        str(curve.verdict.following),
-        curve.verdict.reasons,
-        curve.expected.mean_cN,
-    )
-
-
-def _ranges(x: FloatArray, rows: npt.NDArray[np.bool_], limit: Limit) -> list[LimitedRange]:
-    return [LimitedRange(float(x[a]), float(x[b - 1]), limit) for a, b in true_runs(rows)]

@@ -5,15 +5,16 @@ from __future__ import annotations
 from typing import Annotated, Literal, cast
 
 import msgspec
+import numpy as np
 from msgspec import Meta, Struct
 
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.project.measured_bands import MeasuredButton, measured_button
-from fdvv.rendering.rig_catalog import AchievableCurve, LimitedRange, RigCatalog, RigEntry
+from fdvv.rendering.feasibility import CurveFeasibility
+from fdvv.rendering.rig_catalog import LimitedRange, RigCatalog, RigEntry, limited_ranges
 from fdvv.rendering.rig_catalog import achievable as make_achievable
 from fdvv.studio.contract import Call, Empty
 from fdvv.studio.studio import Studio
-from fdvv.units import FloatArray
 
 Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
 StrokeName = Literal["press", "release"]
@@ -80,6 +81,8 @@ class Measured(Struct, frozen=True, forbid_unknown_fields=True):
     found: MeasuredButton | None
 
 
+POINTS = 201
+"""Points of a curve: 0.02 mm on a button of 4 mm."""
 DECIMALS = 4
 """Of mm and cN on the way to a screen."""
 
@@ -110,22 +113,22 @@ def measured(studio: Studio, ask: MeasuredAsk) -> Measured:
     return Measured(measured_button(studio.project, ask.name))
 
 
-def _curve(curve: AchievableCurve) -> AchievableForce:
+def _curve(curve: CurveFeasibility) -> AchievableForce:
+    reached, x = curve.reached, curve.reached.displacement_mm
+    places = np.linspace(x[0], x[-1], min(POINTS, x.size))
+    forces = (np.interp(places, x, column) for column in (reached.intended_cN, reached.achievable_cN))
+    x_mm, intended_cN, achievable_cN = (column.round(DECIMALS).tolist() for column in (places, *forces))
     return AchievableForce(
         cast(StrokeName, str(curve.stroke)),
         curve.velocity_mm_s,
-        _rounded(curve.displacement_mm),
-        _rounded(curve.intended_cN),
-        _rounded(curve.achievable_cN),
-        list(curve.limited),
-        curve.verdict,
-        list(curve.reasons),
-        curve.expected_mean_cN,
+        x_mm,
+        intended_cN,
+        achievable_cN,
+        limited_ranges(reached),
+        str(curve.verdict.following),
+        list(curve.verdict.reasons),
+        curve.expected.mean_cN,
     )
-
-
-def _rounded(column: FloatArray) -> list[float]:
-    return cast("list[float]", column.round(DECIMALS).tolist())
 
 
 CALLS = (
