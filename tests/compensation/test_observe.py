@@ -4,20 +4,19 @@ import numpy as np
 import pytest
 
 from fdvv.compensation.identification.balance import Delays, observe
-from fdvv.compensation.presses import Span
 from fdvv.compensation.tables import bin_force, grid_mm
 from fdvv.errors import ModelError
 
 GRID = grid_mm(4.0, 0.05)
 TARGET = 50 + 20 * np.sin(GRID)
 T = np.arange(0.0, 0.04, 0.0001)
-SPAN = Span(30, 370)
+SPAN = slice(30, 370)
 
 
 def test_without_delays_the_force_is_binned_as_sensed() -> None:
     x, force = T * 100, np.cos(T * 50)
     found = observe(T, x, force, SPAN, TARGET, GRID, Delays())
-    np.testing.assert_array_equal(found, bin_force(x[SPAN.rows], force[SPAN.rows], GRID))
+    np.testing.assert_array_equal(found, bin_force(x[SPAN], force[SPAN], GRID))
 
 
 def test_with_the_true_delays_an_error_is_filed_under_the_command_that_made_it() -> None:

@@ -15,7 +15,6 @@ from fdvv.compensation.tables import (
     CurveState,
     GainSchedule,
     LearnedCurve,
-    best_of_round,
     bump_kept_ratio,
     read_only,
     smooth,
@@ -126,7 +125,10 @@ class PaperLaw:
         Raises ModelError if nothing was measured.
         """
         error = error_cN(state.target_cN, measured_cN, self.alpha)
-        best = best_of_round(state, measured_cN, error)
+        best = state.best
+        if best is None or error < best.error_cN:
+            off = np.abs(state.target_cN - measured_cN)
+            best = BestPress(error, float(np.nanmean(off)), float(np.nanmax(off)), state.command_cN)
         errors = (*state.errors_cN, error)
         if len(errors) % self.presses_per_round:
             command = self._correct(measured_cN, error, state)

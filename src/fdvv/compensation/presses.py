@@ -20,18 +20,6 @@ SHORT_mm = 0.3
 """A press that ends this far before the stop did not reach it; a servo sets its stop to 0.1 mm."""
 
 
-@dataclass(frozen=True)
-class Span:
-    """Rows start to end (end excluded) of one stroke between the guards."""
-
-    start: int
-    end: int
-
-    @property
-    def rows(self) -> slice:
-        return slice(self.start, self.end)
-
-
 def why_incomplete(displacement_mm: FloatArray, travel_mm: float) -> str:
     """Return why a record is not one press down to the stop; empty if it is.
 
@@ -46,7 +34,7 @@ def why_incomplete(displacement_mm: FloatArray, travel_mm: float) -> str:
     return ""
 
 
-def split_strokes(displacement_mm: FloatArray, travel_mm: float) -> tuple[Span, Span]:
+def split_strokes(displacement_mm: FloatArray, travel_mm: float) -> tuple[slice, slice]:
     """Return the rows of press and release of a record that reached the stop, each between the guards.
 
     The press runs from the last time at the upper guard to the first time at the lower one, the release
@@ -60,19 +48,17 @@ def split_strokes(displacement_mm: FloatArray, travel_mm: float) -> tuple[Span, 
     after = np.flatnonzero(displacement_mm[last:] <= _upper(displacement_mm[-1]))
     start = int(before[-1]) + 1 if before.size else 0
     end = last + int(after[0]) if after.size else displacement_mm.size
-    return Span(start, first), Span(last + 1, max(last + 1, end))
+    return slice(start, first), slice(last + 1, max(last + 1, end))
 
 
 def _upper(rest_mm: float) -> float:
     return EDGE_mm if rest_mm <= EDGE_mm else rest_mm + EDGE_mm
 
 
-def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, span: Span) -> float:
+def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, stroke: slice) -> float:
     """Return the mean speed of a stroke between the guards, always positive; NaN for fewer than 2 rows."""
-    if span.end - span.start < 2:
-        return float("nan")
-    length = displacement_mm[span.end - 1] - displacement_mm[span.start]
-    return float(abs(length) / (t_s[span.end - 1] - t_s[span.start]))
+    t, x = t_s[stroke], displacement_mm[stroke]
+    return float(abs(x[-1] - x[0]) / (t[-1] - t[0])) if t.size > 1 else float("nan")
 
 
 PAUSE_WINDOW_ratio = 1 / 16
@@ -159,8 +145,8 @@ def judge_press(
         return PressAcceptance("too few samples between the guards to measure the speed; press slower", speed)
     reasons = (
         _off_pace(speed, press.velocity_mm_s, bounds.pace_ratio),
-        _lifted(x_mm[down.rows], bounds.lifted_mm),
-        _paused(t_s[down.rows], x_mm[down.rows], travel_mm, bounds.paused_ratio),
+        _lifted(x_mm[down], bounds.lifted_mm),
+        _paused(t_s[down], x_mm[down], travel_mm, bounds.paused_ratio),
         _saturated(press, (t_s, down, up), bounds.saturated_ratio),
         "" if true_position else _constant_force(press),
     )
@@ -201,12 +187,12 @@ def _paused(t_s: FloatArray, x_mm: FloatArray, travel_mm: float, bound: float) -
     return f"the finger paused at {middle:.2f} mm for {spent[at] * MS_PER_s:.0f} ms; press without stopping"
 
 
-def _saturated(press: Press, strokes: tuple[FloatArray, Span, Span], bound: float) -> str:
+def _saturated(press: Press, strokes: tuple[FloatArray, slice, slice], bound: float) -> str:
     if press.saturated is None:
         return ""
     t_s, down, up = strokes
     cut = press.saturated[np.searchsorted(press.t_s, t_s)]
-    part = float(np.concatenate([cut[down.rows], cut[up.rows]]).mean())
+    part = float(np.concatenate([cut[down], cut[up]]).mean())
     if part <= bound:
         return ""
     return f"the rig was at its limit for {part:.0%} of the strokes; choose slower speeds or a lighter button"

@@ -16,7 +16,7 @@ from fdvv.compensation.identification.balance import (
     windows,
 )
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.compensation.presses import Span, mean_speed_mm_s, split_strokes
+from fdvv.compensation.presses import mean_speed_mm_s, split_strokes
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
@@ -57,8 +57,8 @@ def stroke_samples(
     felt = felt_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
     own = felt - rig.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
 
-    def between(span: Span) -> StrokeSample:
-        rows, speed = span.rows, mean_speed_mm_s(ticks.t_s, x, span)
+    def between(rows: slice) -> StrokeSample:
+        speed = mean_speed_mm_s(ticks.t_s, x, rows)
         return StrokeSample(x[rows], v[rows], a[rows], felt[rows], own[rows], ticks.tick_s, speed)
 
     down, up = split_strokes(x, travel_mm)

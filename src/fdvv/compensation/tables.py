@@ -115,14 +115,6 @@ class LearnedCurve:
     sentence: str
 
 
-def best_of_round(state: CurveState, measured_cN: FloatArray, error: float) -> BestPress:
-    """Return the better of the round's best press and this one."""
-    if state.best is not None and state.best.error_cN <= error:
-        return state.best
-    deviation = np.abs(state.target_cN - measured_cN)
-    return BestPress(error, float(np.nanmean(deviation)), float(np.nanmax(deviation)), state.command_cN)
-
-
 def read_only(values: FloatArray) -> FloatArray:
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)

@@ -131,7 +131,7 @@ def felt_press(press: Press, travel_mm: float) -> FeltPress:
     """Bin the force on the finger of both strokes; a press that turned early has what it has."""
     grid = grid_mm(travel_mm, BIN_mm)
     x, force = press.displacement_mm, press.force_cN
-    down, up = (bin_force(x[s.rows], force[s.rows], grid) for s in split_strokes(x, travel_mm))
+    down, up = (bin_force(x[rows], force[rows], grid) for rows in split_strokes(x, travel_mm))
     return FeltPress(grid, down, up)
 
 

@@ -140,9 +140,9 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
     for i, stroke in enumerate(Stroke):
         felt, speeds = [], []
         for press, strokes in zip(presses, spans, strict=True):
-            rows = strokes[i].rows
+            rows = strokes[i]
             felt.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
-            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, strokes[i]))
+            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, rows))
         rendered, achieved = np.stack(felt), np.array(speeds)
         # without a release curve the press serves for both
         served = stroke if model.of(stroke) else Stroke.PRESS

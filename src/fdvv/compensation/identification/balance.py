@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.compensation.presses import Span, rig_columns
+from fdvv.compensation.presses import rig_columns
 from fdvv.compensation.tables import bin_force
 from fdvv.errors import FitError, ModelError
 from fdvv.model.press import Press
@@ -314,19 +314,18 @@ def observe(
     t_s: FloatArray,
     sensed_mm: FloatArray,
     force_cN: FloatArray,
-    span: Span,
+    rows: slice,
     target_cN: FloatArray,
     grid_mm: FloatArray,
     delays: Delays,
 ) -> FloatArray:
     """Assign the force of one stroke to the bins of its table: (n,), NaN where unknown.
 
-    t_s, sensed_mm, force_cN : (m,) the whole press as the rig recorded it; span the rows of the stroke.
+    t_s, sensed_mm, force_cN : (m,) the whole press as the rig recorded it; rows those of the stroke.
     Without delays this is ``bin_force``. With them each sample's shortfall is taken at the displacement
     where it acted and assigned to the displacement that commanded it; target minus the result is then
     the mean shortfall of each bin.
     """
-    rows = span.rows
     if delays == Delays():
         return bin_force(sensed_mm[rows], force_cN[rows], grid_mm)
     felt = felt_at_mm(t_s, sensed_mm, delays)[rows]
