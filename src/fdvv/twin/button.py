@@ -13,7 +13,7 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.twin.quantity import check, choice, quantity
+from fdvv.twin.quantity import Section, choice, quantity
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
 FEWEST_FORCES = 8
@@ -23,7 +23,7 @@ STEP_mm = 0.02
 
 
 @dataclass(frozen=True)
-class Curve:
+class Curve(Section):
     """What the slow press and release curves belong to; identified, so never drawn at random."""
 
     kind: str = choice("leaf", "what the force comes from", ("leaf", "dome"), "curves")
@@ -47,46 +47,35 @@ class Curve:
         1.0, "this unit's force over that of the curves", "", (0.8, 1.2), (0.1, 10.0), "literature"
     )
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True)
-class Slider:
+class Slider(Section):
     """What moves with the cap, and how it rubs: stem, cap, a third of the spring, markers."""
 
-    mass_kg: float = quantity(0.003, "moving mass", "kg", (0.0013, 0.004), (3e-4, 0.05), "assumed")
-    viscous_N_s_m: float = quantity(0.15, "viscous drag", "N s/m", (0.05, 0.4), (0.0, 20.0), "assumed")
-    bristle_m: float = quantity(
-        1e-5, "way over which friction turns round", "m", (8e-6, 2e-5), (5e-6, 1e-3), "assumed"
-    )
-
-    def __post_init__(self) -> None:
-        check(self)
+    mass_kg: float = quantity(0.003, "moving mass", "kg", (0.0013, 0.004), (3e-4, 0.05))
+    viscous_N_s_m: float = quantity(0.15, "viscous drag", "N s/m", (0.05, 0.4), (0.0, 20.0))
+    bristle_m: float = quantity(1e-5, "way over which friction turns round", "m", (8e-6, 2e-5), (5e-6, 1e-3))
 
 
 @dataclass(frozen=True)
-class Leaf:
+class Leaf(Section):
     """The leaf spring that rides on the cam and falls on the fixed contact; unused by a dome."""
 
-    mass_kg: float = quantity(5e-5, "effective mass", "kg", (3e-5, 1e-4), (1e-5, 0.01), "assumed")
-    stiffness_N_m: float = quantity(300.0, "stiffness", "N/m", (200.0, 500.0), (10.0, 1e4), "assumed")
+    mass_kg: float = quantity(5e-5, "effective mass", "kg", (3e-5, 1e-4), (1e-5, 0.01))
+    stiffness_N_m: float = quantity(300.0, "stiffness", "N/m", (200.0, 500.0), (10.0, 1e4))
     damping_ratio: float = quantity(
-        0.05, "damping of the free leaf, of critical", "", (0.02, 0.1), (0.0, 1.0), "assumed"
+        0.05, "damping of the free leaf, of critical", "", (0.02, 0.1), (0.0, 1.0)
     )
-    cam_stiffness_N_m: float = quantity(2e4, "leaf on plastic cam", "N/m", (1e4, 4e4), (1e3, 1e5), "assumed")
-    cam_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0), "assumed")
+    cam_stiffness_N_m: float = quantity(2e4, "leaf on plastic cam", "N/m", (1e4, 4e4), (1e3, 1e5))
+    cam_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0))
     fixed_stiffness_N_m: float = quantity(
-        1000.0, "fixed contact, itself a leaf", "N/m", (600.0, 2000.0), (100.0, 1e5), "assumed"
+        1000.0, "fixed contact, itself a leaf", "N/m", (600.0, 2000.0), (100.0, 1e5)
     )
-    fixed_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0), "assumed")
-
-    def __post_init__(self) -> None:
-        check(self)
+    fixed_loss_s_m: float = quantity(1.0, "alpha of that contact", "s/m", (0.3, 3.0), (0.0, 50.0))
 
 
 @dataclass(frozen=True)
-class Dome:
+class Dome(Section):
     """The rubber: one relaxing arm makes the loop, a law of velocity makes it stiffer; unused by a leaf."""
 
     law: str = choice("log", "how force grows with speed", ("log", "linear"), "literature")
@@ -94,46 +83,34 @@ class Dome:
         0.028, "growth per e-fold of 1 + v / log_speed", "", (0.02, 0.035), (0.0, 0.5), "literature"
     )
     log_speed_m_s: float = quantity(
-        5e-4, "speed where the logarithm begins", "m/s", (2e-4, 1e-3), (1e-6, 0.1), "assumed"
+        5e-4, "speed where the logarithm begins", "m/s", (2e-4, 1e-3), (1e-6, 0.1)
     )
     linear_s_m: float = quantity(
         1.55, "growth per speed of the linear law", "s/m", (1.3, 1.9), (0.0, 50.0), "literature"
     )
-    arm_m: float = quantity(
-        1e-4, "way over which the arm turns round", "m", (5e-5, 3e-4), (5e-6, 0.01), "assumed"
-    )
-    arm_s: float = quantity(2.0, "time in which the arm relaxes", "s", (0.5, 10.0), (0.01, 1e4), "assumed")
-
-    def __post_init__(self) -> None:
-        check(self)
+    arm_m: float = quantity(1e-4, "way over which the arm turns round", "m", (5e-5, 3e-4), (5e-6, 0.01))
+    arm_s: float = quantity(2.0, "time in which the arm relaxes", "s", (0.5, 10.0), (0.01, 1e4))
 
 
 @dataclass(frozen=True)
-class Housing:
+class Housing(Section):
     """The stops of the housing (Hunt-Crossley) and the two modes of the plate under it."""
 
     bottom_stiffness_N_m: float = quantity(
         5e4, "bottom stop", "N/m", (2e4, 1e5), (1e3, 3e5), "literature, assumed"
     )
-    bottom_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0), "assumed")
-    top_stiffness_N_m: float = quantity(2e4, "top stop", "N/m", (1e4, 5e4), (1e3, 3e5), "assumed")
-    top_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0), "assumed")
+    bottom_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0))
+    top_stiffness_N_m: float = quantity(2e4, "top stop", "N/m", (1e4, 5e4), (1e3, 3e5))
+    top_loss_s_m: float = quantity(3.0, "alpha of it", "s/m", (2.0, 4.0), (0.0, 50.0))
     first_Hz: float = quantity(239.0, "first mode", "Hz", (150.0, 350.0), (20.0, 5000.0), "literature")
-    first_damping_ratio: float = quantity(
-        0.1, "damping of it, of critical", "", (0.05, 0.15), (0.0, 1.0), "assumed"
-    )
-    first_kg: float = quantity(0.04, "modal mass of it", "kg", (0.02, 0.1), (1e-3, 100.0), "assumed")
-    second_Hz: float = quantity(900.0, "second mode", "Hz", (600.0, 1500.0), (20.0, 5000.0), "assumed")
-    second_damping_ratio: float = quantity(
-        0.06, "damping of it, of critical", "", (0.03, 0.1), (0.0, 1.0), "assumed"
-    )
-    second_kg: float = quantity(0.03, "modal mass of it", "kg", (0.015, 0.08), (1e-3, 100.0), "assumed")
+    first_damping_ratio: float = quantity(0.1, "damping of it, of critical", "", (0.05, 0.15), (0.0, 1.0))
+    first_kg: float = quantity(0.04, "modal mass of it", "kg", (0.02, 0.1), (1e-3, 100.0))
+    second_Hz: float = quantity(900.0, "second mode", "Hz", (600.0, 1500.0), (20.0, 5000.0))
+    second_damping_ratio: float = quantity(0.06, "damping of it, of critical", "", (0.03, 0.1), (0.0, 1.0))
+    second_kg: float = quantity(0.03, "modal mass of it", "kg", (0.015, 0.08), (1e-3, 100.0))
     snap_ratio: float = quantity(
         0.5, "part of the leaf's blow on the fixed contact that drives the plate", "", (0.2, 1.0), (0.0, 1.0)
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,17 +58,13 @@ def about(field: dataclasses.Field[Any]) -> About:
     return cast(About, field.metadata["about"])
 
 
-def check_value(name: str, value: object, known: About, kind: type) -> str | None:
+def check_value(name: str, value: object, known: About, kind: type[int | float]) -> str | None:
     """Say what is wrong with a value, or None: type, finiteness, bounds, words."""
     if known.choices:
-        return None if value in known.choices else f"{name} must be {_either(known.choices)}, got {value!r}"
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float))
-        or (kind is int and value != int(value))
-    ):
-        wanted = "a whole number" if kind is int else "a number"
-        return f"{name} must be {wanted}, got {value!r}"
+        words = " or ".join(f'"{word}"' for word in known.choices)
+        return None if value in known.choices else f"{name} must be {words}, got {value!r}"
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or (kind is int and value % 1):
+        return f"{name} must be {'a whole number' if kind is int else 'a number'}, got {value!r}"
     low, high = known.bounds
     if not (math.isfinite(value) and low <= value <= high):
         unit = f" {known.unit}" if known.unit else ""
@@ -76,18 +72,18 @@ def check_value(name: str, value: object, known: About, kind: type) -> str | Non
     return None
 
 
-def _either(words: tuple[str, ...]) -> str:
-    return " or ".join(f'"{word}"' for word in words)
+@dataclass(frozen=True)
+class Section:
+    """Parameters that belong together, all made by quantity() and choice().
 
+    Raises ModelError on the first that is out of bounds; numbers are then int or float as declared.
+    """
 
-def check(record: Any) -> None:
-    """Check every parameter of a dataclass; raise ModelError on the first that is out of bounds."""
-    for field in dataclasses.fields(record):
-        kind = int if field.type in (int, "int") else float
-        wrong = check_value(field.name, getattr(record, field.name), about(field), kind)
-        if wrong:
-            raise ModelError(f"{type(record).__name__}: {wrong}")
-        if kind is int:
-            object.__setattr__(record, field.name, int(getattr(record, field.name)))
-        elif not about(field).choices:
-            object.__setattr__(record, field.name, float(getattr(record, field.name)))
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            value, known = getattr(self, field.name), about(field)
+            kind: type[int | float] = int if field.type in (int, "int") else float
+            if wrong := check_value(field.name, value, known, kind):
+                raise ModelError(f"{type(self).__name__}: {wrong}")
+            if not known.choices:
+                object.__setattr__(self, field.name, kind(value))

@@ -10,17 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from fdvv.errors import ModelError
-from fdvv.twin.quantity import check, choice, quantity
+from fdvv.twin.quantity import Section, choice, quantity
 from fdvv.twin.rig_moves import Coil, Exciter, Mover, Servo, Stops
 
 
 @dataclass(frozen=True)
-class PositionSensor:
+class PositionSensor(Section):
     """The differential transformer, its demodulator and converter."""
 
-    bandwidth_Hz: float = quantity(
-        300.0, "first-order demodulator", "Hz", (100.0, 500.0), (10.0, 2e4), "assumed"
-    )
+    bandwidth_Hz: float = quantity(300.0, "first-order demodulator", "Hz", (100.0, 500.0), (10.0, 2e4))
     noise_m: float = quantity(5e-6, "noise per tick within that band, rms", "m", (1e-6, 1e-5), (0.0, 1e-3))
     linearity_ratio: float = quantity(
         0.0025, "largest bend of the scale, of half the range", "", (0.0, 0.0025), (0.0, 0.1), "class"
@@ -30,32 +28,25 @@ class PositionSensor:
     )
     converter_bits: int = quantity(12, "bits over the range", "", (10, 12), (8, 16), "rule", chosen=True)
     converter_noise_ratio: float = quantity(
-        0.5, "noise per read, rms, of one step of the converter", "", (0.3, 2.0), (0.0, 20.0), "assumed"
+        0.5, "noise per read, rms, of one step of the converter", "", (0.3, 2.0), (0.0, 20.0)
     )
     reads: int = quantity(
         25, "reads averaged in a burst before each tick", "", (1, 25), (1, 64), "paper", chosen=True
     )
-    burst_s: float = quantity(
-        2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05), "assumed", chosen=True
-    )
-
-    def __post_init__(self) -> None:
-        check(self)
+    burst_s: float = quantity(2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05), chosen=True)
 
 
 @dataclass(frozen=True)
-class ForceSensor:
+class ForceSensor(Section):
     """The sensor worn on the fingertip: a cone on the cap, the pulp behind it, and its filter."""
 
-    mass_kg: float = quantity(0.002, "cone and plunger", "kg", (0.001, 0.003), (2e-4, 0.1), "assumed")
-    contact_stiffness_N_m: float = quantity(8e4, "cone on cap", "N/m", (2e4, 2e5), (1e3, 5e5), "assumed")
-    contact_loss_s_m: float = quantity(
-        6.0, "alpha of that contact", "s/m", (0.2, 10.0), (0.0, 50.0), "assumed"
-    )
+    mass_kg: float = quantity(0.002, "cone and plunger", "kg", (0.001, 0.003), (2e-4, 0.1))
+    contact_stiffness_N_m: float = quantity(8e4, "cone on cap", "N/m", (2e4, 2e5), (1e3, 5e5))
+    contact_loss_s_m: float = quantity(6.0, "alpha of that contact", "s/m", (0.2, 10.0), (0.0, 50.0))
     filter_s: float = quantity(
         3.33e-4, "RC of 333 ohm and 1 uF, 478 Hz", "s", (3.2e-4, 3.4e-4), (2e-5, 0.1), "paper"
     )
-    noise_N: float = quantity(0.003, "noise, rms", "N", (0.0013, 0.003), (0.0, 1.0), "assumed")
+    noise_N: float = quantity(0.003, "noise, rms", "N", (0.0013, 0.003), (0.0, 1.0))
     gain_error_ratio: float = quantity(
         0.0, "error of the calibration", "", (-0.03, 0.03), (-0.5, 0.5), "class"
     )
@@ -73,15 +64,12 @@ class ForceSensor:
         10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "class", chosen=True
     )
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True)
-class KeycapSensor:
+class KeycapSensor(Section):
     """An optional sensor in the cap that the controller reads: the contact's force, or its acceleration."""
 
-    kind: str = choice("none", "what it feels", ("none", "force", "acceleration"), "assumed")
+    kind: str = choice("none", "what it feels", ("none", "force", "acceleration"))
     full_scale_N: float = quantity(
         4.45, "range of the force, both signs", "N", (4.45, 4.45), (0.1, 100.0), "class", chosen=True
     )
@@ -94,22 +82,15 @@ class KeycapSensor:
         "class",
         chosen=True,
     )
-    bandwidth_Hz: float = quantity(
-        2000.0, "first-order filter", "Hz", (500.0, 4000.0), (10.0, 8000.0), "assumed"
-    )
-    noise_ratio: float = quantity(
-        3e-4, "noise in proportion to the range, rms", "", (1e-4, 1e-3), (0.0, 0.1), "assumed"
-    )
+    bandwidth_Hz: float = quantity(2000.0, "first-order filter", "Hz", (500.0, 4000.0), (10.0, 8000.0))
+    noise_ratio: float = quantity(3e-4, "noise in proportion to the range, rms", "", (1e-4, 1e-3), (0.0, 0.1))
     converter_bits: int = quantity(
         12, "bits over both signs together", "", (10, 12), (8, 16), "class", chosen=True
     )
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True)
-class Controller:
+class Controller(Section):
     """The loop: average, direction, speed, table, command. Run by the firmware's own core (_settings.py)."""
 
     tick_s: float = quantity(
@@ -159,11 +140,11 @@ class Controller:
         5.0, "largest change of the command from tick to tick", "N", (0.5, 5.0), (0.01, 5.0), chosen=True
     )
     gain_error_ratio: float = quantity(
-        0.0, "error of the scale from force to drive", "", (-0.05, 0.05), (-0.5, 0.5), "assumed"
+        0.0, "error of the scale from force to drive", "", (-0.05, 0.05), (-0.5, 0.5)
     )
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         if self.window_end_m <= self.window_start_m:
             raise ModelError(
                 f"Controller: window_end_m must exceed window_start_m {self.window_start_m:g} m, "
