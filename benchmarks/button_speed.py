@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
 from itertools import cycle, islice
 
 import numpy as np
@@ -18,49 +20,43 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan, vary
 from fdvv.twin.pace import solve_button_pace
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.simulate_button import (
-    ButtonNoise,
-    PressPlan,
-    draw_button_noise,
-    simulate_batch,
-    simulate_button,
-)
+from fdvv.twin.simulate_button import ButtonNoise, draw_button_noise, simulate_button
 from fdvv.units import m_from_mm
 
 VELOCITY_mm_s = 100.0
+Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor]
+"""The arguments of simulate_button."""
 PLANS = 500
 """Different presses planned; a larger batch repeats them."""
 
 
-def press_plan(name: str, velocity_mm_s: float = VELOCITY_mm_s, seed: int = 0) -> PressPlan:
+def press_plan(name: str, velocity_mm_s: float = VELOCITY_mm_s, seed: int = 0) -> Call:
     """Plan a press of a shipped button at a pace, varied as a person varies."""
     button, finger, sensor = load_button(name), Finger(), ForceSensor()
     pace_s = solve_button_pace(button, finger, velocity_mm_s, sensor)
     gesture = plan(finger, button.curve.travel_m, pace_s)
     noise = draw_button_noise(finger, gesture, np.random.default_rng(seed), sensor)
-    return PressPlan(button, finger, gesture, noise, sensor)
+    return button, finger, gesture, noise, sensor
 
 
-def varied(first: PressPlan, count: int, seed: int = 0) -> list[PressPlan]:
+def varied(first: Call, count: int, seed: int = 0) -> list[Call]:
     """Plan count presses of the same person, each different."""
     random, plans = np.random.default_rng(seed), []
+    button, finger, planned, _, sensor = first
     for _ in range(count):
-        travel_m, press_s = first.button.curve.travel_m, first.gesture.press_s
-        gesture = vary(first.finger, travel_m, press_s, m_from_mm(VELOCITY_mm_s), random)
-        noise = draw_button_noise(first.finger, gesture, random, first.sensor)
-        plans.append(PressPlan(first.button, first.finger, gesture, noise, first.sensor))
+        gesture = vary(finger, button.curve.travel_m, planned.press_s, m_from_mm(VELOCITY_mm_s), random)
+        noise = draw_button_noise(finger, gesture, random, sensor)
+        plans.append((button, finger, gesture, noise, sensor))
     return plans
 
 
-def batch_s(plans: list[PressPlan], count: int, threads: int) -> float:
+def batch_s(plans: list[Call], count: int, threads: int) -> float:
     """Time count presses, taken in turn from plans, each let go as it comes."""
     begun = time.perf_counter()
-    done = sum(1 for _ in simulate_batch(islice(cycle(plans), count), threads))
-    assert done == count
+    with ThreadPoolExecutor(threads) as pool:
+        calls = islice(cycle(plans), count)
+        deque(pool.map(lambda call: simulate_button(*call).force_cN[-1], calls), maxlen=0)
     return time.perf_counter() - begun
-
-
-Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor | None]
 
 
 def cpu_ms(call: Call) -> float:
@@ -72,8 +68,7 @@ def cpu_ms(call: Call) -> float:
 
 def single() -> None:
     for name in button_names():
-        p = press_plan(name)
-        call = (p.button, p.finger, p.gesture, p.noise, p.sensor)
+        call = press_plan(name)
         trace = simulate_button(*call)
         times_ms = sorted(cpu_ms(call) for _ in range(60))
         length_ms, median = 1e3 * float(trace.t_s[-1]), times_ms[30]
@@ -89,7 +84,7 @@ def single() -> None:
 
 def many(presses: int) -> None:
     plans = varied(press_plan("mx-clear"), PLANS)
-    length_s = float(np.mean([p.gesture.duration_s for p in plans]))
+    length_s = float(np.mean([gesture.duration_s for _, _, gesture, *_ in plans]))
     batch_s(plans, 50, 2)
     for count, threads in ((1000, 1), (1000, 2), (presses, 2)):
         taken_s = batch_s(plans, count, threads)

@@ -8,7 +8,10 @@ not count; simulated time is that of the record alone, without the settling befo
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 from tests.support.reference.reference import reference_simulate
@@ -22,7 +25,8 @@ from fdvv.twin.noise import draw_noise, silence
 from fdvv.twin.pace import solve_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Exciter
-from fdvv.twin.simulate import RigPress, simulate, simulate_rig_batch
+from fdvv.twin.simulate import simulate, simulate_program
+from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm
 
 PACES_mm_s = (50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0)
@@ -36,21 +40,22 @@ BUTTON = load_builtin("mx-clear")
 SURFACE = ForceSurface.of_model(BUTTON, [50.0, 100.0, 150.0, 200.0])
 
 
-def press_of(rig: Rig, velocity_mm_s: float, seed: int) -> RigPress:
+def press_of(rig: Rig, velocity_mm_s: float, seed: int) -> Callable[[], Trace]:
     """Vary one press."""
     random, finger = np.random.default_rng(seed), Finger()
     pace_s = solve_pace(rig, finger, SURFACE, BUTTON.travel_mm, velocity_mm_s)
     gesture = vary(finger, float(m_from_mm(BUTTON.travel_mm)), pace_s, velocity_mm_s / 1000, random)
     image = image_of(SURFACE, BUTTON.travel_mm).image
-    return RigPress(rig, finger, gesture, image, draw_noise(rig, finger, gesture, random), velocity_mm_s)
+    noise = draw_noise(rig, finger, gesture, random)
+    return partial(simulate_program, rig, finger, gesture, image, noise, velocity_mm_s)
 
 
-def times_real_time(press: RigPress, rounds: int = 9) -> float:
+def times_real_time(press: Callable[[], Trace], rounds: int = 9) -> float:
     """Return simulated over computing time, median of rounds."""
     spent = []
     for _ in range(rounds):
         begun = time.thread_time()
-        trace = press.simulate()
+        trace = press()
         spent.append(time.thread_time() - begun)
     return float(trace.t_s[-1]) / float(np.median(spent))
 
@@ -82,18 +87,15 @@ def steps() -> None:
     print(f"  plain SciPy {1e3 * plain_s:.0f} ms")
 
 
-def copies(press: RigPress, count: int) -> Iterator[RigPress]:
-    return (press for _ in range(count))
-
-
 def batches() -> None:
     print("many presses at 200 mm/s, presses per second by the clock, simulated")
     press = press_of(Rig(), 200.0, 1)
     for count, threads in ((1000, 1), (1000, 2), (10_000, 2)):
         begun = time.perf_counter()
-        done = sum(1 for _ in simulate_rig_batch(copies(press, count), threads))
+        with ThreadPoolExecutor(threads) as pool:
+            deque(pool.map(lambda _: press().force_cN[-1], range(count)), maxlen=0)
         spent_s = time.perf_counter() - begun
-        print(f"  {done:6} on {threads} threads {done / spent_s:7.0f}/s")
+        print(f"  {count:6} on {threads} threads {count / spent_s:7.0f}/s")
 
 
 def main() -> None:

@@ -2,33 +2,38 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
+from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.draw import draw_button, draw_finger
 from fdvv.twin.files import button_names, load_button
 from fdvv.twin.finger import Finger
-from fdvv.twin.gesture import plan
+from fdvv.twin.gesture import Gesture, plan
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.simulate_button import PressPlan, draw_button_noise, simulate_batch, simulate_button
+from fdvv.twin.simulate_button import ButtonNoise, ButtonTrace, draw_button_noise, simulate_button
 from fdvv.units import FloatArray
 from tests.support.reference.button import reference_button
+
+Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor | None]
 
 
 def rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def a_plan(name: str, press_s: float, sensor: ForceSensor | None, seed: int = 1) -> PressPlan:
+def a_plan(name: str, press_s: float, sensor: ForceSensor | None, seed: int = 1) -> Call:
     button, finger = load_button(name), Finger()
     gesture = plan(finger, button.curve.travel_m, press_s)
     noise = draw_button_noise(finger, gesture, np.random.default_rng(seed), sensor)
-    return PressPlan(button, finger, gesture, noise, sensor)
+    return button, finger, gesture, noise, sensor
 
 
-def agrees(p: PressPlan, method: str = "DOP853", rtol: float = 1e-8) -> None:
-    trace = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
-    reference = reference_button(p.button, p.finger, p.gesture, p.noise, p.sensor, method, rtol)  # type: ignore[arg-type]
+def agrees(call: Call, method: str = "DOP853", rtol: float = 1e-8) -> None:
+    trace = simulate_button(*call)
+    reference = reference_button(*call, method, rtol)  # type: ignore[arg-type]
     assert np.abs(trace.displacement_mm - reference.displacement_mm).max() < 1e-3
     assert rms(trace.force_cN - reference.force_cN) < 0.1
     assert np.abs(trace.leaf_mm - reference.leaf_mm).max() < 2e-3
@@ -62,33 +67,17 @@ def test_drawn_buttons_and_fingers_agree_with_the_adaptive_solver(seed: int) -> 
     button = draw_button(load_button(button_names()[seed]), random)
     finger, sensor = draw_finger(random), ForceSensor()
     gesture = plan(finger, button.curve.travel_m, 0.08)
-    agrees(PressPlan(button, finger, gesture, draw_button_noise(finger, gesture, random, sensor), sensor))
+    agrees((button, finger, gesture, draw_button_noise(finger, gesture, random, sensor), sensor))
 
 
-def test_a_batch_gives_the_same_presses_in_order_on_any_number_of_threads() -> None:
-    plans = [a_plan("mx-brown", 0.03 + 0.002 * i, ForceSensor(), i) for i in range(8)]
-    one, two = (list(simulate_batch(plans * 3, threads)) for threads in (1, 2))
-    alone = [simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor) for p in plans]
-    for a, b, c in zip(one, two, alone * 3, strict=True):
-        assert np.array_equal(a.force_cN, b.force_cN)
-        assert np.array_equal(a.force_cN, c.force_cN)
+def test_presses_on_several_threads_are_those_of_one() -> None:
+    calls = [a_plan("mx-brown", 0.03 + 0.002 * i, ForceSensor(), i) for i in range(8)]
+
+    def press(call: Call) -> ButtonTrace:
+        return simulate_button(*call)
+
+    alone = [press(call) for call in calls]
+    with ThreadPoolExecutor(3) as pool:
+        for a, b in zip(pool.map(press, calls * 3), alone * 3, strict=True):
+            assert np.array_equal(a.force_cN, b.force_cN)
     assert len({trace.t_s.size for trace in alone}) > 1
-
-
-def test_two_presses_with_the_same_noise_are_the_same_to_the_bit() -> None:
-    p = a_plan("hp-pr1101u", 0.05, None)
-    first, second = (simulate_button(p.button, p.finger, p.gesture, p.noise) for _ in range(2))
-    assert np.array_equal(first.acceleration_m_s2, second.acceleration_m_s2)
-
-
-@pytest.mark.slow
-def test_a_detour_agrees_with_the_adaptive_solver() -> None:
-    p = a_plan("mx-clear", 0.05, ForceSensor())
-    ticks = np.arange(p.noise.effort_ratio.size) - 20
-    detour_m = 5e-4 * (1 - np.cos(0.1 * ticks)) * (ticks > 0)
-    trace = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor, detour_m=detour_m)
-    reference = reference_button(p.button, p.finger, p.gesture, p.noise, p.sensor, detour_m=detour_m)
-    plain = simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
-    assert np.abs(trace.displacement_mm - reference.displacement_mm).max() < 1e-3
-    assert rms(trace.force_cN - reference.force_cN) < 0.1
-    assert np.abs(trace.displacement_mm - plain.displacement_mm).max() > 0.1

@@ -1,11 +1,8 @@
-"""Simulate presses on the rig, one or many."""
+"""Simulate a press on the rig."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,11 +17,6 @@ from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import STEP_s, grid_of, plant_of, run
 from fdvv.twin.settings import settings_of
 from fdvv.twin.trace import Trace
-
-AHEAD = 4
-"""Presses under way or waiting per thread, so that memory does not grow with their number."""
-Plan = TypeVar("Plan")
-Result = TypeVar("Result")
 
 
 def simulate(
@@ -89,50 +81,3 @@ def simulate_program(
             "raise the lightest mass or lower the largest stiffness, damping or loss"
         )
     return Trace.of_rows(rows, audit, plant.drive_low)
-
-
-def in_threads(one: Callable[[Plan], Result], plans: Iterable[Plan], threads: int = 2) -> Iterator[Result]:
-    """Call a function on each of many plans in a pool of threads; give what it gives, in order, one by one.
-
-    Only a few are under way or waiting at a time. An error of one call is raised where its result would be.
-    """
-    from concurrent.futures import Future, ThreadPoolExecutor
-
-    waiting: deque[Future[Result]] = deque()
-    with ThreadPoolExecutor(threads) as pool:
-        for plan in plans:
-            waiting.append(pool.submit(one, plan))
-            if len(waiting) > AHEAD * threads:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
-@dataclass(frozen=True, eq=False)
-class RigPress:
-    """One press to simulate; image and settings are what the firmware holds (settings_of(rig) if None)."""
-
-    rig: Rig
-    finger: Finger
-    gesture: Gesture
-    image: bytes
-    noise: Noise
-    announced_mm_s: float
-    settings: Settings | None = None
-
-    def simulate(self) -> Trace:
-        """Simulate it."""
-        return simulate_program(
-            self.rig,
-            self.finger,
-            self.gesture,
-            self.image,
-            self.noise,
-            self.announced_mm_s,
-            settings=self.settings,
-        )
-
-
-def simulate_rig_batch(presses: Iterable[RigPress], threads: int = 2) -> Iterator[Trace]:
-    """Simulate many presses on the rig, as they are asked for; give them in the order of presses."""
-    return in_threads(RigPress.simulate, presses, threads)

@@ -1,9 +1,8 @@
-"""Simulate presses and probing of a real button, one or many."""
+"""Simulate presses and probing of a real button."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -26,7 +25,6 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan
 from fdvv.twin.noise import Effort, lsb_of
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.simulate import in_threads
 from fdvv.twin.trace import BoolArray
 from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
 
@@ -205,29 +203,6 @@ def _trace(
         opening,
         energy if audit else None,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class PressPlan:
-    """One press of a batch: what is pressed, by whom, how, and with which noise."""
-
-    button: ButtonPhysics
-    finger: Finger
-    gesture: Gesture
-    noise: ButtonNoise
-    sensor: ForceSensor | None = None
-
-
-def simulate_batch(plans: Iterable[PressPlan], threads: int = 2) -> Iterator[ButtonTrace]:
-    """Simulate many presses on a pool of threads; give them one by one, in the order of plans.
-
-    Only a few are under way or waiting at a time, so that memory does not grow with their number.
-    """
-
-    def one(p: PressPlan) -> ButtonTrace:
-        return simulate_button(p.button, p.finger, p.gesture, p.noise, p.sensor)
-
-    return in_threads(one, plans, threads)
 
 
 @dataclass(frozen=True, eq=False)
