@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 from tests.support.core.programs import REST, armed, event, image
+from tests.support.inputs import inputs_at
 
-from fdvv.firmware.core import inputs_at
 from fdvv.protocol.tables import NONE, Settings
 
 SETTINGS = replace(Settings(), velocity_scale_q12=4096, slew_cN64_tick=32000, stuck_ticks=65535)

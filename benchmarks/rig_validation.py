@@ -19,8 +19,9 @@ from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import vary
+from fdvv.twin.image import image_of
 from fdvv.twin.noise import draw_noise
-from fdvv.twin.pace import solve_pace
+from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil
 from fdvv.twin.simulate import simulate
@@ -48,7 +49,7 @@ def solver_errors(
     rig, finger, button = Rig(), Finger(), load_builtin("mx-clear")
     surface, travel = ForceSurface.of_model(button, PACES_mm_s), button.travel_mm
     random = np.random.default_rng(7)
-    pace_s = solve_pace(rig, finger, surface, travel, velocity_mm_s)
+    pace_s = solve_program_pace(rig, finger, image_of(surface, travel).image, velocity_mm_s)
     gesture = vary(finger, travel / 1000, pace_s, velocity_mm_s / 1000, random)
     noise = draw_noise(rig, finger, gesture, random)
     call = (rig, finger, gesture, surface, travel, noise, velocity_mm_s)

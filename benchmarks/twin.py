@@ -22,7 +22,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan, vary
 from fdvv.twin.image import image_of
 from fdvv.twin.noise import draw_noise, silence
-from fdvv.twin.pace import solve_pace
+from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Exciter
 from fdvv.twin.simulate import simulate, simulate_program
@@ -43,7 +43,7 @@ SURFACE = ForceSurface.of_model(BUTTON, [50.0, 100.0, 150.0, 200.0])
 def press_of(rig: Rig, velocity_mm_s: float, seed: int) -> Callable[[], Trace]:
     """Vary one press."""
     random, finger = np.random.default_rng(seed), Finger()
-    pace_s = solve_pace(rig, finger, SURFACE, BUTTON.travel_mm, velocity_mm_s)
+    pace_s = solve_program_pace(rig, finger, image_of(SURFACE, BUTTON.travel_mm).image, velocity_mm_s)
     gesture = vary(finger, float(m_from_mm(BUTTON.travel_mm)), pace_s, velocity_mm_s / 1000, random)
     image = image_of(SURFACE, BUTTON.travel_mm).image
     noise = draw_noise(rig, finger, gesture, random)
@@ -70,7 +70,7 @@ def speeds() -> None:
 def steps() -> None:
     """Compare steps with the reference on one quiet press, and time them."""
     rig, finger = Rig(), Finger()
-    pace_s = solve_pace(rig, finger, SURFACE, BUTTON.travel_mm, 100.0)
+    pace_s = solve_program_pace(rig, finger, image_of(SURFACE, BUTTON.travel_mm).image, 100.0)
     gesture = plan(finger, float(m_from_mm(BUTTON.travel_mm)), pace_s)
     call = (rig, finger, gesture, SURFACE, BUTTON.travel_mm, silence(rig, gesture), 100.0)
     begun = time.thread_time()

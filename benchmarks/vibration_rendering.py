@@ -33,7 +33,8 @@ from fdvv.rendering.exciter import identify_exciter, tone_image
 from fdvv.twin.draw import draw_finger, draw_rig
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
-from fdvv.twin.pace import solve_pace
+from fdvv.twin.image import image_of
+from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.settings import settings_of
@@ -156,7 +157,9 @@ def silent_press(bench: Bench, velocity_mm_s: float) -> Trace:
 
 @cache
 def pace_of(bench: Bench, velocity_mm_s: float) -> float:
-    return solve_pace(bench.rig, bench.finger, SURFACE, BUTTON.travel_mm, velocity_mm_s)
+    return solve_program_pace(
+        bench.rig, bench.finger, image_of(SURFACE, BUTTON.travel_mm).image, velocity_mm_s
+    )
 
 
 def likenesses(bench: Bench, slot: Slot, wanted: Vibration, velocity_mm_s: float) -> list[float]:

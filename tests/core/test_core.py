@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.firmware.core import Core, inputs_at
+from fdvv.firmware.core import Core
 from fdvv.protocol.tables import Fault, Mode, Settings, TickFlag
 from tests.support.core.programs import REST, Table, armed, image
+from tests.support.inputs import inputs_at
 
 RAMP: Table = (0, 16000, [1600], [[0, 1600, 3200, 4800, 6400]])
 PROGRAM = image(tables=[RAMP])

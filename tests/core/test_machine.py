@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.firmware.core import Core, inputs_at
+from fdvv.firmware.core import Core
 from fdvv.protocol.tables import NONE, Condition, Settings, Transition
 from tests.support.core.programs import FINE, REST, Table, armed, image, when
+from tests.support.inputs import inputs_at
 
 C = Condition
 FLATS: list[Table] = [(0, 16000, [1600], [[force, force]]) for force in (0, 640, 6400)]

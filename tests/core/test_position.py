@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.firmware.core import Core, inputs_at, inputs_like
+from fdvv.firmware.core import Core
 from fdvv.protocol.tables import Settings, TickFlag
+from tests.support.inputs import inputs_at, inputs_like
 
 
 @given(

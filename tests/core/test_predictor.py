@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.firmware.core import Core, RecordArray
 from fdvv.protocol.tables import Condition, Settings, VelocitySource
 from tests.support.core.predictor import Predictor
 from tests.support.core.programs import REST, armed, image, when
+from tests.support.inputs import inputs_at
 from tests.support.random_presses import random_inputs, random_path_mm, random_settings
 from tests.support.random_programs import random_image
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.firmware.core import inputs_at
 from fdvv.protocol.tables import Settings
 from tests.support.core.programs import FINE, REST, armed, image
+from tests.support.inputs import inputs_at
 
 WIDE = replace(FINE, announced_mm_s16=8)
 

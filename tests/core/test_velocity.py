@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.firmware.core import Core, RecordArray
 from fdvv.protocol.tables import Settings, TickFlag
 from tests.support.core.programs import REST, armed, image
+from tests.support.inputs import inputs_at
 
 SPEEDS_MM_S16 = [0, 2000, 4000, 8000, 12000, 16000]
 # a force in cN64 that is the velocity in mm_s16, told from 0 to 1000 mm/s

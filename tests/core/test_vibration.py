@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.firmware.core import inputs_at
 from fdvv.protocol.tables import NONE, Settings, Stroke, Vibration
 from tests.support.core.programs import FINE, REST, armed, event, image
+from tests.support.inputs import inputs_at
 
 AT_UM16 = 16000
 TICK_MS = 0.25

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.firmware.core import Core, RecordArray
 from fdvv.program.check import check_program
 from fdvv.program.compile import compile_program
 from fdvv.program.condition import Condition, Transition, When
@@ -18,6 +18,7 @@ from fdvv.program.library import make, programs
 from fdvv.program.program import Program, State
 from fdvv.program.surface import Limits, flat, line
 from fdvv.protocol.tables import Mode, Settings
+from tests.support.inputs import inputs_at
 from tests.support.program.random_images import random_program
 
 LIMITS = Limits()

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.firmware.core import Core, RecordArray
 from fdvv.protocol.tables import NONE, Fault, Mode, Settings, State, Surface
 from tests.safety._images import Parts
+from tests.support.inputs import inputs_at
 
 TICKS_US = (250, 500, 1000)
 ARMED_TICKS = 40

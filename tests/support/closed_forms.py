@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.firmware.core import Core, inputs_at
+from fdvv.firmware.core import Core
 from fdvv.protocol.tables import Settings
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil, Exciter, Mover
+from tests.support.inputs import inputs_at
 from tests.support.loop import AWAY
 
 

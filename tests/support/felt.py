@@ -13,7 +13,7 @@ from fdvv.protocol.tables import Settings, Slot, Stroke, Vibration, Waveform
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.image import image_of
-from fdvv.twin.pace import solve_pace
+from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Exciter
@@ -76,7 +76,7 @@ def press_with(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float,
         slot=0,
     )
     image = image_of(surface, button.travel_mm, [event] * len(slots), slots).image
-    pace_s = solve_pace(rig, finger, surface, button.travel_mm, velocity_mm_s)
+    pace_s = solve_program_pace(rig, finger, image_of(surface, button.travel_mm).image, velocity_mm_s)
     core = Core(settings, image)
     core.announce(round(16 * velocity_mm_s))
     core.arm()

@@ -10,8 +10,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.firmware.core import RecordArray, inputs_at
+from fdvv.firmware.core import RecordArray
 from fdvv.protocol.tables import Settings
+from tests.support.inputs import inputs_at
 
 Generator = np.random.Generator
 

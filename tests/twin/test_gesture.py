@@ -11,8 +11,9 @@ from fdvv.errors import ModelError
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan, vary
+from fdvv.twin.image import image_of
 from fdvv.twin.noise import Effort, draw_noise, silence
-from fdvv.twin.pace import mean_speed_mm_s, solve_pace
+from fdvv.twin.pace import mean_speed_mm_s, solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.simulate import simulate
 
@@ -45,7 +46,7 @@ def test_the_finger_rests_with_its_resting_force_and_bottoms_with_its_push(tacti
 @pytest.mark.parametrize("speed", [50.0, 100.0, 200.0])
 def test_the_pace_found_gives_the_speed_asked_for(tactile: ForceSurface, speed: float) -> None:
     rig, finger = Rig(), Finger()
-    gesture = plan(finger, 0.004, solve_pace(rig, finger, tactile, 4.0, speed))
+    gesture = plan(finger, 0.004, solve_program_pace(rig, finger, image_of(tactile, 4.0).image, speed))
     trace = simulate(rig, finger, gesture, tactile, 4.0, silence(rig, gesture), speed)
     assert mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0) == pytest.approx(speed, rel=0.006)
 
@@ -56,7 +57,7 @@ def test_a_cap_that_sinks_under_the_resting_finger_is_still_pressed_at_the_asked
     x = np.linspace(0.0, 4.0, 81)
     weak = np.minimum(20 + 60 * x, 60.0)[np.newaxis]
     surface = ForceSurface(x, np.array([100.0]), weak, weak)
-    press_s = solve_pace(rig, finger, surface, 4.0, 100.0)
+    press_s = solve_program_pace(rig, finger, image_of(surface, 4.0).image, 100.0)
     gesture = plan(finger, 0.004, press_s)
     trace = simulate(rig, finger, gesture, surface, 4.0, silence(rig, gesture), 100.0)
     assert trace.displacement_mm[0] > 0.1

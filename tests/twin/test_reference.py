@@ -11,8 +11,9 @@ import pytest
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.finger import Finger, PressVariability
 from fdvv.twin.gesture import vary
+from fdvv.twin.image import image_of
 from fdvv.twin.noise import draw_noise
-from fdvv.twin.pace import solve_pace
+from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Coil, Mover
 from fdvv.twin.simulate import simulate
@@ -24,7 +25,13 @@ def compare(
     rig: Rig, finger: Finger, surface: ForceSurface, speed: float, method: Literal["DOP853", "Radau"]
 ) -> None:
     random = np.random.default_rng(11)
-    gesture = vary(finger, 0.004, solve_pace(rig, finger, surface, 4.0, speed), speed / 1000, random)
+    gesture = vary(
+        finger,
+        0.004,
+        solve_program_pace(rig, finger, image_of(surface, 4.0).image, speed),
+        speed / 1000,
+        random,
+    )
     noise = draw_noise(rig, finger, gesture, random)
     slow = reference_simulate(rig, finger, gesture, surface, 4.0, noise, speed, method)
     fast = simulate(rig, finger, gesture, surface, 4.0, noise, speed)

@@ -7,13 +7,11 @@ import math
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import travel_mm_of
 from fdvv.protocol.tables import Settings
 from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
-from fdvv.twin.image import image_of
 from fdvv.twin.noise import silence
 from fdvv.twin.rig import ForceSensor, Rig
 from fdvv.twin.simulate import simulate_program
@@ -27,7 +25,6 @@ TOLERANCE_ratio = 0.005
 ROUNDS = 12
 SHORTEST_s, LONGEST_s = 0.01, 40.0
 """Of the referent's stroke; the longest takes a stage of 0.5 mm/s over the deepest stop."""
-TOLERANCE = 0.005
 NEVER_mm_s = 1e-3
 """Assigned to a press that does not reach the bottom."""
 DIVERGED_mm_s = 1e5
@@ -57,22 +54,6 @@ def _crossing(t_s: FloatArray, x_mm: FloatArray, i: int, level_mm: float) -> flo
     return float(t_s[i] + part * (t_s[i + 1] - t_s[i]))
 
 
-def solve_pace(
-    rig: Rig,
-    finger: Finger,
-    surface: ForceSurface,
-    travel_mm: float,
-    velocity_mm_s: float,
-    guess_s: float | None = None,
-) -> float:
-    """Find the duration of the referent's stroke (s) for a mean speed of the cap, to 0.5 %.
-
-    The person has adapted to this surface on this rig; nothing varies. Secant on the logarithms of
-    duration and speed. Speeds that the finger cannot reach give the nearest that was found.
-    """
-    return solve_program_pace(rig, finger, image_of(surface, travel_mm).image, velocity_mm_s, guess_s)
-
-
 def solve_program_pace(
     rig: Rig,
     finger: Finger,
@@ -81,7 +62,12 @@ def solve_program_pace(
     guess_s: float | None = None,
     settings: Settings | None = None,
 ) -> float:
-    """Find the same for a program (its image, protocol/fdvv.toml) under settings as simulate_program()'s."""
+    """Find the duration of the referent's stroke (s) for a mean speed of the cap, to 0.5 %.
+
+    image, settings : as simulate_program() takes them. The person has adapted to this program on this rig;
+    nothing varies. Secant on the logarithms of duration and speed. Speeds that the finger cannot reach give
+    the nearest that was found.
+    """
     travel_mm = travel_mm_of(image)
 
     def miss(log_s: float) -> float:
@@ -135,9 +121,9 @@ def solve_button_pace(
         return SHORTEST_s
     if miss(high) >= 0:
         return min(math.exp(high), LONGEST_s)
-    found = brentq(miss, low, high, xtol=0.5 * TOLERANCE)
+    found = brentq(miss, low, high, xtol=0.5 * TOLERANCE_ratio)
     while miss(found) >= math.log(DIVERGED_mm_s / velocity_mm_s):
-        found += TOLERANCE
+        found += TOLERANCE_ratio
     return math.exp(found)
 
 

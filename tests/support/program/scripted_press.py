@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.firmware.core import Core, RecordArray, inputs_at
+from fdvv.firmware.core import Core, RecordArray
 from fdvv.program.compile import compile_program
 from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import NONE, Mode, Settings
+from tests.support.inputs import inputs_at
 from tests.support.program.interpreter import interpret
 
 TICKS_PER_S = 4000
