@@ -14,8 +14,9 @@ from fdvv.twin.files import load_rig
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.image import image_of
-from fdvv.twin.interactive import InteractiveRig, InteractiveTicks, LIFTED_m
+from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
 from fdvv.twin.noise import draw_ticks, silence
+from fdvv.twin.plant import LIFTED_m
 from fdvv.twin.rig import Rig
 from fdvv.twin.simulate import simulate
 from fdvv.units import mm_from_m

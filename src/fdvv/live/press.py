@@ -18,7 +18,8 @@ from fdvv.live.press_subject import PressSubject
 from fdvv.live.press_trace import PressTrace
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import NONE, Fault, Mode, Refusal
-from fdvv.twin.interactive import InteractiveRig, InteractiveTicks, NEAR_1_s
+from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
+from fdvv.twin.plant import NEAR_1_s
 from fdvv.units import FloatArray, mm_from_m
 
 TOP_mm, DEEP_mm = 0.1, 0.3

@@ -6,6 +6,7 @@ import ctypes
 import math
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from fdvv.twin.cam import Cam, CELL_m, identify
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.rig_kernel import HUNT_CROSSLEY, finger_part, gesture_times, worn_part
+from fdvv.twin.rig_kernel import HUNT_CROSSLEY, finger_part, gesture_times, picked, worn_part
 from fdvv.units import FloatArray
 
 BUTTON_COLUMNS = 13
@@ -49,24 +50,16 @@ class ButtonGrid:
 @cache
 def _library() -> ctypes.CDLL:
     """Load the library; raise ModelError if it was built from other structures than the headers say."""
-    lib = library()
-    sizes = (ctypes.c_int64(), ctypes.c_int64())
-    lib.fdvv_button_sizes(ctypes.byref(sizes[0]), ctypes.byref(sizes[1]))
+    lib, sizes = library(), (ctypes.c_int64(), ctypes.c_int64())
+    lib.fdvv_button_sizes(*map(ctypes.byref, sizes))
     compiled = [size.value for size in sizes]
     expected = [ctypes.sizeof(structure(name)) for name in ("fdvv_button_model", "fdvv_button_grid")]
     if compiled != expected:
         raise ModelError(
             f"compiled button has structures of {compiled} bytes, Python of {expected}; rebuild the library"
         )
-    lib.fdvv_button_probe.argtypes = [
-        ctypes.c_void_p,
-        ctypes.c_int64,
-        ctypes.c_void_p,
-        ctypes.c_double,
-        ctypes.c_double,
-        ctypes.c_int64,
-        ctypes.c_void_p,
-    ]
+    pointer, count, number = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
+    lib.fdvv_button_probe.argtypes = [pointer, count, pointer, number, number, count, pointer]
     return lib
 
 
@@ -107,8 +100,7 @@ def run_probe(
     return rows
 
 
-@dataclass(frozen=True, eq=False)
-class Prepared:
+class Prepared(NamedTuple):
     """What is worked out once per button: its identification and the kernel's table."""
 
     cam: Cam
@@ -181,14 +173,10 @@ def _button_part(button: ButtonPhysics) -> dict[str, float]:
         "law_ratio": dome.log_ratio if rubber and dome.law == "log" else 0.0,
         "law_speed_m_s": dome.log_speed_m_s,
         "law_s_m": dome.linear_s_m if rubber and dome.law == "linear" else 0.0,
-        "travel_m": curve.travel_m,
-        "bottom_stiffness_N_m": housing.bottom_stiffness_N_m,
+        **picked(curve, "travel_m close_m open_m"),
+        **picked(housing, "bottom_stiffness_N_m top_stiffness_N_m snap_ratio"),
         "bottom_loss_s_m": HUNT_CROSSLEY * housing.bottom_loss_s_m,
-        "top_stiffness_N_m": housing.top_stiffness_N_m,
         "top_loss_s_m": HUNT_CROSSLEY * housing.top_loss_s_m,
-        "close_m": curve.close_m,
-        "open_m": curve.open_m,
-        "snap_ratio": housing.snap_ratio,
     }
 
 
@@ -199,9 +187,8 @@ def _leaf_part(button: ButtonPhysics) -> dict[str, float]:
         "leaf_stiffness_N_m": leaf.stiffness_N_m,
         "leaf_preload_N": prepare(button).cam.preload_N,
         "leaf_damping_N_s_m": 2 * leaf.damping_ratio * math.sqrt(leaf.stiffness_N_m * leaf.mass_kg),
-        "cam_stiffness_N_m": leaf.cam_stiffness_N_m,
+        **picked(leaf, "cam_stiffness_N_m fixed_stiffness_N_m"),
         "cam_loss_s_m": HUNT_CROSSLEY * leaf.cam_loss_s_m,
-        "fixed_stiffness_N_m": leaf.fixed_stiffness_N_m,
         "fixed_loss_s_m": HUNT_CROSSLEY * leaf.fixed_loss_s_m,
     }
 

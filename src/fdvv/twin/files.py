@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
@@ -129,9 +130,8 @@ def _section(path: Path, name: str, field: dataclasses.Field[Any], values: objec
     """Build one section's dataclass; the default factory of its field is the class itself."""
     kind = cast("type[Any]", field.default_factory)
     if not isinstance(values, dict):
-        raise InputError(
-            path, name, f"must be a section, got {values!r}", f"write [{name}] above its parameters"
-        )
+        reason = f"must be a section, got {values!r}"
+        raise InputError(path, name, reason, f"write [{name}] above its parameters")
     fields = {f.name: f for f in dataclasses.fields(kind)}
     for key, value in values.items():
         if key not in fields:
@@ -220,11 +220,10 @@ def _is_force(value: object) -> bool:
 def button_to_toml(button: ButtonPhysics) -> str:
     """Write a button as TOML text: words, the two curves, then one line per parameter."""
     lines = ["# A real button for the twin: its slow curves and its physics. Simulated.", f"# {SI}", ""]
-    lines += [f"{name} = {_quoted(getattr(button, name))}" for name in WORDS]
-    lines += [
-        "",
-        "# slow force at 0, curve.step_m, ... up to the bottom stop; press upward, release downward",
-    ]
+    # a string of JSON is one of TOML
+    lines += [f"{name} = {json.dumps(getattr(button, name), ensure_ascii=False)}" for name in WORDS]
+    text = "# slow force at 0, curve.step_m, ... up to the bottom stop; press upward, release downward"
+    lines += ["", text]
     for name in FORCES:
         lines += [f"{name} = [", *_wrapped(getattr(button, name)), "]"]
     return "\n".join(lines + _section_lines(button) + _cam_lines(button.cam)) + "\n"
@@ -233,23 +232,13 @@ def button_to_toml(button: ButtonPhysics) -> str:
 def _cam_lines(cam: BuiltCam | None) -> list[str]:
     if cam is None:
         return []
-    lines = [
-        "",
-        "# coil, cam and friction as built, at the places of press_N; the slow curves tell nothing then",
-    ]
-    lines += [f"[{CAM}]", f"{PRELOAD} = {cam.preload_N:.5f}"]
+    head = "# coil, cam and friction as built, at the places of press_N; the slow curves tell nothing then"
+    lines = ["", head, f"[{CAM}]", f"{PRELOAD} = {cam.preload_N:.5f}"]
     for name in BUILT:
         lines += [f"{name} = [", *_wrapped(getattr(cam, name), CAM_DIGITS[name]), "]"]
     return lines
 
 
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
 def _wrapped(forces_N: FloatArray, digits: int = 5) -> list[str]:
-    words = [f"{force:.{digits}f}" for force in forces_N]
-    return [
-        "    " + ", ".join(words[i : i + FORCES_PER_LINE]) + ","
-        for i in range(0, len(words), FORCES_PER_LINE)
-    ]
+    words, n = [f"{force:.{digits}f}" for force in forces_N], FORCES_PER_LINE
+    return [f"    {', '.join(words[i : i + n])}," for i in range(0, len(words), n)]

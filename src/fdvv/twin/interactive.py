@@ -6,51 +6,34 @@ import ctypes
 from collections.abc import Sequence
 from copy import copy, deepcopy
 from dataclasses import dataclass, fields, replace
-from enum import IntEnum
 
 import numpy as np
 import numpy.typing as npt
 
 from fdvv._native import address
 from fdvv.errors import ModelError
-from fdvv.firmware.core import INPUTS, OUTPUTS, Core
-from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm
+from fdvv.firmware.core import OUTPUTS, Core
+from fdvv.protocol.messages import MM_S16_PER_mm_s
 from fdvv.protocol.tables import Fault, Settings, TickFlag
 from fdvv.twin.finger import Finger
-from fdvv.twin.gesture import Gesture, plan
-from fdvv.twin.noise import Effort, Noise, draw_ticks
+from fdvv.twin.noise import Effort, Noise
+from fdvv.twin.plant import CursorInput, LIFTED_m, NEAR_1_s, RunningRig
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import (
     RIG_COLUMNS,
     TICK_COLUMNS,
     Rows,
     STEP_s,
-    gesture_times,
-    grid_of,
     noise_pointers,
     plant_of,
-    rig_bytes,
     rig_library,
 )
 from fdvv.twin.settings import settings_of
-from fdvv.twin.trace import CUT
+from fdvv.twin.trace import CUT, controller_columns
 from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm, mm_from_m
 
-NEAR_1_s = 125.0
-"""How fast a led finger nears what it is led to: 2 / NEAR_1_s = 16 ms behind a hand that moves evenly."""
-LIFTED_m = 2e-3
-"""A finger that presses nothing waits so high above the cap."""
 SETTLE_s = 0.15
 """Passes before a led rig is handed out, so that filters and the cap have come to rest."""
-BLOCK_TICKS = 512
-"""Noise is drawn for so many ticks at once, whatever is asked for."""
-
-
-class CursorInput(IntEnum):
-    """What a finger may be led by (rig.h)."""
-
-    PLACE = 1
-    PUSH = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,16 +77,10 @@ class InteractiveTicks:
             displacement_mm=mm_from_m(x),
             velocity_mm_s=mm_from_m(v),
             force_cN=cN_from_N(force),
-            commanded_cN=out["commanded_cN64"] / CN64_PER_cN,
-            sensed_mm=out["displacement_um16"] / UM16_PER_mm,
-            state=out["state"],
-            key=out["key"],
-            slot=out["slot"],
-            mode=out["mode"],
-            flags=out["flags"],
             saturated=(out["flags"] & CUT) > 0,
             finger_mm=mm_from_m(finger),
             warm_K=rows.sensed[:, 1].copy(),
+            **controller_columns(out),
         )
 
     @classmethod
@@ -119,7 +96,7 @@ class InteractiveTicks:
         return (self.flags & TickFlag.RELEASE) > 0
 
 
-class InteractiveRig:
+class InteractiveRig(RunningRig):
     """A rig, the firmware's own core and a finger that is led live, moved on together. Simulated.
 
     Parameters
@@ -134,6 +111,8 @@ class InteractiveRig:
     ModelError if rig, settings and image do not go together.
     """
 
+    block_ticks = 512
+
     def __init__(
         self,
         image: bytes,
@@ -142,21 +121,12 @@ class InteractiveRig:
         settings: Settings | None = None,
         seed: int | None = 0,
     ) -> None:
-        self.rig, self.finger = rig or Rig(), finger or Finger()
+        super().__init__(rig, finger, seed)
         self.core = Core(settings or settings_of(self.rig), image)
-        self._grid = replace(grid_of(self.rig), audit=0)
         self._grid = replace(self._grid, steps_per_row=self._grid.steps_per_tick)
-        self._random = None if seed is None else np.random.default_rng(seed)
-        self._effort = Effort(self.finger.habit, self.rig.controller.tick_s)
-        self._memory = np.zeros(rig_bytes() // 8 + 1, np.uint64)
-        self._inputs = np.zeros(1, INPUTS)
-        self._noise, self._used, self._ticks = self._draw(), 0, 0
+        self.effort = Effort(self.finger.habit, self.rig.controller.tick_s)
+        self._noise, self._used = self._draw(), 0
         self._begin()
-
-    @property
-    def time_s(self) -> float:
-        """Time since the rig was handed out."""
-        return self._ticks * self.rig.controller.tick_s
 
     def lead(self, referent_mm: float, velocity_mm_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
         """Lead the finger's referent from now on to a place that moves at a speed: 0 is the cap at rest.
@@ -174,12 +144,6 @@ class InteractiveRig:
         """Take the finger off the cap."""
         self.lead(-float(mm_from_m(LIFTED_m)))
 
-    def press(self, gesture: Gesture) -> None:
-        """Let the finger follow a gesture whose time begins now; the referent jumps to its start."""
-        numbers = (gesture.stiffness_N_m, gesture.damping_N_s_m, 0.0)
-        parts = (ctypes.c_double(n) for n in numbers)
-        rig_library().fdvv_rig_press(address(self._memory), ctypes.byref(gesture_times(gesture)), *parts)
-
     def copy(self, noise: Noise | None = None) -> InteractiveRig:
         """Copy the whole state; the two are independent from then on.
 
@@ -190,7 +154,7 @@ class InteractiveRig:
         other.core = self.core.copy()
         other._memory, other._inputs = self._memory.copy(), self._inputs.copy()
         if noise is None:
-            other._random, other._effort = deepcopy(self._random), deepcopy(self._effort)
+            other._random, other.effort = deepcopy(self._random), deepcopy(self.effort)
             return other
         noise.check(self._grid.reads)
         other._noise, other._used, other._random = noise, 0, None
@@ -222,7 +186,7 @@ class InteractiveRig:
 
     def _run(self, ticks: int, rows: Rows) -> None:
         end = self._used + ticks
-        arrays = [array[self._used : end] for array in self._noise.arrays()]
+        arrays = [array[self._used : end] for array in self._noise.arrays()]  # kept during the call
         noise = noise_pointers(arrays)
         rig_library().fdvv_twin_run(
             self.core.address,
@@ -242,18 +206,6 @@ class InteractiveRig:
         if rig_library().fdvv_twin_begin(self.core.address, held, *parts):
             raise ModelError("the vibration board has no room for the waveforms of this program")
         habit = replace(self.finger.habit, lift_m=LIFTED_m)
-        rest = plan(replace(self.finger, habit=habit), self.rig.stops.travel_limit_m, 1.0)
-        self.press(replace(rest, end_m=rest.start_m))
+        self._rest(replace(self.finger, habit=habit))
         self.advance(round(SETTLE_s / self.rig.controller.tick_s))
         self._ticks = 0
-
-    def _lead(self, led: CursorInput, goal: float, goal_1_s: float, near_1_s: float) -> None:
-        if not (np.isfinite([goal, goal_1_s, near_1_s]).all() and near_1_s > 0):
-            raise ModelError(f"a finger is led by finite numbers, got {goal}, {goal_1_s}, rate {near_1_s}")
-        numbers = (ctypes.c_double(n) for n in (goal, goal_1_s, near_1_s))
-        rig_library().fdvv_rig_lead(address(self._memory), ctypes.c_int(led), *numbers)
-
-    def _draw(self) -> Noise:
-        if self._random is not None:
-            return draw_ticks(self.rig, self.finger, BLOCK_TICKS, self._random, self._effort)
-        return Noise(np.zeros((BLOCK_TICKS, self._grid.reads)), *(np.zeros(BLOCK_TICKS) for _ in range(4)))

@@ -63,8 +63,12 @@ def count_ticks(rig: Rig, gesture: Gesture) -> int:
 
 def silence(rig: Rig, gesture: Gesture) -> Noise:
     """Return no noise at all."""
-    n = settle_ticks(rig) + count_ticks(rig, gesture)
-    return Noise(np.zeros((n, rig.position_sensor.reads)), *(np.zeros(n) for _ in range(4)))
+    return silent_ticks(rig, settle_ticks(rig) + count_ticks(rig, gesture))
+
+
+def silent_ticks(rig: Rig, n: int) -> Noise:
+    """Return no noise for n ticks."""
+    return Noise(np.zeros((n, rig.position_sensor.reads)), *np.zeros((4, n)))
 
 
 def draw_noise(rig: Rig, finger: Finger, gesture: Gesture, random: np.random.Generator) -> Noise:

@@ -58,10 +58,14 @@ class Rows(NamedTuple):
     outputs: RecordArray
 
 
+def picked(record: object, names: str, prefix: str = "") -> dict[str, float]:
+    """Return fields of a record, named in one text, under the kernel's names: those with a prefix."""
+    return {prefix + name: getattr(record, name) for name in names.split()}
+
+
 def gesture_times(gesture: Gesture) -> ctypes.Structure:
     """Return fdvv_gesture."""
-    names = ("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s")
-    return fill("fdvv_gesture", {name: getattr(gesture, name) for name in names})
+    return fill("fdvv_gesture", picked(gesture, "start_m end_m onset_s press_s dwell_s release_s"))
 
 
 def noise_pointers(arrays: Sequence[FloatArray]) -> ctypes.Structure:
@@ -112,19 +116,16 @@ def run(
     """Simulate one press in C; ModelError if the noise is of another length, or the grid is impossible."""
     noise.check(grid.reads)
     ticks = noise.force_N.size - settle_ticks
+    n = max(ticks, 0)  # fewer than none are refused by the kernel
     plan = {
         "gesture": gesture_times(gesture),
-        "stiffness_N_m": gesture.stiffness_N_m,
-        "damping_N_s_m": gesture.damping_N_s_m,
+        **picked(gesture, "stiffness_N_m damping_N_s_m"),
         "settle_ticks": settle_ticks,
         "ticks": ticks,
         "announced_mm_s16": round(16 * announced_mm_s),
     }
-    rows = Rows(
-        np.empty((max(ticks, 0) * grid.rows_per_tick, RIG_COLUMNS)),
-        np.empty((max(ticks, 0), TICK_COLUMNS)),
-        np.zeros(max(ticks, 0), OUTPUTS),
-    )
+    physics, sensed = np.empty((n * grid.rows_per_tick, RIG_COLUMNS)), np.empty((n, TICK_COLUMNS))
+    rows = Rows(physics, sensed, np.zeros(n, OUTPUTS))
     arrays = noise.arrays()
     settings_words, image_words = words(settings.pack()), words(image)
     failed = rig_library().fdvv_twin_press(
@@ -166,13 +167,9 @@ def finger_part(finger: Finger, stiffness_N_m: float, damping_N_s_m: float) -> d
         "finger_mass_kg": finger.impedance.mass_kg,
         "finger_stiffness_N_m": stiffness_N_m,
         "finger_damping_N_s_m": damping_N_s_m,
-        "pulp_scale_N": pulp.scale_N,
-        "pulp_exponent_1_m": pulp.exponent_1_m,
-        "pulp_relaxed_ratio": pulp.relaxed_ratio,
+        **picked(pulp, "scale_N exponent_1_m relaxed_ratio fast_s slow_s", "pulp_"),
         "pulp_fast_ratio": relaxing * pulp.fast_share,
         "pulp_slow_ratio": relaxing * (1 - pulp.fast_share),
-        "pulp_fast_s": pulp.fast_s,
-        "pulp_slow_s": pulp.slow_s,
         "strap_N": pulp.strap_N,
         "strap_m": math.log1p(pulp.strap_N / (pulp.relaxed_ratio * pulp.scale_N)) / pulp.exponent_1_m,
     }
@@ -189,10 +186,9 @@ def worn_part(sensor: ForceSensor) -> dict[str, float]:
 
 def _coil_part(rig: Rig) -> dict[str, float]:
     coil = rig.coil
-    same = ("resistance_ohm", "bridge_ohm", "source_ohm", "inductance_H", "reluctance_H_m", "copper_1_K")
-    more = ("force_constant_N_A", "heat_K_W", "heat_s", "supply_V")
     return {
-        **{name: getattr(coil, name) for name in same + more},
+        **picked(coil, "resistance_ohm bridge_ohm source_ohm inductance_H reluctance_H_m copper_1_K"),
+        **picked(coil, "force_constant_N_A heat_K_W heat_s supply_V"),
         "droop_1_m2": coil.droop_ratio / (coil.stroke_m / 2) ** 2,
         "droop_centre_m": coil.centre_m,
         "current_loop_s": 0.0 if coil.drive == "voltage" else coil.current_loop_s,
@@ -206,10 +202,7 @@ def _mechanics_part(rig: Rig) -> dict[str, float]:
     return {
         "mover_mass_kg": mover.mass_kg,
         "frame_mass_kg": rig.frame_kg,
-        "gravity_m_s2": mover.gravity_m_s2,
-        "coulomb_N": mover.coulomb_N,
-        "presliding_m": mover.presliding_m,
-        "viscous_N_s_m": mover.viscous_N_s_m,
+        **picked(mover, "gravity_m_s2 coulomb_N presliding_m viscous_N_s_m"),
         "stop_stiffness_N_m": stops.bottom_stiffness_N_m,
         "stop_loss_s_m": HUNT_CROSSLEY * stops.bottom_loss_s_m,
         "top_stiffness_N_m": stops.top_stiffness_N_m,
@@ -221,13 +214,11 @@ def _servo_part(rig: Rig) -> dict[str, float]:
     servo = rig.servo
     per_us = 1e-3 / servo.pulse_us_mm
     return {
+        **picked(servo, "frame_s lag_s play_m", "servo_"),
         "servo_zero_us": servo.pulse_zero_us,
         "servo_m_us": per_us,
-        "servo_frame_s": servo.frame_s,
         "servo_deadband_m": per_us * servo.deadband_us,
         "servo_m_s": 1e-3 * servo.speed_mm_s,
-        "servo_lag_s": servo.lag_s,
-        "servo_play_m": servo.play_m,
     }
 
 
@@ -245,8 +236,7 @@ def _exciter_part(rig: Rig) -> dict[str, float]:
         "amplifier_V_count": e.drive_V / 2047,
         "amplifier_clip_V": e.clip_V,
         "amplifier_rate": 2 * math.pi * e.filter_Hz,
-        "vibration_latency_s": e.latency_s,
-        "vibration_jitter_s": e.jitter_s,
+        **picked(e, "latency_s jitter_s", "vibration_"),
     }
 
 
@@ -259,8 +249,7 @@ def _sensing_part(rig: Rig) -> dict[str, float]:
         "lvdt_steps": 2.0**position.converter_bits,
         "sensor_rate": 1 / force.filter_s,
         "sensor_gain": 1 + force.gain_error_ratio,
-        "sensor_hysteresis_N": force.hysteresis_N,
-        "sensor_full_scale_N": force.full_scale_N,
+        **picked(force, "hysteresis_N full_scale_N", "sensor_"),
         "sensor_lsb_N": lsb_of(force.full_scale_N, force.converter_bits),
     }
 

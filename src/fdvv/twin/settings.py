@@ -29,11 +29,6 @@ def settings_of(rig: Rig) -> Settings:
         raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
 
 
-def ticks(rig: Rig, duration_s: float) -> int:
-    """Count ticks, as many as a setting holds at most."""
-    return min(65535, max(1, round(duration_s / rig.controller.tick_s)))
-
-
 def _position(rig: Rig) -> dict[str, int]:
     sensor = rig.position_sensor
     steps, reads = 2**sensor.converter_bits, sensor.reads
@@ -45,7 +40,7 @@ def _position(rig: Rig) -> dict[str, int]:
         "reading_low": steps // 200,
         "reading_high": steps - 1 - steps // 200,
         "jump_um16": min(65535, round(UM16_m * FASTEST_m_s * rig.controller.tick_s)),
-        "stuck_ticks": ticks(rig, STUCK_s),
+        "stuck_ticks": min(65535, round(STUCK_s / rig.controller.tick_s)),
     }
 
 

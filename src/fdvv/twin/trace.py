@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.firmware.core import RecordArray
 from fdvv.model.press import Press
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import TickFlag
@@ -16,6 +18,15 @@ from fdvv.units import FloatArray, cN_from_N, mm_from_m
 BoolArray = npt.NDArray[np.bool_]
 ByteArray = npt.NDArray[np.uint8]
 CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
+
+
+def controller_columns(outputs: RecordArray) -> dict[str, Any]:
+    """Return what the controller did, (n,) each in record units: what Trace and InteractiveTicks share."""
+    return {
+        "sensed_mm": outputs["displacement_um16"] / UM16_PER_mm,
+        "commanded_cN": outputs["commanded_cN64"] / CN64_PER_cN,
+        **{name: outputs[name] for name in ("state", "key", "slot", "mode", "flags")},
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +39,8 @@ class Trace:
     displacement_mm, cap_velocity_mm_s, cap_acceleration_m_s2 : of the cap, true.
     force_cN : between cap and sensor cone, true.
     sensed_mm, commanded_cN, saturated, release, state, key, slot, mode, flags : the controller's, held
-        between ticks; flags are bits of fdvv.protocol.tables.TickFlag, slot the waveform started in
-        that tick or
-        NONE.
+        between ticks; flags are bits of fdvv.protocol.tables.TickFlag, slot the waveform started in that
+        tick or NONE.
     sensed_cN : reading of the finger's force sensor at the tick.
     tick : rows at which the controller ran.
     duty_ratio : of the supply, as the controller set it at the tick.
@@ -77,16 +87,9 @@ class Trace:
             cap_velocity_mm_s=mm_from_m(v),
             cap_acceleration_m_s2=a,
             force_cN=cN_from_N(force),
-            sensed_mm=out["displacement_um16"] / UM16_PER_mm,
             sensed_cN=cN_from_N(felt),
-            commanded_cN=out["commanded_cN64"] / CN64_PER_cN,
             saturated=((flags & CUT) > 0) | (duty_ratio < lowest_ratio),
             release=(flags & TickFlag.RELEASE) > 0,
-            state=out["state"],
-            key=out["key"],
-            slot=out["slot"],
-            mode=out["mode"],
-            flags=flags,
             tick=np.arange(t.size) % per_tick == 0,
             duty_ratio=duty_ratio,
             current_A=amps,
@@ -95,6 +98,7 @@ class Trace:
             finger_mm=mm_from_m(finger),
             magnet_um=1e6 * magnet,
             energy_J=energy if audit else None,
+            **controller_columns(out),
         )
 
     def press(self, velocity_mm_s: float) -> Press:

@@ -12,7 +12,7 @@ from fdvv.rendering.tuning import open_device
 from fdvv.study.stimulus.device import DeviceRenderer
 from fdvv.study.stimulus.renderer import StimulusRenderer
 from fdvv.study.stimulus.twin import PersonFrame, TwinRenderer
-from fdvv.twin.interactive import NEAR_1_s
+from fdvv.twin.plant import NEAR_1_s
 
 TWIN = "twin"
 

@@ -27,7 +27,7 @@ from fdvv.study.stimulus.renderer import (
     keep,
     prepare_stimulus,
 )
-from fdvv.twin.interactive import NEAR_1_s
+from fdvv.twin.plant import NEAR_1_s
 from fdvv.units import FloatArray
 
 ROW_s = 0.001
