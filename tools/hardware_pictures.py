@@ -13,7 +13,7 @@ from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.envelope import Block, Envelope, Rod
 from fdvv_rig.manifest import read_manifest
 from fdvv_rig.mesh import Mesh, read_stl
-from fdvv_rig.parts import part_named, printed_parts
+from fdvv_rig.parts import PARTS, part_named
 from fdvv_rig.placement import RIG, Moves, Pose, State, in_rig, moved, on_jig
 from fdvv_rig.solids import body_of, body_of_bought, mesh_of, placed
 
@@ -82,7 +82,7 @@ class Rig:
     def __init__(self, folder: Path) -> None:
         """Read the exported parts."""
         self.d: Dimensions = read_manifest(folder).made_from()
-        self.printed = {p.name: read_stl(folder / "parts" / f"{p.name}.stl") for p in printed_parts()}
+        self.printed = {p.name: read_stl(folder / "parts" / f"{p.name}.stl") for p in PARTS}
         self.bought = {envelope.name: envelope for envelope in bought_parts(self.d)}
 
     def names(self) -> list[str]:
@@ -128,7 +128,7 @@ def draw_all(folder: Path) -> None:
     save(_steps(rig), out / "steps.png")
     save(draw(_jig(rig), Camera(28, 34), (900, 620)), out / "capture-jig.png")
     save(draw(_boxed(rig), Camera(24, 18), (860, 820)), out / "black-box.png")
-    for part in printed_parts():
+    for part in PARTS:
         thing = Thing(rig.printed[part.name], colour(part.name))
         save(draw([thing], Camera(30, 32), (360, 300)), out / f"part-{part.name}.png", 64)
 

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from fdvv_rig.check import assemble, meetings
 from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.manifest import read_manifest
-from fdvv_rig.parts import printed_parts
+from fdvv_rig.parts import PARTS
 from fdvv_rig.placement import RIG, State
 
 from .legal import legal_dimensions
@@ -66,4 +66,4 @@ def test_parts_of_random_legal_dimensions_are_whole_and_go_together(d: Dimension
 def test_every_part_has_a_builder() -> None:
     from fdvv_rig.cad.build import BUILDERS
 
-    assert set(BUILDERS) == {part.name for part in printed_parts()}
+    assert set(BUILDERS) == {part.name for part in PARTS}

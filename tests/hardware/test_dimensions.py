@@ -14,7 +14,7 @@ from fdvv_rig.dimensions import Dimensions, meaning_of, source_of
 from fdvv_rig.fits import check_fits, misses
 from fdvv_rig.layout import Layout
 from fdvv_rig.limiter import Limiter
-from fdvv_rig.parts import printed_parts
+from fdvv_rig.parts import PARTS
 from fdvv_rig.tolerance import core_stack
 
 from .legal import legal_dimensions
@@ -120,7 +120,7 @@ def test_a_file_that_holds_no_dimensions_is_refused(text: str, tmp_path: Path) -
 
 def test_each_dimension_that_a_drawing_tells_exists() -> None:
     names = {found.name for found in dataclasses.fields(Dimensions)}
-    assert {name for part in printed_parts() for name in part.drawn} <= names
+    assert {name for part in PARTS for name in part.drawn} <= names
 
 
 @settings(max_examples=12, deadline=None)

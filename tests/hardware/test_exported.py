@@ -17,7 +17,7 @@ from fdvv_rig.exported import check_exported
 from fdvv_rig.limiter import Limiter
 from fdvv_rig.manifest import read_manifest
 from fdvv_rig.mesh import Mesh, read_stl
-from fdvv_rig.parts import part_named, printed_parts
+from fdvv_rig.parts import PARTS, part_named
 from fdvv_rig.placement import RIG, Pose, State, in_rig, on_jig
 from fdvv_rig.solids import body_of, gap_mm, placed, shared_mm3
 
@@ -26,7 +26,7 @@ pytest.importorskip("manifold3d", reason="manifold3d is not installed")
 REPOSITORY = Path(__file__).resolve().parents[2]
 HARDWARE = REPOSITORY / "hardware"
 D = Dimensions()
-NAMES = [part.name for part in printed_parts()]
+NAMES = [part.name for part in PARTS]
 
 
 @pytest.fixture(scope="module")

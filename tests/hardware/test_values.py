@@ -7,7 +7,7 @@ import json
 import math
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -19,7 +19,7 @@ from fdvv_rig.circuit.circuit_report import circuit_report
 from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
 from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
 from fdvv_rig.circuit.power import coil_drive
-from fdvv_rig.parts import printed_parts
+from fdvv_rig.parts import PARTS, part_named
 from tests.hardware.circuits import CIRCUIT, with_value
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -149,9 +149,7 @@ def test_the_bill_and_the_circuit_name_the_same_parts_in_the_same_numbers() -> N
     printed = {line.role for line in load_bill(CIRCUIT).lines if line.maker == "printed"}
     assert "keycap-adapter" in printed
     weighed = {line.role: line.count for line in load_bill(CIRCUIT).lines}
-    assert {part.name: weighed[part.name] for part in printed_parts()} == {
-        part.name: part.count for part in printed_parts()
-    }
+    assert {part.name: weighed[part.name] for part in PARTS} == {part.name: part.count for part in PARTS}
     assert set(lines) - set(needed) - printed == {"board and wire", "screws"}
 
 
@@ -164,15 +162,10 @@ def test_the_total_is_the_sum_of_its_lines_and_tells_of_estimates() -> None:
 
 
 def test_printed_parts_are_paid_by_their_mass() -> None:
-    @dataclass(frozen=True)
-    class Plastic:
-        name: str
-        mass_g: float
-        count: int = 2
-
-    light, heavy = (load_bill(CIRCUIT, [Plastic("base", grams)]) for grams in (100.0, 300.0))
-    assert heavy.total_USD - light.total_USD == pytest.approx(2 * 200 * 0.03)
-    assert [line.role for line in heavy.lines if line.maker == "printed"] == ["base"]
+    base = part_named("base")
+    one, three = (load_bill(CIRCUIT, [replace(base, count=count)]) for count in (1, 3))
+    assert three.total_USD - one.total_USD == pytest.approx(2 * base.mass_g * 0.03, abs=0.02)
+    assert [line.role for line in three.lines if line.maker == "printed"] == ["base"]
 
 
 def test_a_role_that_the_bill_lacks_and_one_that_the_circuit_lacks_are_refused() -> None:

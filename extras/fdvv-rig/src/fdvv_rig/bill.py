@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
-from typing import Any, Protocol
+from typing import Any
 
 from fdvv.errors import InputError, ModelError
 from fdvv_rig.circuit.circuit import Circuit
-from fdvv_rig.parts import printed_parts
+from fdvv_rig.parts import PARTS, Part
 
 PAPER_USD = 550.0
 """What the paper says the construction of its simulator costs, about."""
@@ -20,18 +22,8 @@ PAPER_USD = 550.0
 GROUPS = ("rig", "vibration", "strip", "capture")
 """The rig itself; what makes it vibrate; the pointing task's strip; the capture bench."""
 
-COLUMNS = (
-    "group",
-    "role",
-    "maker",
-    "part_number",
-    "count",
-    "pack",
-    "packs",
-    "price_USD",
-    "total_USD",
-    "alternatives",
-)
+COLUMNS = ("group", "role", "maker", "part_number", "count", "pack", "packs", "price_USD", "total_USD")
+"""Of CSV, and then when and from whom the price is, and what else would do."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +89,7 @@ class Bill:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return every line as plain data with COLUMNS and what else is known."""
-        keys = [*COLUMNS[:-1], "price_source", "note"]
+        keys = [*COLUMNS, "price_source", "note"]
         return [
             {key: getattr(line, key) for key in keys}
             | {"priced": line.priced.isoformat(), "alternatives": list(line.alternatives)}
@@ -105,33 +97,16 @@ class Bill:
         ]
 
 
-class Printed(Protocol):
-    """A printed part, as far as the bill needs it."""
-
-    @property
-    def name(self) -> str:
-        """Its name in files and bills."""
-
-    @property
-    def mass_g(self) -> float:
-        """Of one."""
-
-    @property
-    def count(self) -> int:
-        """How many a rig needs."""
-
-
-def load_bill(circuit: Circuit, printed: Iterable[Printed] | None = None) -> Bill:
+def load_bill(circuit: Circuit, printed: Iterable[Part] = PARTS) -> Bill:
     """Return the rig's bill: counts come from the circuit, the plastic from the printed parts.
 
-    printed : the parts; those of the rig if None.
     Raises InputError if the circuit asks for a role that bill.toml does not have, or the other way round.
     """
     text = resources.files("fdvv_rig").joinpath("bill.toml").read_text("utf-8")
-    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), _own(printed))
+    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed)
 
 
-def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] = ()) -> Bill:
+def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Part] = ()) -> Bill:
     """Read a bill from TOML text.
 
     needed : count of each electrical role. printed : the printed parts, of which the plastic is counted.
@@ -146,11 +121,7 @@ def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Printed] =
     return Bill((*lines, *_printed(document.get("printed", {}), printed)))
 
 
-def _own(printed: Iterable[Printed] | None) -> Iterable[Printed]:
-    return printed_parts() if printed is None else printed
-
-
-def _printed(raw: dict[str, Any], printed: Iterable[Printed]) -> list[BillLine]:
+def _printed(raw: dict[str, Any], printed: Iterable[Part]) -> list[BillLine]:
     return [
         BillLine(
             role=part.name,
@@ -172,22 +143,14 @@ def _line(raw: dict[str, Any], needed: Mapping[str, int]) -> BillLine:
             reason = f"{role} is not in the circuit"
             raise InputError("bill.toml", "lines", reason, "take it out, or say circuit = false and a count")
         body["count"] = needed[role]
-    return BillLine(**_checked(body))
-
-
-def _checked(raw: dict[str, Any]) -> dict[str, Any]:
-    return {**raw, "alternatives": tuple(raw.get("alternatives", ()))}
+    return BillLine(**body | {"alternatives": tuple(raw.get("alternatives", ()))})
 
 
 def to_csv(bill: Bill) -> str:
     """Write the lines as CSV with a header; alternatives are joined by semicolons."""
-    import csv
-    import io
-
     out = io.StringIO()
-    writer = csv.DictWriter(
-        out, [*COLUMNS[:-1], "priced", "price_source", "alternatives", "note"], lineterminator="\n"
-    )
+    columns = [*COLUMNS, "priced", "price_source", "alternatives", "note"]
+    writer = csv.DictWriter(out, columns, lineterminator="\n")
     writer.writeheader()
     for row in bill.rows():
         writer.writerow(row | {"alternatives": "; ".join(row["alternatives"])})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.envelope import Block, Envelope, Rod
 from fdvv_rig.layout import Layout
@@ -11,60 +13,33 @@ from fdvv_rig.screws import screws
 
 def bought_parts(d: Dimensions) -> tuple[Envelope, ...]:
     """Return the bought parts of the rig at travel 0, the limiter's angle 0."""
-    return (
-        _coil(d),
-        _bushing(d),
-        _rod(d),
-        _coupling(d),
-        _core(d),
-        _lvdt(d),
-        _servo(d),
-        _horn(d),
-        _exciter(d),
-        _keycap(d),
-        *_boards(d),
-        *screws(d),
-    )
+    return (*_on_axis(d), _servo(d), _horn(d), _exciter(d), _keycap(d), *_boards(d), *screws(d))
 
 
-def _coil(d: Dimensions) -> Envelope:
-    at = (0.0, 0.0, Layout(d).floor_top_mm)
-    body = Rod("z", at, d.coil_length_mm, d.coil_diameter_mm, d.coil_bore_mm)
-    return Envelope("coil", "voice coil", Moves.FIXED, (body,), (), frozenset({"coil-mount"}))
+def _on_axis(d: Dimensions) -> Iterator[Envelope]:
+    """Yield what stands about the rig's axis, from the coil down to the sensor."""
+    at = Layout(d)
+    coil = _rod(at.floor_top_mm, d.coil_length_mm, d.coil_diameter_mm, d.coil_bore_mm)
+    bushing = _rod(at.floor_low_mm, d.bushing_length_mm, d.bushing_diameter_mm, d.bushing_bore_mm)
+    rod = _rod(at.rod_low_mm, at.rod_length_mm, d.rod_diameter_mm)
+    coupling_low_mm = at.coupling_top_mm - d.coupling_length_mm
+    coupling = _rod(coupling_low_mm, d.coupling_length_mm, d.coupling_diameter_mm)
+    core_low_mm = at.core_centre_mm - d.lvdt_core_length_mm / 2
+    core = _rod(core_low_mm, d.lvdt_core_length_mm, d.lvdt_core_diameter_mm)
+    core_rod = _rod(core_low_mm + d.lvdt_core_length_mm, at.core_rod_length_mm, d.core_rod_diameter_mm)
+    lvdt = _rod(-d.lvdt_sink_mm, d.lvdt_length_mm, d.lvdt_diameter_mm, d.lvdt_bore_mm)
+    beside_rod = frozenset({"slider-yoke", "keycap-adapter", "coil", "bushing"})
+    beside_bushing, joined = frozenset({"coil-mount", "coil"}), frozenset({"rod", "core"})
+    yield Envelope("coil", "voice coil", Moves.FIXED, (coil,), holds=frozenset({"coil-mount"}))
+    yield Envelope("bushing", "plain bushing", Moves.FIXED, (bushing,), holds=beside_bushing)
+    yield Envelope("rod", "ground rod", Moves.SLIDER, (rod,), holds=beside_rod)
+    yield Envelope("coupling", "coupling sleeve", Moves.SLIDER, (coupling,), enters=joined)
+    yield Envelope("core", "sensor core on its rod", Moves.SLIDER, (core, core_rod), holds=frozenset({"rod"}))
+    yield Envelope("lvdt", "displacement sensor", Moves.FIXED, (lvdt,), holds=frozenset({"lvdt-mount"}))
 
 
-def _bushing(d: Dimensions) -> Envelope:
-    at = (0.0, 0.0, Layout(d).floor_low_mm)
-    body = Rod("z", at, d.bushing_length_mm, d.bushing_diameter_mm, d.bushing_bore_mm)
-    return Envelope("bushing", "plain bushing", Moves.FIXED, (body,), (), frozenset({"coil-mount", "coil"}))
-
-
-def _rod(d: Dimensions) -> Envelope:
-    layout = Layout(d)
-    body = Rod("z", (0.0, 0.0, layout.rod_low_mm), layout.rod_length_mm, d.rod_diameter_mm)
-    holds = frozenset({"slider-yoke", "keycap-adapter", "coil", "bushing"})
-    return Envelope("rod", "ground rod", Moves.SLIDER, (body,), (), holds)
-
-
-def _coupling(d: Dimensions) -> Envelope:
-    low_mm = Layout(d).coupling_top_mm - d.coupling_length_mm
-    body = Rod("z", (0.0, 0.0, low_mm), d.coupling_length_mm, d.coupling_diameter_mm)
-    enters = frozenset({"rod", "core"})
-    return Envelope("coupling", "coupling sleeve", Moves.SLIDER, (body,), (), frozenset(), enters)
-
-
-def _core(d: Dimensions) -> Envelope:
-    layout = Layout(d)
-    low_mm = layout.core_centre_mm - d.lvdt_core_length_mm / 2
-    core = Rod("z", (0.0, 0.0, low_mm), d.lvdt_core_length_mm, d.lvdt_core_diameter_mm)
-    top_mm = low_mm + d.lvdt_core_length_mm
-    rod = Rod("z", (0.0, 0.0, top_mm), layout.core_rod_length_mm, d.core_rod_diameter_mm)
-    return Envelope("core", "sensor core on its rod", Moves.SLIDER, (core, rod), (), frozenset({"rod"}))
-
-
-def _lvdt(d: Dimensions) -> Envelope:
-    body = Rod("z", (0.0, 0.0, -d.lvdt_sink_mm), d.lvdt_length_mm, d.lvdt_diameter_mm, d.lvdt_bore_mm)
-    return Envelope("lvdt", "displacement sensor", Moves.FIXED, (body,), (), frozenset({"lvdt-mount"}))
+def _rod(low_mm: float, length_mm: float, diameter_mm: float, bore_mm: float = 0.0) -> Rod:
+    return Rod("z", (0.0, 0.0, low_mm), length_mm, diameter_mm, bore_mm)
 
 
 def _servo(d: Dimensions) -> Envelope:
@@ -94,7 +69,7 @@ def _horn(d: Dimensions) -> Envelope:
 
 def _exciter(d: Dimensions) -> Envelope:
     low_mm = Layout(d).roof_low_mm - d.exciter_height_mm
-    body = Rod("z", (0.0, 0.0, low_mm), d.exciter_height_mm, d.exciter_diameter_mm)
+    body = _rod(low_mm, d.exciter_height_mm, d.exciter_diameter_mm)
     return Envelope("exciter", "exciter", Moves.SLIDER, (body,), (), frozenset({"keycap-adapter"}))
 
 
@@ -107,14 +82,12 @@ def _keycap(d: Dimensions) -> Envelope:
     return Envelope("keycap", "MX keycap", Moves.SLIDER, (body,), (hollow,), frozenset({"keycap-adapter"}))
 
 
-def _boards(d: Dimensions) -> tuple[Envelope, Envelope]:
+def _boards(d: Dimensions) -> Iterator[Envelope]:
     x_mm, low_mm = Layout(d).boards_x_mm, d.spacer_mm
-    made = []
     for name, title, width_mm, length_mm, y_mm in (
         ("main-board", "main board", d.board_width_mm, d.board_length_mm, Layout(d).boards_y_mm[0]),
         ("driver-board", "coil driver", d.driver_width_mm, d.driver_length_mm, Layout(d).boards_y_mm[1]),
     ):
         low = (x_mm - width_mm / 2, y_mm - length_mm / 2, low_mm)
         block = Block(low, (x_mm + width_mm / 2, y_mm + length_mm / 2, low_mm + 6.0))
-        made.append(Envelope(name, title, Moves.FIXED, (block,)))
-    return made[0], made[1]
+        yield Envelope(name, title, Moves.FIXED, (block,))

@@ -63,7 +63,7 @@ def check_exported(folder: Path | str, tell: Tell = lambda _label, _done, _total
     meshes, parts = {}, []
     for done, part in enumerate(PARTS):
         tell("reading parts", done, len(PARTS))
-        meshes[part.name] = _mesh(Path(folder), part.name)
+        meshes[part.name] = read_stl(Path(folder) / "parts" / f"{part.name}.stl")
         parts.append(_checked(Path(folder), manifest, part.name, meshes[part.name], d))
     if any(part.open_edges or part.volume_cm3 <= 0 for part in parts):
         return FolderCheck(d, tuple(parts), (), ())
@@ -74,10 +74,6 @@ def check_exported(folder: Path | str, tell: Tell = lambda _label, _done, _total
         found += meetings(assembly, state)
     gaps = clearances(assembly, lambda done, total: tell("measuring clearances", done, total))
     return FolderCheck(d, tuple(parts), tuple(found), tuple(gaps))
-
-
-def _mesh(folder: Path, name: str) -> Mesh:
-    return read_stl(folder / "parts" / f"{name}.stl")
 
 
 def _checked(folder: Path, manifest: Manifest, name: str, mesh: Mesh, d: Dimensions) -> PartCheck:
@@ -97,12 +93,11 @@ def _checked(folder: Path, manifest: Manifest, name: str, mesh: Mesh, d: Dimensi
 
 
 def _changed(folder: Path, made: MadePart) -> list[str]:
-    found = []
-    for name, wanted in made.files.items():
-        data = read_limited(folder / name, LARGEST_BYTES, REMEDY)
-        if fingerprint(data) != wanted:
-            found.append(f"{name} is not the file that was exported")
-    return found
+    return [
+        f"{name} is not the file that was exported"
+        for name, wanted in made.files.items()
+        if fingerprint(read_limited(folder / name, LARGEST_BYTES, REMEDY)) != wanted
+    ]
 
 
 def _shape(mesh: Mesh, made: MadePart) -> list[str]:

@@ -38,11 +38,8 @@ def _bearings(d: Dimensions) -> Iterator[Miss]:
     if d.bushing_diameter_mm - d.bushing_bore_mm < 0.5:
         yield "bushing_diameter_mm", "leaves no wall about its bore", "measure the bushing"
     if d.coupling_diameter_mm > Layout(d).tower_bore_mm:
-        yield (
-            "coupling_diameter_mm",
-            "does not fit in the tower",
-            f"stay under {Layout(d).tower_bore_mm:g} mm",
-        )
+        remedy = f"stay under {Layout(d).tower_bore_mm:g} mm"
+        yield "coupling_diameter_mm", "does not fit in the tower", remedy
 
 
 def _sensor(d: Dimensions) -> Iterator[Miss]:
@@ -111,17 +108,15 @@ def _limiter(d: Dimensions) -> Iterator[Miss]:
     limiter = Limiter(d)
     low_mm, high_mm = limiter.range_mm
     if low_mm > 0 or high_mm < d.travel_mm:
-        reason = (
-            f"the limiter stops from {low_mm:.2f} to {high_mm:.2f} mm, the travel is 0 to {d.travel_mm:g} mm"
-        )
+        reach = f"the limiter stops from {low_mm:.2f} to {high_mm:.2f} mm"
+        reason = f"{reach}, the travel is 0 to {d.travel_mm:g} mm"
         yield "limiter_large_mm", reason, "let the spiral rise more, or travel less"
     if d.foot_length_mm < rise_mm + d.overtravel_mm:
         reason = f"{d.foot_length_mm:g} mm lets the yoke hit a limiter that rises {rise_mm:g} mm"
         yield "foot_length_mm", reason, "make the foot longer"
     if limiter.torque_ratio > HOLD_RATIO:
-        reason = (
-            f"a press of {d.finger_force_N:g} N asks {100 * limiter.torque_ratio:.0f} % of the stall torque"
-        )
+        asked = f"{100 * limiter.torque_ratio:.0f} % of the stall torque"
+        reason = f"a press of {d.finger_force_N:g} N asks {asked}"
         yield "servo_torque_kgf_cm", reason, "rise less per degree, or take a stronger servo"
 
 
@@ -137,10 +132,7 @@ def _servo(d: Dimensions) -> Iterator[Miss]:
 def _printer(d: Dimensions) -> Iterator[Miss]:
     width_mm, depth_mm, height_mm = Layout(d).box_mm
     if max(width_mm, depth_mm) + 2 * d.box_wall_mm > d.bed_width_mm:
-        yield (
-            "bed_width_mm",
-            f"the black box is {max(width_mm, depth_mm):.0f} mm wide",
-            "use a larger printer",
-        )
+        reason = f"the black box is {max(width_mm, depth_mm):.0f} mm wide"
+        yield "bed_width_mm", reason, "use a larger printer"
     if height_mm + d.box_wall_mm > d.bed_height_mm:
         yield "bed_height_mm", f"the black box is {height_mm:.0f} mm high", "leave less room above the keycap"

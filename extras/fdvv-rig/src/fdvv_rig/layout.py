@@ -8,6 +8,7 @@ for the slider at travel 0, its highest place.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from fdvv_rig.dimensions import Dimensions
 
@@ -17,6 +18,15 @@ class Layout:
     """Heights and distances that follow from dimensions, all in mm."""
 
     d: Dimensions
+
+    adapter_floor_mm: ClassVar[float] = 4.0
+    """Thickness of the adapter's floor, which two M2 screws hold."""
+    foot_plate_mm: ClassVar[float] = 5.0
+    """Thickness of the feet of tower and bracket, which screws hold on the base."""
+    head_room_mm: ClassVar[float] = 2.2
+    """How deep the heads of the yoke's screws are sunk."""
+    ear_mm: ClassVar[float] = 7.25
+    """How far the ears of the coil's clamp reach from the middle, along x."""
 
     @property
     def tower_bore_mm(self) -> float:
@@ -93,11 +103,6 @@ class Layout:
     def roof_low_mm(self) -> float:
         """Get the face that the exciter is glued to, at travel 0."""
         return self.yoke_top_mm + self.adapter_floor_mm + self.d.exciter_height_mm + self.d.free_gap_mm
-
-    @property
-    def adapter_floor_mm(self) -> float:
-        """Get the thickness of the adapter's floor, which two M2 screws hold."""
-        return 4.0
 
     @property
     def stem_low_mm(self) -> float:
@@ -193,21 +198,6 @@ class Layout:
     def yoke_screw_mm(self) -> float:
         """Get how far the two screws between yoke and adapter stand from the axis, along x."""
         return self.body_width_mm / 2 - 3.0
-
-    @property
-    def foot_plate_mm(self) -> float:
-        """Get the thickness of the feet of tower and bracket, which screws hold on the base."""
-        return 5.0
-
-    @property
-    def head_room_mm(self) -> float:
-        """Get how deep the heads of the yoke's screws are sunk."""
-        return 2.2
-
-    @property
-    def ear_mm(self) -> float:
-        """Get how far the ears of the coil's clamp reach from the middle, along x."""
-        return 7.25
 
     @property
     def flange_mm(self) -> float:

@@ -91,11 +91,6 @@ class Limiter:
         return (self.d.limiter_large_mm - self.d.limiter_small_mm) / self.d.servo_sweep_deg
 
     @property
-    def step_um(self) -> float:
-        """Get how far the stop moves per microsecond of the servo's pulse."""
-        return 1e3 * self.mm_per_deg / PULSE_US_PER_DEG
-
-    @property
     def play_mm(self) -> float:
         """Get how far the stop may move within the servo's play and dead band."""
         return self.mm_per_deg * self.d.servo_play_deg

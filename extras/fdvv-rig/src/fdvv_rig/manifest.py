@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import msgspec
 from fdvv.errors import InputError
 from fdvv.io.documents import Kind, read_document
 from fdvv.io.files import read_limited
-from fdvv_rig.dimensions import Dimensions
+from fdvv_rig.dimensions import NAMES, Dimensions
 
 FORMAT = "fdvv-hardware"
 VERSION = 1
@@ -44,10 +43,10 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
 
     def made_from(self) -> Dimensions:
         """Return the dimensions that the parts were made from. Raises InputError for unknown ones."""
-        known = {found.name for found in dataclasses.fields(Dimensions)}
-        if set(self.dimensions) != known:
-            other = sorted(set(self.dimensions) ^ known)[0]
-            raise InputError(NAME, "$.dimensions", f"{other} is not in both manifest and this fdvv", REMEDY)
+        if other := sorted(set(self.dimensions) ^ set(NAMES)):
+            raise InputError(
+                NAME, "$.dimensions", f"{other[0]} is not in both manifest and this fdvv", REMEDY
+            )
         return Dimensions(**self.dimensions)
 
 

@@ -152,13 +152,8 @@ PARTS = (
 )
 
 
-def printed_parts() -> tuple[Part, ...]:
-    """Return every printed part; their masses and times hold for the default dimensions."""
-    return PARTS
-
-
 def part_named(name: str) -> Part:
-    """Return one printed part. KeyError for a name that none has."""
+    """Return one printed part; masses and times hold for the default dimensions. KeyError."""
     return {part.name: part for part in PARTS}[name]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.envelope import Envelope, Rod
 from fdvv_rig.layout import Layout
@@ -29,17 +31,14 @@ def _screw(
 
     head : diameter and height.
     """
-    back_mm = head[1] if way > 0 else 0.0
-    forth_mm = 0.0 if way > 0 else length_mm
     place = "xyz".index(axis)
-    begin = tuple(v - (forth_mm if i == place else 0.0) for i, v in enumerate(seat))
-    top = tuple(v - (back_mm if i == place else 0.0) for i, v in enumerate(seat))
-    return Rod(axis, _row(begin), length_mm, thread_mm), Rod(axis, _row(top), head[1], head[0])
 
+    def behind(by_mm: float) -> Row:
+        x, y, z = (v - (by_mm if i == place else 0.0) for i, v in enumerate(seat))
+        return x, y, z
 
-def _row(values: tuple[float, ...]) -> Row:
-    x, y, z = values
-    return x, y, z
+    thread = Rod(axis, behind(0.0 if way > 0 else length_mm), length_mm, thread_mm)
+    return thread, Rod(axis, behind(head[1] if way > 0 else 0.0), head[1], head[0])
 
 
 def _m3(d: Dimensions) -> tuple[float, float]:
@@ -57,8 +56,8 @@ def _pin(d: Dimensions) -> Envelope:
     return Envelope("pin", title, Moves.FIXED, made, (), frozenset(), enters)
 
 
-def _onto_base(d: Dimensions) -> tuple[Envelope, Envelope]:
-    layout, made = Layout(d), []
+def _onto_base(d: Dimensions) -> Iterator[Envelope]:
+    layout = Layout(d)
     for name, places, part in (
         ("tower-screws", layout.tower_screws_mm, "coil-mount"),
         ("bracket-screws", layout.bracket_screws_mm, "limiter-bracket"),
@@ -66,8 +65,7 @@ def _onto_base(d: Dimensions) -> tuple[Envelope, Envelope]:
         four = [_screw("z", (x, y, layout.foot_plate_mm), -1, 10.0, 3.0, _m3(d)) for x, y in places]
         solids = tuple(rod for one in four for rod in one)
         holds = frozenset({"base", part})
-        made.append(Envelope(name, "M3 × 10 screw", Moves.FIXED, solids, (), holds, count=len(places)))
-    return made[0], made[1]
+        yield Envelope(name, "M3 × 10 screw", Moves.FIXED, solids, (), holds, count=len(places))
 
 
 def _mount(d: Dimensions) -> Envelope:

@@ -12,7 +12,7 @@ STEP, SERIES, SHUNT, TAG = 1.7, 3.0, 2.2, 3.4
 """Widths: of a pin on a line, a part within it, a part that hangs on it, an end's box."""
 DOWN, UP, PLAIN = 3.4, 2.9, 0.9
 """Heights: of a part that hangs down, of one that stands up, of a pin."""
-BOX_FILL, PIN_FILL, INK, FAINT = "#e8eef7", "#f6f2e4", "#1c2430", "#5a6676"
+BOX_FILL, INK, FAINT = "#e8eef7", "#1c2430", "#5a6676"
 ELEMENTS = {"resistor": "ResistorIEC", "coil": "Inductor2", "exciter": "ResistorIEC", "fuse": "FuseIEC"}
 ELEMENTS |= {"switch": "Button", "diode": "Diode", "suppressor": "Zener", "capacitor": "Capacitor"}
 CONTACTS = {"emergency stop": {"nc": True}, "clapper switch": {"nc": False}}

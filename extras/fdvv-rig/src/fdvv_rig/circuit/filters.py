@@ -68,10 +68,7 @@ def _values(circuit: Circuit, one: Filter) -> FilterValues:
     loose, tight = part.kind.tolerance, circuit.kinds["resistor"].tolerance
     snap = _gain(circuit.facts["snap_Hz"] / cutoff, one.kind == "low pass")
     return FilterValues(
-        name=one.name,
-        about=one.about,
-        kind=one.kind,
-        capacitor=one.capacitor,
+        **{name: getattr(one, name) for name in ("name", "about", "kind", "capacitor", "paper_Hz")},
         ohm=ohm,
         farad=farad,
         cutoff_Hz=cutoff,
@@ -81,7 +78,6 @@ def _values(circuit: Circuit, one: Filter) -> FilterValues:
         snap_dB=20 * math.log10(abs(snap)),
         snap_deg=math.degrees(cmath.phase(snap)),
         lag_um=1e3 * circuit.facts["fast_mm_s"] * time_s if one.kind == "low pass" else 0.0,
-        paper_Hz=one.paper_Hz,
     )
 
 
@@ -111,21 +107,13 @@ def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
     count_V = facts["converter_V"] / 2 ** facts["converter_bits"]
     at = levels(circuit, PowerState())
     span_V = at["POSITION"].V  # of a conditioner that gives 0 to its full 5 V
-    mm_V = facts["position_range_mm"] / span_V
-    force_V = (
-        at["FORCE"].V / facts["force_high_ratio"] * (facts["force_high_ratio"] - facts["force_low_ratio"])
-    )
+    range_mm, high = facts["position_range_mm"], facts["force_high_ratio"]
+    mm_V = range_mm / span_V
+    force_V = at["FORCE"].V / high * (high - facts["force_low_ratio"])
     supply = (circuit.pin("PS1.+").V or 0.0) / at["SUPPLY"].V
     top_V = facts["converter_V"]
     return (
-        Step(
-            "position",
-            "POSITION",
-            1e3 * count_V,
-            1e3 * mm_V * count_V,
-            "um",
-            facts["position_range_mm"] * 1e3,
-        ),
+        Step("position", "POSITION", 1e3 * count_V, 1e3 * mm_V * count_V, "um", 1e3 * range_mm),
         Step("force", "FORCE", 1e3 * count_V, 100 * facts["force_range_N"] / force_V * count_V, "cN", 981.0),
         Step("supply", "SUPPLY", 1e3 * count_V, 1e3 * supply * count_V, "mV", 1e3 * supply * top_V),
     )

@@ -54,6 +54,7 @@ def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
 
     Cut-offs of the filters, steps of the converters, power of every rail, the coil's current and warmth.
     """
+    from fdvv.io.files import write_atomic
     from fdvv_rig.circuit.circuit import load_circuit
     from fdvv_rig.circuit.circuit_report import circuit_files, circuit_report
     from fdvv_rig.circuit.netlist import to_document
@@ -62,7 +63,9 @@ def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
     found = load_circuit(file)
     if output:
         require_sound(found, file or "circuit.toml")
-        _write(output, circuit_files(found))
+        ui.check_folder(output)
+        for name, text in circuit_files(found).items():
+            write_atomic(output / name, text)
     report = circuit_report(found)
     if as_json:
         ui.print_json(report | {"netlist": to_document(found)})
@@ -72,15 +75,6 @@ def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
             click.echo(f"written to {output}")
     if report["violations"]:
         raise click.exceptions.Exit(1)
-
-
-def _write(folder: Path, files: dict[str, str]) -> None:
-    pass
-    from fdvv.io.files import write_atomic
-
-    ui.check_folder(folder)
-    for name, text in files.items():
-        write_atomic(folder / name, text)
 
 
 def _print(report: dict[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,8 @@ from fdvv_rig.cli.selftest import selftest
 
 if TYPE_CHECKING:
     from fdvv_rig.dimensions import Dimensions
-    from fdvv_rig.exported import FolderCheck, PartCheck
+    from fdvv_rig.exported import FolderCheck
+    from fdvv_rig.parts import Part
 
 GAPS_SHOWN = 10
 """Clearances in the table; --json gives all."""
@@ -50,7 +52,7 @@ def parts(as_toml: bool, source: Path | None, words: tuple[str, ...], as_json: b
     infill.
     """
     from fdvv_rig.dimension_file import dimensions_toml, load_dimensions
-    from fdvv_rig.parts import printed_parts
+    from fdvv_rig.parts import PARTS
 
     if as_toml:
         d = load_dimensions(source, words)
@@ -62,11 +64,11 @@ def parts(as_toml: bool, source: Path | None, words: tuple[str, ...], as_json: b
     if source or words:
         raise click.UsageError("--from and --set change dimensions: add --dimensions, or use export")
     if as_json:
-        ui.print_json({"parts": [_part(part) for part in printed_parts()]})
+        ui.print_json({"parts": [_part(part) for part in PARTS]})
         return
     rows = [
         [p.name, p.use, str(p.count), ui.number(p.mass_g, 1), ui.number(p.print_h, 1), _size(p.made.box_mm)]
-        for p in printed_parts()
+        for p in PARTS
     ]
     ui.print_table(["part", "count", "g", "h", "mm"], [[row[0], *row[2:]] for row in rows])
     click.echo("")
@@ -74,29 +76,18 @@ def parts(as_toml: bool, source: Path | None, words: tuple[str, ...], as_json: b
         ui.print_wrapped(f"{name}: {use}")
 
 
-def _part(part: Any) -> dict[str, Any]:
-    return {
-        "name": part.name,
-        "title": part.title,
-        "use": part.use,
-        "lies": part.lies,
-        "material": part.material,
-        "count": part.count,
-        "mass_g": part.mass_g,
-        "print_h": part.print_h,
-        "volume_cm3": part.made.volume_cm3,
-        "box_mm": list(part.made.box_mm),
-    }
+def _part(part: Part) -> dict[str, Any]:
+    named = ("name", "title", "use", "lies", "material", "count", "mass_g", "print_h")
+    made = {"volume_cm3": part.made.volume_cm3, "box_mm": part.made.box_mm}
+    return {name: getattr(part, name) for name in named} | made
 
 
 def _described(d: Dimensions) -> dict[str, Any]:
-    import dataclasses
-
     from fdvv_rig.dimensions import meaning_of, source_of
 
     return {
         name: {"value": value, "meaning": meaning_of(name), "source": source_of(name)}
-        for name, value in dataclasses.asdict(d).items()
+        for name, value in asdict(d).items()
     }
 
 
@@ -153,34 +144,12 @@ def check(context: click.Context, folder: Path, as_json: bool) -> None:
 def _document(found: FolderCheck) -> dict[str, Any]:
     return {
         "good": found.good,
-        "parts": [_checked(part) for part in found.parts],
-        "meetings": [
-            {
-                "one": m.one,
-                "other": m.other,
-                "travel_mm": m.travel_mm,
-                "stop_mm": m.stop_mm,
-                "shared_mm3": m.shared_mm3,
-            }
-            for m in found.meetings
-        ],
-        "clearances": [
-            {"one": c.one, "other": c.other, "gap_mm": c.gap_mm, "travel_mm": c.travel_mm}
-            for c in found.clearances
-        ],
+        "parts": [asdict(part) for part in found.parts],
+        "meetings": [asdict(meeting) for meeting in found.meetings],
+        "clearances": [asdict(clearance) for clearance in found.clearances],
         "limiter": _limiter(found.dimensions),
         "slider": _slider(found.dimensions),
         "sensor_mount": _mount(found.dimensions),
-    }
-
-
-def _checked(part: PartCheck) -> dict[str, Any]:
-    return {
-        "name": part.name,
-        "volume_cm3": part.volume_cm3,
-        "box_mm": list(part.box_mm),
-        "open_edges": part.open_edges,
-        "wrong": list(part.wrong),
     }
 
 
@@ -210,27 +179,20 @@ def _mount(d: Dimensions) -> dict[str, Any]:
     from fdvv_rig.tolerance import core_stack
 
     stack = core_stack(d)
-    causes = {cause.name: cause.either_way_mm for cause in stack.causes}
-    room_mm = (d.lvdt_bore_mm - d.lvdt_core_diameter_mm) / 2
     return {
-        "causes_mm": causes,
+        "causes_mm": {cause.name: cause.either_way_mm for cause in stack.causes},
         "worst_mm": stack.worst_mm,
         "likely_mm": stack.likely_mm,
-        "room_mm": room_mm,
+        "room_mm": (d.lvdt_bore_mm - d.lvdt_core_diameter_mm) / 2,
         "float_mm": d.float_mm,
     }
 
 
 def _print(found: FolderCheck) -> None:
-    rows = [
-        [
-            p.name,
-            ui.number(p.volume_cm3),
-            _size(p.box_mm),
-            "closed" if not p.open_edges else f"{p.open_edges} open edges",
-        ]
-        for p in found.parts
-    ]
+    rows = []
+    for p in found.parts:
+        surface = f"{p.open_edges} open edges" if p.open_edges else "closed"
+        rows.append([p.name, ui.number(p.volume_cm3), _size(p.box_mm), surface])
     ui.print_table(["part", "cm³", "mm", "surface"], rows)
     for part in found.parts:
         for wrong in part.wrong:
@@ -266,6 +228,5 @@ def _print_figures(d: Dimensions) -> None:
     )
 
 
-hardware.add_command(bill)
-hardware.add_command(circuit)
-hardware.add_command(selftest)
+for command in (bill, circuit, selftest):
+    hardware.add_command(command)

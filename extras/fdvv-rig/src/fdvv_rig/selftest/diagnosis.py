@@ -77,7 +77,9 @@ class Diagnosis:
         return next((f for f in self.findings if f.verdict is Verdict.FAILED), None)
 
 
-Judge = Callable[[Evidence, Bounds], Finding]
+Judgement = tuple[Verdict, str, str]
+"""A part's verdict, what was seen, and the remedy."""
+Judge = Callable[[Evidence, Bounds], Judgement]
 
 
 def diagnose(evidence: Evidence, bounds: Bounds | None = None) -> Diagnosis:
@@ -89,20 +91,19 @@ def diagnose(evidence: Evidence, bounds: Bounds | None = None) -> Diagnosis:
         if broken:
             found[part] = Finding(part, Verdict.NOT_TESTED, f"rests on the {broken[0]}")
         else:
-            found[part] = judge(evidence, bounds)
+            found[part] = Finding(part, *judge(evidence, bounds))
     return Diagnosis(tuple(found.values()))
 
 
-def _passed(part: str, seen: str) -> Finding:
-    return Finding(part, Verdict.PASSED, seen)
+NO_READING: Judgement = (Verdict.NOT_TESTED, "no reading", "")
 
 
-def _failed(part: str, seen: str, remedy: str) -> Finding:
-    return Finding(part, Verdict.FAILED, seen, remedy)
+def _passed(seen: str) -> Judgement:
+    return Verdict.PASSED, seen, ""
 
 
-def _unknown(part: str) -> Finding:
-    return Finding(part, Verdict.NOT_TESTED, "no reading")
+def _failed(seen: str, remedy: str) -> Judgement:
+    return Verdict.FAILED, seen, remedy
 
 
 def _latched(evidence: Evidence, *names: str) -> str:
@@ -112,182 +113,164 @@ def _latched(evidence: Evidence, *names: str) -> str:
     return ""
 
 
-def _link(evidence: Evidence, bounds: Bounds) -> Finding:
+def _link(evidence: Evidence, bounds: Bounds) -> Judgement:
     seen = f"{100 * evidence.link_missing:.1f} % of the records missing, {evidence.late_ticks} late ticks"
     if evidence.link_missing > bounds.link_ratio or evidence.late_ticks > 0:
-        return _failed("link", seen, "use a short USB cable without a hub; flash the firmware anew")
-    return _passed("link", seen)
+        return _failed(seen, "use a short USB cable without a hub; flash the firmware anew")
+    return _passed(seen)
 
 
-def _supply(evidence: Evidence, bounds: Bounds) -> Finding:
+def _supply(evidence: Evidence, bounds: Bounds) -> Judgement:
     stopped = _latched(evidence, "supply_low", "supply_high", "brown_out")
     volts = f"{evidence.supply_mV / 1e3:.2f} V at rest, {evidence.nominal_mV / 1e3:g} V nominal"
     if math.isfinite(evidence.sag_mV):
         seen = f"falls to {evidence.sag_mV / 1e3:.2f} V while the coil pushes"
-        return _failed(
-            "supply", seen, "measure the 12 V at C4 under load; mend joints, fuse, stop; a 5 A supply"
-        )
+        return _failed(seen, "measure the 12 V at C4 under load; mend joints, fuse, stop; a 5 A supply")
     off = abs(evidence.supply_mV / evidence.nominal_mV - 1)
     if off > bounds.supply_ratio or (stopped and not off < bounds.supply_ratio):
-        return _failed("supply", stopped or volts, "measure the 12 V at C4, then the divider R3, R4")
+        return _failed(stopped or volts, "measure the 12 V at C4, then the divider R3, R4")
     if stopped:
-        return _failed("supply", stopped, "measure the 12 V at C4 under load; mend joints and fuse")
-    return _passed("supply", volts) if math.isfinite(evidence.supply_mV) else _unknown("supply")
+        return _failed(stopped, "measure the 12 V at C4 under load; mend joints and fuse")
+    return _passed(volts) if math.isfinite(evidence.supply_mV) else NO_READING
 
 
-def _position(evidence: Evidence, bounds: Bounds) -> Finding:
-    part = "position sensor"
+def _position(evidence: Evidence, bounds: Bounds) -> Judgement:
     if stopped := _latched(evidence, "position_low", "position_high") if _wild(evidence, bounds) else "":
-        return _failed(part, stopped, "measure A0: 0.1 to 3.2 V over the travel; look for a wire that is off")
+        return _failed(stopped, "measure A0: 0.1 to 3.2 V over the travel; look for a wire that is off")
     if len(evidence.gauge_mm) < len(GAUGES_mm):
-        return _unknown(part)
-    slope, zero_mm = _on_gauges(evidence)
+        return NO_READING
+    slope, zero_mm = evidence.gauge_line
     noise = evidence.rest_sd_um
     seen = f"scale {slope:.3f}, zero {zero_mm:+.2f} mm, noise {noise:.1f} µm"
     if noise < bounds.quiet_um:
         return _failed(
-            part, f"no noise at all, {seen}", "its wire is off, or the conditioner is dead: measure U3.OUT"
+            f"no noise at all, {seen}", "its wire is off, or the conditioner is dead: measure U3.OUT"
         )
     if slope < -0.5:
-        return _failed(part, f"runs backwards, {seen}", "exchange SEC1 and SEC2 of U2")
+        return _failed(f"runs backwards, {seen}", "exchange SEC1 and SEC2 of U2")
     if abs(slope - 1) > bounds.scale_ratio:
-        return _failed(
-            part, f"wrong scale, {seen}", "set the conditioner's gain; check R1, R2 and the settings"
-        )
+        return _failed(f"wrong scale, {seen}", "set the conditioner's gain; check R1, R2 and the settings")
     if abs(zero_mm) > bounds.zero_mm:
-        return _failed(part, f"wrong zero, {seen}", "shift U2 in its mount, or the conditioner's zero")
+        return _failed(f"wrong zero, {seen}", "shift U2 in its mount, or the conditioner's zero")
     if noise > bounds.loud_um:
-        return _failed(part, f"noisy, {seen}", "part its wires from the coil's; ground the screen at U3 only")
-    return _passed(part, seen)
+        return _failed(f"noisy, {seen}", "part its wires from the coil's; ground the screen at U3 only")
+    return _passed(seen)
 
 
 def _wild(evidence: Evidence, bounds: Bounds) -> bool:
     return not evidence.gauge_mm or evidence.rest_sd_um > bounds.loud_um or not evidence.position_ok
 
 
-def _on_gauges(evidence: Evidence) -> tuple[float, float]:
-    high, low = GAUGES_mm
-    slope = (evidence.gauge_mm[0] - evidence.gauge_mm[1]) / (high - low)
-    return slope, sum(evidence.gauge_mm) / 2 - slope * (high + low) / 2
-
-
-def _slider(evidence: Evidence, bounds: Bounds) -> Finding:
-    part, resting = "slider", evidence.gauge_mm[-1]
+def _slider(evidence: Evidence, bounds: Bounds) -> Judgement:
+    resting = evidence.gauge_mm[-1]
     hung = abs(evidence.fallen_mm - resting) < 0.3 and all(
         abs(d - resting) < 0.3 for _, d in evidence.stops_mm
     )
     remedy = "take the cap off and move the slider by hand; free the bushing, mind wires and magnet"
     friction = abs(evidence.empty.friction_cN) * min(1.0, evidence.gain or 1.0)
     if hung and not _moves(evidence):
-        return _failed(part, "it stays where it was put, and no force moves it", remedy)
+        return _failed("it stays where it was put, and no force moves it", remedy)
     if evidence.empty.moved and friction > bounds.friction_cN:
-        return _failed(part, f"friction {friction:.0f} cN", remedy)
+        return _failed(f"friction {friction:.0f} cN", remedy)
     if hung and not evidence.empty.moved:
-        return _failed(part, "it stays where it was put", remedy)
-    return _passed(part, f"friction {friction:.1f} cN" if evidence.empty.moved else "falls by its own weight")
+        return _failed("it stays where it was put", remedy)
+    return _passed(f"friction {friction:.1f} cN" if evidence.empty.moved else "falls by its own weight")
 
 
 def _moves(evidence: Evidence) -> bool:
     return math.isfinite(evidence.empty.lift_cN) or math.isfinite(evidence.empty.drop_cN)
 
 
-def _stop(evidence: Evidence, bounds: Bounds) -> Finding:
-    part = "travel stop"
+def _stop(evidence: Evidence, bounds: Bounds) -> Judgement:
     stops = [(evidence.free_stop_mm, evidence.fallen_mm), *evidence.stops_mm]
     if any(not math.isfinite(found) for _, found in stops):
-        return _unknown(part)
+        return NO_READING
     seen = ", ".join(f"{found:.2f} for {asked:g} mm" for asked, found in stops)
     found_mm = [found for _, found in stops]
     if max(found_mm) - min(found_mm) < 0.5:
         return _failed(
-            part, f"does not move: {seen}", "measure 5 V at M1 and the pulse at U7.2Y; is the arm jammed?"
+            f"does not move: {seen}", "measure 5 V at M1 and the pulse at U7.2Y; is the arm jammed?"
         )
     if max(abs(found - asked) for asked, found in stops) > bounds.stop_mm:
         remedy = "put the horn on the tooth that the drawing shows, then set stop_zero_us and stop_us_mm"
-        return _failed(part, f"stands elsewhere: {seen}", remedy)
-    return _passed(part, seen)
+        return _failed(f"stands elsewhere: {seen}", remedy)
+    return _passed(seen)
 
 
-def _coil(evidence: Evidence, bounds: Bounds) -> Finding:
-    part, lift = "coil", evidence.empty
+def _coil(evidence: Evidence, bounds: Bounds) -> Judgement:
+    lift = evidence.empty
     if lift.reversed or (lift.moved and lift.weight_cN < -2):
-        return _failed(part, "pushes the other way", "exchange its two wires at U5")
+        return _failed("pushes the other way", "exchange its two wires at U5")
     if not lift.moved:
         remedy = (
             "with the power off measure the coil, 2.9 ohm; then 12 V at U5.VM, the stop button, IN1 and IN2"
         )
-        return _failed(part, "no force moves the cap, which falls freely", remedy)
+        return _failed("no force moves the cap, which falls freely", remedy)
     if not evidence.loaded.moved:
         return _failed(
-            part, "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?"
+            "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?"
         )
     gain = evidence.gain or 0.0
     seen = f"force {gain:.2f} of the command, lifts {lift.weight_cN:.1f} cN"
     if not bounds.gain_low <= gain <= bounds.gain_high:
         remedy = "measure the coil's resistance and R8; centre the coil; then set duty_gain_q16"
-        return _failed(part, f"wrong force: {seen}", remedy)
-    return _passed(part, seen)
+        return _failed(f"wrong force: {seen}", remedy)
+    return _passed(seen)
 
 
-def _driver(evidence: Evidence, bounds: Bounds) -> Finding:
-    part = "coil driver"
+def _driver(evidence: Evidence, bounds: Bounds) -> Judgement:
     if stopped := _latched(evidence, "output"):
-        return _failed(part, stopped, "look for a short of the coil's wires; feel whether U5 is hot")
+        return _failed(stopped, "look for a short of the coil's wires; feel whether U5 is hot")
     if not math.isfinite(evidence.pwm_um):
-        return _unknown(part)
+        return NO_READING
     seen = f"{evidence.pwm_um:.1f} µm at 732 Hz, {evidence.pwm_floor_um:.1f} µm beside it"
     if evidence.pwm_um > max(bounds.pwm_um, bounds.pwm_ratio * evidence.pwm_floor_um):
-        return _failed(
-            part, f"its PWM shakes the cap: {seen}", "flash fdvv's firmware, whose PWM is 23.4 kHz"
-        )
-    return _passed(part, seen)
+        return _failed(f"its PWM shakes the cap: {seen}", "flash fdvv's firmware, whose PWM is 23.4 kHz")
+    return _passed(seen)
 
 
-def _force(evidence: Evidence, bounds: Bounds) -> Finding:
-    part = "force sensor"
+def _force(evidence: Evidence, bounds: Bounds) -> Judgement:
     if not evidence.has_sensor:
-        return Finding(part, Verdict.ABSENT, "the settings have none")
+        return Verdict.ABSENT, "the settings have none", ""
     zero, loaded = evidence.sensor_zero_cN, evidence.sensor_weight_cN
     if not (math.isfinite(zero) and math.isfinite(loaded)):
-        return _unknown(part)
+        return NO_READING
     gain = (loaded - zero) / evidence.weight_cN
     seen = f"{loaded:.1f} cN under {evidence.weight_cN:.1f} cN, {zero:+.1f} cN without"
     if gain < -0.2:
-        return _failed(part, f"reads backwards: {seen}", "turn it round; is the plug reversed?")
+        return _failed(f"reads backwards: {seen}", "turn it round; is the plug reversed?")
     if gain < 0.2:
         return _failed(
-            part, f"feels nothing: {seen}", "measure U4.OUT: it rises by 15 mV per 5 g; check plug and R5"
+            f"feels nothing: {seen}", "measure U4.OUT: it rises by 15 mV per 5 g; check plug and R5"
         )
     if abs(gain - 1) > bounds.force_ratio:
-        return _failed(part, f"wrong scale: {seen}", "check the part number's range, then set force_gain_q14")
+        return _failed(f"wrong scale: {seen}", "check the part number's range, then set force_gain_q14")
     if abs(zero) > bounds.force_zero_cN:
-        return _failed(part, f"wrong zero: {seen}", "free its tip from preload, then set force_offset_counts")
-    return _passed(part, seen)
+        return _failed(f"wrong zero: {seen}", "free its tip from preload, then set force_offset_counts")
+    return _passed(seen)
 
 
-def _board(evidence: Evidence, _bounds: Bounds) -> Finding:
-    part = "vibration board"
+def _board(evidence: Evidence, _bounds: Bounds) -> Judgement:
     if _latched(evidence, "vibration_board") or evidence.vibration_answers is False:
         remedy = (
             "is the Uno powered? SDA and SCL exchanged? measure both at 3.3 V and 5 V on either side of U8"
         )
-        return _failed(part, "does not answer on the wire", remedy)
+        return _failed("does not answer on the wire", remedy)
     if not evidence.has_exciter:
-        return Finding(part, Verdict.ABSENT, "none is expected")
-    return _passed(part, "answers" if evidence.vibration_answers else "no error on the wire")
+        return Verdict.ABSENT, "none is expected", ""
+    return _passed("answers" if evidence.vibration_answers else "no error on the wire")
 
 
-def _exciter(evidence: Evidence, bounds: Bounds) -> Finding:
-    part = "exciter"
+def _exciter(evidence: Evidence, bounds: Bounds) -> Judgement:
     if not evidence.has_exciter:
-        return Finding(part, Verdict.ABSENT, "none is expected")
+        return Verdict.ABSENT, "none is expected", ""
     if not math.isfinite(evidence.tone_ratio):
-        return _unknown(part)
+        return NO_READING
     seen = f"tones move the cap by {evidence.tone_um:.2f} µm, noise by {evidence.tone_floor_um:.2f} µm"
     if evidence.tone_ratio < bounds.tone_ratio:
         remedy = "listen at the exciter; measure it, 7 to 8 ohm; turn up U11's trimmer; is its power there?"
-        return _failed(part, f"silent: {seen}", remedy)
-    return _passed(part, seen)
+        return _failed(f"silent: {seen}", remedy)
+    return _passed(seen)
 
 
 JUDGES: tuple[tuple[str, Judge, tuple[str, ...]], ...] = (

@@ -107,6 +107,13 @@ class Evidence:
     notes: tuple[str, ...] = ()
 
     @property
+    def gauge_line(self) -> tuple[float, float]:
+        """Slope of the displacement over the gauges' sizes, 1 if right, and its zero, mm."""
+        (high, low), (on_high, on_low) = GAUGES_mm, self.gauge_mm
+        slope = (on_high - on_low) / (high - low)
+        return slope, sum(self.gauge_mm) / 2 - slope * (high + low) / 2
+
+    @property
     def gain(self) -> float | None:
         """Force of the coil over its command: the weight over the change of command that it asks for."""
         more_cN = self.loaded.weight_cN - self.empty.weight_cN

@@ -15,7 +15,7 @@ from fdvv.io.files import read_limited, write_atomic
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import Settings
 from fdvv_rig.selftest.diagnosis import Diagnosis, diagnose
-from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm, Latched, Lift
+from fdvv_rig.selftest.evidence import Evidence, Latched, Lift
 
 KIND = Kind("fdvv-selftest", 1, "a receipt of a self-test", "run fdvv hardware selftest again")
 LARGEST_bytes = 1_000_000
@@ -46,9 +46,7 @@ def calibrated(settings: Settings, evidence: Evidence) -> Settings:
 
     A part that is absent keeps its own. The travel stop is left as it is: its play is larger than the gain.
     """
-    high, low = GAUGES_mm
-    slope = (evidence.gauge_mm[0] - evidence.gauge_mm[1]) / (high - low)
-    zero_mm = sum(evidence.gauge_mm) / 2 - slope * (high + low) / 2
+    slope, zero_mm = evidence.gauge_line
     found = replace(
         settings,
         position_gain_q14=round(settings.position_gain_q14 / slope),
