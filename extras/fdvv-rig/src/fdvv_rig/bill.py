@@ -14,6 +14,7 @@ from typing import Any
 
 from fdvv.errors import InputError, ModelError
 from fdvv_rig.circuit.circuit import Circuit
+from fdvv_rig.circuit.circuit_report import page
 from fdvv_rig.parts import PARTS, Part
 
 PAPER_USD = 550.0
@@ -178,26 +179,8 @@ ABOUT = {
 
 def bill_page(bill: Bill) -> str:
     """Write the bill as Markdown: a table per group, totals beside the paper's."""
-    lines = [
-        "# Bill of materials",
-        "",
-        "Made from `bill.toml` of fdvv-rig and the circuit by `tools/make_circuit.py`; do not edit.",
-        "",
-    ]
-    lines += [summary(bill), ""]
-    for group in GROUPS:
-        lines += [
-            "",
-            f"## {ABOUT[group].capitalize()}",
-            "",
-            "| what | part | count | USD | note, alternatives |",
-            "|---|---|---|---|---|",
-        ]
-        for line in bill.of(group).lines:
-            rest = "; ".join([*([line.note] if line.note else []), *(f"or {a}" for a in line.alternatives)])
-            part = f"{line.maker} {line.part_number}"
-            lines.append(f"| {line.role} | {part} | {line.count} | {line.total_USD:.2f} | {rest} |")
-    return "\n".join([*lines, ""])
+    groups = [(ABOUT[group], bill.of(group).lines) for group in GROUPS]
+    return page("bill.md.j2", summary=summary(bill), groups=groups)
 
 
 def summary(bill: Bill) -> str:
