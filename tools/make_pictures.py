@@ -30,8 +30,9 @@ from fdvv.testing.captured import captured_session
 from fdvv.units import cN_from_gf
 from fdvv_switch.design_button import design_mechanism
 from fdvv_switch.figures import plot_mechanism, plot_parts
-from fdvv_switch.report import designed_strokes, drawn_parts
+from fdvv_switch.report import designed_strokes
 from fdvv_switch.residual import WANTED_cN
+from fdvv_switch.section import drawings_of
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "docs" / "images"
@@ -105,7 +106,7 @@ def draw_mechanism_pictures() -> None:
     what = "of a leaf designed for the shipped model mx-clear; simulated"
     grid = plot_mechanism(designed_strokes(result), WANTED_cN, "a leaf for mx-clear")
     save_svg("mechanism-leaf", grid, f"Target, design, tolerance band and residual {what}")
-    save_svg("mechanism-leaf-parts", plot_parts(drawn_parts(result)), f"Parts {what}")
+    save_svg("mechanism-leaf-parts", plot_parts(drawings_of(result.mechanism)), f"Parts {what}")
 
 
 def draw_overview_picture(raw: Path) -> None:

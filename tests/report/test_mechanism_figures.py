@@ -6,7 +6,8 @@ from numpy.testing import assert_array_equal
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
-from fdvv_switch.figures import DesignedStroke, DrawnLine, DrawnPart, plot_mechanism, plot_parts
+from fdvv_switch.figures import DesignedStroke, plot_mechanism, plot_parts
+from fdvv_switch.section import Drawing, Outline
 
 X_mm = np.linspace(0.0, 4.0, 41)
 PRESS = DesignedStroke(Stroke.PRESS, X_mm, 40 + X_mm, 41 + X_mm, 38 + X_mm, 44 + X_mm)
@@ -26,7 +27,7 @@ def test_a_stroke_draws_design_target_twin_and_what_is_missed() -> None:
 
 def test_parts_are_drawn_to_scale_and_closed_ones_come_round() -> None:
     square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
-    part = DrawnPart("plate", (DrawnLine("A", square, True), DrawnLine("B", square[:2], False)))
+    part = Drawing("plate", "plate", (Outline("A", square, True), Outline("B", square[:2], False)))
     (ax,) = plot_parts([part])
     first, second = ax.get_lines()
     assert_array_equal(first.get_xydata()[-1], square[0])

@@ -9,7 +9,7 @@ from fdvv.device.plant import Inputs, Outputs
 from fdvv.errors import DeviceError, InputError
 from fdvv.protocol.tables import NONE, Settings
 from fdvv_m0.emulator import M0Emulator
-from fdvv_m0.records import TickInputs, TickOutputs
+from fdvv_m0.records import COUNTS_MAX, TickInputs
 
 BOOT_TICKS = 400
 SHARE_OF_TICK = 0.95  # after which what a tick brought is on the pins
@@ -39,27 +39,21 @@ class EmulatedBoard:
     def __init__(self, elf: Path) -> None:
         middle = (Settings().reading_low + Settings().reading_high) // 2
         self._inputs = TickInputs(middle)
-        self.emulator = M0Emulator(elf, self._answer)
+        self.emulator = M0Emulator(elf, lambda _outputs: self._inputs)
         while not self.emulator.usb.is_open:
             self.emulator.run_ticks(1)
             if self.emulator.tick > BOOT_TICKS:
                 raise DeviceError("emulated: the USB port does not open; build the firmware again")
         self.ticks = self.emulator.tick
 
-    def _answer(self, _outputs: TickOutputs) -> TickInputs:
-        return self._inputs
-
     def tick(self, inputs: Inputs) -> Outputs:
         """Run from one tick nearly to the next."""
-        supply_counts = round(inputs.supply_mV / SUPPLY_mV_counts)
-        self._inputs = TickInputs.of_burst(
-            inputs.sum,
-            inputs.lowest,
-            inputs.highest,
-            self.emulator.reads,
-            supply_counts=min(supply_counts, 4095),
-            force_counts=inputs.force_counts,
-        )
+        others = {
+            "supply_counts": min(round(inputs.supply_mV / SUPPLY_mV_counts), COUNTS_MAX),
+            "force_counts": inputs.force_counts,
+        }
+        burst = (inputs.sum, inputs.lowest, inputs.highest, self.emulator.reads)
+        self._inputs = TickInputs.of_burst(*burst, **others)
         before = len(self.emulator.wire_log)
         self.emulator.run_ticks(inputs.elapsed_ticks)
         self.emulator.run_us(SHARE_OF_TICK * self.emulator.tick_us)

@@ -72,10 +72,8 @@ class Converter:
         self._is_running = False
         source = self._bus.get(ADC_INPUTCTRL, 4) & 31
         inputs = self._inputs()
-        counts = {SUPPLY_INPUT: inputs.supply_counts, FORCE_INPUT: inputs.force_counts}.get(
-            source, inputs.reading(0)
-        )
-        self._bus.put(ADC_RESULT, 2, counts)
+        others = {SUPPLY_INPUT: inputs.supply_counts, FORCE_INPUT: inputs.force_counts}
+        self._bus.put(ADC_RESULT, 2, others.get(source, inputs.reading(0)))
         self._bus.put(ADC_INTFLAG, 1, READY)
 
     def _channel(self, size: int, value: int) -> None:
@@ -87,9 +85,8 @@ class Converter:
         armed = self._bus.get(CHCTRLA, 1) & DMA_ENABLE and self._bus.get(DMAC_CTRL, 2) & DMA_ENABLE
         trigger = self._bus.get(CHCTRLB, 4) >> 8 & 0x3F
         if armed and trigger == TRIGGER_ADC:
-            control, count, _source, end, _next = struct.unpack(
-                "<HHIII", self._bus.ram_read(self._bus.get(BASEADDR, 4), 16)
-            )
+            descriptor = self._bus.ram_read(self._bus.get(BASEADDR, 4), 16)
+            control, count, _source, end, _next = struct.unpack("<HHIII", descriptor)
             if control != VALID | HALFWORDS | COUNT_UP:
                 raise ValueError(f"DMA descriptor {control:#06x} is not modelled")
             this = self._run

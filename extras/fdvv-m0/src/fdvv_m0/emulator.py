@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,27 +12,13 @@ from fdvv_m0.converter import Converter
 from fdvv_m0.elf import read_elf
 from fdvv_m0.processor import Processor
 from fdvv_m0.records import CPU_MHZ, KeyChange, PwmChange, TickCost, TickInputs, TickOutputs, WireMessage
-from fdvv_m0.system import (
-    AIRCR,
-    AIRCR_RESET,
-    BROWN_OUT,
-    PIN_KEY,
-    POWER_ON,
-    RCAUSE,
-    SOFTWARE,
-    WATCHDOG,
-    Clocks,
-    Port,
-    Watchdog,
-    mark_plain,
-)
+from fdvv_m0.system import AIRCR, AIRCR_RESET, PIN_KEY, RCAUSE, RESETS, Clocks, Port, Watchdog, mark_plain
 from fdvv_m0.timers import USER_ADC_START, Pwm, Tick
 from fdvv_m0.usb_host import UsbHost
 from fdvv_m0.wire import Wire
 
 BOOT_LIMIT_CYCLES = 48_000 * 200  # 200 ms without a tick: the program does not get there
 BUS_WAIT_CYCLES = 2  # assumed for each register access over the peripheral bridges
-RESETS = {"power on": POWER_ON, "watchdog": WATCHDOG, "brown-out": BROWN_OUT, "software": SOFTWARE}
 
 
 class M0Emulator:
@@ -52,13 +39,13 @@ class M0Emulator:
         self._program = read_elf(elf)
         self._vectors = min((load for load, _data in self._program.parts), default=0)
         if not self._program.parts or self._vectors >= FLASH_BYTES:
-            raise InputError(
-                elf, "program headers", "nothing to load into flash", "build it with make firmware"
-            )
+            reason = "nothing to load into flash"
+            raise InputError(elf, "program headers", reason, "build it with make firmware")
         self._tick_inputs = tick_inputs
         self._inputs = TickInputs(0)
         self._bus = Bus(is_cached, BUS_WAIT_CYCLES)
-        self._load()
+        for load, data in self._program.parts:
+            self._bus.flash[load : load + len(data)] = data
         self.processor = Processor(self._bus)
         self._bus.stop = self.processor.stop
         self._host: UsbHost | None = None
@@ -72,10 +59,6 @@ class M0Emulator:
         self._start("power on")
 
     # -- the parts -------------------------------------------------------------------------------------------
-
-    def _load(self) -> None:
-        for load, data in self._program.parts:
-            self._bus.flash[load : load + len(data)] = data
 
     def _start(self, cause: str) -> None:
         bus = self._bus
@@ -111,9 +94,7 @@ class M0Emulator:
         self._messages_reported = len(self.wire_log)
         self._tick_cycle: int | None = None
         self.pwm.changed()
-        stack, entry = (
-            int.from_bytes(bus.flash[self._vectors + at : self._vectors + at + 4], "little") for at in (0, 4)
-        )
+        stack, entry = struct.unpack_from("<II", bus.flash, self._vectors)
         self.processor.set_stack(stack)
         self._pc = entry & ~1
 
@@ -251,9 +232,8 @@ class M0Emulator:
 
     def name_of(self, address: int) -> str:
         """Return the function that an address lies in, for messages."""
-        below = [
-            (at, name) for name, at in self._program.symbols.items() if at <= address and name[:1] != "$"
-        ]
+        symbols = self._program.symbols.items()
+        below = [(at, name) for name, at in symbols if at <= address and name[:1] != "$"]
         return f"{max(below)[1]} ({address:#x})" if below else f"{address:#x}"
 
     def _request_reset(self, cause: str) -> None:

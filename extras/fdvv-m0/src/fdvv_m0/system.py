@@ -10,7 +10,7 @@ from fdvv_m0.bus import WRITE_ONE_CLEARS, Bus
 from fdvv_m0.records import CPU_MHZ, KeyChange
 
 RCAUSE, APBCMASK = 0x40000438, 0x40000420
-POWER_ON, WATCHDOG, BROWN_OUT, SOFTWARE = 1, 1 << 5, 1 << 2, 1 << 6
+RESETS = {"power on": 1, "watchdog": 1 << 5, "brown-out": 1 << 2, "software": 1 << 6}
 PCLKSR, DFLLCTRL, DFLLVAL, DFLLMUL = 0x4000080C, 0x40000824, 0x40000828, 0x4000082C
 ALL_READY = 1 << 4 | 1 << 9 | 1 << 11
 DFLL_ENABLE = 1 << 1

@@ -59,11 +59,8 @@ class Tick:
         if this != self._run:
             return
         self._plan(cycle + self.period_cycles, this)
-        is_connected = (
-            self._bus.get(EVSYS_CHANNEL, 4) >> 16 & 0x7F == TC3_OVERFLOW
-            and self._bus.get(TC3 + EVCTRL, 2) & OVERFLOW_EVENT
-        )
-        if is_connected and USER_TC4 in self.users:
+        is_chosen = self._bus.get(EVSYS_CHANNEL, 4) >> 16 & 0x7F == TC3_OVERFLOW
+        if is_chosen and self._bus.get(TC3 + EVCTRL, 2) & OVERFLOW_EVENT and USER_TC4 in self.users:
             self._count()
         self._overflowed()
 

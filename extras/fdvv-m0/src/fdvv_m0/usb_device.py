@@ -10,13 +10,7 @@ from fdvv_m0.bus import Bus
 
 BASE = 0x41005000
 CTRLA, SYNCBUSY, CTRLB, DADD = BASE, BASE + 2, BASE + 8, BASE + 0xA
-INTENCLR, INTENSET, INTFLAG, EPINTSMRY, DESCADD = (
-    BASE + 0x14,
-    BASE + 0x18,
-    BASE + 0x1C,
-    BASE + 0x20,
-    BASE + 0x24,
-)
+INTENCLR, INTENSET, INTFLAG, EPINTSMRY, DESCADD = (BASE + at for at in (0x14, 0x18, 0x1C, 0x20, 0x24))
 SUSPEND, END_OF_RESET, RESUME = 1 << 0, 1 << 3, 1 << 4
 EP, EP_STEP, ENDPOINTS = BASE + 0x100, 0x20, 8
 STATUSCLR, STATUSSET, STATUS, FLAG, ENCLR, ENSET = range(4, 10)
@@ -72,13 +66,12 @@ class UsbDevice:
             self._attached()
 
     def _enable(self, value: int) -> None:
-        self._bus.put(INTENSET, 2, value)
-        self._bus.put(INTENCLR, 2, value)
+        for register in (INTENSET, INTENCLR):  # both read back what is enabled
+            self._bus.put(register, 2, value)
 
     def _status(self, at: int, value: int) -> None:
-        self._bus.put(at + STATUS, 1, value)
-        self._bus.put(at + STATUSSET, 1, value)
-        self._bus.put(at + STATUSCLR, 1, value)
+        for register in (STATUS, STATUSSET, STATUSCLR):
+            self._bus.put(at + register, 1, value)
         self._given()
 
     def _allow(self, at: int, value: int) -> None:

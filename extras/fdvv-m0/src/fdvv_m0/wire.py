@@ -6,9 +6,8 @@ from fdvv_m0.bus import Bus
 from fdvv_m0.records import CPU_MHZ, WireMessage
 from fdvv_m0.system import Clocks
 
-CTRLA, CTRLB, BAUD, INTFLAG, STATUS, ADDR, DATA = (
-    0x42001400 + at for at in (0, 4, 0xC, 0x18, 0x1A, 0x24, 0x28)
-)
+BASE = 0x42001400
+CTRLA, CTRLB, BAUD, INTFLAG, STATUS, ADDR, DATA = (BASE + at for at in (0, 4, 0xC, 0x18, 0x1A, 0x24, 0x28))
 PERIPHERAL, ENABLE, MASTER_ON_BUS, STOP, NOT_ACKNOWLEDGED, IDLE, OWNER = 0x17, 2, 1, 3, 4, 1 << 4, 2 << 4
 RISE_CLOCKS = 14  # 300 ns, as the data sheet's formula for the rate counts it
 
@@ -71,9 +70,8 @@ class Wire:
         self._bus.put(CTRLB, size, value & ~(3 << 16))
         if value >> 16 & 3 == STOP and self._address is not None:
             stopped = (self._bus.cycles + self.bit_cycles()) / CPU_MHZ
-            message = WireMessage(
-                self._started / CPU_MHZ, stopped, self._address, bytes(self._data), self._acknowledged
-            )
+            times = self._started / CPU_MHZ, stopped
+            message = WireMessage(*times, self._address, bytes(self._data), self._acknowledged)
             self.messages.append(message)
             self._address = None
             self._bus.put(INTFLAG, 1, 0)

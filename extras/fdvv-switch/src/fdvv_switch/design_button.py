@@ -147,7 +147,7 @@ def design_mechanism(
         button,
         pressed,
         refused,
-        notes_of(chosen.mechanism, target),
+        tuple(notes_of(chosen.mechanism, target)),
     )
 
 

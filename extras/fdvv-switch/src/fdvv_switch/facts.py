@@ -22,11 +22,8 @@ def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float 
     found: dict[str, dict[str, float | str]] = {}
     if isinstance(mechanism, DomeMechanism):
         dome = mechanism.dome
-        found["dome"] = {
-            **asdict(dome),
-            "angle_deg": dome.angle_deg,
-            "largest_strain_ratio": dome.strain_ratio(x),
-        }
+        more = {"angle_deg": dome.angle_deg, "largest_strain_ratio": dome.strain_ratio(x)}
+        found["dome"] = asdict(dome) | more
         if mechanism.pad:
             found["pad"] = _foot(mechanism.pad)
         found["foot"] = {"gap_mm": mechanism.gap_mm, "rim_mm": mechanism.rim_mm, **_foot(mechanism.foot)}
@@ -35,7 +32,7 @@ def facts_of(mechanism: Mechanism, target: Target) -> dict[str, dict[str, float 
     if isinstance(mechanism, LeafMechanism):
         found["leaf"] = _leaf(mechanism.leaf, largest_leaf_cN(mechanism, x))
         found["cam"] = _cam(mechanism, x)
-    found["guide"] = {**asdict(mechanism.guide)}
+    found["guide"] = asdict(mechanism.guide)
     return found
 
 
@@ -44,19 +41,19 @@ def largest_leaf_cN(mechanism: LeafMechanism, x: FloatArray) -> float:
     return float(mechanism.leaf.force_cN(mechanism.cam.at(x)).max())
 
 
+def _sizes(part: object, names: str) -> dict[str, float | str]:
+    """Return sizes of a part, named in one text."""
+    return {name: getattr(part, name) for name in names.split()}
+
+
 def _coil(coil: Coil, travel_mm: float) -> dict[str, float | str]:
     buckles = coil.buckles_mm()
     return {
         "material": coil.wire.name,
-        "wire_mm": coil.wire_mm,
-        "mean_mm": coil.mean_mm,
+        **_sizes(coil, "wire_mm mean_mm"),
         "outer_mm": coil.mean_mm + coil.wire_mm,
         "active_coils": coil.active,
-        "free_mm": coil.free_mm,
-        "built_mm": coil.built_mm,
-        "solid_mm": coil.solid_mm,
-        "rate_cN_mm": coil.rate_cN_mm,
-        "preload_cN": coil.preload_cN,
+        **_sizes(coil, "free_mm built_mm solid_mm rate_cN_mm preload_cN"),
         "stress_MPa": coil.stress_MPa(travel_mm),
         "stress_ratio": coil.stress_ratio(travel_mm),
         **({} if buckles is None else {"buckles_unguided_mm": buckles}),
@@ -66,14 +63,8 @@ def _coil(coil: Coil, travel_mm: float) -> dict[str, float | str]:
 def _leaf(leaf: Leaf, largest_cN: float) -> dict[str, float | str]:
     return {
         "material": leaf.strip.name,
-        "thickness_mm": leaf.thickness_mm,
-        "width_mm": leaf.width_mm,
-        "length_mm": leaf.length_mm,
-        "offset_mm": leaf.offset_mm,
-        "stiffness_cN_mm": leaf.stiffness_cN_mm,
-        "preload_cN": leaf.preload_cN,
-        "contact_length_mm": leaf.contact_length_mm,
-        "contact_cN_mm": leaf.contact_cN_mm,
+        **_sizes(leaf, "thickness_mm width_mm length_mm offset_mm stiffness_cN_mm preload_cN"),
+        **_sizes(leaf, "contact_length_mm contact_cN_mm"),
         "largest_cN": largest_cN,
         "stress_MPa": leaf.stress_MPa(largest_cN),
         "stress_ratio": leaf.stress_MPa(largest_cN) / leaf.strip.bending_MPa,
@@ -99,22 +90,12 @@ def _cam(mechanism: LeafMechanism, x: FloatArray) -> dict[str, float | str]:
 def _foot(foot: Pin | Leaf) -> dict[str, float | str]:
     if isinstance(foot, Pin):
         return {"kind": "pin", **asdict(foot), "stiffness_cN_mm": foot.stiffness_cN_mm}
-    return {
-        "kind": "leaf",
-        "material": foot.strip.name,
-        "thickness_mm": foot.thickness_mm,
-        "width_mm": foot.width_mm,
-        "length_mm": foot.length_mm,
-        "stiffness_cN_mm": foot.stiffness_cN_mm,
-    }
+    sizes = _sizes(foot, "thickness_mm width_mm length_mm stiffness_cN_mm")
+    return {"kind": "leaf", "material": foot.strip.name, **sizes}
 
 
-def notes_of(mechanism: Mechanism, target: Target) -> tuple[str, ...]:
+def notes_of(mechanism: Mechanism, target: Target) -> Iterator[str]:
     """Say what a maker should know that no size tells."""
-    return tuple(_notes(mechanism, target))
-
-
-def _notes(mechanism: Mechanism, target: Target) -> Iterator[str]:
     if isinstance(mechanism, DomeMechanism):
         strain = mechanism.dome.strain_ratio(target.displacement_mm)
         if strain > MOST_STRAIN_ratio:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.report import style
 from fdvv.units import FloatArray
+from fdvv_switch.section import Drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,23 +54,6 @@ class DesignedStroke:
                 raise ModelError(f"{name} must match displacement_mm")
         if (self.twin_mm is None) != (self.twin_cN is None):
             raise ModelError("what the twin gave needs places and forces")
-
-
-@dataclass(frozen=True, eq=False)
-class DrawnLine:
-    """One line of a drawing: what it belongs to, its points (n, 2) in mm, and whether it closes."""
-
-    layer: str
-    points_mm: FloatArray
-    closed: bool
-
-
-@dataclass(frozen=True, eq=False)
-class DrawnPart:
-    """A part as it is drawn."""
-
-    title: str
-    lines: tuple[DrawnLine, ...]
 
 
 @style.in_house_style
@@ -124,7 +109,7 @@ def _legend(fig: Any, strokes: Sequence[DesignedStroke], bound_cN: float) -> Non
 
 
 @style.in_house_style
-def plot_parts(parts: Sequence[DrawnPart]) -> Any:
+def plot_parts(parts: Sequence[Drawing]) -> Any:
     """Draw parts beside each other, each to its own scale, lengths in mm. Gives the (parts,) array of axes.
 
     Raises ModelError if there is none.
@@ -138,9 +123,9 @@ def plot_parts(parts: Sequence[DrawnPart]) -> Any:
     return row
 
 
-def _draw_part(ax: Axes, part: DrawnPart) -> None:
-    layers = list(dict.fromkeys(line.layer for line in part.lines))
-    for line in part.lines:
+def _draw_part(ax: Axes, part: Drawing) -> None:
+    layers = list(dict.fromkeys(line.layer for line in part.outlines))
+    for line in part.outlines:
         points = np.vstack([line.points_mm, line.points_mm[:1]]) if line.closed else line.points_mm
         colour = LAYER_COLOURS[layers.index(line.layer) % len(LAYER_COLOURS)]
         ax.plot(points[:, 0], points[:, 1], color=colour, linewidth=1.2)
@@ -149,7 +134,7 @@ def _draw_part(ax: Axes, part: DrawnPart) -> None:
     ax.set_xlabel("mm")
     if len(layers) > 1:
         handles = [
-            style.handle(name.replace("_", " ").lower(), color=LAYER_COLOURS[i % len(LAYER_COLOURS)])
-            for i, name in enumerate(layers)
+            style.handle(name.replace("_", " ").lower(), color=colour)
+            for name, colour in zip(layers, cycle(LAYER_COLOURS), strict=False)
         ]
         ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=len(layers))

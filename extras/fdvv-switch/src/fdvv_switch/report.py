@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from fdvv import __version__
 from fdvv.model.curve import Stroke
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
 from fdvv_switch.design_button import MechanismResult
 from fdvv_switch.facts import facts_of
-from fdvv_switch.figures import DesignedStroke, DrawnLine, DrawnPart, plot_mechanism, plot_parts
+from fdvv_switch.figures import DesignedStroke, plot_mechanism, plot_parts
 from fdvv_switch.residual import WANTED_cN
 from fdvv_switch.section import drawings_of
 from fdvv_switch.target import STOP_mm
@@ -22,13 +20,9 @@ def mechanism_report(result: MechanismResult) -> str:
     summary = f"{result.model.name}: {result.recommendation}."
     sections = [_curves(result), _parts(result), _tolerances(result), _kinds(result), _twin(result)]
     footer = f"fdvv {__version__}; {result.model.provenance.citation or result.model.provenance.source}"
-    return render_html(
-        f"A {result.mechanism.kind} for {result.model.name}",
-        summary,
-        sections,
-        footer,
-        simulated="no part was made; what was pressed is the twin",
-    )
+    title = f"A {result.mechanism.kind} for {result.model.name}"
+    simulated = "no part was made; what was pressed is the twin"
+    return render_html(title, summary, sections, footer, simulated=simulated)
 
 
 def designed_strokes(result: MechanismResult) -> tuple[DesignedStroke, ...]:
@@ -37,39 +31,20 @@ def designed_strokes(result: MechanismResult) -> tuple[DesignedStroke, ...]:
     x = target.displacement_mm
     press, release = result.mechanism.strokes_cN(x)
     slow = result.pressed[0] if result.pressed else None
-    at = None if slow is None else slow.displacement_mm
+    at, down, up = (slow.displacement_mm, slow.press_cN, slow.release_cN) if slow else (None, None, None)
+    lows, highs = (band.press_low_cN, band.release_low_cN), (band.press_high_cN, band.release_high_cN)
     return (
-        DesignedStroke(
-            *(Stroke.PRESS, x, target.press_cN, press, band.press_low_cN, band.press_high_cN, at),
-            None if slow is None else slow.press_cN,
-        ),
-        DesignedStroke(
-            *(Stroke.RELEASE, x, target.release_cN, release, band.release_low_cN, band.release_high_cN, at),
-            None if slow is None else slow.release_cN,
-        ),
-    )
-
-
-def drawn_parts(result: MechanismResult) -> tuple[DrawnPart, ...]:
-    """Return the parts as a figure takes them."""
-    return tuple(
-        DrawnPart(d.title, tuple(DrawnLine(o.layer, o.points_mm, o.closed) for o in d.outlines))
-        for d in drawings_of(result.mechanism)
+        DesignedStroke(Stroke.PRESS, x, target.press_cN, press, lows[0], highs[0], at, down),
+        DesignedStroke(Stroke.RELEASE, x, target.release_cN, release, lows[1], highs[1], at, up),
     )
 
 
 def _curves(result: MechanismResult) -> Section:
     grid = plot_mechanism(designed_strokes(result), WANTED_cN, result.model.name)
-    rows = [
-        (
-            name,
-            f"{miss.rms_cN:.2f}",
-            f"{miss.seated_rms_cN:.2f}",
-            f"{miss.largest_cN:+.1f}",
-            f"{miss.largest_mm:.2f}",
-        )
-        for name, miss in (("press", result.residual.press), ("release", result.residual.release))
-    ]
+    rows = []
+    for name, miss in (("press", result.residual.press), ("release", result.residual.release)):
+        errors = (f"{miss.rms_cN:.2f}", f"{miss.seated_rms_cN:.2f}", f"{miss.largest_cN:+.1f}")
+        rows.append((name, *errors, f"{miss.largest_mm:.2f}"))
     columns = ("stroke", "rms (cN)", "rms from 0.1 mm (cN)", "largest (cN)", "at (mm)")
     caption = f"Design less target, from 0 to {STOP_mm:g} mm before the bottom stop."
     sentences = tuple(f"{text[0].upper()}{text[1:]}." for text in result.residual.reasons)
@@ -78,16 +53,14 @@ def _curves(result: MechanismResult) -> Section:
 
 
 def _parts(result: MechanismResult) -> Section:
-    figure = figure_svg(plot_parts(drawn_parts(result))[0].figure, "Drawings of the parts")
-    rows = tuple(_rows(result))
+    figure = figure_svg(plot_parts(drawings_of(result.mechanism))[0].figure, "Drawings of the parts")
+    rows = tuple(
+        (part, name, value if isinstance(value, str) else f"{value:.4g}")
+        for part, facts in facts_of(result.mechanism, result.target).items()
+        for name, value in facts.items()
+    )
     notes = tuple(f"{note[0].upper()}{note[1:]}." for note in result.notes)
     return Section("Parts", notes, (figure,), (Table(("part", "size", "value"), rows),))
-
-
-def _rows(result: MechanismResult) -> Iterator[tuple[str, str, str]]:
-    for part, facts in facts_of(result.mechanism, result.target).items():
-        for name, value in facts.items():
-            yield part, name, value if isinstance(value, str) else f"{value:.4g}"
 
 
 def _tolerances(result: MechanismResult) -> Section:
@@ -120,12 +93,8 @@ def _kinds(result: MechanismResult) -> Section:
         )
         for k in result.kinds
     )
-    return Section(
-        "Kinds that were tried",
-        (),
-        (),
-        (Table(("kind", "press, rms (cN)", "release, rms (cN)", "why"), rows),),
-    )
+    columns = ("kind", "press, rms (cN)", "release, rms (cN)", "why")
+    return Section("Kinds that were tried", (), (), (Table(columns, rows),))
 
 
 def _twin(result: MechanismResult) -> Section:
@@ -142,9 +111,5 @@ def _twin(result: MechanismResult) -> Section:
 
 def _pressed_row(pressed: PressedDesign) -> tuple[str, str, str, str]:
     against = "the model at that speed" if pressed.own_speed else "the model's slow curves"
-    return (
-        f"{pressed.speed_mm_s:g}",
-        against,
-        f"{pressed.press.rms_cN:.2f}",
-        f"{pressed.release.rms_cN:.2f}",
-    )
+    press, release = (f"{miss.rms_cN:.2f}" for miss in (pressed.press, pressed.release))
+    return f"{pressed.speed_mm_s:g}", against, press, release

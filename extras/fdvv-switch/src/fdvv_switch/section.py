@@ -59,19 +59,18 @@ class Drawing:
 
 def drawings_of(mechanism: Mechanism) -> tuple[Drawing, ...]:
     """Return the drawings of every part of a mechanism."""
-    return tuple(_drawings(mechanism))
-
-
-def _drawings(mechanism: Mechanism) -> Iterator[Drawing]:
     if isinstance(mechanism, DomeMechanism):
-        yield Drawing("dome", "dome, unloaded, section", tuple(_dome(mechanism)))
-        if not isinstance(mechanism.foot, Pin):
-            yield Drawing("foot", "leaf under the dome, flat", tuple(_strip("FOOT", mechanism.foot, False)))
-        return
-    yield Drawing("spring", "spring, built in, section", tuple(_coil(mechanism.coil)))
-    if isinstance(mechanism, LeafMechanism):
-        yield Drawing("cam", "cam of the slider", tuple(_cam(mechanism)))
-        yield Drawing("leaf", "leaf and fixed contact, flat", tuple(_strip("LEAF", mechanism.leaf, True)))
+        dome = Drawing("dome", "dome, unloaded, section", tuple(_dome(mechanism)))
+        if isinstance(mechanism.foot, Pin):
+            return (dome,)
+        foot = tuple(_strip("FOOT", mechanism.foot, False))
+        return dome, Drawing("foot", "leaf under the dome, flat", foot)
+    spring = Drawing("spring", "spring, built in, section", tuple(_coil(mechanism.coil)))
+    if not isinstance(mechanism, LeafMechanism):
+        return (spring,)
+    leaf = tuple(_strip("LEAF", mechanism.leaf, True))
+    cam = Drawing("cam", "cam of the slider", tuple(_cam(mechanism)))
+    return spring, cam, Drawing("leaf", "leaf and fixed contact, flat", leaf)
 
 
 def cam_points_mm(mechanism: LeafMechanism) -> FloatArray:

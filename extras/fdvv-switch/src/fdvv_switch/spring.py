@@ -56,9 +56,7 @@ def design_spring(target: Target, making: Making) -> SpringMechanism:
     x = target.displacement_mm
 
     def miss(p: FloatArray) -> FloatArray:
-        spring = p[1] * (p[0] + x)
-        press, release = Guide(p[2], p[3], p[4]).strokes_cN(x, spring, spring)
-        return np.concatenate([press - target.press_cN, release - target.release_cN])
+        return _miss(target, Guide(*p[2:]), p[1] * (p[0] + x))
 
     line = np.polynomial.Polynomial.fit(x, target.middle_cN, 1).convert().coef
     low, high = coil_bounds(making)
@@ -66,18 +64,13 @@ def design_spring(target: Target, making: Making) -> SpringMechanism:
     start = np.array([max(float(line[0]), 0.0) / rate, rate, *GUIDE_START])
     p, _ = solve(miss, start, np.array([*low, *GUIDE_LOW]), np.array([*high, *GUIDE_HIGH]))
     coil = choose_coil(p[0] * p[1], p[1], target.travel_mm, making.envelope, making.wire)
-    return SpringMechanism(coil, guide_around(target, coil, Guide(p[2], p[3], p[4])))
-
-
-def guide_around(target: Target, coil: Coil, guide: Guide) -> Guide:
-    """Find the guide anew once the coil has its round sizes."""
-    x = target.displacement_mm
+    # the coil now has round sizes: the guide is found anew around it
     spring = coil.preload_cN + coil.rate_cN_mm * x
+    bounds = np.array(GUIDE_LOW), np.array(GUIDE_HIGH)
+    friction, _ = solve(lambda p: _miss(target, Guide(*p), spring), p[2:], *bounds)
+    return SpringMechanism(coil, Guide(*map(float, friction)).rounded())
 
-    def miss(p: FloatArray) -> FloatArray:
-        press, release = Guide(p[0], p[1], p[2]).strokes_cN(x, spring, spring)
-        return np.concatenate([press - target.press_cN, release - target.release_cN])
 
-    start = np.array([guide.drag_cN, guide.load_ratio, guide.seat_mm])
-    p, _ = solve(miss, start, np.array(GUIDE_LOW), np.array(GUIDE_HIGH))
-    return Guide(float(p[0]), float(p[1]), float(p[2])).rounded()
+def _miss(target: Target, guide: Guide, spring_cN: FloatArray) -> FloatArray:
+    press, release = guide.strokes_cN(target.displacement_mm, spring_cN, spring_cN)
+    return np.concatenate([press - target.press_cN, release - target.release_cN])
