@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from tests.support.held import swings_held
 from tests.support.rig_truth import draw_fast_rig, rig_truth
+from tests.support.table_press import simulate
 
 from fdvv.compensation.feasibility.limits import RigLimits, minimum_jerk, needed_cN
 from fdvv.compensation.feasibility.stability import (
@@ -44,7 +45,6 @@ from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.settings import settings_of
-from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
 
 SEEDS = range(400, 420)

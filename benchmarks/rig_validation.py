@@ -13,6 +13,7 @@ from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
 from tests.support.felt import felt, ways
 from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
 from tests.support.reference.reference import reference_simulate
+from tests.support.table_press import simulate
 
 from benchmarks.rig_vibration import VELOCITIES_mm_s
 from fdvv.model.file import load_builtin
@@ -24,7 +25,6 @@ from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil
-from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)

@@ -15,6 +15,7 @@ from functools import partial
 
 import numpy as np
 from tests.support.reference.reference import reference_simulate
+from tests.support.table_press import simulate
 
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
@@ -25,7 +26,7 @@ from fdvv.twin.noise import draw_noise, silence
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Exciter
-from fdvv.twin.simulate import simulate, simulate_program
+from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm
 

@@ -11,7 +11,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.noise import silence
 from fdvv.twin.rig import Rig
-from fdvv.twin.simulate import simulate
+from tests.support.table_press import simulate
 
 NUDGE_s = 0.02
 """The finger comes so quickly that the cap arrives with a swing."""

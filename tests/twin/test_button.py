@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from fdvv.errors import ModelError
 from fdvv.twin.button import ButtonPhysics, Curve, Housing, Leaf
-from fdvv.twin.draw import draw_button, draw_finger
+from fdvv.twin.draw import draw_finger
 from fdvv.twin.files import button_names, load_button
 from fdvv.twin.finger import Finger, Impedance
 from fdvv.twin.gesture import Gesture, plan
@@ -24,6 +24,7 @@ from fdvv.twin.simulate_button import (
     simulate_button,
 )
 from fdvv.units import FloatArray
+from tests.support.drawn_button import draw_button
 
 NAMES = button_names()
 SWITCHES = [name for name in NAMES if name.startswith("mx-")]

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from fdvv.twin.button import ButtonPhysics
-from fdvv.twin.draw import draw_button, draw_finger
+from fdvv.twin.draw import draw_finger
 from fdvv.twin.files import button_names, load_button
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import ButtonNoise, ButtonTrace, draw_button_noise, simulate_button
 from fdvv.units import FloatArray
+from tests.support.drawn_button import draw_button
 from tests.support.reference.button import reference_button
 
 Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor | None]

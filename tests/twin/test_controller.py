@@ -15,8 +15,8 @@ from fdvv.twin.gesture import plan
 from fdvv.twin.noise import draw_noise, silence
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_kernel import grid_of
-from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
+from tests.support.table_press import simulate
 
 from .conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of
 

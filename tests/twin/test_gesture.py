@@ -15,7 +15,7 @@ from fdvv.twin.image import image_of
 from fdvv.twin.noise import Effort, draw_noise, silence
 from fdvv.twin.pace import mean_speed_mm_s, solve_program_pace
 from fdvv.twin.rig import Rig
-from fdvv.twin.simulate import simulate
+from tests.support.table_press import simulate
 
 
 def test_a_person_without_variation_presses_as_planned() -> None:

@@ -18,8 +18,8 @@ from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
 from fdvv.twin.noise import draw_ticks, silence
 from fdvv.twin.plant import LIFTED_m
 from fdvv.twin.rig import Rig
-from fdvv.twin.simulate import simulate
 from fdvv.units import mm_from_m
+from tests.support.table_press import simulate
 
 LIFTED_mm = float(mm_from_m(LIFTED_m))
 

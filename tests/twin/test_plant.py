@@ -17,7 +17,7 @@ from fdvv.twin.noise import settle_ticks, silence
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.settings import settings_of
-from fdvv.twin.simulate import simulate
+from tests.support.table_press import simulate
 
 
 def test_a_board_that_runs_the_core_beside_the_plant_gives_the_same_press_to_the_bit(

@@ -16,9 +16,9 @@ from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Coil, Mover
-from fdvv.twin.simulate import simulate
 from fdvv.units import FloatArray
 from tests.support.reference.reference import reference_simulate
+from tests.support.table_press import simulate
 
 
 def compare(

@@ -11,7 +11,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.noise import draw_noise
 from fdvv.twin.rig import Rig
-from fdvv.twin.simulate import simulate
+from tests.support.table_press import simulate
 
 
 def test_presses_on_several_threads_are_those_of_one_to_the_bit(tactile: ForceSurface) -> None:

@@ -80,15 +80,9 @@ def request_frame(message: Message, sequence: int, body: Record | None = None) -
     if type(body) is not (expected or type(None)):
         named = expected.__name__ if expected else "no body"
         raise ModelError(f"{message.name.lower()} takes {named}, got {type(body).__name__}")
-    return Frame(message, sequence, _payload(body))
-
-
-def _payload(body: Record | None) -> bytes:
-    if body is None:
-        return b""
-    packed = body.pack()
+    payload = b"" if body is None else body.pack()
     # of a data message only the bytes that are there are sent
-    return packed[: 4 + body.count] if isinstance(body, DataRequest) else packed
+    return Frame(message, sequence, payload[: 4 + body.count] if isinstance(body, DataRequest) else payload)
 
 
 def data_request(offset: int, piece: bytes) -> DataRequest:
@@ -104,15 +98,10 @@ def read_reply(frame: Frame) -> tuple[Message, Record | None]:
         message = Message(frame.message - REPLY)
     except ValueError:
         raise ModelError(f"message {frame.message:#04x} is unknown") from None
-    return message, _read(REPLIES.get(message), frame.payload)
-
-
-def _read(kind: type[Record] | None, payload: bytes) -> Record | None:
-    if kind is None:
-        if payload:
-            raise ModelError(f"a message without payload has {len(payload)} bytes")
-        return None
-    return kind.unpack(payload)
+    kind = REPLIES.get(message)
+    if kind is None and frame.payload:
+        raise ModelError(f"a message without payload has {len(frame.payload)} bytes")
+    return message, kind.unpack(frame.payload) if kind else None
 
 
 def read_notice(frame: Frame) -> tuple[RecordsRequest | FaultedRequest | KeyRequest, bytes]:

@@ -113,6 +113,15 @@ class Housing(Section):
     )
 
 
+def _hold(record: object, name: str, fewest: int, rule: str) -> None:
+    """Make a field an array that cannot be written; ModelError unless it is a finite column of so many."""
+    column = np.array(getattr(record, name), dtype=np.float64)
+    if column.ndim != 1 or column.size < fewest or not np.isfinite(column).all():
+        raise ModelError(f"{name} must {rule}")
+    column.flags.writeable = False
+    object.__setattr__(record, name, column)
+
+
 @dataclass(frozen=True, eq=False)
 class BuiltCam:
     """Coil, cam and friction of a leaf switch as it is built, in place of what its slow curves would give.
@@ -133,11 +142,7 @@ class BuiltCam:
 
     def __post_init__(self) -> None:
         for name in BUILT:
-            column = np.array(getattr(self, name), dtype=np.float64)
-            if column.ndim != 1 or not np.isfinite(column).all():
-                raise ModelError(f"{name} must be one column of finite numbers")
-            column.flags.writeable = False
-            object.__setattr__(self, name, column)
+            _hold(self, name, 0, "be one column of finite numbers")
         if len({getattr(self, name).size for name in BUILT}) != 1:
             raise ModelError(f"{', '.join(BUILT)} must be equally long")
         if not self.preload_N > 0 or min(self.rail_N.min(), self.friction_ratio.min()) < 0:
@@ -169,11 +174,7 @@ class ButtonPhysics:
 
     def __post_init__(self) -> None:
         for name in ("press_N", "release_N"):
-            force = np.array(getattr(self, name), dtype=np.float64)
-            if force.ndim != 1 or force.size < FEWEST_FORCES or not np.isfinite(force).all():
-                raise ModelError(f"{name} must hold at least {FEWEST_FORCES} finite forces")
-            force.flags.writeable = False
-            object.__setattr__(self, name, force)
+            _hold(self, name, FEWEST_FORCES, f"hold at least {FEWEST_FORCES} finite forces")
         if self.press_N.size != self.release_N.size:
             sizes = f"{self.press_N.size} and {self.release_N.size}"
             raise ModelError(f"press_N and release_N must be equally long, got {sizes}")

@@ -1,14 +1,12 @@
-"""Random rigs, fingers and units of a button, over the plausible ranges of their parameters."""
+"""Random rigs and fingers, over the plausible ranges of their parameters."""
 
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
-from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.finger import Finger
 from fdvv.twin.quantity import About, about
 from fdvv.twin.rig import Rig
@@ -56,19 +54,3 @@ def _draw(known: About, whole: bool, random: np.random.Generator) -> float:
     assert known.plausible is not None  # held by _uncertain
     low, high = known.plausible
     return int(random.integers(int(low), int(high), endpoint=True)) if whole else random.uniform(low, high)
-
-
-def draw_button(button: ButtonPhysics, random: np.random.Generator) -> ButtonPhysics:
-    """Draw another unit of a button: every assumed quantity uniform over its plausible range.
-
-    What the curves say (stops, contact, spacing) stays; their force as a whole is scaled. Words stay.
-    """
-    scaled = draw_section(button.curve, random).force_ratio
-    return replace(
-        button,
-        curve=replace(button.curve, force_ratio=scaled),
-        slider=draw_section(button.slider, random),
-        leaf=draw_section(button.leaf, random),
-        dome=draw_section(button.dome, random),
-        housing=draw_section(button.housing, random),
-    )

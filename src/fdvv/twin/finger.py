@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields, replace
 
 from fdvv.errors import ModelError
-from fdvv.twin.quantity import Section, quantity
+from fdvv.twin.quantity import Section, quantity, setting
 
 H_H = "Hajian & Howe 1997, recalled"
 P_H = "Pawluk & Howe 1999, values assumed"
@@ -48,13 +48,8 @@ class FingerPad(Section):
 class PressVariability(Section):
     """How a person presses, and how much each press differs; a spread is one standard deviation."""
 
-    lift_m: float = quantity(
-        0.0,
-        "height of the referent above the cap before a press, 0: resting",
-        "m",
-        (0.0, 0.008),
-        (0.0, 0.03),
-        chosen=True,
+    lift_m: float = setting(
+        0.0, "height of the referent above the cap before a press, 0: resting", "m", (0.0, 0.008), (0.0, 0.03)
     )
     rest_N: float = quantity(
         0.1, "force of a finger that rests on the cap (lift 0)", "N", (0.05, 0.3), (0.0, 1.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,18 +102,10 @@ def _grid(surface: ForceSurface) -> tuple[int, int, int]:
 
 def _error(surface: ForceSurface, x: FloatArray, held: list[FloatArray]) -> float:
     """Compare at the places of both grids, where the difference of two broken lines is largest."""
-    inside = x[(x >= surface.displacement_mm[0]) & (x <= surface.displacement_mm[-1])]
-    places = np.concatenate([inside, surface.displacement_mm])
-    pairs = [(surface.press_cN, held[0]), (surface.release_cN, held[1])]
-    return max(
-        float(
-            np.abs(
-                np.interp(places, surface.displacement_mm, a) - np.interp(places, x, b) / CN64_PER_cN
-            ).max()
-        )
-        for table, coarse in pairs
-        for a, b in zip(table, coarse, strict=True)
-    )
+    old = surface.displacement_mm
+    places = np.concatenate([x[(x >= old[0]) & (x <= old[-1])], old])
+    rows = zip(np.vstack([surface.press_cN, surface.release_cN]), np.vstack(held) / CN64_PER_cN, strict=True)
+    return max(float(np.abs(np.interp(places, old, a) - np.interp(places, x, b)).max()) for a, b in rows)
 
 
 def _pack(
@@ -144,22 +136,8 @@ def _pack(
 
 
 def _state(source: VelocitySource) -> State:
-    return State(
-        press_surface=0,
-        release_surface=1,
-        velocity_source=source,
-        key=0,
-        first_transition=0,
-        transitions=0,
-        enter_slot=NONE,
-        repeat_slot=NONE,
-        repeat_ms=0,
-        fade_ms=0,
-        bias_cN64=0,
-        bias_end_cN64=0,
-        bias_ms=0,
-        spare=0,
-    )
+    nothing = State.unpack(bytes(State.length_bytes()))
+    return replace(nothing, release_surface=1, velocity_source=source, enter_slot=NONE, repeat_slot=NONE)
 
 
 def _sealed(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:

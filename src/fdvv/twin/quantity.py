@@ -41,10 +41,15 @@ def quantity(
     plausible: tuple[float, float],
     bounds: tuple[float, float],
     source: str = "assumed",
-    chosen: bool = False,
 ) -> Any:
-    """Make a dataclass field for a number; chosen: by the builder, never drawn at random."""
-    known = About(text, unit, plausible, bounds, source, chosen=chosen)
+    """Make a dataclass field for a number that nobody knows quite."""
+    known = About(text, unit, plausible, bounds, source)
+    return dataclasses.field(default=default, metadata={"about": known})
+
+
+def setting(default: float, *about: Any) -> Any:
+    """Make a dataclass field, as quantity() does, for a number that the builder chooses."""
+    known = dataclasses.replace(About(*about), chosen=True)
     return dataclasses.field(default=default, metadata={"about": known})
 
 
@@ -74,7 +79,7 @@ def check_value(name: str, value: object, known: About, kind: type[int | float])
 
 @dataclass(frozen=True)
 class Section:
-    """Parameters that belong together, all made by quantity() and choice().
+    """Parameters that belong together, all made by quantity(), setting() and choice().
 
     Raises ModelError on the first that is out of bounds; numbers are then int or float as declared.
     """

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from fdvv.errors import ModelError
-from fdvv.twin.quantity import Section, choice, quantity
+from fdvv.twin.quantity import Section, choice, quantity, setting
 from fdvv.twin.rig_moves import Coil, Exciter, Mover, Servo, Stops
 
 
@@ -23,17 +23,13 @@ class PositionSensor(Section):
     linearity_ratio: float = quantity(
         0.0025, "largest bend of the scale, of half the range", "", (0.0, 0.0025), (0.0, 0.1), "class"
     )
-    range_m: float = quantity(
-        0.0127, "full range", "m", (0.0127, 0.0127), (0.001, 0.016), "class", chosen=True
-    )
-    converter_bits: int = quantity(12, "bits over the range", "", (10, 12), (8, 16), "rule", chosen=True)
+    range_m: float = setting(0.0127, "full range", "m", (0.0127, 0.0127), (0.001, 0.016), "class")
+    converter_bits: int = setting(12, "bits over the range", "", (10, 12), (8, 16), "rule")
     converter_noise_ratio: float = quantity(
         0.5, "noise per read, rms, of one step of the converter", "", (0.3, 2.0), (0.0, 20.0)
     )
-    reads: int = quantity(
-        25, "reads averaged in a burst before each tick", "", (1, 25), (1, 64), "paper", chosen=True
-    )
-    burst_s: float = quantity(2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05), chosen=True)
+    reads: int = setting(25, "reads averaged in a burst before each tick", "", (1, 25), (1, 64), "paper")
+    burst_s: float = setting(2.5e-4, "length of the burst", "s", (5e-5, 2.5e-4), (0.0, 0.05))
 
 
 @dataclass(frozen=True)
@@ -57,12 +53,8 @@ class ForceSensor(Section):
         (0.0, 0.06),
         (0.0, 1.0),
     )
-    full_scale_N: float = quantity(
-        9.81, "range, both signs", "N", (4.45, 9.81), (0.1, 1000.0), "class", chosen=True
-    )
-    converter_bits: int = quantity(
-        10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "class", chosen=True
-    )
+    full_scale_N: float = setting(9.81, "range, both signs", "N", (4.45, 9.81), (0.1, 1000.0), "class")
+    converter_bits: int = setting(10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "class")
 
 
 @dataclass(frozen=True)
@@ -70,74 +62,49 @@ class KeycapSensor(Section):
     """An optional sensor in the cap that the controller reads: the contact's force, or its acceleration."""
 
     kind: str = choice("none", "what it feels", ("none", "force", "acceleration"))
-    full_scale_N: float = quantity(
-        4.45, "range of the force, both signs", "N", (4.45, 4.45), (0.1, 100.0), "class", chosen=True
+    full_scale_N: float = setting(
+        4.45, "range of the force, both signs", "N", (4.45, 4.45), (0.1, 100.0), "class"
     )
-    full_scale_m_s2: float = quantity(
-        80.0,
-        "range of the acceleration, both signs",
-        "m/s2",
-        (20.0, 160.0),
-        (1.0, 5000.0),
-        "class",
-        chosen=True,
+    full_scale_m_s2: float = setting(
+        80.0, "range of the acceleration, both signs", "m/s2", (20.0, 160.0), (1.0, 5000.0), "class"
     )
     bandwidth_Hz: float = quantity(2000.0, "first-order filter", "Hz", (500.0, 4000.0), (10.0, 8000.0))
     noise_ratio: float = quantity(3e-4, "noise in proportion to the range, rms", "", (1e-4, 1e-3), (0.0, 0.1))
-    converter_bits: int = quantity(
-        12, "bits over both signs together", "", (10, 12), (8, 16), "class", chosen=True
-    )
+    converter_bits: int = setting(12, "bits over both signs together", "", (10, 12), (8, 16), "class")
 
 
 @dataclass(frozen=True)
 class Controller(Section):
     """The loop: average, direction, speed, table, command. Run by the firmware's own core (_settings.py)."""
 
-    tick_s: float = quantity(
-        0.001, "period of the loop", "s", (0.0001, 0.001), (1e-4, 0.001), "paper", chosen=True
-    )
-    compute_s: float = quantity(
-        3e-4, "from the sample to the new drive", "s", (1e-5, 3e-4), (0.0, 0.02), "paper", chosen=True
+    tick_s: float = setting(0.001, "period of the loop", "s", (0.0001, 0.001), (1e-4, 0.001), "paper")
+    compute_s: float = setting(
+        3e-4, "from the sample to the new drive", "s", (1e-5, 3e-4), (0.0, 0.02), "paper"
     )
     averaging: str = choice("burst", "what the 25-sample average runs over", ("burst", "sliding"), "paper")
-    average_ticks: int = quantity(
-        25, "ticks of the sliding average", "", (1, 25), (1, 32), "paper", chosen=True
+    average_ticks: int = setting(25, "ticks of the sliding average", "", (1, 25), (1, 32), "paper")
+    window_start_m: float = setting(
+        5e-4, "where the search for speed begins", "m", (4e-4, 6e-4), (5e-5, 0.003), "paper"
     )
-    window_start_m: float = quantity(
-        5e-4, "where the search for speed begins", "m", (4e-4, 6e-4), (5e-5, 0.003), "paper", chosen=True
+    window_end_m: float = setting(1e-3, "where speed is decided", "m", (9e-4, 1.2e-3), (1e-4, 0.004), "paper")
+    fewest_samples: int = setting(
+        3, "samples a speed needs; the window widens backwards to hold them", "", (3, 5), (3, 16), "paper"
     )
-    window_end_m: float = quantity(
-        1e-3, "where speed is decided", "m", (9e-4, 1.2e-3), (1e-4, 0.004), "paper", chosen=True
-    )
-    fewest_samples: int = quantity(
-        3,
-        "samples a speed needs; the window widens backwards to hold them",
-        "",
-        (3, 5),
-        (3, 16),
-        "paper",
-        chosen=True,
-    )
-    velocity_scale: float = quantity(
+    velocity_scale: float = setting(
         1.2,
         "mean speed of a stroke per speed found in the window; 1 is the paper's word",
         "",
         (0.7, 1.5),
         (0.25, 4.0),
         "calibrated on this twin, simulated",
-        chosen=True,
     )
-    reversal_m: float = quantity(
-        1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (5e-6, 0.001), chosen=True
+    reversal_m: float = setting(
+        1e-4, "way back that turns press into release", "m", (5e-5, 3e-4), (5e-6, 0.001)
     )
-    rearm_m: float = quantity(
-        1e-4, "height at which a new press begins", "m", (5e-5, 3e-4), (5e-6, 0.001), chosen=True
-    )
-    force_limit_N: float = quantity(
-        4.4, "largest command, both signs", "N", (4.4, 4.4), (0.01, 5.0), "paper", chosen=True
-    )
-    slew_N: float = quantity(
-        5.0, "largest change of the command from tick to tick", "N", (0.5, 5.0), (0.01, 5.0), chosen=True
+    rearm_m: float = setting(1e-4, "height at which a new press begins", "m", (5e-5, 3e-4), (5e-6, 0.001))
+    force_limit_N: float = setting(4.4, "largest command, both signs", "N", (4.4, 4.4), (0.01, 5.0), "paper")
+    slew_N: float = setting(
+        5.0, "largest change of the command from tick to tick", "N", (0.5, 5.0), (0.01, 5.0)
     )
     gain_error_ratio: float = quantity(
         0.0, "error of the scale from force to drive", "", (-0.05, 0.05), (-0.5, 0.5)

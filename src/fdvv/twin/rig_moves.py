@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fdvv.errors import ModelError
-from fdvv.twin.quantity import Section, choice, quantity
+from fdvv.twin.quantity import Section, choice, quantity, setting
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,7 @@ class Coil(Section):
     centre_m: float = quantity(
         0.0031, "displacement of the full force constant", "m", (0.002, 0.0042), (-0.02, 0.02)
     )
-    stroke_m: float = quantity(
-        0.0062, "usable stroke", "m", (0.0062, 0.0127), (0.001, 0.05), "paper", chosen=True
-    )
+    stroke_m: float = setting(0.0062, "usable stroke", "m", (0.0062, 0.0127), (0.001, 0.05), "paper")
     resistance_ohm: float = quantity(2.9, "resistance when cold", "ohm", (2.5, 8.0), (0.05, 100.0), "class")
     bridge_ohm: float = quantity(
         0.2, "resistance of the bridge and its wires", "ohm", (0.1, 0.5), (0.0, 10.0)
@@ -51,15 +49,13 @@ class Coil(Section):
     )
     heat_K_W: float = quantity(12.0, "coil to air, warming per power", "K/W", (8.0, 20.0), (0.1, 200.0))
     heat_s: float = quantity(60.0, "its time constant", "s", (30.0, 120.0), (0.1, 600.0))
-    supply_V: float = quantity(
-        12.0, "largest voltage, both signs", "V", (5.0, 24.0), (3.0, 36.0), chosen=True
-    )
+    supply_V: float = setting(12.0, "largest voltage, both signs", "V", (5.0, 24.0), (3.0, 36.0))
     bipolar: str = choice("yes", "whether the bridge can pull", ("yes", "no"))
     current_loop_s: float = quantity(
         1e-4, "time constant of the current loop, if drive is current", "s", (5e-5, 5e-4), (3e-5, 0.1)
     )
-    command_bits: int = quantity(
-        11, "bits of the command over the supply (0: continuous)", "", (8, 12), (0, 15), "rule", chosen=True
+    command_bits: int = setting(
+        11, "bits of the command over the supply (0: continuous)", "", (8, 12), (0, 15), "rule"
     )
 
     def __post_init__(self) -> None:
@@ -81,14 +77,8 @@ class Mover(Section):
     """What moves with the cap: coil, shaft, cap, sensor core, exciter."""
 
     mass_kg: float = quantity(0.02, "moving mass", "kg", (0.012, 0.04), (5e-4, 1.0), "class, assumed")
-    gravity_m_s2: float = quantity(
-        9.81,
-        "gravity along the stroke: 9.81 upright, 0 lying",
-        "m/s2",
-        (0.0, 9.81),
-        (-9.9, 9.9),
-        "rule",
-        chosen=True,
+    gravity_m_s2: float = setting(
+        9.81, "gravity along the stroke: 9.81 upright, 0 lying", "m/s2", (0.0, 9.81), (-9.9, 9.9), "rule"
     )
     coulomb_N: float = quantity(0.03, "friction of the bushing", "N", (0.01, 0.1), (0.0, 5.0))
     presliding_m: float = quantity(3e-6, "elastic way before it slips", "m", (1e-6, 1e-5), (1e-7, 1e-3))
@@ -107,23 +97,17 @@ class Stops(Section):
     )
     top_stiffness_N_m: float = quantity(2e4, "stiffness of the top stop", "N/m", (1e4, 3e4), (100.0, 5e5))
     top_loss_s_m: float = quantity(5.0, "alpha of the top stop, felted", "s/m", (0.3, 10.0), (0.0, 50.0))
-    travel_limit_m: float = quantity(
-        0.0062, "deepest stop", "m", (0.0062, 0.0064), (0.0005, 0.0064), "paper", chosen=True
-    )
+    travel_limit_m: float = setting(0.0062, "deepest stop", "m", (0.0062, 0.0064), (0.0005, 0.0064), "paper")
 
 
 @dataclass(frozen=True)
 class Servo(Section):
     """The servo that sets the bottom stop; calibrated when it last stood still, with its play taken up."""
 
-    pulse_zero_us: float = quantity(
-        1000.0, "pulse at travel 0", "us", (500.0, 1500.0), (400.0, 2600.0), chosen=True
-    )
-    pulse_us_mm: float = quantity(
-        150.0, "pulse per travel", "us/mm", (100.0, 250.0), (10.0, 1000.0), chosen=True
-    )
-    frame_s: float = quantity(
-        0.02, "period of the pulses it looks at", "s", (0.003, 0.02), (1e-3, 0.1), "class", chosen=True
+    pulse_zero_us: float = setting(1000.0, "pulse at travel 0", "us", (500.0, 1500.0), (400.0, 2600.0))
+    pulse_us_mm: float = setting(150.0, "pulse per travel", "us/mm", (100.0, 250.0), (10.0, 1000.0))
+    frame_s: float = setting(
+        0.02, "period of the pulses it looks at", "s", (0.003, 0.02), (1e-3, 0.1), "class"
     )
     deadband_us: float = quantity(
         7.0, "change of the pulse that it ignores", "us", (5.0, 10.0), (0.0, 100.0), "class"
@@ -150,22 +134,17 @@ class Exciter(Section):
     motor_N_A: float = quantity(2.0, "force per current", "N/A", (1.5, 3.0), (0.0, 20.0))
     resistance_ohm: float = quantity(7.3, "of its coil", "ohm", (6.8, 7.8), (0.5, 100.0), "class")
     inductance_H: float = quantity(5e-5, "of its coil", "H", (3e-5, 2e-4), (1e-6, 5e-3))
-    drive_V: float = quantity(
-        2.5, "voltage at full scale of the converter", "V", (1.0, 5.0), (0.0, 20.0), chosen=True
-    )
-    clip_V: float = quantity(
-        2.5, "largest voltage of the amplifier", "V", (2.5, 2.5), (0.1, 20.0), chosen=True
-    )
+    drive_V: float = setting(2.5, "voltage at full scale of the converter", "V", (1.0, 5.0), (0.0, 20.0))
+    clip_V: float = setting(2.5, "largest voltage of the amplifier", "V", (2.5, 2.5), (0.1, 20.0))
     filter_Hz: float = quantity(
         1e4, "low pass behind the converter", "Hz", (8e3, 1.2e4), (500.0, 3e4), "class"
     )
-    latency_s: float = quantity(
+    latency_s: float = setting(
         0.007,
         "command to first sample; a file on a card 7 ms, a synthesiser 0.2 ms",
         "s",
         (0.007, 0.007),
         (0.0, 0.1),
         "paper",
-        chosen=True,
     )
     jitter_s: float = quantity(0.001, "spread of that latency", "s", (5e-4, 2e-3), (0.0, 0.02))

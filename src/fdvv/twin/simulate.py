@@ -7,42 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Settings
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture
-from fdvv.twin.image import image_of
 from fdvv.twin.noise import Noise, count_ticks, settle_ticks
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import STEP_s, grid_of, plant_of, run
 from fdvv.twin.settings import settings_of
 from fdvv.twin.trace import Trace
-
-
-def simulate(
-    rig: Rig,
-    finger: Finger,
-    gesture: Gesture,
-    surface: ForceSurface,
-    travel_mm: float,
-    noise: Noise,
-    announced_mm_s: float,
-    step_s: float = STEP_s,
-    audit: bool = False,
-) -> Trace:
-    """Simulate one press on a table of force in compiled C.
-
-    surface : the command table (cN), which the controller reads at the displacement it senses.
-    travel_mm : where the bottom stop is set.
-    announced_mm_s : the speed that the controller takes for granted until it has found its own.
-    audit : also account for the energy of the press.
-
-    The controller is the firmware's own core; the table is rounded to what it holds. Raises ModelError if
-    durations of the rig are no multiples of the step, if the firmware cannot hold table or settings, or if
-    rig or finger are too stiff for the step. Safe to call from threads.
-    """
-    image = image_of(surface, travel_mm).image
-    return simulate_program(rig, finger, gesture, image, noise, announced_mm_s, step_s, audit)
 
 
 def simulate_program(
@@ -56,9 +28,15 @@ def simulate_program(
     audit: bool = False,
     settings: Settings | None = None,
 ) -> Trace:
-    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it), as simulate() does.
+    """Simulate one press on a checked program (an image as protocol/fdvv.toml has it) in compiled C.
 
+    announced_mm_s : the speed that the controller takes for granted until it has found its own.
+    audit : also account for the energy of the press.
     settings : of the firmware; settings_of(rig) if None.
+
+    The controller is the firmware's own core. Safe to call from threads. Raises ModelError if durations of
+    the rig are no multiples of the step, if the firmware cannot hold the settings, or if rig or finger are
+    too stiff for the step.
     """
     n = settle_ticks(rig) + count_ticks(rig, gesture)
     if noise.force_N.size != n:

@@ -28,8 +28,8 @@ from fdvv.twin.rig import ForceSensor
 from fdvv.twin.trace import BoolArray
 from fdvv.units import FloatArray, cN_from_N, m_from_mm, mm_from_m
 
-SETTLE_s = 0.02
-"""The press runs this long before the record starts: leaf and plate come to rest under the resting finger."""
+SETTLE_TICKS = 20
+"""Milliseconds before the record starts: leaf and plate come to rest under the resting finger."""
 BEYOND_mm = 0.1
 """The tester goes on beyond the bottom by this before it turns, as the kernel does; no row is taken there."""
 
@@ -48,11 +48,6 @@ class ButtonNoise:
     force_N: FloatArray
 
 
-def settle_button_ticks() -> int:
-    """Count the milliseconds before the record starts."""
-    return round(SETTLE_s / TICK_s)
-
-
 def button_ticks(gesture: Gesture) -> int:
     """Count the milliseconds of the record."""
     return int(np.ceil(gesture.duration_s / TICK_s))
@@ -61,7 +56,7 @@ def button_ticks(gesture: Gesture) -> int:
 def no_button_noise(gesture: Gesture) -> ButtonNoise:
     """Return no noise at all."""
     n = button_ticks(gesture)
-    return ButtonNoise(np.zeros(settle_button_ticks() + n + 1), np.zeros(n))
+    return ButtonNoise(np.zeros(SETTLE_TICKS + n + 1), np.zeros(n))
 
 
 def draw_button_noise(
@@ -69,7 +64,7 @@ def draw_button_noise(
 ) -> ButtonNoise:
     """Draw the noise of muscle and force sensor for one press."""
     n = button_ticks(gesture)
-    effort = Effort(finger.habit, TICK_s).draw(settle_button_ticks() + n + 1, random)
+    effort = Effort(finger.habit, TICK_s).draw(SETTLE_TICKS + n + 1, random)
     return ButtonNoise(effort, (sensor.noise_N if sensor else 0.0) * random.standard_normal(n))
 
 
@@ -154,10 +149,10 @@ def simulate_button(
 
     Raises ModelError if button or finger are too stiff for the step. Safe to call from threads.
     """
-    ticks, settle = button_ticks(gesture), settle_button_ticks()
+    ticks = button_ticks(gesture)
     per_tick, per_row = _whole(TICK_s / step_s), _whole(ROW_s / step_s)
     table = prepare(button).table
-    grid = ButtonGrid(settle, ticks, per_tick, per_row, len(table), int(audit))
+    grid = ButtonGrid(SETTLE_TICKS, ticks, per_tick, per_row, len(table), int(audit))
     plant = button_plant(button, finger, gesture, sensor, step_s=step_s)
     rows, switching = run_button(plant, grid, table, noise.effort_ratio, detour_m)
     if not np.isfinite(rows[:-1, -1]).all():

@@ -19,7 +19,7 @@ from fdvv.twin.cam import identify
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.simulate_button import ButtonNoise, button_ticks, settle_button_ticks
+from fdvv.twin.simulate_button import SETTLE_TICKS, ButtonNoise, button_ticks
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
 from tests.support.reference.plant import _hunt_crossley, _smooth_step
 
@@ -88,7 +88,7 @@ class _Plant:
     ) -> None:
         self.button, self.finger, self.gesture = button, finger, gesture
         self.sensor = sensor or BARE
-        ticks = np.arange(noise.effort_ratio.size) - settle_button_ticks()
+        ticks = np.arange(noise.effort_ratio.size) - SETTLE_TICKS
         self.effort = _Straight(np.asarray(TICK_s * ticks), noise.effort_ratio)
         detour = np.zeros(ticks.size) if detour_m is None else detour_m
         self.detour = _Straight(np.asarray(TICK_s * ticks), detour)
@@ -222,7 +222,7 @@ def reference_button(
     t = np.asarray(ROW_s * np.arange(rows))
     solution = solve_ivp(
         plant.rates,
-        (-settle_button_ticks() * TICK_s, float(t[-1])),
+        (-SETTLE_TICKS * TICK_s, float(t[-1])),
         plant.start(),
         method,
         t_eval=t,

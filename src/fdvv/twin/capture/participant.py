@@ -15,11 +15,11 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, depth_m, vary
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import (
+    SETTLE_TICKS,
     ButtonNoise,
     ButtonTrace,
     button_ticks,
     draw_button_noise,
-    settle_button_ticks,
     simulate_button,
 )
 from fdvv.units import FloatArray, m_from_mm, mm_from_m
@@ -188,8 +188,7 @@ def _tapped_twice(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray
 
 def _ticks_s(gesture: Gesture) -> FloatArray:
     """Return the times at which a detour is stated, those of settling included."""
-    settle = settle_button_ticks()
-    return np.asarray(TICK_s * (np.arange(settle + button_ticks(gesture) + 1) - settle))
+    return np.asarray(TICK_s * np.arange(-SETTLE_TICKS, button_ticks(gesture) + 1))
 
 
 def _smooth(part: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.twin.quantity import Section, quantity
+from fdvv.twin.quantity import Section, quantity, setting
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,7 @@ class CaptureRig(Section):
     force_zero_N: float = quantity(
         0.02, "where the force sensor's zero lies off what is stated, rms", "N", (0.0, 0.05), (0.0, 1.0)
     )
-    sound_Hz: float = quantity(
-        1000.0, "samples of the microphone", "Hz", (1000.0, 1e4), (100.0, 1e4), "paper", chosen=True
-    )
+    sound_Hz: float = setting(1000.0, "samples of the microphone", "Hz", (1000.0, 1e4), (100.0, 1e4), "paper")
     sound_V_s_m: float = quantity(
         2.0, "microphone, per speed of cap and plate", "V s/m", (1.0, 5.0), (0.0, 1e3)
     )
@@ -61,14 +59,13 @@ class CaptureRig(Section):
     sound_noise_V: float = quantity(0.01, "noise of the room, rms", "V", (0.005, 0.02), (0.0, 1.0))
     sound_range_V: float = quantity(3.3, "range of its converter", "V", (3.3, 5.0), (0.1, 100.0), "rule")
     sound_bits: int = quantity(10, "bits over the range (0: continuous)", "", (10, 12), (0, 24), "paper")
-    shake_Hz: float = quantity(
+    shake_Hz: float = setting(
         1e4,
         "samples of the accelerometer on the housing, 0: there is none",
         "Hz",
         (8e3, 1e4),
         (0.0, 1e4),
         "rule",
-        chosen=True,
     )
     shake_noise_m_s2: float = quantity(
         0.03, "its noise per sample, rms: 40 ug per root hertz", "m/s2", (0.02, 0.1), (0.0, 10.0), "class"
