@@ -18,13 +18,8 @@ RecordArray = np.ndarray[Any, np.dtype[np.void]]
 """Records of one kind, one for each tick (n,)."""
 INPUTS = np.dtype(
     [
-        ("time_us", "<u4"),
-        ("sum", "<u4"),
-        ("lowest", "<u2"),
-        ("highest", "<u2"),
-        ("elapsed_ticks", "<u2"),
-        ("supply_mV", "<u2"),
-        ("force_counts", "<u2"),
+        *((name, "<u4") for name in ("time_us", "sum")),
+        *((name, "<u2") for name in ("lowest", "highest", "elapsed_ticks", "supply_mV", "force_counts")),
         ("board", "u1"),
     ],
     align=True,
@@ -154,9 +149,8 @@ class Core:
 
     def fail(self, fault: Fault, value: int = 0, bound: int = 0) -> None:
         """Latch a fault found outside the tick."""
-        self._lib.fdvv_bridge_fault(
-            self._core, ctypes.c_uint8(fault), ctypes.c_int32(value), ctypes.c_int32(bound)
-        )
+        numbers = ctypes.c_int32(value), ctypes.c_int32(bound)
+        self._lib.fdvv_bridge_fault(self._core, ctypes.c_uint8(fault), *numbers)
 
     @property
     def address(self) -> ctypes.c_void_p:
@@ -195,13 +189,8 @@ class Core:
         """Run one tick per record of INPUTS; give as many of OUTPUTS. The host is heard always or never."""
         given = np.ascontiguousarray(inputs, INPUTS)
         outputs = np.zeros(given.size, OUTPUTS)
-        self._lib.fdvv_bridge_run(
-            self._core,
-            address(given),
-            address(outputs),
-            ctypes.c_int64(given.size),
-            ctypes.c_int32(host_heard),
-        )
+        count, heard = ctypes.c_int64(given.size), ctypes.c_int32(host_heard)
+        self._lib.fdvv_bridge_run(self._core, address(given), address(outputs), count, heard)
         return outputs
 
     def _checked(self, settings: Settings) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
@@ -215,15 +204,9 @@ class Core:
         if len(image) > IMAGE_BYTES:
             raise ModelError(f"an image has at most {IMAGE_BYTES} bytes, got {len(image)}")
         fresh, detail = words(image), np.zeros(1, np.uint16)
-        refusal = Refusal(
-            self._lib.fdvv_bridge_check_image(
-                self._core,
-                address(fresh),
-                ctypes.c_uint16(len(image)),
-                ctypes.c_uint32(int.from_bytes(image[4:8], "little")),
-                address(detail),
-            )
-        )
+        size, crc32 = ctypes.c_uint16(len(image)), ctypes.c_uint32(int.from_bytes(image[4:8], "little"))
+        found = self._lib.fdvv_bridge_check_image(self._core, address(fresh), size, crc32, address(detail))
+        refusal = Refusal(found)
         if refusal:
             raise ModelError(f"the firmware refuses the image: {refusal.name.lower()} at byte {detail[0]}")
         return fresh

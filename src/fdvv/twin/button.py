@@ -212,19 +212,14 @@ def button_of_model(model: FDVVModel, close_mm: float | None = None, seat_mm: fl
     if not all(model.of(stroke) for stroke in Stroke):
         raise ModelError(f"{model.name}: a real button needs curves of press and release")
     press_cN, release_cN = (_slowest_cN(model, stroke) for stroke in Stroke)
-    origin = model.provenance
+    origin, at_m = model.provenance, _metres(close)
     return ButtonPhysics(
         model.name,
         f"model {model.name}: {origin.source}. {origin.citation}",
         origin.licence,
         N_from_cN(press_cN),
         N_from_cN(np.maximum(release_cN, 0.0)),
-        Curve(
-            travel_m=_metres(model.travel_mm),
-            close_m=_metres(close),
-            open_m=_metres(close),
-            seat_m=_metres(seat_mm),
-        ),
+        Curve(travel_m=_metres(model.travel_mm), close_m=at_m, open_m=at_m, seat_m=_metres(seat_mm)),
     )
 
 

@@ -48,7 +48,7 @@ class ButtonGrid:
 
 
 @cache
-def _library() -> ctypes.CDLL:
+def button_library() -> ctypes.CDLL:
     """Load the library; raise ModelError if it was built from other structures than the headers say."""
     lib, sizes = library(), (ctypes.c_int64(), ctypes.c_int64())
     lib.fdvv_button_sizes(*map(ctypes.byref, sizes))
@@ -81,23 +81,9 @@ def run_button(
     effort = np.ascontiguousarray(effort_ratio)
     counts = fill("fdvv_button_grid", vars(grid))
     pointers = [address(array) for array in (table, effort, detour, rows, switching)]
-    if _library().fdvv_button_press(ctypes.byref(plant), ctypes.byref(counts), *pointers):
+    if button_library().fdvv_button_press(ctypes.byref(plant), ctypes.byref(counts), *pointers):
         raise ModelError(f"the compiled button cannot step this press: {grid}")
     return rows, switching
-
-
-def run_probe(
-    plant: ctypes.Structure, table: FloatArray, stroke_m: float, speed_m_s: float, count: int
-) -> FloatArray:
-    """Move the slider down and back in C: (2 count, 2) displacement m and force N."""
-    if not (math.isfinite(stroke_m) and math.isfinite(speed_m_s)):
-        raise ModelError(f"a probe needs a finite stroke and speed, got {stroke_m} m and {speed_m_s} m/s")
-    rows = np.empty((2 * count, 2))
-    if _library().fdvv_button_probe(
-        ctypes.byref(plant), len(table), address(table), stroke_m, speed_m_s, count, address(rows)
-    ):
-        raise ModelError(f"the compiled button cannot be probed at {speed_m_s} m/s in {count} rows")
-    return rows
 
 
 class Prepared(NamedTuple):

@@ -67,35 +67,30 @@ def identify(button: ButtonPhysics) -> Cam:
 
 
 def _curves(button: ButtonPhysics) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return x with margins, the middle of the two curves and half their difference; ends held level."""
-    from scipy.interpolate import PchipInterpolator
-
-    curve = button.curve
-    given_m = curve.step_m * np.arange(button.press_N.size)
-    x = _places(curve.travel_m)
-    inside = np.clip(x, 0.0, given_m[-1])
+    """Return x with margins, the middle of the two curves and half their difference."""
+    x = _places(button.curve.travel_m)
     press_N, release_N = (
-        np.asarray(curve.force_ratio * PchipInterpolator(given_m, force)(inside))
-        for force in (button.press_N, button.release_N)
+        button.curve.force_ratio * _laid(button, force, x) for force in (button.press_N, button.release_N)
     )
     # curves that cross show the bench's play, not friction that helps
     return x, 0.5 * (press_N + release_N), np.maximum(0.5 * (press_N - release_N), 0.0)
 
 
 def _built(button: ButtonPhysics, cam: BuiltCam) -> Cam:
-    """Lay a built cam over the table's places; its ends are held level."""
-    from scipy.interpolate import PchipInterpolator
-
-    given_m = button.curve.step_m * np.arange(cam.height_m.size)
-    x = _places(button.curve.travel_m)
-    inside = np.clip(x, 0.0, given_m[-1])
-    elastic_N, height_m, rail_N, ratio = (
-        np.asarray(PchipInterpolator(given_m, getattr(cam, name))(inside)) for name in BUILT
-    )
-    leaf = button.leaf
+    """Lay a built cam over the table's places."""
+    x, leaf = _places(button.curve.travel_m), button.leaf
+    elastic_N, height_m, rail_N, ratio = (_laid(button, getattr(cam, name), x) for name in BUILT)
     stiffness = np.where(height_m >= 0.0, 0.0, leaf.fixed_stiffness_N_m) + leaf.stiffness_N_m
     normal_N = np.maximum(cam.preload_N + stiffness * height_m, 0.0)
     return Cam(x, elastic_N, height_m, normal_N, rail_N, ratio, cam.preload_N)
+
+
+def _laid(button: ButtonPhysics, column: FloatArray, x: FloatArray) -> FloatArray:
+    """Interpolate a column that is given at the places of press_N; its ends are held level."""
+    from scipy.interpolate import PchipInterpolator
+
+    given_m = button.curve.step_m * np.arange(column.size)
+    return np.asarray(PchipInterpolator(given_m, column)(np.clip(x, 0.0, given_m[-1])))
 
 
 def _places(travel_m: float) -> FloatArray:

@@ -54,16 +54,9 @@ def plan(finger: Finger, travel_m: float, press_s: float) -> Gesture:
     """Plan the press of a person who never varies; press and release last equally long."""
     habit, stiffness = finger.habit, finger.impedance.stiffness_N_m
     start = -habit.lift_m if habit.lift_m else depth_m(finger, habit.rest_N, stiffness)
-    return Gesture(
-        start,
-        travel_m + depth_m(finger, habit.push_N, stiffness),
-        habit.onset_s,
-        press_s,
-        habit.dwell_s,
-        press_s,
-        stiffness,
-        finger.impedance.damping_N_s_m,
-    )
+    end = travel_m + depth_m(finger, habit.push_N, stiffness)
+    times = (habit.onset_s, press_s, habit.dwell_s, press_s)
+    return Gesture(start, end, *times, stiffness, finger.impedance.damping_N_s_m)
 
 
 def depth_m(finger: Finger, force_N: float, stiffness_N_m: float) -> float:
@@ -86,17 +79,12 @@ def vary(
 
     nominal = plan(finger, travel_m, press_s)
     slow = habit.pace_undershoot_ratio * velocity_m_s / FULL_UNDERSHOOT_m_s
+    # the least of each factor keeps a press a press, however unlikely the draw
     speed = max(0.3, scale(habit.pace_spread_ratio, pace) - slow)
     stiffness = nominal.stiffness_N_m * max(0.1, scale(habit.impedance_spread_ratio, stiff))
     start = nominal.start_m * max(0.0, scale(habit.lift_spread_ratio, lift))
     beyond = habit.push_N * max(0.1, scale(habit.push_spread_ratio, push))
-    return Gesture(
-        start,
-        travel_m + depth_m(finger, beyond, stiffness),
-        max(0.0, habit.onset_s + habit.onset_spread_s * float(onset)),
-        nominal.press_s / speed,
-        habit.dwell_s,
-        nominal.release_s / speed,
-        stiffness,
-        nominal.damping_N_s_m * max(0.1, scale(habit.impedance_spread_ratio, damp)),
-    )
+    damping = nominal.damping_N_s_m * max(0.1, scale(habit.impedance_spread_ratio, damp))
+    wait = max(0.0, habit.onset_s + habit.onset_spread_s * float(onset))
+    times = (wait, nominal.press_s / speed, habit.dwell_s, nominal.release_s / speed)
+    return Gesture(start, travel_m + depth_m(finger, beyond, stiffness), *times, stiffness, damping)

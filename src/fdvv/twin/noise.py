@@ -114,6 +114,7 @@ class Effort:
         habit, first = self._habit, self._last is None
         keep = float(np.exp(-2 * np.pi * habit.effort_noise_Hz * self._tick_s))
         white = random.standard_normal(n)
+        # the first sample of all is already as wide as the process, so it does not build up
         white[int(first) :] *= np.sqrt(1 - keep**2)
         slow = list(accumulate(white.tolist(), lambda past, fresh: keep * past + fresh, initial=self._last))
         if first:

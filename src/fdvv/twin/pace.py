@@ -80,6 +80,7 @@ def solve_program_pace(
     a = math.log(guess_s or 2.0 * travel_mm / velocity_mm_s)
     miss_a = miss(a)
     best = (abs(miss_a), a)
+    # at most twice or half as long in one step
     b = a + float(np.clip(miss_a, -0.7, 0.7))
     for _ in range(ROUNDS):
         if best[0] < TOLERANCE_ratio or not math.log(SHORTEST_s) < b < math.log(LONGEST_s):

@@ -233,7 +233,7 @@ def _exciter_part(rig: Rig) -> dict[str, float]:
         "magnet_motor_N_A": e.motor_N_A if mass else 0.0,
         "magnet_ohm": e.resistance_ohm,
         "magnet_H": e.inductance_H,
-        "amplifier_V_count": e.drive_V / 2047,
+        "amplifier_V_count": e.drive_V / 2047,  # a converter of 12 bits, signed
         "amplifier_clip_V": e.clip_V,
         "amplifier_rate": 2 * math.pi * e.filter_Hz,
         **picked(e, "latency_s jitter_s", "vibration_"),

@@ -24,7 +24,7 @@ def settings_of(rig: Rig) -> Settings:
     cold, at the nominal supply.
     """
     try:
-        return Settings(**_position(rig), **_loop(rig), **_output(rig), **_limits(rig), **_extras(rig))
+        return Settings(**_position(rig), **_loop(rig), **_output(rig), **_extras(rig))
     except ModelError as error:
         raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
 
@@ -37,6 +37,7 @@ def _position(rig: Rig) -> dict[str, int]:
         "position_gain_q14": round(range_um16 * 2**14 / (steps * reads)),
         "position_offset_um16": round(-range_um16 / 2),
         "reads": reads,
+        # half a percent at either end: an open or shorted wire reads there
         "reading_low": steps // 200,
         "reading_high": steps - 1 - steps // 200,
         "jump_um16": min(65535, round(UM16_m * FASTEST_m_s * rig.controller.tick_s)),
@@ -63,8 +64,10 @@ def _output(rig: Rig) -> dict[str, int]:
     coil, loop = rig.coil, rig.controller
     # a current loop's full scale is what the coil alone would draw
     ohm = coil.resistance_ohm + (coil.bridge_ohm if coil.drive == "voltage" else 0.0)
+    full_A = coil.supply_V / coil.resistance_ohm
     duty_N = ohm / (coil.force_constant_N_A * coil.supply_V) * (1 + loop.gain_error_ratio)
     return {
+        # Q15 duty per cN64, in Q16
         "duty_gain_q16": round(duty_N / CN64_N * 2**31),
         "duty_limit_q15": 32767,
         "force_limit_cN64": round(CN64_N * loop.force_limit_N),
@@ -72,13 +75,6 @@ def _output(rig: Rig) -> dict[str, int]:
         "nominal_supply_mV": round(1000 * coil.supply_V),
         "supply_low_mV": round(750 * coil.supply_V),
         "supply_high_mV": min(40000, round(1167 * coil.supply_V)),
-    }
-
-
-def _limits(rig: Rig) -> dict[str, int]:
-    coil = rig.coil
-    full_A = coil.supply_V / coil.resistance_ohm
-    return {
         "heat_time_ms": min(600000, max(100, round(1000 * coil.heat_s))),
         "full_duty_rise_K": min(20000, round(coil.heat_K_W * coil.resistance_ohm * full_A**2)),
         "over_force_cN64": 32000,

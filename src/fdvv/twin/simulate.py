@@ -43,16 +43,8 @@ def simulate_program(
         raise ModelError(f"noise must last {n} ticks, got {noise.force_N.size}")
     grid = replace(grid_of(rig, step_s), audit=int(audit))
     plant = plant_of(rig, finger, step_s)
-    rows = run(
-        plant,
-        grid,
-        settings or settings_of(rig),
-        image,
-        gesture,
-        noise,
-        settle_ticks(rig),
-        announced_mm_s,
-    )
+    held = settings or settings_of(rig)
+    rows = run(plant, grid, held, image, gesture, noise, settle_ticks(rig), announced_mm_s)
     if not np.isfinite(rows.physics[-1]).all():
         raise ModelError(
             f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "

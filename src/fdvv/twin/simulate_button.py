@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from dataclasses import dataclass
 from itertools import accumulate
 
 import numpy as np
 
+from fdvv._native import address
 from fdvv.errors import ModelError
 from fdvv.model.press import Press
 from fdvv.twin.button import ButtonPhysics
@@ -16,10 +18,10 @@ from fdvv.twin.button_kernel import (
     ROW_s,
     STEP_s,
     TICK_s,
+    button_library,
     button_plant,
     prepare,
     run_button,
-    run_probe,
 )
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan
@@ -178,26 +180,12 @@ def _trace(
     tick = np.arange(t.size) % per_tick == 0
     sensed = None
     if sensor is not None:
-        sensed = np.repeat(read_force_N(sensor, filtered[tick], noise.force_N), per_tick)
+        sensed = cN_from_N(np.repeat(read_force_N(sensor, filtered[tick], noise.force_N), per_tick))
     closing, opening = (None if math.isnan(value) else float(value) for value in switching)
-    return ButtonTrace(
-        t,
-        mm_from_m(x),
-        mm_from_m(v),
-        a,
-        cN_from_N(force),
-        None if sensed is None else cN_from_N(sensed),
-        tick,
-        mm_from_m(finger),
-        mm_from_m(leaf),
-        cN_from_N(fixed),
-        mm_from_m(plate),
-        mm_from_m(shake),
-        closed > 0.5,
-        closing,
-        opening,
-        energy if audit else None,
-    )
+    cap = (mm_from_m(x), mm_from_m(v), a, cN_from_N(force))
+    around = (mm_from_m(finger), mm_from_m(leaf), cN_from_N(fixed), mm_from_m(plate), mm_from_m(shake))
+    switched = (closed > 0.5, closing, opening)
+    return ButtonTrace(t, *cap, sensed, tick, *around, *switched, energy if audit else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,13 +202,18 @@ def probe_button(button: ButtonPhysics, speed_mm_s: float = 0.5, step_mm: float 
 
     The tester is stiff and cannot pull; a sample every step_mm or a little less.
     """
-    if not (speed_mm_s > 0 and step_mm > 0):
-        raise ModelError(f"a probe needs speed and step above 0, got {speed_mm_s} mm/s and {step_mm} mm")
+    if not (0 < speed_mm_s < math.inf and step_mm > 0):
+        given = f"{speed_mm_s} mm/s and {step_mm} mm"
+        raise ModelError(f"a probe needs a finite speed and a step above 0, got {given}")
     travel_m = button.curve.travel_m
-    count = int(np.ceil(mm_from_m(travel_m) / step_mm - 1e-9)) + 1
+    count = max(int(np.ceil(mm_from_m(travel_m) / step_mm - 1e-9)) + 1, 2)
     finger = Finger()
     plant = button_plant(button, finger, plan(finger, travel_m, 0.1), None, clamped=True)
-    rows = run_probe(plant, prepare(button).table, travel_m, m_from_mm(speed_mm_s), max(count, 2))
+    table, rows = prepare(button).table, np.empty((2 * count, 2))
+    way = (travel_m, m_from_mm(speed_mm_s), count)
+    if button_library().fdvv_button_probe(
+        ctypes.byref(plant), len(table), address(table), *way, address(rows)
+    ):
+        raise ModelError(f"the compiled button cannot be probed at {speed_mm_s} mm/s in {count} rows")
     force_cN = cN_from_N(rows[:, 1])
-    half = len(rows) // 2
-    return ProbedCurve(mm_from_m(rows[:half, 0]), force_cN[:half], force_cN[half:][::-1])
+    return ProbedCurve(mm_from_m(rows[:count, 0]), force_cN[:count], force_cN[count:][::-1])

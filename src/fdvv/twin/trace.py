@@ -103,15 +103,5 @@ class Trace:
 
     def press(self, velocity_mm_s: float) -> Press:
         """Return the record that devices share, asked for at velocity_mm_s."""
-        return Press(
-            self.t_s,
-            self.displacement_mm,
-            self.force_cN,
-            velocity_mm_s,
-            self.sensed_mm,
-            self.sensed_cN,
-            self.commanded_cN,
-            self.saturated,
-            self.tick,
-            simulated=True,
-        )
+        device = (self.sensed_mm, self.sensed_cN, self.commanded_cN, self.saturated, self.tick)
+        return Press(self.t_s, self.displacement_mm, self.force_cN, velocity_mm_s, *device, simulated=True)

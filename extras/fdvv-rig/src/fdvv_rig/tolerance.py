@@ -40,13 +40,12 @@ class Stack:
 def core_stack(d: Dimensions) -> Stack:
     """Return what sets the sensor's core off the axis of its bore before the mount is moved."""
     play_mm = (d.bushing_bore_mm - d.rod_diameter_mm) / 2
+    screws_mm = (d.m3_clearance_mm - 3.0) / 2 + d.print_error_mm
     return Stack(
         (
             Cause("rod in its bushing", play_mm),
             Cause("bushing's seat in the tower", d.print_error_mm),
-            Cause(
-                "tower on the base: screws in their holes", (d.m3_clearance_mm - 3.0) / 2 + d.print_error_mm
-            ),
+            Cause("tower on the base: screws in their holes", screws_mm),
             Cause("sensor in its clamp", d.fit_gap_mm),
             Cause("clamp above the mount's foot", d.print_error_mm),
         )

@@ -142,6 +142,7 @@ class Presser:
 
     def rest(self, duration_s: float, random: np.random.Generator) -> ButtonTrace:
         """Simulate a cap that nobody touches."""
+        # a referent 20 mm above the cap all the time
         away = Gesture(-0.02, -0.02, 0.0, duration_s / 2, 0.0, duration_s / 2, 450.0, 4.5, 0.0)
         return self._simulate(away, self._noise(away, random), None)
 
@@ -163,6 +164,7 @@ class Presser:
             trace = self._simulate(aim, noise, None)
             if trace.displacement_mm.max() <= mm_from_m(curve.travel_m) - SHORT_mm:
                 return trace
+            # carried on by its momentum: the same press, aimed less deep
             aim = replace(aim, end_m=aim.start_m + 0.93 * (aim.end_m - aim.start_m))
 
 

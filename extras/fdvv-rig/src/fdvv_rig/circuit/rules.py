@@ -86,9 +86,8 @@ def _supplies(circuit: Circuit) -> Iterator[Violation]:
         pin, V = circuit.pin(name), at[net].V
         if pin.type == "supply" and not (pin.low_V or 0.0) <= V <= (pin.high_V or 1e9):
             bound = f"{pin.low_V:g} to {pin.high_V:g} V"
-            yield Violation(
-                "supply", name, f"is fed {V:.2f} V, it takes {bound}", "feed it from another rail"
-            )
+            reason = f"is fed {V:.2f} V, it takes {bound}"
+            yield Violation("supply", name, reason, "feed it from another rail")
         if pin.type == "ground" and at[net].V > 0.05:
             yield Violation("ground", name, f"stands at {V:.2f} V", "join it with ground")
 
@@ -142,9 +141,8 @@ def _floating(circuit: Circuit) -> Iterator[Violation]:
             listens = pin.type in HEARS and not pin.bias and circuit.part_of(name).ref not in state.absent
             if listens and at[net].floats and name not in reported:
                 reported.add(name)
-                yield Violation(
-                    "floats", name, f"floats{when}", "give it a resistor to ground or to its rail"
-                )
+                remedy = "give it a resistor to ground or to its rail"
+                yield Violation("floats", name, f"floats{when}", remedy)
 
 
 def _resting(circuit: Circuit) -> Iterator[Violation]:
@@ -176,9 +174,8 @@ def path_nets(circuit: Circuit, path: tuple[str, ...]) -> list[str]:
     for ref in path[1:-1]:
         ends = [circuit.net_of.get(f"{ref}.1", ""), circuit.net_of.get(f"{ref}.2", "")]
         if nets[-1] not in ends:
-            raise InputError(
-                "circuit", " ".join(path), f"{ref} is not at {nets[-1]}", "mend the sheet's path"
-            )
+            reason = f"{ref} is not at {nets[-1]}"
+            raise InputError("circuit", " ".join(path), reason, "mend the sheet's path")
         nets.append(ends[1] if ends[0] == nets[-1] else ends[0])
     if circuit.net_of[path[-1]] != nets[-1]:
         raise InputError("circuit", " ".join(path), f"ends at {nets[-1]}", "mend the sheet's path")

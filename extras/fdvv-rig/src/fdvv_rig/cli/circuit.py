@@ -102,7 +102,7 @@ def _print(report: dict[str, Any]) -> None:
     ui.print_table(
         ["step of the converter", "at the pin mV", "value", "unit"],
         [
-            [s["name"], f"{s['volts_mV']:.3f}", f"{s['value']:.3f}", s["unit"]]
+            [s["name"], *(f"{s[key]:.3f}" for key in ("volts_mV", "value")), s["unit"]]
             for s in report["converter_steps"]
         ],
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
@@ -75,8 +76,6 @@ def selftest(
 
 def _check_person(spec: str) -> None:
     """Refuse a real rig where nobody can answer. Raises InputError."""
-    import sys
-
     from fdvv.errors import InputError
 
     if spec.startswith("serial:") and not sys.stdin.isatty():
@@ -84,8 +83,6 @@ def _check_person(spec: str) -> None:
 
 
 def _ask(text: str) -> None:
-    import sys
-
     click.echo(f"{text} Then press Enter.", err=True)
     sys.stdin.readline()
 

@@ -104,15 +104,12 @@ class _Measuring:
             return
         values = struct.unpack("<8h", reply.values)
         board = SelfTestResult(reply.verdicts[Part.VIBRATION_BOARD])
-        answers = (
-            None
-            if board in (SelfTestResult.NOT_TESTED, SelfTestResult.ABSENT)
-            else board is SelfTestResult.PASSED
-        )
+        asked = board not in (SelfTestResult.NOT_TESTED, SelfTestResult.ABSENT)
+        position = SelfTestResult(reply.verdicts[Part.POSITION_SENSOR])
         self._add(
             supply_mV=float(values[Part.SUPPLY]),
-            position_ok=SelfTestResult(reply.verdicts[Part.POSITION_SENSOR]) is not SelfTestResult.FAILED,
-            vibration_answers=answers,
+            position_ok=position is not SelfTestResult.FAILED,
+            vibration_answers=board is SelfTestResult.PASSED if asked else None,
         )
 
     def _gauges(self) -> None:
@@ -157,11 +154,9 @@ class _Measuring:
             found = self._device.fault()
             sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else math.nan
             self._add(sag_mV=sag)
-            late = (
-                columns.part(columns.tick > columns.tick[-1] - round(HARD_s / self._tick_s))
-                if columns.tick.size
-                else columns
-            )
+            late = columns
+            if columns.tick.size:
+                late = columns.part(columns.tick > columns.tick[-1] - round(HARD_s / self._tick_s))
             line, beside = _line_and_floor(late, self._tick_s, SLOW_PWM_Hz)
             self._add(pwm_um=line, pwm_floor_um=beside)
             self._add(hard_mm=_mean(late.displacement_mm[-50:]))
@@ -306,9 +301,8 @@ def heard_tones(played: Sequence[TickColumns], tick_s: float) -> tuple[float, fl
     """
     found = []
     for off in np.linspace(-CLOCK_ratio, CLOCK_ratio, 11):
-        lines = [
-            _line_and_floor(tone, tick_s, f * (1 + off)) for tone, f in zip(played, TONES_Hz, strict=True)
-        ]
+        tones = zip(played, TONES_Hz, strict=True)
+        lines = [_line_and_floor(tone, tick_s, f * (1 + off)) for tone, f in tones]
         loud, quiet = np.array(lines).T
         ratio = float(np.mean(np.square(loud / np.maximum(quiet, LEAST_um))))
         found.append((_rms(loud), _rms(quiet), ratio))
@@ -332,6 +326,5 @@ def line_um(columns: TickColumns, tick_s: float, frequency_Hz: float) -> float:
     t_s = (columns.tick - columns.tick[0]) * tick_s
     free = place - np.polyval(np.polyfit(t_s, place, 3), t_s)
     window = np.hanning(place.size)
-    return 1e3 * float(
-        2 * abs(np.sum(window * free * np.exp(-2j * np.pi * frequency_Hz * t_s))) / window.sum()
-    )
+    line = np.sum(window * free * np.exp(-2j * np.pi * frequency_Hz * t_s))
+    return 1e3 * float(2 * abs(line) / window.sum())
