@@ -121,7 +121,9 @@ class RigPlant(RunningRig):
         self._kept: deque[tuple[FloatArray, FloatArray, tuple[int, ...]]] = deque(
             maxlen=round(KEPT_s / self.rig.controller.tick_s)
         )
-        self._start(self._deepest_us() if stop_us is None else stop_us)
+        servo, deepest_mm = self.rig.servo, float(mm_from_m(self.rig.stops.travel_limit_m))
+        deepest_us = servo.pulse_zero_us + servo.pulse_us_mm * deepest_mm
+        self._start(deepest_us if stop_us is None else stop_us)
 
     @property
     def inputs(self) -> np.void:
@@ -191,10 +193,6 @@ class RigPlant(RunningRig):
         lib.fdvv_rig_start(held, ctypes.byref(model), ctypes.byref(counts), ctypes.c_double(stop_us))
         self._rest(self.finger)
         lib.fdvv_rig_look(held, address(self._inputs))
-
-    def _deepest_us(self) -> float:
-        servo = self.rig.servo
-        return servo.pulse_zero_us + servo.pulse_us_mm * float(mm_from_m(self.rig.stops.travel_limit_m))
 
     def _outputs(self, given: npt.NDArray[np.int64]) -> RecordArray:
         """Put sums of readings and a board's outputs, (n, 5), into records of OUTPUTS."""

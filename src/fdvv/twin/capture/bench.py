@@ -67,12 +67,8 @@ def _whole_way(curve: ProbedCurve, speed_mm_s: float) -> tuple[FloatArray, Float
     back = np.concatenate([curve.release_cN[::-1], np.zeros(free_mm.size)])
     t_s = apart_mm / speed_mm_s * np.arange(down_mm.size)
     turned_s = t_s[-1] + 2 * BEYOND_mm / speed_mm_s
-    return (
-        np.concatenate([t_s, turned_s + t_s]),
-        np.concatenate([down_mm, down_mm[::-1]]),
-        np.concatenate([forces, back]),
-        down_mm.size,
-    )
+    times_s, places_mm = np.concatenate([t_s, turned_s + t_s]), np.concatenate([down_mm, down_mm[::-1]])
+    return times_s, places_mm, np.concatenate([forces, back]), down_mm.size
 
 
 @dataclass(frozen=True, eq=False)
