@@ -48,6 +48,7 @@ def spread_model() -> FDVVModel:
 
 
 SPREAD = model_to_json(spread_model())
+SPREAD_0 = "$.curves[0].spread"
 
 
 def bits(model: FDVVModel) -> list[bytes]:
@@ -214,9 +215,21 @@ def test_a_text_that_is_no_json_is_refused_in_one_line_with_the_place(text: str 
         (drop("travel_spread", "presses"), "$.travel_spread", "missing required field `presses`"),
         (put("actuation_mm", value=None), "$", "actuation_mm is unknown, so it has no spread"),
         (put("curves", 0, "spread", value=3.0), "$.curves[0].spread", "Expected `object | null`"),
-        (put("curves", 0, "spread", "displacement_mm", value=[0.0, 1.0]), "$.curves[0]", "got 2 and 3"),
-        (put("curves", 0, "spread", "displacement_mm", 1, value=4.0), "$.curves[0]", "must rise strictly"),
-        (put("curves", 0, "spread", "displacement_mm", 2, value=1e9), "$.curves[0]", "must stay within"),
+        (
+            put("curves", 0, "spread", "displacement_mm", value=[0.0, 1.0]),
+            SPREAD_0,
+            "got 2 and 3",
+        ),
+        (
+            put("curves", 0, "spread", "displacement_mm", 1, value=4.0),
+            "$.curves[0].spread",
+            "must rise strictly",
+        ),
+        (
+            put("curves", 0, "spread", "displacement_mm", 2, value=1e9),
+            "$.curves[0].spread",
+            "must stay within",
+        ),
         (put("curves", 1, "spread", "spread_cN", 2, value=-1.0), "$.curves[1].spread.spread_cN[2]", ">= 0"),
         (put("curves", 1, "spread", "spread_cN", value=[]), "$.curves[1].spread.spread_cN", "length >= 2"),
         (put("curves", 1, "spread", "achieved_mm_s", value=0), "$.curves[1].spread.achieved_mm_s", "> 0"),

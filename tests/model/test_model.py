@@ -75,7 +75,7 @@ def test_models_differ_by_a_single_number_or_by_the_provenance() -> None:
     assert load_builtin("mx-clear") == CLEAR
     assert replace(CLEAR, actuation_mm=2.0000001) != CLEAR
     assert replace(CLEAR, provenance=replace(CLEAR.provenance, source="elsewhere")) != CLEAR
-    assert CLEAR != "mx-clear"
+    assert CLEAR != "mx-clear"  # type: ignore[comparison-overlap]
 
 
 def test_only_the_name_changes_when_a_model_is_renamed() -> None:

@@ -47,16 +47,11 @@ def greville(t: FloatArray, k: int) -> FloatArray:
 def evaluate(t: FloatArray, c: FloatArray, k: int, x: npt.ArrayLike, derivative: int = 0) -> FloatArray:
     """Evaluate the spline or a derivative at x; outside the knots end values and derivative 0."""
     x = np.asarray(x, dtype=np.float64)
-    inside = np.clip(x, t[0], t[-1])
-    values = _values(t, c, k, inside, derivative)
-    return np.where(inside == x, values, 0.0) if derivative else values
-
-
-def _values(t: FloatArray, c: FloatArray, k: int, x: FloatArray, derivative: int) -> FloatArray:
     if derivative > k:
         return np.zeros(x.shape)
+    inside = np.clip(x, t[0], t[-1])
     # SciPy's BSpline gives the same bits, and takes half a second to import
-    t, c, flat = (np.ascontiguousarray(part, dtype=np.float64) for part in (t, c, x))
+    t, c, flat = (np.ascontiguousarray(part, dtype=np.float64) for part in (t, c, inside))
     values = np.empty(x.shape)
     sizes = ctypes.c_long(c.size), ctypes.c_int(k)
     status = library().fdvv_spline_evaluate(
@@ -70,7 +65,7 @@ def _values(t: FloatArray, c: FloatArray, k: int, x: FloatArray, derivative: int
     )
     if status:
         raise ModelError(f"a spline of degree {k} with {c.size} control points cannot be evaluated")
-    return values
+    return np.where(inside == x, values, 0.0) if derivative else values
 
 
 def design_matrix(t: FloatArray, k: int, x: FloatArray) -> FloatArray:
@@ -116,6 +111,31 @@ def column(values: npt.ArrayLike, name: str) -> FloatArray:
         raise ModelError(f"{name} must be finite, got {array[at]} at index {at}")
     array.setflags(write=False)
     return array
+
+
+def set_columns(record: object, *names: str) -> None:
+    """Make fields of a frozen record read-only columns of its own. Raises ModelError."""
+    for name in names:
+        object.__setattr__(record, name, column(getattr(record, name), name))
+
+
+class ExactlyEqual:
+    """A record with arrays that equals another if all fields do, arrays to the bit."""
+
+    def _key(self) -> tuple[object, ...]:
+        return tuple(v.tobytes() if isinstance(v, np.ndarray) else v for v in vars(self).values())
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, type(self)) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+
+def check_velocity(velocity_mm_s: float | None, name: str = "velocity_mm_s") -> None:
+    """Raise ModelError unless a velocity is positive and finite, or None (unknown)."""
+    if velocity_mm_s is not None and not (np.isfinite(velocity_mm_s) and velocity_mm_s > 0):
+        raise ModelError(f"{name} must be positive and finite, got {velocity_mm_s}")
 
 
 def check_size(values: npt.ArrayLike, limit: float, name: str) -> None:

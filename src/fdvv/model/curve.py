@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model import bspline as _bspline
-from fdvv.model.bspline import LARGEST_cN, LARGEST_mm, check_size, column
+from fdvv.model import bspline
+from fdvv.model.bspline import ExactlyEqual, LARGEST_cN, LARGEST_mm, check_size, check_velocity, set_columns
 from fdvv.model.spread import CurveSpread
 from fdvv.units import FloatArray
 
@@ -38,12 +38,6 @@ def reading_order(part: OfStroke) -> tuple[bool, float]:
     return part.stroke is not Stroke.PRESS, part.velocity_mm_s or 0.0
 
 
-def check_velocity(velocity_mm_s: float | None) -> None:
-    """Raise ModelError unless a velocity is positive and finite, or None (unknown)."""
-    if velocity_mm_s is not None and not (np.isfinite(velocity_mm_s) and velocity_mm_s > 0):
-        raise ModelError(f"velocity_mm_s must be positive and finite, got {velocity_mm_s}")
-
-
 @dataclass(frozen=True, eq=False)
 class MeasuredCurve:
     """One measured stroke: raw samples, none dropped or smoothed.
@@ -66,8 +60,7 @@ class MeasuredCurve:
     velocity_mm_s: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "displacement_mm", column(self.displacement_mm, "displacement_mm"))
-        object.__setattr__(self, "force_cN", column(self.force_cN, "force_cN"))
+        set_columns(self, "displacement_mm", "force_cN")
         object.__setattr__(self, "stroke", Stroke(self.stroke))
         check_velocity(self.velocity_mm_s)
         if self.displacement_mm.shape != self.force_cN.shape:
@@ -100,7 +93,7 @@ class MeasuredCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceCurve:
+class ForceCurve(ExactlyEqual):
     """Force on displacement for one stroke at one velocity, as a clamped B-spline.
 
     Attributes
@@ -127,12 +120,11 @@ class ForceCurve:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
-        object.__setattr__(self, "knots_mm", column(self.knots_mm, "knots_mm"))
-        object.__setattr__(self, "control_points_cN", column(self.control_points_cN, "control_points_cN"))
+        set_columns(self, "knots_mm", "control_points_cN")
         check_velocity(self.velocity_mm_s)
         check_size(self.knots_mm, LARGEST_mm, "knots_mm")
         check_size(self.control_points_cN, LARGEST_cN, "control_points_cN")
-        _bspline.check(self.knots_mm, self.control_points_cN, self.degree)
+        bspline.check(self.knots_mm, self.control_points_cN, self.degree)
 
     @property
     def start_mm(self) -> float:
@@ -145,17 +137,15 @@ class ForceCurve:
     @property
     def control_points_mm(self) -> FloatArray:
         """Return the (n,) Greville abscissae: the displacement of each control point."""
-        return _bspline.greville(self.knots_mm, self.degree)
+        return bspline.greville(self.knots_mm, self.degree)
 
     def force_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:
         """Evaluate the force, in the shape of displacement_mm; end values outside the knots."""
-        return _bspline.evaluate(self.knots_mm, self.control_points_cN, self.degree, displacement_mm)
+        return bspline.evaluate(self.knots_mm, self.control_points_cN, self.degree, displacement_mm)
 
     def stiffness_cN_mm(self, displacement_mm: npt.ArrayLike) -> FloatArray:
         """Evaluate dF/dx in cN/mm, in the shape of displacement_mm; 0 outside the knots."""
-        return _bspline.evaluate(
-            self.knots_mm, self.control_points_cN, self.degree, displacement_mm, derivative=1
-        )
+        return bspline.evaluate(self.knots_mm, self.control_points_cN, self.degree, displacement_mm, 1)
 
     def sample(self, step_mm: float = 0.05) -> MeasuredCurve:
         """Sample the curve from start to end, about every step_mm, both ends included."""

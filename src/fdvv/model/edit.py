@@ -2,12 +2,12 @@
 
 Put a piece of one B-spline into another, exactly: cut, bridge, join.
 
-Notation: t knots, c coefficients, k degree of a clamped spline, as in _bspline.
+Notation: t knots, c coefficients, k degree of a clamped spline, as in bspline.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from typing import NamedTuple, TypeVar
@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model import bspline as _bspline
+from fdvv.model import bspline
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel, Provenance
 from fdvv.model.spread import PointSpread
@@ -103,9 +103,9 @@ def _elevated(curve: ForceCurve, k: int) -> _Piece:
         if np.any(repeats[1:-1] > degree):
             raise ModelError(f"a curve of degree {degree} with a jump cannot be raised to degree {k}")
         raised = np.repeat(knots, repeats + 1)
-        sites = _bspline.greville(raised, degree + 1)
-        values = _bspline.evaluate(t, c, degree, sites)
-        t, c = raised, np.asarray(np.linalg.solve(_bspline.design_matrix(raised, degree + 1, sites), values))
+        sites = bspline.greville(raised, degree + 1)
+        values = bspline.evaluate(t, c, degree, sites)
+        t, c = raised, np.asarray(np.linalg.solve(bspline.design_matrix(raised, degree + 1, sites), values))
     return _Piece(t, c)
 
 
@@ -197,10 +197,10 @@ def merge(
     return FDVVModel(
         name=name,
         travel_mm=travel_mm,
-        curves=_settled("curve", curves, Conflict(conflict), _same_curve),
+        curves=_settled("curve", curves, Conflict(conflict)),
         actuation_mm=actuation,
         reset_mm=reset,
-        vibrations=_settled("vibration", vibrations, Conflict(conflict), _same_vibration),
+        vibrations=_settled("vibration", vibrations, Conflict(conflict)),
         interpolation=method or Interpolation.PCHIP,
         provenance=_joined([m.provenance for m in models], "merged from " + ", ".join(map(_label, parts))),
         travel_spread=_common_spread(travel_mm, [(m.travel_mm, m.travel_spread) for m in models]),
@@ -285,17 +285,6 @@ def _label(part: FDVVModel | ForceCurve | Vibration) -> str:
     return part.name if isinstance(part, FDVVModel) else f"{part.stroke} at {_speed(part.velocity_mm_s)}"
 
 
-def _same_curve(a: ForceCurve, b: ForceCurve) -> bool:
-    def numbers(c: ForceCurve) -> tuple[int, bytes, bytes]:
-        return c.degree, c.knots_mm.tobytes(), c.control_points_cN.tobytes()
-
-    return numbers(a) == numbers(b)
-
-
-def _same_vibration(a: Vibration, b: Vibration) -> bool:
-    return replace(a, spread=None) == replace(b, spread=None)
-
-
 def _common_spread(
     point_mm: float | None, stated: Sequence[tuple[float | None, PointSpread | None]]
 ) -> PointSpread | None:
@@ -316,20 +305,15 @@ def _decided(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value
     return known[0][1] if known else None
 
 
-def _settled(
-    what: str,
-    parts: Sequence[tuple[str, _Part]],
-    rule: Conflict,
-    same: Callable[[_Part, _Part], bool],
-) -> tuple[_Part, ...]:
+def _settled(what: str, parts: Sequence[tuple[str, _Part]], rule: Conflict) -> tuple[_Part, ...]:
+    """Keep one part for each stroke and velocity, as the rule says."""
     kept: dict[tuple[Stroke, float | None], tuple[str, _Part]] = {}
     for who, part in parts:
         key = (part.stroke, part.velocity_mm_s)
         earlier, there = kept.setdefault(key, (who, part))
-        if same(there, part) and None in (there.spread, part.spread):
+        alike = replace(there, spread=None) == replace(part, spread=None)
+        if alike and (None in (there.spread, part.spread) or there.spread == part.spread):
             kept[key] = (earlier, there) if there.spread else (who, part)
-            continue
-        if same(there, part) and there.spread == part.spread:
             continue
         if rule is Conflict.REFUSE:
             sides = f"one from {earlier!r}, one from {who!r}"
@@ -341,7 +325,6 @@ def _settled(
 
 
 def _joined(provenances: Sequence[Provenance], note: str) -> Provenance:
-
     def once(statements: Iterable[str]) -> tuple[str, ...]:
         return tuple(dict.fromkeys(s for s in statements if s))
 

@@ -6,23 +6,22 @@ line, so that a round trip is exact and a diff shows which curve changed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError
 from fdvv.io.documents import Kind, pretty, read_document, tidy_schema
 from fdvv.io.files import read_limited, write_atomic
-from fdvv.model.curve import ForceCurve, Stroke
-from fdvv.model.model import FDVVModel, Provenance
-from fdvv.model.spread import CurveSpreadRecord, PointSpreadRecord, VibrationSpreadRecord, written
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
+from fdvv.model.spread import CurveSpreadRecord, PointSpreadRecord, VibrationSpreadRecord
 from fdvv.model.velocity import Interpolation
-from fdvv.model.vibration import Mode, Vibration
 
 FORMAT = "fdvv-model"
 
@@ -150,41 +149,20 @@ _CHOICES = {"stroke": Stroke, "interpolation": Interpolation}
 
 def model_to_json(model: FDVVModel) -> str:
     """Write a model as the text of a ``*.fdvv.json`` file, of version 1 unless it holds spreads."""
-    record = {
-        "format": FORMAT,
-        "version": VERSION if _has_spreads(model) else 1,
-        "name": model.name,
-        "travel_mm": model.travel_mm,
-        "actuation_mm": model.actuation_mm,
-        "reset_mm": model.reset_mm,
-        "interpolation": str(model.interpolation),
-        "curves": [
-            {
-                "stroke": str(c.stroke),
-                "velocity_mm_s": c.velocity_mm_s,
-                "degree": c.degree,
-                "knots_mm": c.knots_mm.tolist(),
-                "control_points_cN": c.control_points_cN.tolist(),
-                **written(c.spread),
-            }
-            for c in model.curves
-        ],
-        "vibrations": [
-            {
-                "stroke": str(v.stroke),
-                "velocity_mm_s": v.velocity_mm_s,
-                "onset_mm": v.onset_mm,
-                "duration_s": v.duration_s,
-                "modes": [msgspec.to_builtins(ModeRecord(**vars(mode))) for mode in v.modes],
-                **written(v.spread),
-            }
-            for v in model.vibrations
-        ],
-        "provenance": {**vars(model.provenance), "assumptions": list(model.provenance.assumptions)},
-    }
-    for name in _POINTS:
-        record |= written(getattr(model, name), name)
-    return pretty(record) + "\n"
+    head = {"format": FORMAT, "version": VERSION if _has_spreads(model) else 1}
+    fields = head | msgspec.to_builtins(model, enc_hook=lambda array: array.tolist())
+    return pretty(_written({name: fields[name] for name in ModelRecord.__struct_fields__})) + "\n"
+
+
+def _written(value: Any) -> Any:
+    """Leave out the spreads that are not known, for which files of version 1 had no place."""
+    if isinstance(value, list | tuple):
+        return [_written(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    if "spread_cN" in value:
+        value = {"presses": value["presses"], **value}
+    return {k: _written(v) for k, v in value.items() if not (v is None and k.endswith("spread"))}
 
 
 def _has_spreads(model: FDVVModel | ModelRecord) -> bool:
@@ -203,12 +181,8 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
         source,
         _KIND,
         lambda data: _model(msgspec.json.decode(data, type=ModelRecord), source),
-        _choices,
+        lambda place: _CHOICES.get(place.rpartition(".")[2]),
     )
-
-
-def _choices(place: str) -> Iterable[str] | None:
-    return _CHOICES.get(place.rpartition(".")[2])
 
 
 def _model(record: ModelRecord, source: object) -> FDVVModel:
@@ -216,43 +190,10 @@ def _model(record: ModelRecord, source: object) -> FDVVModel:
         raise InputError(
             source, "$.version", "a file of version 1 has no spreads", "write 2, or take them out"
         )
-    place = "$"
-    try:
-        curves = []
-        for i, c in enumerate(record.curves):
-            place = f"$.curves[{i}]"
-            curves.append(
-                ForceCurve(
-                    c.stroke,
-                    c.velocity_mm_s,
-                    c.degree,
-                    c.knots_mm,  # type: ignore[arg-type]
-                    c.control_points_cN,  # type: ignore[arg-type]
-                    c.spread.read() if c.spread else None,
-                )
-            )
-        vibrations = []
-        for i, v in enumerate(record.vibrations):
-            place = f"$.vibrations[{i}]"
-            modes = tuple(Mode(**msgspec.to_builtins(mode)) for mode in v.modes)
-            spread = v.spread.read() if v.spread else None
-            vibrations.append(Vibration(v.stroke, v.velocity_mm_s, v.onset_mm, v.duration_s, modes, spread))
-        place = "$"
-        fields = msgspec.to_builtins(record.provenance)
-        spreads = {name: getattr(record, name) for name in _POINTS}
-        return FDVVModel(
-            name=record.name,
-            travel_mm=record.travel_mm,
-            curves=tuple(curves),
-            actuation_mm=record.actuation_mm,
-            reset_mm=record.reset_mm,
-            vibrations=tuple(vibrations),
-            interpolation=record.interpolation,
-            provenance=Provenance(**{**fields, "assumptions": tuple(fields["assumptions"])}),
-            **{name: found.read() if found else None for name, found in spreads.items()},
-        )
-    except ModelError as error:
-        raise InputError(source, place, str(error), _REMEDY) from error
+    # a ModelError of a part comes out as msgspec's own error, with the place of that part
+    return msgspec.convert(
+        record, FDVVModel, from_attributes=True, dec_hook=lambda _, column: np.array(column)
+    )
 
 
 def save_model(model: FDVVModel, path: Path | str) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from fdvv._native import address, library
 from fdvv.errors import FitError
-from fdvv.model import bspline as _bspline
+from fdvv.model import bspline
 from fdvv.model.bump import find_bottom_out_mm, find_bump, find_contact_mm
 from fdvv.model.curve import ForceCurve, MeasuredCurve
 from fdvv.units import FloatArray
@@ -100,8 +100,8 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
 
 
 def _uniform(x: FloatArray, y: FloatArray, degree: int, size: int) -> tuple[FloatArray, FloatArray]:
-    t = _bspline.uniform_knots(x[0], x[-1], size, degree)
-    return t, _bspline.least_squares(t, degree, x, y)
+    t = bspline.uniform_knots(x[0], x[-1], size, degree)
+    return t, bspline.least_squares(t, degree, x, y)
 
 
 def _adaptive(
@@ -146,7 +146,7 @@ def _hold_bump(
     near = np.minimum(np.abs(x - bump.peak_mm), np.abs(x - bump.valley_mm)) < BUMP_REACH_mm
     weight, trial, bound = np.ones_like(x), (t, c), math.inf
     for _ in range(BUMP_ROUNDS):
-        fitted = _bspline.evaluate(*trial, degree, x)
+        fitted = bspline.evaluate(*trial, degree, x)
         error, kept = float(np.sum((fitted - y) ** 2)), find_bump(x, fitted, least_drop_cN=0.0)
         bound = min(bound, BUMP_COST**2 * error)
         if error > bound:
@@ -184,7 +184,7 @@ def scan_sizes(
         if not chosen < size <= min(LARGEST, x.size):
             continue
         t, c = _knots_and_points(x, y, method, chosen, size)
-        error = float(np.sum((_bspline.evaluate(t, c, chosen, x) - y) ** 2))
+        error = float(np.sum((bspline.evaluate(t, c, chosen, x) - y) ** 2))
         scores[size] = bic_star(x.size, size, error, penalty)
     return scores
 

@@ -38,7 +38,7 @@ class Provenance:
     simulated: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class FDVVModel:
     """Force over displacement and velocity, press and release, with the vibration of the snap.
 
@@ -167,25 +167,3 @@ class FDVVModel:
     def __repr__(self) -> str:
         curves = f"{len(self.curves)} curves, {len(self.vibrations)} vibrations"
         return f"FDVVModel({self.name!r}, {self.travel_mm:g} mm, {curves})"
-
-    def _key(self) -> tuple[object, ...]:
-        curves = tuple(
-            (
-                c.stroke,
-                c.velocity_mm_s,
-                c.degree,
-                c.knots_mm.tobytes(),
-                c.control_points_cN.tobytes(),
-                c.spread,
-            )
-            for c in self.curves
-        )
-        spreads = (self.travel_spread, self.actuation_spread, self.reset_spread)
-        points = (self.name, self.travel_mm, self.actuation_mm, self.reset_mm, spreads)
-        return (*points, curves, self.vibrations, self.interpolation, self.provenance)
-
-    def __eq__(self, other: object) -> bool:
-        return self._key() == other._key() if isinstance(other, FDVVModel) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key())

@@ -7,7 +7,7 @@ what all of them share, such as a sensor's scale or the finger that pressed, is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import numpy as np
@@ -15,12 +15,21 @@ import numpy.typing as npt
 from msgspec import Meta
 
 from fdvv.errors import ModelError
-from fdvv.model.bspline import LARGEST_cN, LARGEST_mm, check_presses, check_size, check_spread, column
+from fdvv.model.bspline import (
+    ExactlyEqual,
+    LARGEST_cN,
+    LARGEST_mm,
+    check_presses,
+    check_size,
+    check_spread,
+    check_velocity,
+    set_columns,
+)
 from fdvv.units import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
-class CurveSpread:
+class CurveSpread(ExactlyEqual):
     """How the presses behind a force curve differ.
 
     Attributes
@@ -42,8 +51,7 @@ class CurveSpread:
     achieved_spread_mm_s: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "displacement_mm", column(self.displacement_mm, "displacement_mm"))
-        object.__setattr__(self, "spread_cN", column(self.spread_cN, "spread_cN"))
+        set_columns(self, "displacement_mm", "spread_cN")
         if self.displacement_mm.shape != self.spread_cN.shape or self.displacement_mm.size < 2:
             raise ModelError(
                 "a spread needs 2 places or more and a value for each, got "
@@ -56,10 +64,7 @@ class CurveSpread:
         check_size(self.displacement_mm, LARGEST_mm, "displacement_mm")
         check_size(self.spread_cN, LARGEST_cN, "spread_cN")
         check_presses(self.presses)
-        if self.achieved_mm_s is not None and not (
-            np.isfinite(self.achieved_mm_s) and self.achieved_mm_s > 0
-        ):
-            raise ModelError(f"achieved_mm_s must be positive and finite, got {self.achieved_mm_s}")
+        check_velocity(self.achieved_mm_s, "achieved_mm_s")
         check_spread(self.achieved_spread_mm_s, "achieved_spread_mm_s")
 
     def at_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:
@@ -70,16 +75,6 @@ class CurveSpread:
     def error_cN(self, displacement_mm: npt.ArrayLike) -> FloatArray:
         """Return the standard error of the mean force, in the shape of displacement_mm; NaN likewise."""
         return np.asarray(self.at_cN(displacement_mm) / np.sqrt(self.presses))
-
-    def _key(self) -> tuple[object, ...]:
-        speeds = (self.achieved_mm_s, self.achieved_spread_mm_s)
-        return self.displacement_mm.tobytes(), self.spread_cN.tobytes(), self.presses, *speeds
-
-    def __eq__(self, other: object) -> bool:
-        return self._key() == other._key() if isinstance(other, CurveSpread) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key())
 
 
 @dataclass(frozen=True)
@@ -146,9 +141,6 @@ class PointSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
     spread_mm: Annotated[float, Meta(ge=0, description="standard deviation between presses, mm")]
     presses: Presses
 
-    def read(self) -> PointSpread:
-        return PointSpread(self.spread_mm, self.presses)
-
 
 class CurveSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
     """How the force of a curve differs between presses."""
@@ -167,9 +159,6 @@ class CurveSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
         Deviation, Meta(description="its standard deviation between presses, mm/s; null if unknown")
     ] = None
 
-    def read(self) -> CurveSpread:
-        return CurveSpread(**{name: getattr(self, name) for name in self.__struct_fields__})
-
 
 class ModeSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
     """Standard deviations between presses of one mode."""
@@ -186,20 +175,3 @@ class VibrationSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
     onset_mm: Annotated[Deviation, Meta(description="of the onset, mm; null if unknown")] = None
     duration_s: Annotated[Deviation, Meta(description="of the duration, s; null if unknown")] = None
     modes: Annotated[list[ModeSpreadRecord], Meta(description="one for each mode; empty if unknown")] = []
-
-    def read(self) -> VibrationSpread:
-        modes = tuple(ModeSpread(**msgspec.to_builtins(mode)) for mode in self.modes)
-        return VibrationSpread(self.presses, self.onset_mm, self.duration_s, modes)
-
-
-def written(
-    spread: CurveSpread | PointSpread | VibrationSpread | None, name: str = "spread"
-) -> dict[str, Any]:
-    """Return a spread as a field of a file; no field where there is none, as in files of version 1."""
-    if spread is None:
-        return {}
-    if not isinstance(spread, CurveSpread):
-        return {name: msgspec.to_builtins(spread)}
-    columns = {"displacement_mm": spread.displacement_mm.tolist(), "spread_cN": spread.spread_cN.tolist()}
-    speeds = {n: getattr(spread, n) for n in ("achieved_mm_s", "achieved_spread_mm_s")}
-    return {name: {"presses": spread.presses, **columns, **speeds}}

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.model.curve import Stroke, check_velocity
+from fdvv.model.bspline import check_velocity
+from fdvv.model.curve import Stroke
 from fdvv.model.spread import VibrationSpread
 from fdvv.units import FloatArray
 
