@@ -6,9 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.program.synth import Slot, Waveform, bank_messages, checksum, play_message, read_status, set_message
+from fdvv.program.synth import Slot, Waveform
 from tests.support.program.slot_strategies import SLOTS
 from tests.support.program.synth_in_c import NOTHING, RIGHT, SLOT, STRENGTH, Board
+from tests.support.program.vibration_wire import (
+    bank_messages,
+    checksum,
+    play_message,
+    read_status,
+    set_message,
+)
 
 SNAP = Slot(Waveform.SINE, 3824, 256, 1840, 50_461)
 BLIP = Slot(Waveform.SAMPLED, 65_535, 300, 2047, wave=tuple(range(-20, 20)))

@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv.program import synth as _synth
-from fdvv.program import synth as _vibration_wire
-from fdvv.program.synth import (
+from fdvv.program.synth import Slot, Waveform
+from tests.support.program import vibration_wire as _vibration_wire
+from tests.support.program.vibration_wire import (
     BoardStatus,
-    Slot,
-    Waveform,
     bank_messages,
     checksum,
     load_messages,

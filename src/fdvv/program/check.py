@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 
 import numpy as np
 
@@ -70,12 +71,10 @@ class Report:
 
     @property
     def refused(self) -> tuple[Finding, ...]:
-        """Return the findings that forbid the program."""
         return tuple(f for f in self.findings if f.severity is Severity.REFUSED)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Return the others."""
         return tuple(f for f in self.findings if f.severity is Severity.WARNING)
 
 
@@ -100,16 +99,15 @@ def check_program(program: Program, limits: Limits | None = None) -> Report:
         *(f for state, force in zip(program.states, rests, strict=True) for f in _heat(state, force, limits)),
         *_unreachable(program),
         *_hang(program),
-        *_flaws(returning),
+        *(_refused(*hazard) for hazard in returning.hazards()),
     ]
     findings.sort(key=lambda f: f.severity is Severity.WARNING)
     proven = not any(f.severity is Severity.REFUSED for f in findings)
+    used = [program.surface(name) for s in program.states for name in (s.press, s.release)]
     return Report(
         tuple(findings),
         returning.return_s() if proven else None,
-        max(
-            _slope_cN_mm(program.surface(n), limits)[0] for s in program.states for n in (s.press, s.release)
-        ),
+        max(_slope_cN_mm(surface, limits)[0] for surface in used),
         max(limits.rise_K(force) for force in rests),
     )
 
@@ -125,12 +123,8 @@ def require_accepted(program: Program, limits: Limits | None = None) -> Report:
     return report
 
 
-def _refused(state: str, place: str, reason: str, remedy: str) -> Finding:
-    return Finding(Severity.REFUSED, state, place, reason, remedy)
-
-
-def _warning(state: str, place: str, reason: str, remedy: str) -> Finding:
-    return Finding(Severity.WARNING, state, place, reason, remedy)
+_refused = partial(Finding, Severity.REFUSED)
+_warning = partial(Finding, Severity.WARNING)
 
 
 def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
@@ -245,12 +239,3 @@ def _hang(program: Program) -> Iterator[Finding]:
         place = f"at {stillness.displacement_mm:.2f} mm"
         reason = f"without any motion it goes {' → '.join(cycle)} for ever"
         yield _refused(cycle[0], place, reason, "move two of their conditions apart, or add an after_ms")
-
-
-def _flaws(returning: ReturnAnalysis) -> Iterator[Finding]:
-    flaws = returning.dead_ends()
-    if not flaws:
-        cycle = returning.cycle_flaw()
-        flaws = [cycle] if cycle else []
-    for flaw in flaws:
-        yield _refused(flaw.state, flaw.place, flaw.reason, flaw.remedy)

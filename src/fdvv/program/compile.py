@@ -11,7 +11,7 @@ import numpy as np
 from fdvv.errors import InputError, ModelError
 from fdvv.model.vibration import Vibration
 from fdvv.program.image import lay_out
-from fdvv.program.program import Program, State
+from fdvv.program.program import Program, Signal, State
 from fdvv.program.surface import Candidates, Grid, Limits, START_um16, Surface, speed_mm_s16
 from fdvv.program.synth import POOL_BYTES, ConvertedVibration, slot_of_vibration
 from fdvv.protocol.tables import (
@@ -60,13 +60,15 @@ def compile_program(
     beyond the limit.
     """
     limits = limits or Limits()
-    _check_counts(program)
+    for what, count, most in part_counts(program):
+        if count > most:
+            raise _refuse(program, what, f"{count}, a device holds {most}", "leave some out")
     for surface in program.surfaces:
         _check_surface(program, surface, limits)
     for state in program.states:
         _check_bias(program, state, limits)
     make = convert or partial(slot_of_vibration, counts_per_m_s2=limits.counts_per_m_s2)
-    converted = [_convert(program, i, make) for i in range(len(program.signals))]
+    converted = [_convert(program, signal, make) for signal in program.signals]
     _check_waves(program, converted)
     grids, image = _fit(program, [Candidates(s) for s in program.surfaces], converted, limits)
     _check_fit(program, grids, len(image), limits)
@@ -100,17 +102,15 @@ def _refuse(program: Program, place: str, reason: str, remedy: str) -> InputErro
     return InputError(f"program {program.name!r}", place, reason, remedy)
 
 
-def _check_counts(program: Program) -> None:
-    counts = {
-        "states": (len(program.states), STATES),
-        "transitions": (sum(len(s.transitions) for s in program.states), TRANSITIONS),
-        "surfaces": (len(program.surfaces), SURFACES),
-        "vibrations": (len(program.vibrations), VIBRATIONS),
-        "signals": (len(program.signals), SLOTS),
-    }
-    for what, (count, most) in counts.items():
-        if count > most:
-            raise _refuse(program, what, f"{count}, a device holds {most}", "leave some out")
+def part_counts(program: Program) -> list[tuple[str, int, int]]:
+    """Return what a program is made of: kinds of parts, how many there are, how many a device holds."""
+    return [
+        ("states", len(program.states), STATES),
+        ("transitions", sum(len(s.transitions) for s in program.states), TRANSITIONS),
+        ("surfaces", len(program.surfaces), SURFACES),
+        ("vibrations", len(program.vibrations), VIBRATIONS),
+        ("signals", len(program.signals), SLOTS),
+    ]
 
 
 def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
@@ -137,8 +137,7 @@ def _check_bias(program: Program, state: State, limits: Limits) -> None:
         raise _refuse(program, f"state {state.name!r}", reason, "weaken it")
 
 
-def _convert(program: Program, index: int, convert: Converter) -> ConvertedVibration:
-    signal = program.signals[index]
+def _convert(program: Program, signal: Signal, convert: Converter) -> ConvertedVibration:
     try:
         return convert(signal.vibration())
     except ModelError as error:

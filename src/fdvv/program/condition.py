@@ -110,6 +110,11 @@ class Transition:
     only_if: Condition | None = None
     signal: str | None = None
 
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """The condition, and the guard if there is one."""
+        return (self.when, self.only_if) if self.only_if else (self.when,)
+
     def __str__(self) -> str:
         guard = f" if {self.only_if}" if self.only_if else ""
         return f"{self.when}{guard} → {self.to}"

@@ -7,9 +7,9 @@ to the same bits, a list of plain values to a line.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -17,36 +17,22 @@ from msgspec import Meta
 from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import Kind, pretty, read_document, tidy_schema
 from fdvv.io.files import read_limited, write_atomic
-from fdvv.model.vibration import Mode
-from fdvv.program.condition import BARE, Condition, Transition, When
-from fdvv.program.program import During, Program, Signal, State, Velocity, VibrationEvent
-from fdvv.program.surface import Surface
+from fdvv.program.condition import BARE, Condition, When
+from fdvv.program.program import During, Program, State, Velocity
 
+R = TypeVar("R")
 FORMAT = "fdvv-program"
 VERSION = 1
 """Of the program file."""
 Name = Annotated[str, Meta(min_length=1, max_length=40)]
 Reference = Annotated[Name | None, Meta(description="a name, or null")]
-ConditionName = Literal[
-    "always",
-    "deeper_than_mm",
-    "shallower_than_mm",
-    "turned_to_press",
-    "turned_to_release",
-    "faster_than_mm_s",
-    "slower_than_mm_s",
-    "after_ms",
-    "host_event",
-    "risen_by_mm",
-    "fallen_by_mm",
-]
 ConditionRecord = Annotated[
-    dict[ConditionName, float | Literal[True]],
+    dict[When, float | Literal[True]],
     Meta(
         min_length=1,
         max_length=1,
         description="one condition and its value; true for always, turned_to_press and turned_to_release",
-        extra_json_schema={"propertyNames": {"enum": list(get_args(ConditionName))}},
+        extra_json_schema={"propertyNames": {"enum": list(map(str, When))}},
     ),
 ]
 PROGRAM_SUFFIX = ".fdvv-program.json"
@@ -157,49 +143,45 @@ class ProgramRecord(msgspec.Struct, forbid_unknown_fields=True):
 def schema() -> dict[str, Any]:
     """Return the JSON schema of the file, as published in docs/reference/fdvv-program.schema.json."""
     found = msgspec.json.schema(ProgramRecord)
+    del found["$defs"]["When"]  # nothing refers to it: each condition lists its names
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **tidy_schema(found)}
 
 
 def program_to_json(program: Program) -> str:
     """Write a program as the text of a ``*.fdvv-program.json`` file."""
-    record = ProgramRecord(
-        "fdvv-program",
-        1,
-        program.name,
-        program.travel_mm,
-        program.start,
-        [_state_record(state) for state in program.states],
-        [
-            SurfaceRecord(s.name, list(s.displacement_mm), list(s.velocity_mm_s), _rows(s))
-            for s in program.surfaces
+    record = _record(
+        ProgramRecord,
+        program,
+        format=FORMAT,
+        version=VERSION,
+        states=[_state_record(state) for state in program.states],
+        surfaces=[_record(SurfaceRecord, s, force_cN=list(map(list, s.force_cN))) for s in program.surfaces],
+        signals=[
+            _record(SignalRecord, s, modes=[_record(ModeRecord, m) for m in s.modes]) for s in program.signals
         ],
-        [
-            SignalRecord(s.name, s.duration_s, [ModeRecord(**vars(mode)) for mode in s.modes])
-            for s in program.signals
-        ],
-        [VibrationRecord(**{**vars(v), "states": list(v.states)}) for v in program.vibrations],
-        program.description,
+        vibrations=[_record(VibrationRecord, event) for event in program.vibrations],
     )
     return pretty(_without_defaults(record), one_line=list(When)) + "\n"
 
 
-def _rows(surface: Surface) -> list[list[float]]:
-    return [list(row) for row in surface.force_cN]
+def _record(kind: Callable[..., R], part: object, **changed: object) -> R:
+    """Return the record of a part, whose fields have the same names."""
+    fields = {name: list(value) if isinstance(value, tuple) else value for name, value in vars(part).items()}
+    return kind(**(fields | changed))
 
 
 def _state_record(state: State) -> StateRecord:
     transitions = [
-        TransitionRecord(
-            t.to, _condition_record(t.when), _condition_record(t.only_if) if t.only_if else None, t.signal
-        )
+        _record(TransitionRecord, t, when=_condition_record(t.when), only_if=_condition_record(t.only_if))
         for t in state.transitions
     ]
-    return StateRecord(**{**vars(state), "transitions": transitions})
+    return _record(StateRecord, state, transitions=transitions)
 
 
-def _condition_record(condition: Condition) -> ConditionRecord:
-    value = True if condition.when in BARE else float(condition.value)
-    return {str(condition.when): value}  # type: ignore[dict-item]
+def _condition_record(condition: Condition | None) -> ConditionRecord | None:
+    if condition is None:
+        return None
+    return {condition.when: True if condition.when in BARE else float(condition.value)}
 
 
 def _without_defaults(value: Any) -> Any:
@@ -227,73 +209,33 @@ def program_from_json(text: str | bytes, source: object = "program") -> Program:
         source,
         _KIND,
         lambda data: _program(msgspec.json.decode(data, type=ProgramRecord), source),
-        _choices,
+        lambda place: _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None),
     )
-
-
-def _choices(place: str) -> Iterable[str] | None:
-    return _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None)
-
-
-class _Reader:
-    """Builds the parts of a program and remembers where it is, for the message of what fails."""
-
-    def __init__(self) -> None:
-        self.place = "$"
-
-    def surface(self, i: int, record: SurfaceRecord) -> Surface:
-        self.place = f"$.surfaces[{i}]"
-        rows = tuple(tuple(row) for row in record.force_cN)
-        return Surface(record.name, tuple(record.displacement_mm), rows, tuple(record.velocity_mm_s))
-
-    def signal(self, i: int, record: SignalRecord) -> Signal:
-        self.place = f"$.signals[{i}]"
-        modes = tuple(Mode(**msgspec.structs.asdict(mode)) for mode in record.modes)
-        return Signal(record.name, record.duration_s, modes)
-
-    def state(self, i: int, record: StateRecord) -> State:
-        transitions = []
-        for j, t in enumerate(record.transitions):
-            self.place = f"$.states[{i}].transitions[{j}]"
-            guard = self.condition(t.only_if) if t.only_if else None
-            transitions.append(Transition(t.to, self.condition(t.when), guard, t.signal))
-        self.place = f"$.states[{i}]"
-        return State(**{**msgspec.structs.asdict(record), "transitions": tuple(transitions)})
-
-    def condition(self, record: ConditionRecord) -> Condition:
-        ((name, value),) = record.items()
-        when = When(name)
-        if (value is True) != (when in BARE):
-            wanted = "true" if when in BARE else "a number"
-            raise ModelError(f"{name} takes {wanted}, got {json.dumps(value)}")
-        return Condition(when, 0.0 if value is True else value)
-
-    def vibration(self, i: int, record: VibrationRecord) -> VibrationEvent:
-        self.place = f"$.vibrations[{i}]"
-        return VibrationEvent(**{**msgspec.structs.asdict(record), "states": tuple(record.states)})
 
 
 def _program(record: ProgramRecord, source: object) -> Program:
     """Build the program from a record of the right shape; each failure names its place."""
-    reader = _Reader()
-    try:
-        states = tuple(reader.state(i, s) for i, s in enumerate(record.states))
-        surfaces = tuple(reader.surface(i, s) for i, s in enumerate(record.surfaces))
-        signals = tuple(reader.signal(i, s) for i, s in enumerate(record.signals))
-        vibrations = tuple(reader.vibration(i, v) for i, v in enumerate(record.vibrations))
-        reader.place = "$"
-        return Program(
-            record.name,
-            record.travel_mm,
-            record.start,
-            states,
-            surfaces,
-            signals,
-            vibrations,
-            record.description,
-        )
-    except ModelError as error:
-        raise InputError(source, reader.place, str(error), _REMEDY) from error
+    fields = msgspec.to_builtins(record)
+    for i, state in enumerate(fields["states"]):
+        for j, transition in enumerate(state["transitions"]):
+            try:
+                for name in ("when", "only_if"):
+                    transition[name] = _condition(transition[name])
+            except ModelError as error:
+                raise InputError(source, f"$.states[{i}].transitions[{j}]", str(error), _REMEDY) from error
+    # a ModelError of another part comes out as msgspec's own error, with the place of that part
+    return msgspec.convert(fields, Program, from_attributes=True)
+
+
+def _condition(record: dict[str, float | Literal[True]] | None) -> Condition | None:
+    if record is None:
+        return None
+    ((name, value),) = record.items()
+    when = When(name)
+    if (value is True) != (when in BARE):
+        wanted = "true" if when in BARE else "a number"
+        raise ModelError(f"{name} takes {wanted}, got {json.dumps(value)}")
+    return Condition(when, 0.0 if value is True else value)
 
 
 def save_program(program: Program, path: Path | str) -> None:

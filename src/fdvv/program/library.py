@@ -73,20 +73,13 @@ def fast_tapping(
     Below trigger_mm the cap is pulled down with pull_cN, key 1, until it is 0.3 mm above the bottom or
     drop_ms are over; then it is pushed up with push_cN, key 0, and armed again at half of trigger_mm.
     """
-    given = {"trigger_mm": trigger_mm, "pull_cN": pull_cN, "push_cN": push_cN, "drop_ms": drop_ms}
-    check_ranges("fast-tapping", base, **given)
     press, release = _surfaces(base)
     signals, events = _snaps(base, "ready")
     bottom_mm = base.travel_mm - NEAR_BOTTOM_mm
+    dropped = (_deeper(bottom_mm, "returning"), _after(drop_ms, "returning"))
     states = (
         State("ready", press.name, release.name, (_deeper(trigger_mm, "dropping"),)),
-        State(
-            "dropping",
-            "pull",
-            "pull",
-            (_deeper(bottom_mm, "returning"), _after(drop_ms, "returning")),
-            key=1,
-        ),
+        State("dropping", "pull", "pull", dropped, key=1),
         State("returning", "push", "push", (_shallower(trigger_mm / 2, "ready"),)),
     )
     surfaces = (press, release, flat("pull", -pull_cN), flat("push", push_cN))
@@ -103,32 +96,16 @@ def non_newtonian(
     every tick and held from fastest_mm_s on. The release is the base's times soft_ratio at any speed, so that
     the speed cannot push the cap up. Key 1 between the base's actuation and reset.
     """
-    check_ranges(
-        "non-newtonian",
-        base,
-        soft_ratio=soft_ratio,
-        stiffening_per_m_s=stiffening_per_m_s,
-        fastest_mm_s=fastest_mm_s,
-    )
     slow_press, slow_release = (of_model(base, s, velocity_mm_s=_slowest(base, s)) for s in Stroke)
-    press = scaled(
-        slow_press,
-        "press",
-        {0.0: soft_ratio, fastest_mm_s: soft_ratio + stiffening_per_m_s * fastest_mm_s / 1000},
-    )
+    stiff_ratio = soft_ratio + stiffening_per_m_s * fastest_mm_s / 1000
+    press = scaled(slow_press, "press", {0.0: soft_ratio, fastest_mm_s: stiff_ratio})
     release = scaled(slow_release, "release", {0.0: soft_ratio})
     actuation_mm, reset_mm = key_points_mm(base)
     signals, events = _snaps(base)
+    both = (press.name, release.name)
     states = (
-        State("up", press.name, release.name, (_deeper(actuation_mm, "down"),), velocity=Velocity.CONTINUOUS),
-        State(
-            "down",
-            press.name,
-            release.name,
-            (_shallower(reset_mm, "up"),),
-            key=1,
-            velocity=Velocity.CONTINUOUS,
-        ),
+        State("up", *both, (_deeper(actuation_mm, "down"),), velocity=Velocity.CONTINUOUS),
+        State("down", *both, (_shallower(reset_mm, "up"),), key=1, velocity=Velocity.CONTINUOUS),
     )
     summary = "Soft when pressed gently, stiff when pressed fast."
     return Program("non-newtonian", base.travel_mm, "up", states, (press, release), signals, events, summary)
@@ -148,7 +125,6 @@ def multi_level(
     by up to detent_cN within detent_mm; on reaching it, a click of its own pitch is felt, 140 Hz and 40 Hz
     more per level. The key is the level; it is left 0.1 mm above where it begins. The release has no detents.
     """
-    check_ranges("multi-level", base, levels=levels, detent_cN=detent_cN, detent_mm=detent_mm)
     press, release = _surfaces(base)
     starts_mm = [STEP_mm * round(base.travel_mm * k / (levels + 1) / STEP_mm) for k in range(1, levels + 1)]
     bumps = [
@@ -176,24 +152,16 @@ def dwell_ticks(base: FDVVModel, period_ms: int = 250, bottom_mm: float = 0.3) -
     Within bottom_mm of the bottom the key is 2 and a tick of 12 ms is felt at once and every period_ms; it
     ends when the cap has come back by 0.2 mm more. Otherwise the base, key 1 between actuation and reset.
     """
-    check_ranges("dwell-ticks", base, period_ms=period_ms, bottom_mm=bottom_mm)
     actuation_mm, reset_mm = key_points_mm(base)
     press, release = _surfaces(base)
     signals, events = _snaps(base)
     edge_mm = base.travel_mm - bottom_mm
+    left = (_shallower(edge_mm - HOLD_mm, "down"),)
     both = (press.name, release.name)
     states = (
         State("up", *both, (_deeper(actuation_mm, "down"),)),
         State("down", *both, (_deeper(edge_mm, "dwelling"), _shallower(reset_mm, "up")), key=1),
-        State(
-            "dwelling",
-            *both,
-            (_shallower(edge_mm - HOLD_mm, "down"),),
-            key=2,
-            enter_signal="tick",
-            repeat_signal="tick",
-            repeat_ms=period_ms,
-        ),
+        State("dwelling", *both, left, 2, enter_signal="tick", repeat_signal="tick", repeat_ms=period_ms),
     )
     summary = f"Ticks every {period_ms} ms while held at the bottom."
     sounds = (*signals, _tick("tick", 200.0))
@@ -209,8 +177,6 @@ def returning_later(
     `event`. Then the base's force returns within fade_ms, key 0, and the button is armed again at half the
     actuation depth.
     """
-    given = {"cooldown_ms": cooldown_ms, "event": event, "sunk_cN": sunk_cN, "fade_ms": fade_ms}
-    check_ranges("returning-later", base, **given)
     actuation_mm, _ = key_points_mm(base)
     press, release = _surfaces(base)
     signals, events = _snaps(base, "ready", "returning")
@@ -239,14 +205,8 @@ def rapid_trigger(
     last changed. Above top_dead_mm the key is always up; within bottom_dead_mm of the bottom it is always
     down. The feel is the base's.
     """
-    steps = {
-        "press_mm": press_mm,
-        "release_mm": release_mm,
-        "top_dead_mm": top_dead_mm,
-        "bottom_dead_mm": bottom_dead_mm,
-    }
-    check_ranges("rapid-trigger", base, **steps)
-    for name, value in steps.items():
+    names = ("press_mm", "release_mm", "top_dead_mm", "bottom_dead_mm")
+    for name, value in zip(names, (press_mm, release_mm, top_dead_mm, bottom_dead_mm), strict=True):
         if abs(value * 100 - round(value * 100)) > 1e-6:
             raise InputError(name, "value", f"goes in steps of 0.01, got {value:g}", "round it")
     press, release = _surfaces(base)
@@ -341,6 +301,7 @@ def make(name: str, base: FDVVModel | str | None = None, /, **parameters: float)
                 raise InputError(f"program {name!r}", parameter, reason, "round it")
             parameters[parameter] = int(value)
     model = load_builtin(base or BASE) if base is None or isinstance(base, str) else base
+    check_ranges(name, model, **(known | parameters))
     return MAKERS[name](model, **parameters)
 
 
@@ -357,17 +318,14 @@ def load_shipped(name: str) -> Program:
 
 def names_program(spec: str) -> bool:
     """Return whether spec names a program: a shipped one, or a file of that ending."""
-    return spec.endswith(PROGRAM_SUFFIX) or spec in [recipe.name for recipe in programs()]
+    return spec.endswith(PROGRAM_SUFFIX) or spec in MAKERS
 
 
 def open_program(spec: str) -> Program:
     """Return the program that spec names: a shipped one, or a *.fdvv-program.json file. Raises InputError."""
-    names = [recipe.name for recipe in programs()]
-    if spec in names:
+    if spec in MAKERS:
         return load_shipped(spec)
     if not spec or not Path(spec).is_file():
-        reason = "no such file or shipped program"
-        raise InputError(
-            spec or "''", "argument", reason, f"name a *{PROGRAM_SUFFIX} or one of {', '.join(names)}"
-        )
+        remedy = f"name a *{PROGRAM_SUFFIX} or one of {', '.join(sorted(MAKERS))}"
+        raise InputError(spec or "''", "argument", "no such file or shipped program", remedy)
     return load_program(spec)

@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice
-from typing import Protocol
 
 import numpy as np
 
@@ -20,8 +19,8 @@ from fdvv.protocol.tables import Stroke as Direction
 from fdvv.protocol.tables import VelocitySource
 
 TRAVEL_mm = (0.2, 6.4)
-LONGEST_fade_ms = 2000
-LONGEST_ms = 65_535
+LARGEST = {"key": 255, "repeat_ms": 65_535, "fade_ms": 2000, "bias_ms": 65_535}
+"""Of the whole numbers of a state."""
 LISTED = 16
 """Number of known names that an error lists; a device holds no more states or surfaces."""
 
@@ -35,7 +34,7 @@ class Velocity(StrEnum):
 
     @property
     def code(self) -> VelocitySource:
-        """Return its number on the device."""
+        """Its number on the device."""
         return VelocitySource[self.name]
 
 
@@ -144,10 +143,12 @@ class State:
         check_name(self.name)
         object.__setattr__(self, "transitions", tuple(self.transitions))
         object.__setattr__(self, "velocity", Velocity(self.velocity))
-        self._check_whole("key", self.key, 255)
-        self._check_whole("repeat_ms", self.repeat_ms, LONGEST_ms)
-        self._check_whole("fade_ms", self.fade_ms, LONGEST_fade_ms)
-        self._check_whole("bias_ms", self.bias_ms, LONGEST_ms)
+        for field, high in LARGEST.items():
+            value = getattr(self, field)
+            if not 0 <= value <= high or value != int(value):
+                raise ModelError(
+                    f"state {self.name!r}: {field} must be a whole number to {high}, got {value}"
+                )
         if (self.repeat_signal is None) != (self.repeat_ms == 0):
             raise ModelError(f"state {self.name!r}: repeat_signal and repeat_ms go together")
         if not np.isfinite([self.bias_cN, self.bias_end_cN]).all():
@@ -155,22 +156,10 @@ class State:
         if self.bias_ms == 0 and self.bias_end_cN != 0:
             raise ModelError(f"state {self.name!r}: bias_end_cN needs bias_ms, the time to get there")
 
-    def _check_whole(self, field: str, value: int, high: int) -> None:
-        if not 0 <= value <= high or value != int(value):
-            raise ModelError(f"state {self.name!r}: {field} must be a whole number to {high}, got {value}")
-
     def biases_cN(self) -> tuple[float, float]:
         """Return the least and the greatest bias while in the state."""
         end = self.bias_end_cN if self.bias_ms else self.bias_cN
         return min(self.bias_cN, end), max(self.bias_cN, end)
-
-
-class Named(Protocol):
-    """Anything with a name."""
-
-    @property
-    def name(self) -> str:
-        """Return it."""
 
 
 @dataclass(frozen=True)
@@ -206,9 +195,9 @@ class Program:
         low, high = TRAVEL_mm
         if not low <= self.travel_mm <= high:
             raise ModelError(f"travel_mm must be {low} to {high}, got {self.travel_mm}")
-        states = _names(self.states, "state")
-        surfaces = _names(self.surfaces, "surface")
-        signals = _names(self.signals, "signal")
+        states = _names([s.name for s in self.states], "state")
+        surfaces = _names([s.name for s in self.surfaces], "surface")
+        signals = _names([s.name for s in self.signals], "signal")
         _check_known(self.start, states, "state", "start")
         for state in self.states:
             _check_state(state, states, surfaces, signals)
@@ -218,16 +207,14 @@ class Program:
                 _check_known(name, states, "state", f"vibration {i + 1}")
 
     def state(self, name: str) -> State:
-        """Return a state by its name."""
         return next(state for state in self.states if state.name == name)
 
     def surface(self, name: str) -> Surface:
-        """Return a surface by its name."""
         return next(surface for surface in self.surfaces if surface.name == name)
 
 
-def _names(things: Iterable[Named], what: str) -> dict[str, int]:
-    found = Counter(thing.name for thing in things)
+def _names(names: Iterable[str], what: str) -> Collection[str]:
+    found = Counter(names)
     twice = [name for name, count in found.items() if count > 1]
     if twice:
         raise ModelError(f"two {what}s are called {min(twice)!r}")
@@ -236,7 +223,7 @@ def _names(things: Iterable[Named], what: str) -> dict[str, int]:
 
 def _check_known(name: str, known: Collection[str], what: str, place: str) -> None:
     if name not in known:
-        listed = ", ".join(repr(k) for k in islice(known, LISTED)) or "none"
+        listed = ", ".join(map(repr, islice(known, LISTED))) or "none"
         listed += f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
         raise ModelError(f"{place}: no {what} is called {name!r}; there is {listed}")
 

@@ -51,11 +51,10 @@ class RestAnalysis:
 
     def next_state(self, state: State) -> str | None:
         """Return the state that follows at once, or None."""
-        for transition in state.transitions:
-            conditions = (transition.when, *([transition.only_if] if transition.only_if else []))
-            if all(self.holds(c, state.velocity) for c in conditions):
-                return transition.to
-        return None
+        holding = (
+            t.to for t in state.transitions if all(self.holds(c, state.velocity) for c in t.conditions)
+        )
+        return next(holding, None)
 
 
 def find_hang(program: Program) -> tuple[list[str], RestAnalysis] | None:
@@ -96,9 +95,7 @@ def conditions(program: Program) -> Iterator[tuple[State, Condition]]:
     """Yield every condition and guard of a program with its state."""
     for state in program.states:
         for transition in state.transitions:
-            yield state, transition.when
-            if transition.only_if:
-                yield state, transition.only_if
+            yield from ((state, condition) for condition in transition.conditions)
 
 
 def _values(program: Program, kinds: tuple[When, ...], source: Velocity | None) -> set[float]:
@@ -139,7 +136,6 @@ class Cells:
 
     @property
     def count(self) -> int:
-        """Count the cells."""
         return self.edges_mm.size - 1
 
     def of(self, place_mm: float) -> int:
@@ -190,8 +186,7 @@ class Cells:
 
     def must_fire(self, transition: Transition, cell: int) -> bool:
         """Return whether a transition fires at once wherever in a cell."""
-        guard = transition.only_if or Condition(When.ALWAYS)
-        return self.must_hold(transition.when, cell) and self.must_hold(guard, cell)
+        return all(self.must_hold(c, cell) for c in transition.conditions)
 
 
 def _fits_way(one: Condition, other: Condition, way: Direction) -> bool:
@@ -211,9 +206,7 @@ def make_cells(program: Program, limits: Limits, margin_cN: float) -> Cells:
 
     margin_cN : how far the compiled forces may be from the program's.
     """
-    named = {c.value for _, c in conditions(program) if c.when in (When.DEEPER_THAN, When.SHALLOWER_THAN)} | {
-        limits.top_mm
-    }
+    named = _values(program, (When.DEEPER_THAN, When.SHALLOWER_THAN), None) | {limits.top_mm}
     even = np.linspace(0.0, program.travel_mm, int(np.ceil(program.travel_mm / WIDEST_mm)) + 1)
     inner = [v for v in named if 0 < v < program.travel_mm]
     edges = np.unique(np.concatenate([even, inner]))

@@ -9,7 +9,6 @@ docs/explanation/programs.md says what follows and what does not.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from typing import NamedTuple
@@ -39,8 +38,7 @@ class Node(NamedTuple):
     cell: int = 0
 
 
-@dataclass(frozen=True)
-class ReturnHazard:
+class ReturnHazard(NamedTuple):
     """Why the return cannot be proven: the state, the place in it, what may happen, and what helps."""
 
     state: str
@@ -139,6 +137,10 @@ class ReturnAnalysis:
 
     # -- flaws ---------------------------------------------------------------------------------------------
 
+    def hazards(self) -> list[ReturnHazard]:
+        """Return why the cap may not come back: dead ends, or where there are none the first cycle."""
+        return self.dead_ends() or self._cycle_hazards()
+
     def dead_ends(self) -> list[ReturnHazard]:
         """Return the states in which the cap may stay for ever, other than at the top in the start state."""
         found = []
@@ -161,11 +163,8 @@ class ReturnAnalysis:
         first = self.motion.first
         least = self.cells.least_cN[state]
         cell = first + int(least[first:].argmin())
-        opposing_cN = self.motion.limits.opposing_cN
-        return (
-            f"{self.cells.edges_mm[cell]:.2f} mm, at least {least[cell]:.1f} cN "
-            f"against {opposing_cN:g} cN of friction"
-        )
+        place = f"{self.cells.edges_mm[cell]:.2f} mm, at least {least[cell]:.1f} cN"
+        return f"{place} against {self.motion.limits.opposing_cN:g} cN of friction"
 
     @cached_property
     def starts(self) -> list[Node]:
@@ -200,18 +199,17 @@ class ReturnAnalysis:
             moved, entered = self.followers(node)
             path[node] = iter(dict.fromkeys([*moved, *entered]))
 
-    def cycle_flaw(self) -> ReturnHazard | None:
-        """Return the first cycle as a hazard: its states and where it turns."""
+    def _cycle_hazards(self) -> list[ReturnHazard]:
+        """Return the first cycle as a hazard, if there is one: its states and where it turns."""
         cycle = self.find_cycle()
         if not cycle:
-            return None
+            return []
         names = [self.program.states[node.state].name for node in cycle]
         loop = [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
         edge_mm = self.cells.edges_mm[max(node.cell for node in cycle)]
         reason = f"with the finger off it may go {' → '.join(loop if len(loop) > 1 else loop * 2)} for ever"
-        return ReturnHazard(
-            names[0], f"near {edge_mm:.2f} mm", reason, "move the conditions of these states apart"
-        )
+        remedy = "move the conditions of these states apart"
+        return [ReturnHazard(names[0], f"near {edge_mm:.2f} mm", reason, remedy)]
 
     # -- time ----------------------------------------------------------------------------------------------
 

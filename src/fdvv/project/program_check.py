@@ -10,43 +10,27 @@ import msgspec
 
 from fdvv.errors import InputError
 from fdvv.program.check import Finding, Severity, check_program
-from fdvv.program.compile import Compiled, compile_program
+from fdvv.program.compile import Compiled, compile_program, part_counts
 from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.project.programs import read_program
-from fdvv.protocol.tables import (
-    IMAGE_BYTES,
-    SLOTS,
-    STATES,
-    SURFACE_DISPLACEMENTS,
-    SURFACE_VELOCITIES,
-    SURFACES,
-    TRANSITIONS,
-    VIBRATIONS,
-)
+from fdvv.protocol.tables import IMAGE_BYTES, SURFACE_DISPLACEMENTS, SURFACE_VELOCITIES
 
 PARTS = {"state": "states", "surface": "surfaces", "signal": "signals"}
 """Kinds of named parts, and the fields of a document that list them."""
 
 
 @dataclass(frozen=True)
-class PlacedFinding:
-    """One thing that is wrong or doubtful, with its place in the document.
+class PlacedFinding(Finding):
+    """A finding with its place in the document.
 
     Attributes
     ----------
-    severity : refused or a warning.
     path : of the part it concerns, such as ``states[1].transitions[0]``; empty for the whole program.
-    state, place, reason, remedy : as in a Finding; `state` is empty where it concerns none.
     at_mm : the displacement it is about, or None.
     """
 
-    severity: Severity
     path: str
-    state: str
-    place: str
-    reason: str
-    remedy: str
     at_mm: float | None = None
 
 
@@ -110,8 +94,9 @@ def checked_program(text: str, limits: Limits | None = None) -> ProgramCheckResu
     try:
         compiled = compile_program(program, limits)
     except InputError as error:
-        if _beyond(program):
-            return ProgramCheckResult((_uncompiled(program, error),), _sizes(program, None))
+        if any(taken > most for _, taken, most in _counts(program)):
+            found = _of_error(path_of(error.place, _names(program)), error)
+            return ProgramCheckResult((found,), _sizes(program, None))
         compiled = None
     report = check_program(program, limits)
     return ProgramCheckResult(
@@ -124,19 +109,9 @@ def checked_program(text: str, limits: Limits | None = None) -> ProgramCheckResu
     )
 
 
-def _counts(program: Program) -> tuple[tuple[str, int, int], ...]:
-    return (
-        ("states", len(program.states), STATES),
-        ("transitions", sum(len(s.transitions) for s in program.states), TRANSITIONS),
-        ("surfaces", len(program.surfaces), SURFACES),
-        ("vibrations", len(program.vibrations), VIBRATIONS),
-        ("signals", len(program.signals), SLOTS),
-        ("velocities", max(len(s.velocity_mm_s) for s in program.surfaces), SURFACE_VELOCITIES),
-    )
-
-
-def _beyond(program: Program) -> bool:
-    return any(taken > most for _, taken, most in _counts(program))
+def _counts(program: Program) -> list[tuple[str, int, int]]:
+    rows = max(len(s.velocity_mm_s) for s in program.surfaces)
+    return [*part_counts(program), ("velocities", rows, SURFACE_VELOCITIES)]
 
 
 def _sizes(program: Program, compiled: Compiled | None) -> tuple[Size, ...]:
@@ -158,39 +133,24 @@ def _surface_sizes(program: Program, compiled: Compiled | None) -> tuple[Surface
 
 
 def _names(program: Program) -> dict[str, list[str]]:
-    return {
-        "state": [s.name for s in program.states],
-        "surface": [s.name for s in program.surfaces],
-        "signal": [s.name for s in program.signals],
-    }
+    return {kind: [part.name for part in getattr(program, field)] for kind, field in PARTS.items()}
 
 
 def _placed(program: Program, finding: Finding) -> PlacedFinding:
-    names = _names(program)
     words = f"state {finding.state!r}, {finding.place}" if finding.state else finding.place
     number = re.search(r"(-?\d+(?:\.\d+)?) mm\b", finding.place)
-    return PlacedFinding(
-        finding.severity,
-        path_of(words, names),
-        finding.state,
-        finding.place,
-        finding.reason,
-        finding.remedy,
-        float(number[1]) if number else None,
-    )
+    path = path_of(words, _names(program))
+    return PlacedFinding(**vars(finding), path=path, at_mm=float(number[1]) if number else None)
 
 
-def _uncompiled(program: Program, error: InputError) -> PlacedFinding:
-    path = path_of(error.place, _names(program))
-    return PlacedFinding(Severity.REFUSED, path, "", error.place, error.reason, error.remedy)
+def _of_error(path: str, error: InputError) -> PlacedFinding:
+    return PlacedFinding(Severity.REFUSED, "", error.place, error.reason, error.remedy, path)
 
 
 def _unreadable(text: str, error: InputError) -> PlacedFinding:
     """Locate what makes a text invalid: by the path in the error, or by the part it names."""
     path = error.place.removeprefix("$").removeprefix(".") if error.place.startswith("$") else ""
-    if not path:
-        path = path_of(error.reason, _names_in(text))
-    return PlacedFinding(Severity.REFUSED, path, "", error.place, error.reason, error.remedy)
+    return _of_error(path or path_of(error.reason, _names_in(text)), error)
 
 
 def _names_in(text: str) -> dict[str, list[str]]:
@@ -199,16 +159,14 @@ def _names_in(text: str) -> dict[str, list[str]]:
         document = msgspec.json.decode(text)
     except (msgspec.MsgspecError, UnicodeError, RecursionError):
         return {}
-    held = document if isinstance(document, dict) else {}
-    return {kind: [_name(part) for part in _listed(held.get(field))] for kind, field in PARTS.items()}
-
-
-def _listed(value: object) -> list[object]:
-    return value if isinstance(value, list) else []
-
-
-def _name(part: object) -> str:
-    return str(part.get("name")) if isinstance(part, dict) else ""
+    if not isinstance(document, dict):
+        return {}
+    lists = {kind: document.get(field) for kind, field in PARTS.items()}
+    return {
+        kind: [str(part.get("name")) if isinstance(part, dict) else "" for part in parts]
+        for kind, parts in lists.items()
+        if isinstance(parts, list)
+    }
 
 
 def path_of(words: str, names: dict[str, list[str]]) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv._native import library
-from fdvv.program.synth import Slot, bank_messages
+from fdvv.program.synth import Slot
+from tests.support.program.vibration_wire import bank_messages
 
 SLOTS, POOL_BYTES, MESSAGE_BYTES = 16, 1024, 33
 NOTHING, SLOT, STRENGTH, RIGHT = range(4)
