@@ -24,7 +24,7 @@ from tests.studio.running import RunningStudio
 from fdvv.button.fit import measured_files
 from fdvv.errors import FdvvError
 from fdvv.library.catalog import Catalog
-from fdvv.library.figures import polylines_of_file
+from fdvv.library.figures import read_file
 from fdvv.library.index import CatalogIndex
 from fdvv.library.search import CatalogSearch, SearchQuery
 
@@ -75,7 +75,7 @@ def usable(folder: Path) -> Iterator[Path]:
     """Return the files of a folder that can be read."""
     for path in measured_files(folder):
         try:
-            polylines_of_file(path)
+            read_file(path)
         except FdvvError:
             continue
         yield path

@@ -10,15 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.program.synth import (
-    SILENCE_counts,
-    Slot,
-    Waveform,
-    bank_messages,
-    play_message,
-    read_status,
-    render,
-)
+from fdvv.program.synth import SILENCE_counts, Slot, Waveform, render
+from tests.support.program.vibration_wire import bank_messages, play_message, read_status
 
 from ._simavr import CLOCK_HZ, Uno, build_board, build_emulator, require_tools, say
 

@@ -8,20 +8,15 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fdvv.errors import BuildError
-from fdvv.io.files import publish, write_atomic
+from fdvv.io.files import atomic_stream, write_atomic
 
 if TYPE_CHECKING:
     from pyarrow import Schema, Table
-if TYPE_CHECKING:
-    from pyarrow import Schema, Table
-
 
 LAYOUT: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True, "store_schema": True}
 
@@ -42,6 +37,13 @@ def open_parquet(path: Path) -> Any:
     return pq.ParquetFile(path, page_checksum_verification=True, memory_map=False, pre_buffer=False)
 
 
+def read_groups(path: Path, columns: Sequence[str] | None = None) -> Iterator[Table]:
+    """Read the row groups of a file one after another. Raises OSError, ValueError if it is damaged."""
+    with open_parquet(path) as found:
+        for group in range(found.num_row_groups):
+            yield found.read_row_group(group, columns=columns and list(columns))
+
+
 def write_table(path: Path, table: Table) -> None:
     """Write a small table, whole or not at all. Raises OSError."""
     import pyarrow.parquet as pq
@@ -55,18 +57,9 @@ def write_tables(path: Path, schema: Schema, tables: Iterable[Table]) -> None:
     """Write tables one after another, a row group each, whole or not at all; one is in memory at a time."""
     import pyarrow.parquet as pq
 
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            with pq.ParquetWriter(stream, schema, **LAYOUT) as writer:
-                for table in tables:
-                    writer.write_table(table, row_group_size=max(1, table.num_rows))
-            stream.flush()
-            os.fsync(stream.fileno())
-        publish(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with atomic_stream(path) as stream, pq.ParquetWriter(stream, schema, **LAYOUT) as writer:
+        for table in tables:
+            writer.write_table(table, row_group_size=max(1, table.num_rows))
 
 
 PARTS = "parts"
@@ -131,12 +124,7 @@ class PartStore:
 
     def tables(self, columns: Sequence[str] | None = None) -> Iterator[Table]:
         """Return the rows of the one file, a row group after another."""
-        found = open_parquet(self._path)
-        try:
-            for group in range(found.num_row_groups):
-                yield found.read_row_group(group, columns=columns)
-        finally:
-            found.close()
+        return read_groups(self._path, columns)
 
     def _is_finished(self, order: Sequence[Key]) -> bool:
         if any(path != self._path for path, _ in self._sources):
@@ -149,24 +137,17 @@ class PartStore:
         if path != self._path and stem.isdigit():
             self._number = max(self._number, int(stem))
         try:
-            found = open_parquet(path)
+            with open_parquet(path) as found:
+                if not _same(found.schema_arrow, self._schema):
+                    raise ValueError("rows of another meaning")
+                for group in range(found.num_row_groups):
+                    table = found.read_row_group(group, columns=self._key)
+                    self._sources.append((path, group))
+                    self._take(len(self._sources) - 1, table)
         except FileNotFoundError:
             return
         except (OSError, ValueError):
             self._refuse(path)
-            return
-        try:
-            if not _same(found.schema_arrow, self._schema):
-                self._refuse(path)
-                return
-            for group in range(found.num_row_groups):
-                table = found.read_row_group(group, columns=self._key)
-                self._sources.append((path, group))
-                self._take(len(self._sources) - 1, table)
-        except (OSError, ValueError):
-            self._refuse(path)
-        finally:
-            found.close()
 
     def _refuse(self, path: Path) -> None:
         """Forget a file and its rows; they are computed again."""
@@ -191,17 +172,11 @@ class PartStore:
             wanted.setdefault(source, []).append((row, place))
         pieces, places = [], []
         for source, rows in wanted.items():
-            pieces.append(self._read(source).take([row for row, _ in rows]))
+            path, group = self._sources[source]
+            with open_parquet(path) as found:
+                pieces.append(found.read_row_group(group).take([row for row, _ in rows]))
             places += [place for _, place in rows]
         return pa.concat_tables(pieces).take(np.argsort(places)).combine_chunks()
-
-    def _read(self, source: int) -> Table:
-        path, group = self._sources[source]
-        found = open_parquet(path)
-        try:
-            return found.read_row_group(group)
-        finally:
-            found.close()
 
 
 def _same(found: Schema, wanted: Schema) -> bool:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import socket
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from datetime import UTC, datetime
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,17 +14,14 @@ from msgspec.structs import replace
 
 from fdvv import __version__
 from fdvv.button.fit import one_line
-from fdvv.errors import FdvvError, InputError
+from fdvv.errors import InputError
 from fdvv.eventlog import Journal
-from fdvv.formats.force.read import read_force_file
 from fdvv.io.documents import MODEL, Kind, own_kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.io.part_store import PartStore, need_parquet
 from fdvv.library.catalog import ButtonFile, source_files
-from fdvv.library.figures import polylines_of, row_of_model
+from fdvv.library.figures import UNREADABLE, read_file, refusal, row_of_file
 from fdvv.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sampled, table_of
-from fdvv.model.file import load_model
-from fdvv.model.model import FDVVModel
 from fdvv.parallel.campaign import DEADLY, run_campaign
 from fdvv.parallel.executor import Executor
 
@@ -37,13 +33,9 @@ def read_button(file: ButtonFile) -> LibraryRecord:
     record = LibraryRecord(file.id, file.place, file.stamp, one_line(file.pair.name) if file.pair else None)
     try:
         record = replace(record, sha256=_sha256(file))
-        kind = own_kind(file.path)
-        return _read_record(file, record, kind == MODEL) if kind in (None, MODEL) else record
-    except InputError as error:
-        reason = f"{error.place}: {error.reason}; {error.remedy}"
-    except (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError) as error:
-        reason = f"whole file: cannot be read ({error}); check the file"
-    return replace(record, reason=one_line(reason))
+        return _read_record(file, record) if own_kind(file.path) in (None, MODEL) else record
+    except UNREADABLE as error:
+        return replace(record, reason=refusal(error))
 
 
 @dataclass(frozen=True)
@@ -70,16 +62,11 @@ class LibraryWork:
         return [self.read(file) for file in files]
 
 
-def _read_record(file: ButtonFile, record: LibraryRecord, is_model: bool) -> LibraryRecord:
-    dated = datetime.fromtimestamp(file.path.stat().st_mtime, UTC).date().isoformat()
-    if is_model:
-        model: FDVVModel = load_model(file.path)
-        row = row_of_model(model, file.id, file.origin, file.collection, dated)
-        return replace(record, row=row, format="fdvv-model", curves=sampled(model))
-    found = read_force_file(file.path)
-    model, parts = polylines_of(found, file.path)
-    row = row_of_model(model, file.id, file.origin, file.collection, dated, parts)
-    return replace(record, row=row, format=found.format, warnings=parts.warnings, curves=sampled(model))
+def _read_record(file: ButtonFile, record: LibraryRecord) -> LibraryRecord:
+    found = read_file(file.path)
+    row = row_of_file(file.path, file.id, file.collection, file.origin, found)
+    warnings = found.parts.warnings if found.parts else ()
+    return replace(record, row=row, format=found.format, warnings=warnings, curves=sampled(found.model))
 
 
 def _sha256(file: ButtonFile) -> str:
@@ -141,8 +128,8 @@ class LibraryBuilt:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report of ``fdvv library build --json``."""
-        counts = ("files", "buttons", "refused", "read", "kept", "gone")
-        return {"library": str(self.folder), **{name: getattr(self, name) for name in counts}}
+        counts = asdict(self)
+        return {"library": str(counts.pop("folder")), **counts}
 
 
 def build_library(
@@ -175,14 +162,9 @@ def read_manifest(folder: Path) -> LibraryManifest:
     """Read what a library's folder says of itself. InputError if it is none."""
     if not (folder / MANIFEST).is_file():
         raise InputError(folder, "library", f"there is no {MANIFEST} in it", REMEDY)
-    text = read_limited(folder / MANIFEST, LARGEST_bytes, REMEDY)
-    return read_document(
-        text,
-        folder / MANIFEST,
-        KIND,
-        lambda data: msgspec.json.decode(data, type=LibraryManifest),
-        lambda _: None,
-    )
+    path = folder / MANIFEST
+    read = msgspec.json.Decoder(LibraryManifest).decode
+    return read_document(read_limited(path, LARGEST_bytes, REMEDY), path, KIND, read, lambda _: None)
 
 
 def _listed(sources: Sequence[Path]) -> list[ButtonFile]:

@@ -14,7 +14,7 @@ from fdvv.button.fit import fit_file
 from fdvv.errors import InputError
 from fdvv.formats.force.read import companion, is_force_file
 from fdvv.io.documents import MODEL, own_kind
-from fdvv.library.figures import polylines_of_file
+from fdvv.library.figures import read_file
 from fdvv.library.row import Origin
 from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, load_model
 from fdvv.model.model import FDVVModel
@@ -190,4 +190,4 @@ class Catalog:
 def _read_model(path: Path, fitted: bool) -> FDVVModel:
     if path.name.endswith(MODEL_SUFFIX) or own_kind(path) == MODEL:
         return load_model(path)
-    return fit_file(path).model if fitted else polylines_of_file(path)[0]
+    return fit_file(path).model if fitted else read_file(path).model

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from fdvv.button.fit import MeasuredParts, measured_parts, one_line
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
-from fdvv.formats.force.types import ForceFile
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.library.row import NUMBERS, SKETCH_POINTS, ButtonRow, ButtonType, Origin, Sketch
 from fdvv.model.bump import Bump, find_bump, running_mean
@@ -191,31 +191,52 @@ STATED = re.compile(
 LONGEST_name = 200
 
 
-def row_of_file(path: Path, button_id: str, collection: str, origin: Origin = Origin.MEASURED) -> ButtonRow:
-    """Read the row of a measured file, or of a model file in a folder of them. Raises InputError."""
-    dated = datetime.fromtimestamp(path.stat().st_mtime, UTC).date().isoformat()
+class ReadFile(NamedTuple):
+    """A file as it was read; parts : None for a model file."""
+
+    model: FDVVModel
+    format: str
+    parts: MeasuredParts | None = None
+
+
+def read_file(path: Path) -> ReadFile:
+    """Read a model file, or the polylines of a measured one's active strokes, unfitted. Raises InputError."""
     if own_kind(path) == MODEL:
-        return row_of_model(load_model(path), button_id, origin, collection, dated)
-    model, parts = polylines_of_file(path)
-    return row_of_model(model, button_id, origin, collection, dated, parts)
-
-
-def polylines_of_file(path: Path) -> tuple[FDVVModel, MeasuredParts]:
-    """Read a measured file as the polylines of its active strokes, unfitted. Raises InputError."""
-    return polylines_of(read_force_file(path), path)
-
-
-def polylines_of(file: ForceFile, path: Path) -> tuple[FDVVModel, MeasuredParts]:
-    """Return the active strokes of a force file as polylines. Raises InputError."""
+        return ReadFile(load_model(path), "fdvv-model")
+    file = read_force_file(path)
     try:
         parts = measured_parts(file)
         name = one_line(file.name)[:LONGEST_name].strip() or "unnamed"
-        return polyline_model(parts, name), parts
+        return ReadFile(polyline_model(parts, name), file.format, parts)
     except InputError:
         raise
     except FdvvError as error:
         remedy = "check that the file holds one whole stroke from contact to the stop"
         raise InputError(path, "curve", str(error), remedy) from error
+
+
+def row_of_file(
+    path: Path,
+    button_id: str,
+    collection: str,
+    origin: Origin = Origin.MEASURED,
+    read: ReadFile | None = None,
+) -> ButtonRow:
+    """Return the row of a file, read already or read here. Raises InputError."""
+    dated = datetime.fromtimestamp(path.stat().st_mtime, UTC).date().isoformat()
+    found = read or read_file(path)
+    return row_of_model(found.model, button_id, origin, collection, dated, found.parts)
+
+
+UNREADABLE = (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError)
+"""What reading a file may raise, whatever it holds."""
+
+
+def refusal(error: BaseException) -> str:
+    """Say in one line why a file cannot be used, and what to do about it."""
+    if isinstance(error, InputError):
+        return one_line(f"{error.place}: {error.reason}; {error.remedy}")
+    return one_line(f"whole file: cannot be read ({error}); check the file")
 
 
 def row_of_model(

@@ -22,11 +22,10 @@ from threading import Event, Thread, Timer
 
 import msgspec
 
-from fdvv.button.fit import one_line
-from fdvv.errors import FdvvError, InputError
+from fdvv.errors import FdvvError
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.library.catalog import ButtonFile, Catalog
-from fdvv.library.figures import row_of_file, row_of_model
+from fdvv.library.figures import UNREADABLE, refusal, row_of_file, row_of_model
 from fdvv.library.library import known_lines
 from fdvv.library.row import ButtonRow, CacheLine, Origin, add_to_cache, read_cache, write_cache
 from fdvv.model.file import builtin_names, load_builtin
@@ -59,10 +58,8 @@ def read_row(ask: ReadRequest) -> ReadAnswer:
         return ReadAnswer()
     try:
         return ReadAnswer(row_of_file(path, ask.id, ask.collection, ask.origin))
-    except InputError as error:
-        return ReadAnswer(reason=one_line(f"{error.place}: {error.reason}; {error.remedy}"))
-    except (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError) as error:
-        return ReadAnswer(reason=one_line(f"whole file: cannot be read ({error}); check the file"))
+    except UNREADABLE as error:
+        return ReadAnswer(reason=refusal(error))
 
 
 class RowReader:

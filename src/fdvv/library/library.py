@@ -18,9 +18,10 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.io.files import write_atomic
-from fdvv.io.part_store import need_parquet, open_parquet
+from fdvv.io.part_store import need_parquet, read_groups
 from fdvv.library.build import BUTTONS, REMEDY, LibraryManifest, read_manifest
 from fdvv.library.figures import row_of_file, row_of_model
+from fdvv.library.like import distances
 from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, CacheLine, Origin
 from fdvv.library.search import LABELS, CatalogSearch, SearchQuery
 from fdvv.library.table import READ_NAMES, curves_of, rows_of
@@ -106,8 +107,7 @@ class Library:
         if self._search.row(asked.id) is None:
             self._search.extend([asked])
         found = self._search.find(SearchQuery(like=asked.id))
-        parts = found.parts[:, PARTS[by]]
-        distance = np.sqrt(np.mean(parts**2, axis=1))
+        distance = distances(found.parts[:, PARTS[by]])
         nearest = [i for i in np.argsort(distance, kind="stable") if np.isfinite(distance[i])]
         hits = (self._hit(found.positions[i], distance[i], found.parts[i]) for i in nearest)
         return list(islice((hit for hit in hits if hit.row.id in self._places), count))
@@ -176,20 +176,10 @@ def known_lines(folder: Path) -> Iterator[CacheLine]:
 def _tables(folder: Path, columns: Sequence[str]) -> Iterator[Table]:
     path = folder / BUTTONS
     try:
-        found = open_parquet(path)
+        yield from read_groups(path, columns)
     except (OSError, ValueError) as error:
-        raise _damaged(path, error) from error
-    try:
-        for group in range(found.num_row_groups):
-            yield found.read_row_group(group, columns=list(columns))
-    except (OSError, ValueError) as error:
-        raise _damaged(path, error) from error
-    finally:
-        found.close()
-
-
-def _damaged(path: Path, error: Exception) -> InputError:
-    return InputError(path, "whole file", f"cannot be read ({error})", "build the library again")
+        reason = f"cannot be read ({error})"
+        raise InputError(path, "whole file", reason, "build the library again") from error
 
 
 def write_hits(path: Path, hits: Sequence[LibraryHit]) -> None:

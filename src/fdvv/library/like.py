@@ -56,7 +56,7 @@ class LikeTable:
 
 
 def distances(parts: FloatArray) -> FloatArray:
-    """Return the root of the mean square of the three parts, (n,)."""
+    """Return the root of the mean square of the parts, (n,)."""
     return np.asarray(np.sqrt(np.mean(parts**2, axis=1)))
 
 

@@ -106,7 +106,6 @@ NUMBERS = (
     *("pre_slope_cN_mm", "post_slope_cN_mm", "work_mJ", "loss_mJ"),
 )
 """Figures of a row that can be searched by range and sorted by."""
-"""The fields of a row that are ranges to filter by and columns to sort by."""
 
 
 CACHE_version = 1
@@ -122,12 +121,7 @@ class CacheLine(msgspec.Struct, frozen=True):
     reason: str = ""
 
 
-class _Head(msgspec.Struct, frozen=True):
-    format: str
-    version: int
-
-
-_HEAD = msgspec.json.encode(_Head("fdvv-shelf-cache", CACHE_version)) + b"\n"
+_HEAD = msgspec.json.encode({"format": "fdvv-shelf-cache", "version": CACHE_version}) + b"\n"
 _LINES = msgspec.json.Decoder(CacheLine)
 
 
@@ -152,9 +146,13 @@ def read_cache(path: Path) -> dict[str, CacheLine]:
 def add_to_cache(path: Path, lines: Iterable[CacheLine]) -> None:
     """Add lines to a cache that write_cache made. OSError if it cannot be written."""
     with path.open("ab") as stream:
-        stream.write(b"".join(msgspec.json.encode(line) + b"\n" for line in lines))
+        stream.write(_encoded(lines))
 
 
 def write_cache(path: Path, lines: Iterable[CacheLine]) -> None:
     """Write a cache anew, whole or not at all. OSError if it cannot be written."""
-    write_atomic(path, _HEAD + b"".join(msgspec.json.encode(line) + b"\n" for line in lines))
+    write_atomic(path, _HEAD + _encoded(lines))
+
+
+def _encoded(lines: Iterable[CacheLine]) -> bytes:
+    return b"".join(msgspec.json.encode(line) + b"\n" for line in lines)

@@ -41,17 +41,6 @@ class SampledCurve(msgspec.Struct, frozen=True):
     step_mm: float
     force_cN: npt.NDArray[np.float32]
 
-    @classmethod
-    def of(
-        cls,
-        stroke: str,
-        velocity_mm_s: float | None,
-        start_mm: float,
-        step_mm: float,
-        force_cN: npt.ArrayLike,
-    ) -> SampledCurve:
-        return cls(stroke, velocity_mm_s, start_mm, step_mm, np.asarray(force_cN, dtype=np.float32))
-
     def curve(self) -> ForceCurve:
         x = self.start_mm + self.step_mm * np.arange(self.force_cN.size)
         knots = np.concatenate([x[:1], x, x[-1:]])
@@ -89,11 +78,9 @@ def sampled(model: FDVVModel) -> tuple[SampledCurve, ...]:
         length = curve.end_mm - curve.start_mm
         points = int(np.clip(round(length / KEPT_STEP_mm) + 1, 2, MOST_points))
         x = np.linspace(curve.start_mm, curve.end_mm, points)
-        found.append(
-            SampledCurve.of(
-                str(curve.stroke), curve.velocity_mm_s, float(x[0]), length / (points - 1), curve.force_cN(x)
-            )
-        )
+        force_cN = curve.force_cN(x).astype(np.float32)
+        place = (str(curve.stroke), curve.velocity_mm_s, float(x[0]), length / (points - 1))
+        found.append(SampledCurve(*place, force_cN))
     return tuple(found)
 
 
@@ -235,4 +222,5 @@ def _tuples(table: Table, name: str) -> list[tuple[int, ...]]:
 
 def curves_of(line: dict[str, Any]) -> tuple[SampledCurve, ...]:
     """Make the curves of one row's `curves`."""
-    return tuple(SampledCurve.of(**curve) for curve in line["curves"] or ())
+    found = line["curves"] or ()
+    return tuple(SampledCurve(**c | {"force_cN": np.array(c["force_cN"], dtype=np.float32)}) for c in found)

@@ -10,6 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.model.bspline import uniform_knots
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel, Provenance
 
@@ -39,8 +40,7 @@ def new_model(name: str, template: ModelTemplate | str) -> FDVVModel:
     template = ModelTemplate(template)
     points = np.array(_PRESS_cN[template], dtype=np.float64)
     degree = 3
-    inner = np.linspace(0.0, TRAVEL_mm, points.size - degree + 1)
-    knots = np.concatenate([np.zeros(degree), inner, np.full(degree, TRAVEL_mm)]).round(6)
+    knots = uniform_knots(0.0, TRAVEL_mm, points.size, degree).round(6)
     forces = {Stroke.PRESS: points, Stroke.RELEASE: points - FRICTION_cN}
     return FDVVModel(
         name=name,
