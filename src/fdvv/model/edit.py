@@ -37,6 +37,7 @@ class _Piece(NamedTuple):
     c: FloatArray
 
     def start(self, k: int) -> tuple[float, float, float]:
+        """Return the position, value and slope there."""
         slope = k * (self.c[1] - self.c[0]) / (self.t[k + 1] - self.t[0])
         return float(self.t[0]), float(self.c[0]), float(slope)
 

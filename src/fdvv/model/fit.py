@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -99,11 +100,6 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
     return np.interp(x_mm, grid, smoothed)
 
 
-def _uniform(x: FloatArray, y: FloatArray, degree: int, size: int) -> tuple[FloatArray, FloatArray]:
-    t = bspline.uniform_knots(x[0], x[-1], size, degree)
-    return t, bspline.least_squares(t, degree, x, y)
-
-
 def _adaptive(
     x: FloatArray, y: FloatArray, degree: int, size: int, weight: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
@@ -129,7 +125,10 @@ def _knots_and_points(
             f"degree {degree} with {x.size} distinct displacements takes {degree + 1} to "
             f"{min(LARGEST, x.size)} control points, got {size}"
         )
-    return (_uniform if method is FitMethod.UNIFORM else _adaptive)(x, y, degree, size)
+    if method is FitMethod.ADAPTIVE:
+        return _adaptive(x, y, degree, size)
+    t = bspline.uniform_knots(x[0], x[-1], size, degree)
+    return t, bspline.least_squares(t, degree, x, y)
 
 
 def _hold_bump(
@@ -227,40 +226,29 @@ def fit_curve(
     y = smooth(x, raw, smoothing_mm) if smoothing_mm else raw
     if control_points is None:
         smoothed = MeasuredCurve(x, y, measured.stroke, measured.velocity_mm_s)
-        scores = scan_sizes(smoothed, method, degree=chosen, penalty=penalty)
-        control_points = min(scores, key=scores.__getitem__, default=0)
+        by_size = scan_sizes(smoothed, method, degree=chosen, penalty=penalty)
+        control_points = min(by_size, key=by_size.__getitem__, default=0)
     t, c = _knots_and_points(x, y, method, chosen, control_points)
     if method is FitMethod.ADAPTIVE:
         t, c = _hold_bump(x, y, chosen, t, c)
     curve = ForceCurve(measured.stroke, measured.velocity_mm_s, chosen, t, c)
-    return _score(curve, measured, (x, raw), method, smoothing_mm, penalty, begun)
+    scores = _scores(curve, measured, penalty)
+    time_s = time.perf_counter() - begun
+    return CurveFit(curve, method, **scores, samples=x.size, smoothing_mm=smoothing_mm, time_s=time_s)
 
 
-def _score(
-    curve: ForceCurve,
-    measured: MeasuredCurve,
-    raw: tuple[FloatArray, FloatArray],
-    method: FitMethod,
-    smoothing_mm: float,
-    penalty: float,
-    begun: float,
-) -> CurveFit:
-    x, force = raw
+def _scores(curve: ForceCurve, measured: MeasuredCurve, penalty: float) -> dict[str, Any]:
+    """Return the figures of a fit that tell how well it holds to the raw curve."""
+    x, raw, _ = measured.by_displacement()
     fitted = curve.force_cN(x)
-    error = fitted - force
+    error = fitted - raw
     rows = curve.force_cN(measured.displacement_mm) - measured.force_cN
-    bump = find_bump(x, force)
-    kept = find_bump(x, fitted, least_drop_cN=0.0)
+    bump, kept = find_bump(x, raw), find_bump(x, fitted, least_drop_cN=0.0)
     squared = float(np.sum(error**2))
-    return CurveFit(
-        curve=curve,
-        method=method,
-        rmse_cN=math.sqrt(squared / x.size),
-        max_cN=float(np.abs(error).max()),
-        rows_rmse_cN=float(np.sqrt(np.mean(rows**2))),
-        bump_kept_ratio=kept.drop_cN / bump.drop_cN if bump and kept else None,
-        bic_star=bic_star(x.size, curve.control_points_cN.size, squared, penalty),
-        samples=x.size,
-        smoothing_mm=smoothing_mm,
-        time_s=time.perf_counter() - begun,
-    )
+    return {
+        "rmse_cN": math.sqrt(squared / x.size),
+        "max_cN": float(np.abs(error).max()),
+        "rows_rmse_cN": float(np.sqrt(np.mean(rows**2))),
+        "bump_kept_ratio": kept.drop_cN / bump.drop_cN if bump and kept else None,
+        "bic_star": bic_star(x.size, curve.control_points_cN.size, squared, penalty),
+    }

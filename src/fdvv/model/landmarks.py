@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.bump import STOP_LEAST_cN_mm, find_bump
+from fdvv.model.bump import Bump, STOP_LEAST_cN_mm, find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.spread import PointSpread
@@ -121,10 +122,7 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
         velocity_mm_s=press.velocity_mm_s,
         contact_mm=press.start_mm,
         preload_cN=float(force[step_end]),
-        peak_mm=bump.peak_mm if bump else None,
-        peak_cN=bump.peak_cN if bump else None,
-        valley_mm=bump.valley_mm if bump else None,
-        valley_cN=bump.valley_cN if bump else None,
+        **(vars(bump) if bump else dict.fromkeys(("peak_mm", "peak_cN", "valley_mm", "valley_cN"))),
         snap_ratio=bump.snap_ratio if bump else None,
         release_peak_cN=release_bump.peak_cN if release_bump else None,
         release_valley_cN=release_bump.valley_cN if release_bump else None,
@@ -145,8 +143,7 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     )
 
 
-@dataclass(frozen=True)
-class LandmarkError:
+class LandmarkError(NamedTuple):
     """Standard error of one landmark, in the landmark's own unit, and of how many presses."""
 
     error: float
@@ -165,11 +162,13 @@ def landmark_errors(model: FDVVModel, velocity_mm_s: float | None = None) -> dic
     """
     marks = landmarks(model, velocity_mm_s)
     press, release = (model.nearest(stroke, velocity_mm_s) for stroke in Stroke)
+    back = _bump(release, marks.bottom_out_mm)
     found = {
         "peak_cN": _force(press, marks.peak_mm),
         "valley_cN": _force(press, marks.valley_mm),
         "bottom_out_cN": _force(press, marks.bottom_out_mm),
-        **_of_release(release, marks),
+        "release_peak_cN": _force(release, back.peak_mm if back else None),
+        "release_valley_cN": _force(release, back.valley_mm if back else None),
         "actuation_mm": _place(model.actuation_spread),
         "pre_travel_mm": _place(model.actuation_spread) if marks.pre_travel_mm is not None else None,
         "reset_mm": _place(model.reset_spread),
@@ -179,15 +178,11 @@ def landmark_errors(model: FDVVModel, velocity_mm_s: float | None = None) -> dic
     return {name: error for name, error in found.items() if error is not None}
 
 
-def _of_release(release: ForceCurve | None, marks: Landmarks) -> dict[str, LandmarkError | None]:
-    if release is None:
-        return {}
-    x = dense(release, marks.bottom_out_mm)
-    bump = find_bump(x, release.force_cN(x))
-    return {
-        "release_peak_cN": _force(release, bump.peak_mm if bump else None),
-        "release_valley_cN": _force(release, bump.valley_mm if bump else None),
-    }
+def _bump(curve: ForceCurve | None, end_mm: float) -> Bump | None:
+    if curve is None:
+        return None
+    x = dense(curve, end_mm)
+    return find_bump(x, curve.force_cN(x))
 
 
 def _force(curve: ForceCurve | None, place_mm: float | None) -> LandmarkError | None:

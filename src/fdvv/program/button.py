@@ -6,10 +6,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 from fdvv.errors import InputError
-from fdvv.model.curve import Stroke
+from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
-from fdvv.model.vibration import Vibration
+from fdvv.model.vibration import Mode
 from fdvv.program.compile import Compiled, compile_program
 from fdvv.program.condition import Condition, Transition, When
 from fdvv.program.program import During, Program, Signal, State, VibrationEvent
@@ -27,10 +27,9 @@ Ranges = dict[str, tuple[float, float]]
 
 def key_points_mm(model: FDVVModel) -> tuple[float, float]:
     """Return where the key goes down and where it comes up, the latter always above."""
-    actuation_mm = model.actuation_mm
+    actuation_mm, reset_mm = model.actuation_mm, model.reset_mm
     if actuation_mm is None:
         actuation_mm = ACTUATION_ratio * model.travel_mm
-    reset_mm = model.reset_mm
     if reset_mm is None or reset_mm >= actuation_mm:
         reset_mm = actuation_mm - HYSTERESIS_mm
     return actuation_mm, reset_mm
@@ -48,20 +47,11 @@ def button_program(model: FDVVModel, surface: ForceSurface | None = None) -> Pro
     press, release = (of_surface(surface, s) if surface else of_model(model, s) for s in Stroke)
     down = Transition("down", Condition(When.DEEPER_THAN, actuation_mm))
     up = Transition("up", Condition(When.SHALLOWER_THAN, reset_mm))
-    signals, events = vibrations_of(model)
-    return Program(
-        model.name,
-        model.travel_mm,
-        "up",
-        (
-            State("up", press.name, release.name, (down,)),
-            State("down", press.name, release.name, (up,), key=1),
-        ),
-        (press, release),
-        signals,
-        events,
-        f"The button {model.name} as its model tells.",
-    )
+    both = (press.name, release.name)
+    states = (State("up", *both, (down,)), State("down", *both, (up,), key=1))
+    summary = f"The button {model.name} as its model tells."
+    surfaces = (press, release)
+    return Program(model.name, model.travel_mm, "up", states, surfaces, *vibrations_of(model), summary)
 
 
 def compile_button(
@@ -72,40 +62,25 @@ def compile_button(
     Learned forces carry the weight already, whatever the limits say.
     """
     limits = limits or Limits()
-    return compile_program(
-        button_program(model, surface), replace(limits, weight_cN=0.0) if surface else limits
-    )
+    bare = replace(limits, weight_cN=0.0) if surface else limits
+    return compile_program(button_program(model, surface), bare)
 
 
 def vibrations_of(model: FDVVModel) -> tuple[tuple[Signal, ...], tuple[VibrationEvent, ...]]:
     """Return a model's vibrations as signals and events; equal signals appear once."""
-    signals: list[Signal] = []
+    signals: dict[tuple[float, tuple[Mode, ...]], Signal] = {}
     events: list[VibrationEvent] = []
     for stroke in Stroke:
-        found = sorted(
-            (v for v in model.vibrations if v.stroke is stroke), key=lambda v: v.velocity_mm_s or 0.0
-        )
-        edges = [None, *_halfway(found), None]
-        for i, vibration in enumerate(found):
-            name = _signal_of(vibration, signals)
-            events.append(
-                VibrationEvent(name, vibration.onset_mm, During(str(stroke)), edges[i], edges[i + 1])
-            )
-    return tuple(signals), tuple(events)
-
-
-def _halfway(vibrations: list[Vibration]) -> list[float]:
-    speeds = [v.velocity_mm_s or 0.0 for v in vibrations]
-    return [(slow + fast) / 2 for slow, fast in pairwise(speeds)]
-
-
-def _signal_of(vibration: Vibration, signals: list[Signal]) -> str:
-    fresh = Signal(f"snap {len(signals) + 1}", vibration.duration_s, vibration.modes)
-    for known in signals:
-        if replace(known, name=fresh.name) == fresh:
-            return known.name
-    signals.append(fresh)
-    return fresh.name
+        found = sorted((v for v in model.vibrations if v.stroke is stroke), key=reading_order)
+        speeds = [v.velocity_mm_s or 0.0 for v in found]
+        # a vibration is played at the velocities nearest to its own: from half-way to half-way
+        edges = [None, *((slow + fast) / 2 for slow, fast in pairwise(speeds)), None]
+        for vibration, (slowest, fastest) in zip(found, pairwise(edges), strict=False):
+            fresh = Signal(f"snap {len(signals) + 1}", vibration.duration_s, vibration.modes)
+            signal = signals.setdefault((fresh.duration_s, fresh.modes), fresh)
+            during = During(str(stroke))
+            events.append(VibrationEvent(signal.name, vibration.onset_mm, during, slowest, fastest))
+    return tuple(signals.values()), tuple(events)
 
 
 def ranges(program: str, base: FDVVModel, levels: int = 1, **_: float) -> Ranges:

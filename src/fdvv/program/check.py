@@ -30,15 +30,9 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that is wrong or doubtful.
+    """One thing that is wrong or doubtful, and what to do about it.
 
-    Attributes
-    ----------
-    severity : refused or a warning.
-    state : name of the state it is about; empty for the whole program.
-    place : where in it.
-    reason : what is wrong, with the figures.
-    remedy : what to do about it.
+    state : name of the state it is about; empty for the whole program. place : where in it.
     """
 
     severity: Severity

@@ -35,7 +35,6 @@ class Description:
     travel_mm, start : as in a program.
     states, surfaces, vibrations : as in a program; surfaces as they are on their even grids.
     slots : what the vibration board plays as `signal 0`, `signal 1`, …
-    size_bytes : of the image.
     """
 
     name: str

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from itertools import accumulate
 
-from fdvv.program.condition import Condition, When
-from fdvv.program.program import Program, State, VibrationEvent
-from fdvv.program.surface import Grid, counts_cN64, place_um16, speed_mm_s16
+from fdvv.program.condition import Condition, Transition, When
+from fdvv.program.program import Program, Signal, State, VibrationEvent
+from fdvv.program.surface import Grid, Surface, counts_cN64, place_um16, speed_mm_s16
 from fdvv.program.synth import Slot
 from fdvv.protocol.messages import seal
 from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, IMAGE_VERSION, NONE, ImageHeader
@@ -42,14 +43,15 @@ def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weig
     An image that is larger than a device takes is only as long as it would be, and empty.
     """
     transitions = [t for state in program.states for t in state.transitions]
-    counts = (
-        (len(program.states), StateRecord),
-        (len(transitions), TransitionRecord),
-        (len(grids), SurfaceRecord),
-        (len(program.vibrations), VibrationRecord),
-        (len(slots), SlotRecord),
+    sizes = (
+        ImageHeader.length_bytes(),
+        StateRecord.length_bytes() * len(program.states),
+        TransitionRecord.length_bytes() * len(transitions),
+        SurfaceRecord.length_bytes() * len(grids),
+        VibrationRecord.length_bytes() * len(program.vibrations),
+        SlotRecord.length_bytes() * len(slots),
     )
-    pool = _Pool(ImageHeader.length_bytes() + sum(n * record.length_bytes() for n, record in counts))
+    pool = _Pool(sum(sizes))
     tables = [_table_places(grid, pool) for grid in grids]
     places = [pool.put(struct.pack(f"{len(s.wave)}b", *s.wave), 1) if s.wave else 0 for s in slots]
     size = pool.start + len(pool.data)
@@ -59,11 +61,7 @@ def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weig
     records = [
         _header(program, len(transitions), size),
         *_state_records(program, weight_cN),
-        *(
-            _transition_record(program, state, i)
-            for state in program.states
-            for i in range(len(state.transitions))
-        ),
+        *(_transition_record(program, transition) for transition in transitions),
         *(_surface_record(grid, *at) for grid, at in zip(grids, tables, strict=True)),
         *(_vibration_record(program, event) for event in program.vibrations),
         *(_slot_record(slot, at) for slot, at in zip(slots, places, strict=True)),
@@ -74,53 +72,45 @@ def lay_out(program: Program, grids: Sequence[Grid], slots: Sequence[Slot], weig
 
 
 def _header(program: Program, transitions: int, size: int) -> ImageHeader:
-    name = program.name.encode("ascii", "replace")[:NAME_BYTES]
     return ImageHeader(
         magic=IMAGE_MAGIC,
         crc32=0,
         travel_um16=place_um16(program.travel_mm),
         size_bytes=size,
         version=IMAGE_VERSION,
-        start_state=_index(program, program.start),
+        start_state=_number(program.states, program.start),
         states=len(program.states),
         transitions=transitions,
         surfaces=len(program.surfaces),
         vibrations=len(program.vibrations),
         slots=len(program.signals),
-        name=name,
+        name=program.name.encode("ascii", "replace")[:NAME_BYTES],
     )
 
 
-def _index(program: Program, state: str) -> int:
-    return [s.name for s in program.states].index(state)
-
-
-def _surface_index(program: Program, surface: str) -> int:
-    return [s.name for s in program.surfaces].index(surface)
-
-
-def _slot_index(program: Program, signal: str | None) -> int:
-    return NONE if signal is None else [s.name for s in program.signals].index(signal)
+def _number(parts: Sequence[State | Surface | Signal], name: str | None) -> int:
+    """Return the place of a part in its list, which is what the image calls it."""
+    return NONE if name is None else [part.name for part in parts].index(name)
 
 
 def _state_records(program: Program, weight_cN: float) -> list[StateRecord]:
-    found, first = [], 0
-    for state in program.states:
-        found.append(_state_record(program, state, first, weight_cN))
-        first += len(state.transitions)
-    return found
+    firsts = accumulate((len(state.transitions) for state in program.states), initial=0)
+    return [
+        _state_record(program, state, at, weight_cN)
+        for state, at in zip(program.states, firsts, strict=False)
+    ]
 
 
 def _state_record(program: Program, state: State, first: int, weight_cN: float) -> StateRecord:
     return StateRecord(
-        press_surface=_surface_index(program, state.press),
-        release_surface=_surface_index(program, state.release),
+        press_surface=_number(program.surfaces, state.press),
+        release_surface=_number(program.surfaces, state.release),
         velocity_source=state.velocity.code,
         key=state.key,
         first_transition=first,
         transitions=len(state.transitions),
-        enter_slot=_slot_index(program, state.enter_signal),
-        repeat_slot=_slot_index(program, state.repeat_signal),
+        enter_slot=_number(program.signals, state.enter_signal),
+        repeat_slot=_number(program.signals, state.repeat_signal),
         repeat_ms=state.repeat_ms,
         fade_ms=state.fade_ms,
         bias_cN64=counts_cN64(state.bias_cN + weight_cN),
@@ -138,14 +128,13 @@ def value_of(condition: Condition) -> int:
     return int(condition.value)
 
 
-def _transition_record(program: Program, state: State, index: int) -> TransitionRecord:
-    transition = state.transitions[index]
+def _transition_record(program: Program, transition: Transition) -> TransitionRecord:
     guard = transition.only_if or Condition(When.ALWAYS)
     return TransitionRecord(
         condition=transition.when.when.code,
         guard=guard.when.code,
-        target=_index(program, transition.to),
-        slot=_slot_index(program, transition.signal),
+        target=_number(program.states, transition.to),
+        slot=_number(program.signals, transition.signal),
         value=value_of(transition.when),
         guard_value=value_of(guard),
     )
@@ -175,9 +164,9 @@ def _vibration_record(program: Program, event: VibrationEvent) -> VibrationRecor
         at_um16=place_um16(event.at_mm),
         slowest_mm_s16=0 if slowest is None else speed_mm_s16(slowest),
         fastest_mm_s16=65_535 if fastest is None else speed_mm_s16(fastest),
-        states=sum(1 << _index(program, name) for name in set(named)),
+        states=sum(1 << _number(program.states, name) for name in set(named)),
         stroke=event.stroke.code,
-        slot=_slot_index(program, event.signal),
+        slot=_number(program.signals, event.signal),
     )
 
 

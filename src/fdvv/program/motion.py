@@ -45,7 +45,6 @@ class Motion:
 
     @cached_property
     def up_m_s(self) -> float:
-        """Bound the speed upward."""
         return 0.01 * max(0.0, float(self.cells.greatest_cN.max())) / self.limits.damping_N_s_m
 
     @cached_property
@@ -123,10 +122,10 @@ class Motion:
             }.get(when, False)
             return value / 1000 if when is When.AFTER else 0.0 if held else None
 
-        waits = []
-        for t in self.program.states[state].transitions:
-            one = wait_s(t.when.when, t.when.value)
-            other = wait_s(t.only_if.when, t.only_if.value) if t.only_if else 0.0
-            if one is not None and other is not None:
-                waits.append(max(one, other))
-        return min(waits, default=None)
+        times_s = []
+        for transition in self.program.states[state].transitions:
+            waits = [wait_s(c.when, c.value) for c in transition.conditions]
+            known = [wait for wait in waits if wait is not None]
+            if len(known) == len(waits):
+                times_s.append(max(known))
+        return min(times_s, default=None)

@@ -50,7 +50,6 @@ class RestAnalysis:
                 return False
 
     def next_state(self, state: State) -> str | None:
-        """Return the state that follows at once, or None."""
         holding = (
             t.to for t in state.transitions if all(self.holds(c, state.velocity) for c in t.conditions)
         )
@@ -177,7 +176,6 @@ class Cells:
                 return False
 
     def may_fire(self, transition: Transition, cell: int, way: Direction) -> bool:
-        """Return whether a transition may fire in a cell on the way up or down."""
         guard = transition.only_if or Condition(When.ALWAYS)
         both = (transition.when, guard)
         if not all(self.may_hold(c, cell, way) for c in both):
@@ -185,7 +183,6 @@ class Cells:
         return all(_fits_way(one, other, way) for one, other in (both, both[::-1]))
 
     def must_fire(self, transition: Transition, cell: int) -> bool:
-        """Return whether a transition fires at once wherever in a cell."""
         return all(self.must_hold(c, cell) for c in transition.conditions)
 
 

@@ -13,6 +13,8 @@ from fdvv.model.vibration import Vibration
 from fdvv.program.surface import Limits
 from fdvv.program.synth import (
     RATE_HZ,
+    WAVE_PEAK,
+    AMPLITUDE_MAX_counts,
     ConvertedVibration,
     SILENCE_counts,
     Slot,
@@ -28,7 +30,6 @@ from fdvv.vibration.wave import Wav, board_wav, to_wav, vibration_samples
 PLAIN = Limits().counts_per_m_s2
 COUNTS_V = SILENCE_counts / FULL_SCALE_V
 RING_s = 0.03
-WAVE_PEAK = 127
 NO_WORSE = 0.01
 """A plain slot is kept if the inverse is no more alike than by so much: it takes no room among the waves."""
 
@@ -69,16 +70,10 @@ def render_vibration(
     Raises ModelError if the board can play neither.
     """
     chosen = settings or InverseSettings()
-    inverse = _judged(
-        _wave(drive_for(exciter, vibration, chosen)),
-        SynthesisMethod.INVERSE,
-        vibration,
-        exciter,
-        chosen.lead_s,
-    )
-    plain = _judged(
-        _plain(vibration, exciter, chosen.limit_V), SynthesisMethod.PLAIN, vibration, exciter, 0.0
-    )
+    wave = _wave(drive_for(exciter, vibration, chosen))
+    inverse = _judged(wave, SynthesisMethod.INVERSE, vibration, exciter, chosen.lead_s)
+    sine = _plain(vibration, exciter, chosen.limit_V)
+    plain = _judged(sine, SynthesisMethod.PLAIN, vibration, exciter, 0.0)
     return plain if plain.likeness >= inverse.likeness - NO_WORSE else inverse
 
 
@@ -115,13 +110,9 @@ def _wave(drive: Drive) -> Slot:
     peak = float(np.abs(drive.volts).max()) * COUNTS_V
     samples = np.rint(drive.volts * COUNTS_V * (WAVE_PEAK / peak if peak else 0.0)).astype(int)
     length = int(np.ceil(samples.size / drive.rate_Hz * RATE_HZ))
-    return Slot(
-        Waveform.SAMPLED,
-        round(16 * drive.rate_Hz),
-        length,
-        min(2047, round(peak * 128 / WAVE_PEAK)),
-        wave=tuple(samples.tolist()),
-    )
+    counts = min(AMPLITUDE_MAX_counts, round(peak * 128 / WAVE_PEAK))
+    wave = tuple(samples.tolist())
+    return Slot(Waveform.SAMPLED, round(16 * drive.rate_Hz), length, counts, wave=wave)
 
 
 def _plain(vibration: Vibration, exciter: KnownExciter, limit_V: float) -> Slot:

@@ -51,16 +51,13 @@ class Surface:
         if self.velocity_mm_s[0] < 0:
             raise ModelError(f"surface {self.name!r}: velocity_mm_s starts below 0: {self.velocity_mm_s[0]}")
         if len(rows) != len(self.velocity_mm_s):
-            raise ModelError(
-                f"surface {self.name!r}: one row of force_cN per velocity, "
-                f"got {len(rows)} for {len(self.velocity_mm_s)}"
-            )
+            got = f"got {len(rows)} for {len(self.velocity_mm_s)}"
+            raise ModelError(f"surface {self.name!r}: one row of force_cN per velocity, {got}")
+        count = len(self.displacement_mm)
         for row in rows:
-            if len(row) != len(self.displacement_mm):
-                raise ModelError(
-                    f"surface {self.name!r}: one force per displacement, "
-                    f"got {len(row)} for {len(self.displacement_mm)}"
-                )
+            if len(row) != count:
+                got = f"got {len(row)} for {count}"
+                raise ModelError(f"surface {self.name!r}: one force per displacement, {got}")
         if not np.isfinite(rows).all():
             raise ModelError(f"surface {self.name!r}: force_cN must be finite")
 
@@ -170,22 +167,18 @@ class Grid:
 
     @property
     def columns(self) -> int:
-        """Count the displacements."""
         return len(self.forces_cN64[0])
 
 
 def place_um16(place_mm: float) -> int:
-    """Return a displacement in 1/16 µm, to the nearest."""
     return round(place_mm * UM16_PER_mm)
 
 
 def speed_mm_s16(speed_mm_s: float) -> int:
-    """Return a velocity in 1/16 mm/s, to the nearest."""
     return round(speed_mm_s * MM_S16_PER_mm_s)
 
 
 def counts_cN64(force_cN: float) -> int:
-    """Return a force in 1/64 cN, to the nearest."""
     return round(force_cN * CN64_PER_cN)
 
 
@@ -201,7 +194,7 @@ class Candidates:
         self.span_um16 = max(place_um16(surface.displacement_mm[-1]) - self.start_um16, FINEST_um16)
         fewest = max(2, -(-self.span_um16 // COARSEST_um16) + 1)
         most = min(SURFACE_DISPLACEMENTS, self.span_um16 // FINEST_um16 + 1)
-        self.columns = np.arange(fewest, max(fewest, most) + 1)
+        self.columns = range(fewest, max(fewest, most) + 1)
         self._known_cN: dict[int, float] = {}
 
     def _step_um16(self, columns: int) -> int:
@@ -222,19 +215,15 @@ class Candidates:
     def _error_cN(self, columns: int) -> float:
         """Compare at the surface's own points: between straight lines nothing can be worse."""
         if columns not in self._known_cN:
-            self._known_cN[columns] = self._measured_cN(columns)
+            places, points = self._places_mm(columns), self._points_mm
+            held = [np.interp(points, places, np.interp(places, points, row)) for row in self._source_cN]
+            self._known_cN[columns] = float(np.max(np.abs(np.array(held) - self._source_cN)))
         return self._known_cN[columns]
-
-    def _measured_cN(self, columns: int) -> float:
-        places, points = self._places_mm(columns), self._points_mm
-        held = [np.interp(points, places, np.interp(places, points, row)) for row in self._source_cN]
-        return float(np.max(np.abs(np.array(held) - self._source_cN)))
 
     def coarsest(self, bound_cN: float) -> int:
         """Return the fewest columns within the bound; where none is, the best there are."""
-        within = (n for n in self.columns.tolist() if self._error_cN(n) <= bound_cN)
-        found = next(within, None)
-        return min(self.columns.tolist(), key=self._error_cN) if found is None else found
+        found = next((n for n in self.columns if self._error_cN(n) <= bound_cN), None)
+        return min(self.columns, key=self._error_cN) if found is None else found
 
     def grid(self, columns: int) -> Grid:
         """Sample the surface on that many columns."""
@@ -303,7 +292,7 @@ class Limits:
 
     @property
     def force_cN(self) -> float:
-        """Return the largest force, both signs."""
+        """The largest force, both signs."""
         return self.settings.force_limit_cN64 / CN64_PER_cN
 
     @property

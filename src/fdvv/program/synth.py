@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.model.vibration import Vibration
-from fdvv.units import FloatArray
 
 RATE_HZ = 16_000
 """Samples per second of the vibration board."""
@@ -163,27 +162,24 @@ def slot_of_vibration(vibration: Vibration, counts_per_m_s2: float) -> Converted
         raise ModelError(f"counts_per_m_s2 must be positive, got {counts_per_m_s2}")
     mode = vibration.modes[0]
     simple = len(vibration.modes) == 1 and mode.phase_rad == 0 and mode.amplitude_m_s2 >= 0
-    slot = (_sine if simple else _sampled)(vibration, counts_per_m_s2)
+    duration_samples = max(1, round(vibration.duration_s * RATE_HZ))
+    slot = (_sine if simple else _sampled)(vibration, counts_per_m_s2, duration_samples)
     return _measure(slot, vibration, counts_per_m_s2)
 
 
-def _duration_samples(vibration: Vibration) -> int:
-    return max(1, round(vibration.duration_s * RATE_HZ))
-
-
-def _sine(vibration: Vibration, counts_per_m_s2: float) -> Slot:
+def _sine(vibration: Vibration, counts_per_m_s2: float, duration_samples: int) -> Slot:
     mode = vibration.modes[0]
     ratio = np.exp(-mode.decay_1_s * BLOCK_SAMPLES / RATE_HZ)
     return Slot(
         Waveform.SINE,
         frequency_Hz16=round(16 * mode.frequency_Hz),
-        duration_samples=_duration_samples(vibration),
+        duration_samples=duration_samples,
         amplitude_counts=round(mode.amplitude_m_s2 * counts_per_m_s2),
         decay_q16=min(STEADY_Q16, round(65_536 * ratio)),
     )
 
 
-def _sampled(vibration: Vibration, counts_per_m_s2: float) -> Slot:
+def _sampled(vibration: Vibration, counts_per_m_s2: float, duration_samples: int) -> Slot:
     rate_Hz16 = int(16 * min(FASTEST_WAVE_Hz, (WAVE_SAMPLES - 2) / vibration.duration_s))
     fastest_Hz = max(mode.frequency_Hz for mode in vibration.modes)
     if fastest_Hz >= rate_Hz16 / 32:
@@ -200,20 +196,16 @@ def _sampled(vibration: Vibration, counts_per_m_s2: float) -> Slot:
     return Slot(
         Waveform.SAMPLED,
         frequency_Hz16=rate_Hz16,
-        duration_samples=_duration_samples(vibration),
+        duration_samples=duration_samples,
         amplitude_counts=round(peak * 128 / WAVE_PEAK),
         wave=tuple(wave.tolist()),
     )
 
 
-def _exact_counts(vibration: Vibration, counts_per_m_s2: float, length: int) -> FloatArray:
-    middles_s = (np.arange(length) + 0.5) / RATE_HZ
-    return vibration.acceleration_m_s2(middles_s) * counts_per_m_s2
-
-
 def _measure(slot: Slot, vibration: Vibration, counts_per_m_s2: float) -> ConvertedVibration:
     length = slot.duration_samples + 1
-    exact = _exact_counts(vibration, counts_per_m_s2, length)
+    middles_s = (np.arange(length) + 0.5) / RATE_HZ
+    exact = vibration.acceleration_m_s2(middles_s) * counts_per_m_s2
     error = render(slot, length).astype(float) - SILENCE_counts - exact
     power = float(np.mean(exact**2))
     ratio = float(np.sqrt(np.mean(error**2) / power)) if power else 0.0
