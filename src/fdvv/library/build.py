@@ -151,11 +151,24 @@ def build_library(
     files = _listed(sources)
     labels = tuple(dict.fromkeys(file.place.partition("/")[0] for file in files))
     _begin(folder, labels)
-    lock = Journal(folder / LOCK, InputError(folder, "folder", "another process builds it", "wait for it"))
-    try:
-        return _build(folder, labels, files, executor, progress, work or LibraryWork(tuple(sources)))
-    finally:
-        lock.close()
+    busy = InputError(folder, "folder", "another process builds it", "wait for it")
+    with Journal(folder / LOCK, busy):
+        store = PartStore(folder / BUTTONS, library_schema(), ("id", "stamp"))
+        known = len(store)
+        read = run_campaign(
+            executor,
+            work or LibraryWork(tuple(sources)),
+            files,
+            lambda _files, records: store.add(table_of(records)),
+            done=lambda file: (file.id, file.stamp) in store,
+            progress=progress,
+            item_s=1.0,
+            chunk_s=FILES,
+            lost=_deadly,
+        )
+        store.finish([(file.id, file.stamp) for file in files])
+        kept = len(files) - read
+        return _finish(folder, labels, store, (read, kept, known - kept))
 
 
 def read_manifest(folder: Path) -> LibraryManifest:
@@ -192,44 +205,15 @@ def _begin(folder: Path, labels: tuple[str, ...]) -> None:
         raise InputError(folder, "folder", reason, "name that folder too, or a new library")
 
 
-def _build(
-    folder: Path,
-    labels: tuple[str, ...],
-    files: Sequence[ButtonFile],
-    executor: Executor,
-    progress: Progress,
-    work: LibraryWork,
-) -> LibraryBuilt:
-    store = PartStore(folder / BUTTONS, library_schema(), ("id", "stamp"))
-    order = [(file.id, file.stamp) for file in files]
-    known = len(store)
-    read = run_campaign(
-        executor,
-        work,
-        files,
-        lambda _files, records: store.add(table_of(records)),
-        done=lambda file: (file.id, file.stamp) in store,
-        progress=progress,
-        item_s=1.0,
-        chunk_s=FILES,
-        lost=_deadly,
-    )
-    store.finish(order)
-    kept = len(files) - read
-    return _finish(folder, labels, store, (read, kept, known - kept))
-
-
 def _finish(
     folder: Path, labels: tuple[str, ...], store: PartStore, changes: tuple[int, int, int]
 ) -> LibraryBuilt:
     states = [state for table in store.tables(["state"]) for state in table.column("state").to_pylist()]
-    counts = len(states), states.count("button"), states.count("refused")
-    manifest = LibraryManifest(
-        sources=labels, finished=True, files=counts[0], buttons=counts[1], refused=counts[2]
-    )
+    files, buttons, refused = len(states), states.count("button"), states.count("refused")
+    manifest = LibraryManifest(sources=labels, finished=True, files=files, buttons=buttons, refused=refused)
     if read_manifest(folder) != manifest:
         _write_manifest(folder, manifest)
-    return LibraryBuilt(folder, *counts, *changes)
+    return LibraryBuilt(folder, files, buttons, refused, *changes)
 
 
 def _deadly(file: ButtonFile) -> LibraryRecord:

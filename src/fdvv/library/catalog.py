@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections import OrderedDict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
-from threading import Lock
 
 from fdvv.button.fit import fit_file
 from fdvv.errors import InputError
@@ -139,8 +138,6 @@ class Catalog:
     def __init__(self, project: Path, sources: Sequence[Path] = ()) -> None:
         self.project, self.sources = Path(project), tuple(Path(s) for s in sources)
         self._files: dict[str, ButtonFile] = {}
-        self._opened: OrderedDict[tuple[str, str, bool], FDVVModel] = OrderedDict()
-        self._lock = Lock()
 
     def scan(self) -> tuple[ButtonFile, ...]:
         """List the files that may hold a button as they are now: the person's own, then the sources'."""
@@ -161,17 +158,7 @@ class Catalog:
         if origin == "builtin" and name in builtin_names():
             return load_builtin(name)
         file = self._file(button_id)
-        key = (button_id, file.stamp, fitted)
-        with self._lock:
-            if key in self._opened:
-                self._opened.move_to_end(key)
-                return self._opened[key]
-        model = _read_model(file.path, fitted)
-        with self._lock:
-            self._opened[key] = model
-            while len(self._opened) > KEPT:
-                self._opened.popitem(last=False)
-        return model
+        return _read_model(file.path, file.stamp, fitted)
 
     def _file(self, button_id: str) -> ButtonFile:
         """Find the file of a button as it is now, also one that came after the last scan."""
@@ -187,7 +174,9 @@ class Catalog:
         return current
 
 
-def _read_model(path: Path, fitted: bool) -> FDVVModel:
+@lru_cache(maxsize=KEPT)
+def _read_model(path: Path, _stamp: str, fitted: bool) -> FDVVModel:
+    """Read a file as long as its stamp is another than when it was read last."""
     if path.name.endswith(MODEL_SUFFIX) or own_kind(path) == MODEL:
         return load_model(path)
     return fit_file(path).model if fitted else read_file(path).model

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -43,8 +42,7 @@ DOME_rise_mm, DOME_fall_ratio = 0.14, 0.25
 they collapse over 0.29 to 0.45 of their travel, switches of that kind of rise over 0.1 to 0.18."""
 
 
-@dataclass(frozen=True)
-class ButtonKind:
+class ButtonKind(NamedTuple):
     """What the force of a button does, and by which fact."""
 
     kind: ButtonType
@@ -95,9 +93,8 @@ def kind_of(model: FDVVModel) -> ButtonKind:
     fall = f"the press falls by {bump.drop_cN:.1f} cN at {bump.peak_mm:.2f} mm"
     if back is None and model.of(Stroke.RELEASE):
         if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
-            return ButtonKind(
-                ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN"
-            )
+            reason = f"{fall}, breakaway at contact; the release never falls by 4 cN"
+            return ButtonKind(ButtonType.LINEAR, reason)
         return ButtonKind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
     return _bumpy(bump, fall, model.travel_mm, *found)
 
@@ -112,11 +109,8 @@ def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatA
     rise_mm = float(x[int(np.argmax(force >= 0.5 * bump.peak_cN))] - x[0])
     long_ratio = (bump.valley_mm - bump.peak_mm) / travel_mm
     if rise_mm >= DOME_rise_mm and long_ratio >= DOME_fall_ratio:
-        reason = (
-            f"{fall} over {100 * long_ratio:.0f} % of the travel; half of the peak is reached after "
-            f"{rise_mm:.2f} mm, without a contact step"
-        )
-        return ButtonKind(ButtonType.DOME, reason)
+        rise = f"half of the peak is reached after {rise_mm:.2f} mm, without a contact step"
+        return ButtonKind(ButtonType.DOME, f"{fall} over {100 * long_ratio:.0f} % of the travel; {rise}")
     return ButtonKind(ButtonType.TACTILE, fall)
 
 
@@ -133,9 +127,10 @@ def figures_of(model: FDVVModel) -> dict[str, float | None]:
     if model.nearest(Stroke.PRESS) is None:
         return {**dict.fromkeys(NUMBERS), **known}
     marks = landmarks(model)
-    back = bump_of(model, Stroke.RELEASE)
+    bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
+    of_bump = ("peak_cN", "peak_mm", "valley_cN", "valley_mm", "drop_cN", "snap_ratio")
     return {
-        **_bump_figures(bump_of(model, Stroke.PRESS)),
+        **{name: getattr(bump, name) if bump else None for name in of_bump},
         **known,
         "release_drop_cN": back.drop_cN if back else None,
         "actuation_cN": marks.actuation_cN,
@@ -147,11 +142,6 @@ def figures_of(model: FDVVModel) -> dict[str, float | None]:
         "work_mJ": marks.work_mJ,
         "loss_mJ": marks.hysteresis_loss_mJ,
     }
-
-
-def _bump_figures(bump: Bump | None) -> dict[str, float | None]:
-    names = ("peak_cN", "peak_mm", "valley_cN", "valley_mm", "drop_cN", "snap_ratio")
-    return {name: getattr(bump, name) if bump else None for name in names}
 
 
 def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import difflib
 import io
@@ -138,7 +139,6 @@ class Library:
         return LibraryHit(row, self._places.get(row.id, ""), round(float(distance), 3), rounded)
 
     def _asked(self, spec: str) -> ButtonRow:
-        """Return the row of the reference button."""
         known = self._search.row(spec) or self._at_place(spec)
         if known is not None:
             return known
@@ -150,9 +150,8 @@ class Library:
             raise InputError(spec or "''", "argument", reason, "name a file, or the id of a search")
         kind = own_kind(path)
         if kind and kind != MODEL:
-            raise InputError(
-                path, "whole file", f"holds {kind}, no button", "name a model or a measured file"
-            )
+            remedy = "name a model or a measured file"
+            raise InputError(path, "whole file", f"holds {kind}, no button", remedy)
         return row_of_file(path, f"{ASKED}{spec}", "")
 
     def _at_place(self, place: str) -> ButtonRow | None:
@@ -214,8 +213,10 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
     ranges: dict[str, Range] = {}
     for part in text.split():
         found = _CONDITION.fullmatch(part)
+        if found is None and any(sign in part for sign in "<>="):
+            remedy = "write it as peak_cN>=50, without blanks"
+            raise InputError("search", part, "is neither a word nor a condition", remedy)
         if found is None:
-            _check_word(part)
             words.append(part)
         elif found["name"] == "kind":
             kinds += _kinds(part, found["sign"], found["value"])
@@ -226,13 +227,6 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
     if sort not in SORTED:
         raise InputError("--sort", sort, "no such column", f"use one of {', '.join(SORTED)}")
     return SearchQuery(" ".join(words), tuple(kinds), ranges=ranges, sort=sort, descending=descending)
-
-
-def _check_word(part: str) -> None:
-    if any(sign in part for sign in "<>="):
-        raise InputError(
-            "search", part, "is neither a word nor a condition", "write it as peak_cN>=50, without blanks"
-        )
 
 
 def _check_name(name: str) -> None:
@@ -262,15 +256,11 @@ def _range(part: str, sign: str, value: str) -> Range:
 
 
 def _number(part: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
-        raise InputError(
-            "search", part, f"{text!r} is not a number", "write it as peak_cN>=50 or peak_cN=50..60"
-        )
-    return value
+    with contextlib.suppress(ValueError):
+        if np.isfinite(value := float(text)):
+            return value
+    remedy = "write it as peak_cN>=50 or peak_cN=50..60"
+    raise InputError("search", part, f"{text!r} is not a number", remedy)
 
 
 def _both(first: Range, second: Range) -> Range:

@@ -201,7 +201,8 @@ class CatalogSearch:
         """Answer a question. Raises InputError on a name that is not there."""
         _check(query)
         matches, score, mended = self._text.match(query.text)
-        masks = {"text": matches, **self._choices(query), **self._ranges(query)}
+        kinds, origins = _among(self._kinds, query.kinds), _among(self._origins, query.origins)
+        masks = {"text": matches, "kinds": kinds, "origins": origins, **self._ranges(query)}
         every = np.logical_and.reduce(list(masks.values())) if self.rows else np.zeros(0, bool)
         parts, distance = self._distances(query)
         keys = score if query.like is None else -distance
@@ -220,16 +221,13 @@ class CatalogSearch:
             mended=mended,
         )
 
-    def _choices(self, query: SearchQuery) -> dict[str, Mask]:
-        return {"kinds": _among(self._kinds, query.kinds), "origins": _among(self._origins, query.origins)}
-
     def _ranges(self, query: SearchQuery) -> dict[str, Mask]:
         masks = {}
         for name, (low, high) in query.ranges.items():
             values = self._numbers[:, NUMBERS.index(name)]
-            masks[name] = (values >= (-np.inf if low is None else low)) & (
-                values <= (np.inf if high is None else high)
-            )
+            least, most = -np.inf if low is None else low, np.inf if high is None else high
+            # an unknown figure is NaN, which no range holds
+            masks[name] = (values >= least) & (values <= most)
         return masks
 
     def _distances(self, query: SearchQuery) -> tuple[FloatArray, FloatArray]:
@@ -282,9 +280,8 @@ def _bins(numbers: FloatArray, ends: FloatArray) -> npt.NDArray[np.intp]:
 
 
 def _all_but(masks: dict[str, Mask], name: str) -> Mask:
-    return np.asarray(
-        np.logical_and.reduce([np.ones_like(masks[name]), *(m for n, m in masks.items() if n != name)])
-    )
+    others = [mask for other, mask in masks.items() if other != name]
+    return np.asarray(np.logical_and.reduce(others))
 
 
 def _among(labels: npt.NDArray[np.str_], wanted: Sequence[str]) -> Mask:

@@ -28,6 +28,8 @@ FORMAT = "fdvv-model"
 VERSION = 2
 """Of a file with spreads; one without is of version 1, which had no place for them."""
 
+Positive = Annotated[float, Meta(gt=0)]
+NotNegative = Annotated[float, Meta(ge=0)]
 StrokeName = Annotated[Stroke, Meta(description="press or release")]
 
 
@@ -36,7 +38,7 @@ class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
 
     stroke: StrokeName
     velocity_mm_s: Annotated[
-        Annotated[float, Meta(gt=0)] | None,
+        Positive | None,
         Meta(description="mean speed of the stroke, mm/s; null if unknown, and then the stroke's only curve"),
     ]
     degree: Annotated[int, Meta(ge=1, le=5, description="polynomial degree k")]
@@ -69,8 +71,7 @@ class VibrationRecord(msgspec.Struct, forbid_unknown_fields=True):
 
     stroke: StrokeName
     velocity_mm_s: Annotated[
-        Annotated[float, Meta(gt=0)] | None,
-        Meta(description="speed it was found at, mm/s; null if it serves every speed"),
+        Positive | None, Meta(description="speed it was found at, mm/s; null if it serves every speed")
     ]
     onset_mm: Annotated[float, Meta(description="displacement at which it starts, mm")]
     duration_s: Annotated[float, Meta(gt=0, description="length, s; the signal is zero after it")]
@@ -99,17 +100,14 @@ class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
     name: Annotated[str, Meta(min_length=1, description="short, as a file would be called")]
     travel_mm: Annotated[float, Meta(gt=0, description="from first contact to bottom-out, mm")]
     actuation_mm: Annotated[
-        Annotated[float, Meta(ge=0)] | None,
-        Meta(description="where the contact closes on the press, mm; null if unknown"),
+        NotNegative | None, Meta(description="where the contact closes on the press, mm; null if unknown")
     ]
     reset_mm: Annotated[
-        Annotated[float, Meta(ge=0)] | None,
-        Meta(description="where the contact opens on the release, mm; null if unknown"),
+        NotNegative | None, Meta(description="where the contact opens on the release, mm; null if unknown")
     ]
     interpolation: Annotated[Interpolation, Meta(description="how force is found between the velocities")]
     curves: Annotated[
-        list[CurveRecord],
-        Meta(min_length=1, description="no two of one stroke and velocity; in any order"),
+        list[CurveRecord], Meta(min_length=1, description="no two of one stroke and velocity; in any order")
     ]
     vibrations: Annotated[list[VibrationRecord], Meta(description="no two of one stroke and velocity")] = []
     provenance: Annotated[ProvenanceRecord, Meta(description="where the model comes from")] = msgspec.field(

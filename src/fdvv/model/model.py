@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import ArrayLike
 
 from fdvv.errors import ModelError
 from fdvv.model.bspline import LARGEST_mm, check_size
-from fdvv.model.curve import ForceCurve, Stroke, reading_order
+from fdvv.model.curve import ForceCurve, OfStroke, Stroke, reading_order
 from fdvv.model.spread import PointSpread
 from fdvv.model.velocity import Interpolation, blend, blend_slope
 from fdvv.model.vibration import Vibration
@@ -36,6 +37,14 @@ class Provenance:
     method: str = ""
     assumptions: tuple[str, ...] = ()
     simulated: bool = False
+
+
+def _check_velocities(stroke: Stroke, parts: Sequence[OfStroke], what: str) -> None:
+    velocities = [part.velocity_mm_s for part in parts if part.stroke is stroke]
+    if len(set(velocities)) != len(velocities):
+        raise ModelError(f"{stroke} has two {what}s at one velocity: {velocities} mm/s")
+    if None in velocities and len(velocities) > 1:
+        raise ModelError(f"a {stroke} {what} of unknown velocity must stand alone, got {velocities} mm/s")
 
 
 @dataclass(frozen=True)
@@ -72,8 +81,7 @@ class FDVVModel:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "interpolation", Interpolation(self.interpolation))
-        order = sorted(self.curves, key=reading_order)
-        object.__setattr__(self, "curves", tuple(order))
+        object.__setattr__(self, "curves", tuple(sorted(self.curves, key=reading_order)))
         object.__setattr__(self, "vibrations", tuple(self.vibrations))
         if not self.name or self.name != self.name.strip():
             raise ModelError(f"name must be text without spaces at its ends, got {self.name!r}")
@@ -89,16 +97,8 @@ class FDVVModel:
         if not self.curves:
             raise ModelError("a model needs at least one curve, got none")
         for stroke in Stroke:
-            self._check_velocities(stroke, [c.velocity_mm_s for c in self.of(stroke)], "curve")
-            found = [v.velocity_mm_s for v in self.vibrations if v.stroke is stroke]
-            self._check_velocities(stroke, found, "vibration")
-
-    @staticmethod
-    def _check_velocities(stroke: Stroke, velocities: list[float | None], what: str) -> None:
-        if len(set(velocities)) != len(velocities):
-            raise ModelError(f"{stroke} has two {what}s at one velocity: {velocities} mm/s")
-        if None in velocities and len(velocities) > 1:
-            raise ModelError(f"a {stroke} {what} of unknown velocity must stand alone, got {velocities} mm/s")
+            _check_velocities(stroke, self.curves, "curve")
+            _check_velocities(stroke, self.vibrations, "vibration")
 
     def of(self, stroke: Stroke | str) -> tuple[ForceCurve, ...]:
         """Return the curves of one stroke, velocities rising; empty if it has none."""
@@ -114,7 +114,7 @@ class FDVVModel:
         return tuple(c.velocity_mm_s for c in self.of(stroke) if c.velocity_mm_s is not None)
 
     def _serving(
-        self, displacement_mm: npt.ArrayLike, velocity_mm_s: npt.ArrayLike, stroke: Stroke | str
+        self, displacement_mm: ArrayLike, velocity_mm_s: ArrayLike, stroke: Stroke | str
     ) -> tuple[tuple[ForceCurve, ...], Interpolation, FloatArray, FloatArray]:
         """Return the arguments of blend: curves, method, velocities and displacements of one shape."""
         curves = self.of(stroke)
@@ -126,10 +126,7 @@ class FDVVModel:
         return curves, self.interpolation, np.asarray(v), np.asarray(x)
 
     def force_cN(
-        self,
-        displacement_mm: npt.ArrayLike,
-        velocity_mm_s: npt.ArrayLike,
-        stroke: Stroke | str = Stroke.PRESS,
+        self, displacement_mm: ArrayLike, velocity_mm_s: ArrayLike, stroke: Stroke | str = Stroke.PRESS
     ) -> FloatArray:
         """Evaluate the force anywhere; displacement and velocity broadcast against each other.
 
@@ -139,19 +136,13 @@ class FDVVModel:
         return blend(*self._serving(displacement_mm, velocity_mm_s, stroke))
 
     def stiffness_cN_mm(
-        self,
-        displacement_mm: npt.ArrayLike,
-        velocity_mm_s: npt.ArrayLike,
-        stroke: Stroke | str = Stroke.PRESS,
+        self, displacement_mm: ArrayLike, velocity_mm_s: ArrayLike, stroke: Stroke | str = Stroke.PRESS
     ) -> FloatArray:
         """Evaluate dF/dx (cN/mm) anywhere, as force_cN does the force."""
         return blend(*self._serving(displacement_mm, velocity_mm_s, stroke), derivative=1)
 
     def damping_cN_s_mm(
-        self,
-        displacement_mm: npt.ArrayLike,
-        velocity_mm_s: npt.ArrayLike,
-        stroke: Stroke | str = Stroke.PRESS,
+        self, displacement_mm: ArrayLike, velocity_mm_s: ArrayLike, stroke: Stroke | str = Stroke.PRESS
     ) -> FloatArray:
         """Evaluate dF/dv (cN s/mm) anywhere, as force_cN does the force; 0 beyond the measured velocities."""
         return blend_slope(*self._serving(displacement_mm, velocity_mm_s, stroke))

@@ -17,6 +17,7 @@ from msgspec import Meta
 from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import Kind, pretty, read_document, tidy_schema
 from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.file import ModeRecord
 from fdvv.program.condition import BARE, Condition, When
 from fdvv.program.program import During, Program, State, Velocity
 
@@ -54,15 +55,6 @@ class SurfaceRecord(msgspec.Struct, forbid_unknown_fields=True):
         list[list[float]],
         Meta(min_length=1, description="a row of forces per velocity, cN; negative pulls the cap down"),
     ]
-
-
-class ModeRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """One sinusoid of the cap's acceleration, amplitude exp(-decay t) sin(2 pi frequency t + phase)."""
-
-    frequency_Hz: Annotated[float, Meta(gt=0, description="frequency, Hz")]
-    amplitude_m_s2: Annotated[float, Meta(description="acceleration at the start, m/s²")]
-    decay_1_s: Annotated[float, Meta(ge=0, description="decay, 1/s")]
-    phase_rad: Annotated[float, Meta(description="phase at the start, rad")] = 0.0
 
 
 class SignalRecord(msgspec.Struct, forbid_unknown_fields=True):

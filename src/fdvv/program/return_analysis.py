@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import Enum
 from functools import cached_property
+from itertools import product
 from typing import NamedTuple
 
 from fdvv.program.motion import Motion
@@ -169,11 +170,8 @@ class ReturnAnalysis:
     @cached_property
     def starts(self) -> list[Node]:
         """Return every node in which the finger may leave the cap."""
-        found = []
-        for i in range(len(self.program.states)):
-            for cell in range(self.cells.count):
-                found += [self.enter(i, cell, way) for way in Direction]
-        return list(dict.fromkeys(found))
+        everywhere = product(range(len(self.program.states)), range(self.cells.count), Direction)
+        return list(dict.fromkeys(self.enter(*place) for place in everywhere))
 
     def find_cycle(self) -> list[Node]:
         """Return nodes that may follow each other for ever, the last being the first again; or none."""

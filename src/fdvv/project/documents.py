@@ -148,8 +148,8 @@ class Document:
             write_atomic(self.model_path, text)
         except OSError:
             self._seen = None
-            return
-        self._seen = self._stamp()
+        else:
+            self._seen = self._stamp()
 
     def _stamp(self) -> tuple[int, int, int] | None:
         try:
@@ -199,7 +199,11 @@ class DocumentStore:
             for path in (self.project / folder).glob(f"*{suffix}"):
                 if not path.name.startswith(".") and path.stat().st_size:
                     found.setdefault(path.name.removesuffix(suffix), []).append(path)
-        files = [_document_file(name, paths) for name, paths in found.items()]
+        stats = {name: [path.stat() for path in paths] for name, paths in found.items()}
+        files = [
+            DocumentFile(name, max(s.st_mtime for s in kept), sum(s.st_size for s in kept))
+            for name, kept in stats.items()
+        ]
         return sorted(files, key=lambda file: (-file.changed_s, file.name))
 
     def open(self, name: str) -> DocumentState:
@@ -279,15 +283,11 @@ class DocumentStore:
         """Find a button at work, or open it: names are looked up, never trusted."""
         if name not in self._open:
             if name not in self._names():
-                raise InputError(
-                    "studio", name[:80], "no such button of your own", "choose one from the library"
-                )
+                remedy = "choose one from the library"
+                raise InputError("studio", name[:80], "no such button of your own", remedy)
             self._hold()
-            paths = (
-                self._model_path(name),
-                self._journal_path(name),
-                self._trash(name) / f"{name}{MODEL_SUFFIX}",
-            )
+            trash = self._trash(name) / f"{name}{MODEL_SUFFIX}"
+            paths = (self._model_path(name), self._journal_path(name), trash)
             self._open[name] = Document(name, *paths, self._now_s())
         return self._open[name]
 
@@ -320,8 +320,3 @@ class DocumentStore:
     def _synced(self, *folders: str) -> None:
         for folder in folders:
             sync_folder(self.project / folder)
-
-
-def _document_file(name: str, paths: list[Path]) -> DocumentFile:
-    stats = [path.stat() for path in paths]
-    return DocumentFile(name, max(s.st_mtime for s in stats), sum(s.st_size for s in stats))

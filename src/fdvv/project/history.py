@@ -8,6 +8,7 @@ is the number of its changes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -103,14 +104,10 @@ class EditHistory(Struct, frozen=True):
             case EditMade():
                 return self._edited(change)
             case UndoMade(count=count):
-                record = self.record
-                for patch in self._back(count):
-                    record = apply_patch(record, patch)
+                record = reduce(apply_patch, self._back(count), self.record)
                 return replace(self, record=record, done=self.done - count)
             case RedoMade(count=count):
-                record = self.record
-                for patch in self._forth(count):
-                    record = apply_patch(record, patch)
+                record = reduce(apply_patch, self._forth(count), self.record)
                 return replace(self, record=record, done=self.done + count)
             case PinMade(label=label):
                 return replace(self, pins=(*self.pins, EditPin(label, self.record)))

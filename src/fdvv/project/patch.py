@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias, get_args
 
 import msgspec
 from msgspec import Meta
@@ -20,24 +20,10 @@ from fdvv.model.file import model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
 
 Record: TypeAlias = dict[str, Any]
-Field = Literal[
-    "name",
-    "travel_mm",
-    "actuation_mm",
-    "reset_mm",
-    "interpolation",
-    "travel_spread",
-    "actuation_spread",
-    "reset_spread",
-    "source",
-    "licence",
-    "citation",
-    "method",
-    "assumptions",
-    "simulated",
-]
-_OF_PROVENANCE = ("source", "licence", "citation", "method", "assumptions", "simulated")
-_OF_MODEL = tuple(name for name in Field.__args__ if name not in _OF_PROVENANCE)  # type: ignore[attr-defined]
+OfModel = Literal["name", "travel_mm", "actuation_mm", "reset_mm", "interpolation"]
+OfSpread = Literal["travel_spread", "actuation_spread", "reset_spread"]
+OfProvenance = Literal["source", "licence", "citation", "method", "assumptions", "simulated"]
+Field = Literal[OfModel, OfSpread, OfProvenance]
 
 
 class _Change(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -87,7 +73,7 @@ def model_of(record: Record, source: object) -> FDVVModel:
 
 def canonical(record: Record) -> Record:
     """Copy a record in its one form: parts in reading order, no field for a spread that is not known."""
-    made = _without_empty(record, "travel_spread", "actuation_spread", "reset_spread")
+    made = _without_empty(record, *get_args(OfSpread))
     for name in ("curves", "vibrations"):
         parts = [_without_empty(part, "spread") for part in made.get(name, ())]
         made[name] = sorted(parts, key=_order)
@@ -115,7 +101,10 @@ def same(a: Any, b: Any) -> bool:
 
 def patch_between(a: Record, b: Record) -> Patch:
     """Find the patch that leads from one model to another."""
-    fields = {**_fields(a, b, _OF_MODEL), **_fields(a["provenance"], b["provenance"], _OF_PROVENANCE)}
+    fields = {
+        **_fields(a, b, get_args(OfModel) + get_args(OfSpread)),
+        **_fields(a["provenance"], b["provenance"], get_args(OfProvenance)),
+    }
     curves = [CurveChange(**change) for change in _changes(a["curves"], b["curves"], _points)]
     vibrations = [VibrationChange(**change) for change in _changes(a["vibrations"], b["vibrations"])]
     return Patch(fields, curves, vibrations)
@@ -169,7 +158,7 @@ def apply_patch(record: Record, patch: Patch) -> Record:
     """Apply a patch to the model it was made of; numbers are not judged. ModelError on another model."""
     made = {**record, "provenance": dict(record["provenance"])}
     for name, (before, after) in patch.fields.items():
-        holder = made["provenance"] if name in _OF_PROVENANCE else made
+        holder = made["provenance"] if name in get_args(OfProvenance) else made
         _expect(holder.get(name), before, name)
         holder[name] = after
     for curve in patch.curves:

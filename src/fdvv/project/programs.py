@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from threading import Lock
 
@@ -125,9 +127,8 @@ class ProgramCatalog:
             trash = self.folder / TRASH
             trash.mkdir(parents=True, exist_ok=True)
             stem = held.name.removesuffix(PROGRAM_SUFFIX)
-            thrown = next(
-                n for i in range(1, 10**9) if not (trash / ((n := f"{stem}~{i}") + PROGRAM_SUFFIX)).exists()
-            )
+            numbered = (f"{stem}~{i}" for i in count(1))
+            thrown = next(name for name in numbered if not (trash / (name + PROGRAM_SUFFIX)).exists())
             held.rename(trash / (thrown + PROGRAM_SUFFIX))
             sync_folder(self.folder)
         return thrown
@@ -135,10 +136,7 @@ class ProgramCatalog:
     def restore(self, thrown: str) -> KeptProgram:
         """Take a program out of the trash, under its old name or the next free one."""
         with self._lock:
-            found = {
-                p.name.removesuffix(PROGRAM_SUFFIX): p
-                for p in (self.folder / TRASH).glob(f"*{PROGRAM_SUFFIX}")
-            }
+            found = _by_name((self.folder / TRASH).glob(f"*{PROGRAM_SUFFIX}"))
             if thrown not in found:
                 raise InputError("studio", thrown, "not in the trash", "look in the list again")
             name = self.free_name(thrown.rpartition("~")[0])
@@ -150,7 +148,7 @@ class ProgramCatalog:
 
     def _own(self) -> dict[str, Path]:
         found = sorted(self.folder.glob(f"*{PROGRAM_SUFFIX}")) if self.folder.is_dir() else []
-        return {p.name.removesuffix(PROGRAM_SUFFIX): p for p in found if not p.name.startswith(".")}
+        return _by_name(path for path in found if not path.name.startswith("."))
 
     def _opened(self, program_id: str) -> tuple[Program, str]:
         """Read a program, and which text of its file it is."""
@@ -184,11 +182,13 @@ class ProgramCatalog:
     def _check_revision(self, program_id: str, held: Path | None, revision: str) -> None:
         if held is None and revision:
             raise InputError("studio", program_id, "it is no longer there", "save it under another name")
-        if held is not None and revision != _revision(
-            read_limited(held, LARGEST_bytes, "move the file away")
-        ):
+        if held and revision != _revision(read_limited(held, LARGEST_bytes, "move the file away")):
             reason = "it was changed elsewhere since it was opened" if revision else "that name is taken"
             raise InputError("studio", program_id, reason, "save it under another name, or open it again")
+
+
+def _by_name(paths: Iterable[Path]) -> dict[str, Path]:
+    return {path.name.removesuffix(PROGRAM_SUFFIX): path for path in paths}
 
 
 def read_program(text: str, source: str = "program") -> Program:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
+from typing import Any
 
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.report.templates import environment
 from fdvv.units import FloatArray
 
 COLOURS = ("#2f8fd8", "#e0702a", "#1fa37a", "#b86fc4", "#c79a1b", "#d8577b")
@@ -52,10 +53,6 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in text)
 
 
-def _escaped(text: str) -> str:
-    return escape(printable(text))
-
-
 def chart_svg(
     lines: Sequence[ChartLine],
     x_label: str,
@@ -70,24 +67,34 @@ def chart_svg(
     """
     x_range, y_range = (_range([getattr(line, axis) for line in lines]) for axis in "xy")
     longest = max((len(line.name) for line in lines), default=0)
-    right = width - RIGHT
+    right, bottom = width - RIGHT, height - BOTTOM
     width += LEGEND + LETTER * longest if longest else 0.0
-    across = right - LEFT, LEFT
-    up = height - TOP - BOTTOM, TOP
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
-        f'height="{height:g}" role="img" '
-        f'aria-label="{_escaped(title)}" font-family="sans-serif" font-size="11">',
-        f"<title>{_escaped(title)}</title>",
-        *_axes(x_range, y_range, x_label, y_label, right, height - BOTTOM),
-    ]
-    for line in lines:
-        shown = _thinned(line)
-        px = across[1] + across[0] * (shown[0] - x_range[0]) / (x_range[1] - x_range[0])
-        py = up[1] + up[0] * (1 - (shown[1] - y_range[0]) / (y_range[1] - y_range[0]))
-        parts.append(_dots(line, px, py) if line.dots else _path(line, px, py))
-    parts += _legend(lines, right)
-    return "".join(parts) + "</svg>"
+
+    def across(x: Any) -> Any:
+        return LEFT + (right - LEFT) * (x - x_range[0]) / (x_range[1] - x_range[0])
+
+    def up(y: Any) -> Any:
+        return TOP + (bottom - TOP) * (1 - (y - y_range[0]) / (y_range[1] - y_range[0]))
+
+    named = [line for line in lines if line.name]
+    shown = [(line, *_thinned(line)) for line in lines]
+    text = (
+        environment()
+        .get_template("chart.svg")
+        .render(
+            **{"width": f"{width:g}", "height": f"{height:g}", "title": printable(title)},
+            **{"x_label": printable(x_label), "y_label": printable(y_label)},
+            **{"left": LEFT, "top": TOP, "right": right, "bottom": bottom},
+            columns=[(x, across(x)) for x in _steps(*x_range)],
+            rows=[(y, up(y)) for y in _steps(*y_range)],
+            marks=[_mark(line, across(x), up(y)) for line, x, y in shown],
+            legend=[
+                (_sign(line, right + 8, TOP + 8 + 16 * row), TOP + 8 + 16 * row)
+                for row, line in enumerate(named)
+            ],
+        )
+    )
+    return "".join(map(str.strip, text.splitlines()))
 
 
 def _range(columns: Sequence[FloatArray]) -> tuple[float, float]:
@@ -108,33 +115,6 @@ def _steps(low: float, high: float) -> list[float]:
     return [step * i for i in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
 
 
-def _axes(
-    x_range: tuple[float, float],
-    y_range: tuple[float, float],
-    x_label: str,
-    y_label: str,
-    right: float,
-    bottom: float,
-) -> list[str]:
-    made = [f'<g stroke="currentColor" fill="none"><path d="M{LEFT} {TOP}V{bottom}H{right}" opacity="0.6"/>']
-    labels = ['<g fill="currentColor" opacity="0.85">']
-    for value in _steps(*x_range):
-        at = LEFT + (right - LEFT) * (value - x_range[0]) / (x_range[1] - x_range[0])
-        made.append(f'<path d="M{at:.1f} {TOP}V{bottom}" opacity="0.12"/>')
-        labels.append(f'<text x="{at:.1f}" y="{bottom + 14:g}" text-anchor="middle">{value:g}</text>')
-    for value in _steps(*y_range):
-        at = TOP + (bottom - TOP) * (1 - (value - y_range[0]) / (y_range[1] - y_range[0]))
-        made.append(f'<path d="M{LEFT} {at:.1f}H{right}" opacity="0.12"/>')
-        labels.append(f'<text x="{LEFT - 5}" y="{at + 4:.1f}" text-anchor="end">{value:g}</text>')
-    middle = (LEFT + right) / 2, (TOP + bottom) / 2
-    labels.append(
-        f'<text x="{middle[0]:.1f}" y="{bottom + 30:g}" text-anchor="middle">{_escaped(x_label)}</text>'
-    )
-    turned = f'transform="translate(11 {middle[1]:.1f}) rotate(-90)"'
-    labels.append(f'<text {turned} text-anchor="middle">{_escaped(y_label)}</text>')
-    return [*made, "</g>", *labels, "</g>"]
-
-
 def _thinned(line: ChartLine) -> tuple[FloatArray, FloatArray]:
     """Keep the lowest and the highest of each stretch of a long line, so that no peak is lost."""
     x, y = np.asarray(line.x, dtype=np.float64), np.asarray(line.y, dtype=np.float64)
@@ -148,43 +128,18 @@ def _thinned(line: ChartLine) -> tuple[FloatArray, FloatArray]:
     return x[kept], y[kept]
 
 
-def _path(line: ChartLine, px: FloatArray, py: FloatArray) -> str:
-    commands, pen = [], "M"
-    for x, y in zip(px.tolist(), py.tolist(), strict=True):
-        if math.isfinite(x) and math.isfinite(y):
-            commands.append(f"{pen}{x:.1f} {y:.1f}")
-            pen = "L"
-        else:
-            pen = "M"
-    dashes = ' stroke-dasharray="5 3"' if line.dashed else ""
+def _mark(line: ChartLine, px: FloatArray, py: FloatArray) -> dict[str, Any]:
+    """Return what the template draws of a line: points, and a path that lifts its pen over a gap."""
+    finite = np.isfinite(px) & np.isfinite(py)
+    follows = finite & np.concatenate([[False], finite[:-1]])
+    points = list(zip(px[finite].tolist(), py[finite].tolist(), strict=True))
+    pens = np.where(follows[finite], "L", "M")
+    path = "".join(f"{pen}{x:.1f} {y:.1f}" for pen, (x, y) in zip(pens, points, strict=True))
     colour = COLOURS[line.colour % len(COLOURS)]
-    return (
-        f'<path d="{"".join(commands)}" fill="none" stroke="{colour}" stroke-width="1.6" '
-        f'stroke-linejoin="round" opacity="{line.opacity:.2g}"{dashes}/>'
-    )
+    return {"line": line, "name": printable(line.name), "colour": colour, "points": points, "path": path}
 
 
-def _dots(line: ChartLine, px: FloatArray, py: FloatArray) -> str:
-    colour = COLOURS[line.colour % len(COLOURS)]
-    circles = [
-        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.4" fill="none" stroke="{colour}" stroke-width="1.6"/>'
-        for x, y in zip(px.tolist(), py.tolist(), strict=True)
-        if math.isfinite(x) and math.isfinite(y)
-    ]
-    return "".join(circles)
-
-
-def _legend(lines: Sequence[ChartLine], right: float) -> list[str]:
-    """Name the lines beside the axes."""
-    made = []
-    for row, line in enumerate(line for line in lines if line.name):
-        y = TOP + 8 + 16 * row
-        start = right + 8
-        sign = (
-            _dots(line, np.array([start + 9]), np.array([y]))
-            if line.dots
-            else _path(line, np.array([start, start + 18]), np.array([y, y]))
-        )
-        text = f'<text x="{start + 24:g}" y="{y + 4:g}" fill="currentColor">{_escaped(line.name)}</text>'
-        made += [sign, text]
-    return made
+def _sign(line: ChartLine, x: float, y: float) -> dict[str, Any]:
+    """Return what stands beside a line's name."""
+    places = [x + 9] if line.dots else [x, x + 18]
+    return _mark(line, np.array(places), np.full(len(places), y))

@@ -122,7 +122,7 @@ def plot_comparison(
     handles += style.band_handles(presses)
     handles += [style.handle(label, linestyle="", **look) for label, look in _POINTS.items()]
     style.legend_beside(ax, handles)
-    _force_axes(ax, "", simulated or style.is_simulated(models))
+    _force_axes(ax, "", simulated or any(model.provenance.simulated for model in models))
     return ax
 
 

@@ -62,10 +62,8 @@ def _curves(model: FDVVModel) -> list[ChartLine]:
     for stroke, at, name in points:
         on = model.nearest(stroke)
         if at is not None and on is not None:
-            place = np.array([at])
-            lines.append(
-                ChartLine(place, on.force_cN(place), name, 0 if name == "actuation" else 1, dots=True)
-            )
+            place, colour = np.array([at]), 0 if stroke is Stroke.PRESS else 1
+            lines.append(ChartLine(place, on.force_cN(place), name, colour, dots=True))
     return lines
 
 
@@ -82,9 +80,8 @@ def _facts(model: FDVVModel) -> list[tuple[str, str]]:
         rows += [_landmark_row(name, found[name]) for name in names if found[name] is not None]
     if model.provenance.licence:
         licence = model.provenance.licence
-        rows.append(
-            ("licence", licence if len(licence) <= LONGEST_LICENCE else f"{licence[:LONGEST_LICENCE]}…")
-        )
+        short = licence if len(licence) <= LONGEST_LICENCE else f"{licence[:LONGEST_LICENCE]}…"
+        rows.append(("licence", short))
     return rows
 
 
@@ -109,12 +106,9 @@ def press_html(press: Press) -> str:
     """Show a press: force over displacement, and displacement over time."""
     turn = int(np.argmax(press.displacement_mm)) + 1
     x, force = press.displacement_mm, press.force_cN
-    lines = [
-        ChartLine(x[:turn], force[:turn], "press"),
-        ChartLine(x[turn:], force[turn:], "release", 1, True),
-    ]
-    if turn == x.size:
-        lines = lines[:1]
+    lines = [ChartLine(x[:turn], force[:turn], "press")]
+    if turn < x.size:
+        lines.append(ChartLine(x[turn:], force[turn:], "release", 1, True))
     title = f"press at {press.velocity_mm_s:g} mm/s"
     time = chart_svg([ChartLine(press.t_s, x)], "time (s)", DISPLACEMENT, f"{title}: displacement over time")
     loop = chart_svg(lines, DISPLACEMENT, FORCE, f"{title}: force over displacement")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,13 @@ import numpy.typing as npt
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
+
+
+def _check_columns(record: object, names: Sequence[str], shape: tuple[int, ...], whose: str = "") -> None:
+    for name in names:
+        found = getattr(record, name).shape
+        if found != shape:
+            raise ModelError(f"{whose}{name} must match displacement_mm, got {found} and {shape}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +61,9 @@ class RenderedCurve:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
         object.__setattr__(self, "bands", tuple(self.bands))
         shape = self.displacement_mm.shape
-        columns = [("target_cN", self.target_cN)]
+        _check_columns(self, ("target_cN",), shape)
         for band in self.bands:
-            columns += [(f"{band.method} {n}", getattr(band, n)) for n in ("mean_cN", "low_cN", "high_cN")]
-        for name, column in columns:
-            if column.shape != shape:
-                raise ModelError(f"{name} must match displacement_mm, got {column.shape} and {shape}")
+            _check_columns(band, ("mean_cN", "low_cN", "high_cN"), shape, f"{band.method} ")
         if len(shape) != 1 or shape[0] < 2 or np.any(np.diff(self.displacement_mm) <= 0):
             raise ModelError(f"displacement_mm must be one strictly rising column, got shape {shape}")
 
@@ -115,11 +120,6 @@ class FeasibleCurve:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
-        shape = self.displacement_mm.shape
-        for name in ("intended_cN", "achievable_cN", "cut"):
-            if getattr(self, name).shape != shape:
-                raise ModelError(
-                    f"{name} must match displacement_mm, got {getattr(self, name).shape} and {shape}"
-                )
+        _check_columns(self, ("intended_cN", "achievable_cN", "cut"), self.displacement_mm.shape)
         if self.band is not None and (self.band_mm is None or self.band.mean_cN.shape != self.band_mm.shape):
             raise ModelError("a measured band needs its places, one each")

@@ -135,10 +135,10 @@ def plot_training(panels: Sequence[TrainingScores], score: str, simulated: bool 
         _mark_beyond(ax, np.arange(1.0, panel.scores.shape[1] + 1), panel.scores, top)
     axes[0].set_ylim(0.0, top)
     axes[0].set_ylabel(score)
-    found = [ax.get_legend_handles_labels() for ax in axes]
-    named = {
-        label: handle for handles, labels in found for label, handle in zip(labels, handles, strict=True)
-    }
+    named: dict[str, Any] = {}
+    for ax in axes:
+        handles, labels = ax.get_legend_handles_labels()
+        named |= zip(labels, handles, strict=True)
     axes[0].figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=len(named))
     return axes
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from fdvv.errors import BuildError
 from fdvv.model.curve import Stroke
-from fdvv.model.model import FDVVModel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -162,11 +161,6 @@ def set_titles(ax: Axes, title: str, simulated: bool) -> None:
     ax.set_title(title, loc="left")
     if simulated:
         ax.set_title("simulated", loc="right", fontstyle="italic", fontweight="normal", color="#b42318")
-
-
-def is_simulated(models: Sequence[FDVVModel]) -> bool:
-    """Return whether any of the models says that its numbers come from the twin."""
-    return any(model.provenance.simulated for model in models)
 
 
 def handle(label: str, **look: Any) -> Line2D:
