@@ -33,7 +33,7 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 
 @contextmanager
 def atomic_stream(path: Path) -> Iterator[BinaryIO]:
-    """Give a stream whose content becomes the file when the block ends, and is dropped if it fails."""
+    """Open a stream whose content becomes the file when the block ends, and is dropped if it fails."""
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
     temporary = Path(name)
     try:

@@ -42,8 +42,6 @@ def read_button(file: ButtonFile) -> LibraryRecord:
 class LibraryWork:
     """Reads the files of a chunk.
 
-    Attributes
-    ----------
     folders : where the files lie; a worker that does not see them must not refuse every file.
     read : reads one file.
     """
@@ -92,8 +90,6 @@ Progress = Callable[[int, int], None]
 class LibraryManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """What a library's folder says of itself.
 
-    Attributes
-    ----------
     sources : names of the folders it is of. finished : whether the file of buttons holds all of them.
     files, buttons, refused : how many; 0 as long as it is not finished. made_with : the program's version.
     """
@@ -112,8 +108,6 @@ class LibraryManifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, k
 class LibraryBuilt:
     """What a build did.
 
-    Attributes
-    ----------
     files, buttons, refused : in the library now.
     read, kept, gone : files that were read, that had not changed, and that are no longer there.
     """

@@ -116,7 +116,7 @@ def _started() -> subprocess.Popen[bytes]:
 def serve_rows() -> None:
     """Say that it is ready, then answer until the input ends."""
     if hasattr(os, "nice"):
-        os.nice(5)
+        os.nice(5)  # the studio's answers come first
     answers = sys.stdout.buffer
     answers.write(b"ready\n")
     answers.flush()
@@ -223,8 +223,9 @@ class CatalogIndex:
         status.trouble = trouble
         self.status = status
         self._tell(status)
-        read_row = {line.place for line in known}
-        missing = [file for file in files if file.place not in read_row]
+        places = {line.place for line in known}
+        missing = [file for file in files if file.place not in places]
+        # also where only something is gone: the cache grows, and is written anew here alone
         if missing or len(known) < len(cached):
             self._save(status, lambda: write_cache(self._cache, known))
             self._read(missing, status)

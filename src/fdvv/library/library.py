@@ -47,8 +47,6 @@ ASKED = "asked:"
 class LibraryHit:
     """A button of a library that was sought.
 
-    Attributes
-    ----------
     place : of its file, below the folder the library was built of.
     distance_JND, parts_JND : to the button that it was to be like, whole and by force, shape and landmarks;
         None if it was sought otherwise, or if nothing could be compared.

@@ -124,8 +124,6 @@ class SearchQuery:
 class Histogram:
     """How many buttons that match everything but this range lie where, in BINS equal bins.
 
-    Attributes
-    ----------
     lowest, highest : the ends of the bins; beyond them lie 1 % of all buttons on either side, counted in
         the outermost bins.
     """
@@ -187,7 +185,6 @@ class CatalogSearch:
         self._origins = np.append(self._origins, [str(row.origin) for row in rows])
 
     def row(self, button_id: str) -> ButtonRow | None:
-        """Return the row of a button; None if it is not among them."""
         at = self._at.get(button_id)
         return None if at is None else self.rows[at]
 

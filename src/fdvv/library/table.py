@@ -29,8 +29,6 @@ MOST_points = 2000
 class SampledCurve(msgspec.Struct, frozen=True):
     """Force of one stroke at one speed, evenly sampled; contact is at 0.
 
-    Attributes
-    ----------
     velocity_mm_s : None if the file tells none.
     force_cN : at start_mm + i step_mm, (n,), single precision.
     """
@@ -50,8 +48,6 @@ class SampledCurve(msgspec.Struct, frozen=True):
 class LibraryRecord(msgspec.Struct, frozen=True):
     """One file. Without a row it is refused if there is a reason, else a file of fdvv's that is no button.
 
-    Attributes
-    ----------
     id, place, stamp, pair, sha256, format, warnings : as in the library's columns.
     """
 
@@ -171,7 +167,6 @@ def library_schema() -> Schema:
 
 
 def table_of(records: Sequence[LibraryRecord]) -> Table:
-    """Make a table of what was read."""
     import pyarrow as pa
 
     return pa.Table.from_pylist([_line(record) for record in records], library_schema())
@@ -221,6 +216,5 @@ def _tuples(table: Table, name: str) -> list[tuple[int, ...]]:
 
 
 def curves_of(line: dict[str, Any]) -> tuple[SampledCurve, ...]:
-    """Make the curves of one row's `curves`."""
     found = line["curves"] or ()
     return tuple(SampledCurve(**c | {"force_cN": np.array(c["force_cN"], dtype=np.float32)}) for c in found)

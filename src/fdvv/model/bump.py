@@ -21,8 +21,6 @@ a stick-slip ripple is neither."""
 class Bump:
     """The largest fall of force with displacement.
 
-    Attributes
-    ----------
     peak_mm, peak_cN : where the fall begins.
     valley_mm, valley_cN : where it ends.
     """
@@ -34,7 +32,6 @@ class Bump:
 
     @property
     def drop_cN(self) -> float:
-        """Return the fall from peak to valley."""
         return self.peak_cN - self.valley_cN
 
     @property
@@ -111,6 +108,7 @@ def find_contact_mm(curve: MeasuredCurve) -> float:
 
 def slope_cN_mm(x_mm: FloatArray, force_cN: FloatArray, window_mm: float = WINDOW_mm) -> FloatArray:
     """Return the mean slope from each strictly rising displacement over the next window, (n - 1,)."""
+    # a sample one window ahead counts, whatever its last bit
     ahead = np.searchsorted(x_mm, x_mm[:-1] + window_mm - 1e-9)
     ahead = np.clip(ahead, np.arange(1, x_mm.size), x_mm.size - 1)
     here = np.arange(x_mm.size - 1)
@@ -129,6 +127,7 @@ def find_bottom_out_mm(curve: MeasuredCurve, contact_mm: float | None = None) ->
     if x.size < 8:
         return None
     slope = slope_cN_mm(x, force)
+    # the stroke's own slope is read where a bump is mostly over and no stop has begun
     body = slope[(x[:-1] > start + 0.4 * (x[-1] - start)) & (x[:-1] < start + 0.85 * (x[-1] - start))]
     typical = float(np.median(body)) if body.size else 0.0
     steep = slope > max(STOP_LEAST_cN_mm, typical + STOP_EXCESS_cN_mm)

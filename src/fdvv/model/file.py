@@ -158,7 +158,7 @@ def _written(value: Any) -> Any:
         return [_written(item) for item in value]
     if not isinstance(value, dict):
         return value
-    if "spread_cN" in value:
+    if "spread_cN" in value:  # of a curve: a line of numbers is easier to read after their count
         value = {"presses": value["presses"], **value}
     return {k: _written(v) for k, v in value.items() if not (v is None and k.endswith("spread"))}
 

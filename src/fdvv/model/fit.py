@@ -83,6 +83,7 @@ def bic_star(n: int, k: int, squared_error: float, penalty: float = COMPLEXITY_P
     n : observations; k : parameters (control points); squared_error : sum over the observations.
     The likelihood is at its maximum, where the variance is squared_error / n.
     """
+    # without a floor a perfect fit would have an infinite likelihood
     variance = max(squared_error / n, 1e-18)
     return math.log(n) * k * penalty + n * (math.log(2 * math.pi * variance) + 1)
 

@@ -18,6 +18,7 @@ STEP_mm = 0.005
 """Landmarks are read off the spline at this step, that of the finest benches."""
 
 CONTACT_REACH_mm = 0.4
+"""A contact step ends within this of contact; what is steep beyond it is the button's own."""
 
 mJ_PER_cN_mm = 0.01
 """1 cN mm = 10 mN x 1 mm = 0.01 mJ."""

@@ -61,8 +61,6 @@ BOUNDS = {
 class Condition:
     """Something that may be so at a tick, as `Condition("deeper_than_mm", 1.9)`.
 
-    Attributes
-    ----------
     when : what is looked at.
     value : what it is compared with, in the unit that ends the name of `when`; whole milliseconds for
         `after_ms`, 0 to 31 for `host_event`; 0 for what takes no value.

@@ -137,6 +137,7 @@ class _Parts:
             f"signal {record.slot}",
             record.at_um16 / UM16_PER_mm,
             list(During)[record.stroke],
+            # no bound was compiled to 0 and to the largest number
             record.slowest_mm_s16 / MM_S16_PER_mm_s or None,
             None if record.fastest_mm_s16 == 65_535 else record.fastest_mm_s16 / MM_S16_PER_mm_s,
             tuple(_state(i) for i in range(self.head.states) if record.states >> i & 1),

@@ -140,7 +140,6 @@ def schema() -> dict[str, Any]:
 
 
 def program_to_json(program: Program) -> str:
-    """Write a program as the text of a ``*.fdvv-program.json`` file."""
     record = _record(
         ProgramRecord,
         program,

@@ -120,7 +120,6 @@ def _state_record(program: Program, state: State, first: int, weight_cN: float) 
 
 
 def value_of(condition: Condition) -> int:
-    """Return a condition's value as the image holds it."""
     if condition.when.endswith("_mm"):
         return place_um16(condition.value)
     if condition.when.endswith("_mm_s"):

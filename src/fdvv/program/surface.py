@@ -112,6 +112,7 @@ def of_model(
     """
     serving = Stroke(stroke) if model.of(stroke) else Stroke.PRESS
     rows = tuple(velocity_mm_s or model.velocities_mm_s(serving) or (0.0,))
+    # a travel of whole steps must not get one more because of its last bit
     count = max(2, math.ceil(model.travel_mm / step_mm - 1e-9) + 1)
     x_mm = np.round(np.arange(count) * step_mm, 6)
     table = model.force_cN(x_mm[np.newaxis, :], np.array(rows)[:, np.newaxis], serving)
@@ -125,6 +126,7 @@ def of_surface(surface: ForceSurface, stroke: Stroke | str, name: str | None = N
 
 
 def _of_table(name: str, x_mm: FloatArray, v_mm_s: FloatArray, table_cN: FloatArray) -> Surface:
+    # adding 0 turns -0.0 into 0.0, so that equal tables are equal files
     rounded = np.round(table_cN, DIGITS_cN) + 0.0
     return Surface(name, tuple(x_mm.tolist()), tuple(map(tuple, rounded.tolist())), tuple(v_mm_s.tolist()))
 

@@ -124,6 +124,7 @@ def _sine_q12(slot: Slot, length: int) -> IntArray:
 def _wave_q12(slot: Slot, length: int) -> IntArray:
     phase = _phase(slot.frequency_Hz16 * 16_777 >> 16, length)
     phase = phase[phase >> 16 < len(slot.wave)]
+    # the last sample falls to silence
     wave = np.array([*slot.wave, 0], dtype=np.int64)
     index, fraction_q7 = phase >> 16, phase >> 9 & 127
     here, after = wave[index], wave[index + 1]

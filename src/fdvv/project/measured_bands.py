@@ -21,8 +21,6 @@ _REMEDY = "probe the button again"
 class MeasuredBand:
     """One stroke at one speed over several presses: quartiles of the force on the finger.
 
-    Attributes
-    ----------
     displacement_mm, low_cN, median_cN, high_cN : (n,) on the places judged.
     mean_error_cN : median over the presses of the mean error against the model that was probed.
     """

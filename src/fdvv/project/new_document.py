@@ -92,6 +92,7 @@ def free_name(wanted: str, there: Iterable[str]) -> str:
     """Return a valid free name near the wanted one: "name", "name 2", "name 3"."""
     taken = {name.casefold() for name in there}
     base = re.sub(r"[^\w .+()-]+", "-", unicodedata.normalize("NFC", wanted)).strip(" ._-+()")
+    # six characters are left for a number
     base = base[: LONGEST - 6].rstrip(" .") or "button"
     if _wrong(base):
         base = f"button {base}"[: LONGEST - 6]

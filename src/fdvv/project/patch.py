@@ -96,6 +96,7 @@ def same(a: Any, b: Any) -> bool:
         return all(same(a.get(name), b.get(name)) for name in {*a, *b})
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
         return len(a) == len(b) and all(map(same, a, b))
+    # True equals 1 in Python, but not in a file
     return isinstance(a, bool) == isinstance(b, bool) and bool(a == b)
 
 

@@ -24,8 +24,6 @@ PARTS = {"state": "states", "surface": "surfaces", "signal": "signals"}
 class PlacedFinding(Finding):
     """A finding with its place in the document.
 
-    Attributes
-    ----------
     path : of the part it concerns, such as ``states[1].transitions[0]``; empty for the whole program.
     at_mm : the displacement it is about, or None.
     """

@@ -49,8 +49,6 @@ class ProgramEntry:
 class KeptProgram:
     """A program as it is kept: its id (`program`), the text of its file, and which text of that file it is.
 
-    Attributes
-    ----------
     revision : changes with every change of the file; empty for a shipped program.
     """
 

@@ -102,7 +102,8 @@ def _range(columns: Sequence[FloatArray]) -> tuple[float, float]:
     if values is None or not np.isfinite(values).any():
         raise ModelError("a chart needs at least one finite point")
     low, high = float(np.nanmin(values[np.isfinite(values)])), float(np.nanmax(values[np.isfinite(values)]))
-    low, high = min(low, 0.0) if low > 0 and low < 0.3 * high else low, high
+    # an axis that would begin near zero begins there
+    low = 0.0 if 0 < low < 0.3 * high else low
     room = (high - low) * 0.04 or abs(high) * 0.1 or 1.0
     return low if low == 0 else low - room, high + room
 

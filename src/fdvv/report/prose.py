@@ -44,7 +44,6 @@ def sphericity_text(effect: AnovaEffect) -> str:
 
 
 def pair_cells(one: PairedTest) -> tuple[str, ...]:
-    """Write a pair as a row of a table."""
     return (
         f"{button_text(one.first)} − {button_text(one.second)}",
         interval_text(one.difference, 1),

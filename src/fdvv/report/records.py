@@ -24,8 +24,6 @@ def _check_columns(record: object, names: Sequence[str], shape: tuple[int, ...],
 class RenderedBand:
     """What one method rendered: mean and spread of several presses.
 
-    Attributes
-    ----------
     method : as the legend calls it ("FD only", "FDVV").
     mean_cN, low_cN, high_cN : (n,) at the displacements of the curve; NaN where no press went.
     """
@@ -72,8 +70,6 @@ class RenderedCurve:
 class ErrorHistory:
     """The error of one curve over the presses that were used to learn it.
 
-    Attributes
-    ----------
     error_cN : (n,) one per press, in order; NaN where a press gave none.
     simulated : the presses come from the twin.
 

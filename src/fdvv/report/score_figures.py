@@ -53,8 +53,6 @@ class ScoreBars:
 class TrainingScores:
     """Scores of the designs tried at one level.
 
-    Attributes
-    ----------
     level : title of the panel. scores : (people, trials), NaN where a trial has none.
     """
 
@@ -86,7 +84,6 @@ def plot_score_bars(
 
 
 def _draw_bars(ax: Axes, panel: ScoreBars) -> None:
-    """Draw one level."""
     places, means = np.arange(float(len(panel.names))), panel.scores.mean(axis=0)
     colours = [style.PALETTE[0]] + ["#cbd2d9"] * (len(panel.names) - 1)
     ax.bar(places, means, BAR_WIDTH, color=colours, zorder=1.0)
@@ -163,7 +160,6 @@ def _draw_training(ax: Axes, panel: TrainingScores) -> None:
 
 
 def _panels(count: int, width_in: float, height_in: float) -> Any:
-    """Make panels side by side on one scale."""
     if not count:
         raise ModelError("a figure of a study needs at least one level")
     fig = style.new_figure(max(width_in * count + 0.4, 6.4), height_in)

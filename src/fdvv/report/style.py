@@ -114,7 +114,6 @@ def new_figure(width_in: float = 7.0, height_in: float = 4.2) -> Figure:
 
 
 def axes_or_new(ax: Axes | None, width_in: float = 7.0, height_in: float = 4.2) -> Axes:
-    """Return the axes that were passed, or those of a new figure."""
     return new_figure(width_in, height_in).add_subplot() if ax is None else ax
 
 
@@ -139,7 +138,6 @@ def velocity_colours(
 
 
 def velocity_text(velocity_mm_s: float | None) -> str:
-    """Write a velocity for a legend."""
     return "speed unknown" if velocity_mm_s is None else f"{velocity_mm_s:g} mm/s"
 
 
@@ -152,7 +150,6 @@ def name_text(name: str) -> str:
 
 
 def wrapped(text: str, width: int = 30) -> str:
-    """Break a long legend entry into lines."""
     return "\n".join(textwrap.wrap(text, width))
 
 

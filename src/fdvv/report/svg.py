@@ -76,7 +76,6 @@ def _prefix_tag(tag: str, prefix: str) -> str:
 
 
 def _titles(fig: Figure) -> str:
-    """Join the titles of a figure and its axes into a description."""
     texts = [ax.get_title(loc=loc) for ax in fig.axes for loc in ("left", "center", "right")]
     return "; ".join(dict.fromkeys(text for text in texts if text)) or "figure"
 
