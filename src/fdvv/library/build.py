@@ -53,10 +53,8 @@ class LibraryWork:
         """Return a record for every file, in their order."""
         for folder in self.folders:
             if not folder.is_dir():
-                host = socket.gethostname()
-                raise FileNotFoundError(
-                    f"{folder} is not there on {host}; share the folder with every worker"
-                )
+                where = f"{folder} is not there on {socket.gethostname()}"
+                raise FileNotFoundError(f"{where}; share the folder with every worker")
         return [self.read(file) for file in files]
 
 

@@ -168,9 +168,8 @@ class Catalog:
             self.scan()
             current = self._files.get(button_id)
         if current is None:
-            raise InputError(
-                "library", "button", f"no button is called {button_id!r:.80}", "choose one of the library"
-            )
+            reason = f"no button is called {button_id!r:.80}"
+            raise InputError("library", "button", reason, "choose one of the library")
         return current
 
 

@@ -173,10 +173,9 @@ def table_of(records: Sequence[LibraryRecord]) -> Table:
 
 
 def _line(record: LibraryRecord) -> dict[str, Any]:
-    line: dict[str, Any] = {
-        "id": record.id, "place": record.place, "stamp": record.stamp, "pair": record.pair,
-        "sha256": record.sha256, "state": record.state, "reason": record.reason or None,
-    }  # fmt: skip
+    names = ("id", "place", "stamp", "pair", "sha256", "state")
+    line: dict[str, Any] = {name: getattr(record, name) for name in names}
+    line["reason"] = record.reason or None
     row = record.row
     if row is None:
         return line

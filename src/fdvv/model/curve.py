@@ -64,10 +64,8 @@ class MeasuredCurve:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
         check_velocity(self.velocity_mm_s)
         if self.displacement_mm.shape != self.force_cN.shape:
-            raise ModelError(
-                "displacement and force must pair up, got "
-                f"{self.displacement_mm.shape = } and {self.force_cN.shape = }"
-            )
+            shapes = f"{self.displacement_mm.shape = } and {self.force_cN.shape = }"
+            raise ModelError(f"displacement and force must pair up, got {shapes}")
         if self.displacement_mm.size < 2:
             raise ModelError(f"a curve needs at least 2 samples, got {self.displacement_mm.size}")
         if np.any(np.diff(self.displacement_mm) < 0):

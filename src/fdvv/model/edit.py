@@ -85,10 +85,8 @@ def _check(base: ForceCurve, insert: ForceCurve, segment_mm: tuple[float, float]
         raise ModelError(f"blend_mm must be positive, got {blend_mm}")
     for which, curve in (("edited", base), ("assigned", insert)):
         if a < curve.start_mm - NEAR_mm or b > curve.end_mm + NEAR_mm:
-            reach = f"{curve.start_mm:g} to {curve.end_mm:g} mm"
-            raise ModelError(
-                f"segment {a:g} to {b:g} mm leaves the {which} curve, which reaches from {reach}"
-            )
+            reach = f"which reaches from {curve.start_mm:g} to {curve.end_mm:g} mm"
+            raise ModelError(f"segment {a:g} to {b:g} mm leaves the {which} curve, {reach}")
 
 
 def _onto_knot(t: FloatArray, x: float) -> float:

@@ -185,9 +185,8 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
 
 def _model(record: ModelRecord, source: object) -> FDVVModel:
     if record.version == 1 and _has_spreads(record):
-        raise InputError(
-            source, "$.version", "a file of version 1 has no spreads", "write 2, or take them out"
-        )
+        reason, remedy = "a file of version 1 has no spreads", "write 2, or take them out"
+        raise InputError(source, "$.version", reason, remedy)
     # a ModelError of a part comes out as msgspec's own error, with the place of that part
     return msgspec.convert(
         record, FDVVModel, from_attributes=True, dec_hook=lambda _, column: np.array(column)

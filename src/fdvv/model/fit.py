@@ -121,11 +121,10 @@ def _adaptive(
 def _knots_and_points(
     x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int
 ) -> tuple[FloatArray, FloatArray]:
-    if not degree < size <= min(LARGEST, x.size):
-        raise FitError(
-            f"degree {degree} with {x.size} distinct displacements takes {degree + 1} to "
-            f"{min(LARGEST, x.size)} control points, got {size}"
-        )
+    most = min(LARGEST, x.size)
+    if not degree < size <= most:
+        takes = f"takes {degree + 1} to {most} control points, got {size}"
+        raise FitError(f"degree {degree} with {x.size} distinct displacements {takes}")
     if method is FitMethod.ADAPTIVE:
         return _adaptive(x, y, degree, size)
     t = bspline.uniform_knots(x[0], x[-1], size, degree)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -144,7 +143,8 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     )
 
 
-class LandmarkError(NamedTuple):
+@dataclass(frozen=True)
+class LandmarkError:
     """Standard error of one landmark, in the landmark's own unit, and of how many presses."""
 
     error: float

@@ -53,10 +53,8 @@ class CurveSpread(ExactlyEqual):
     def __post_init__(self) -> None:
         set_columns(self, "displacement_mm", "spread_cN")
         if self.displacement_mm.shape != self.spread_cN.shape or self.displacement_mm.size < 2:
-            raise ModelError(
-                "a spread needs 2 places or more and a value for each, got "
-                f"{self.displacement_mm.size} and {self.spread_cN.size}"
-            )
+            got = f"{self.displacement_mm.size} and {self.spread_cN.size}"
+            raise ModelError(f"a spread needs 2 places or more and a value for each, got {got}")
         if np.any(np.diff(self.displacement_mm) <= 0):
             raise ModelError("displacement_mm of a spread must rise strictly")
         if np.any(self.spread_cN < 0):

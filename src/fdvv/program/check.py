@@ -169,10 +169,8 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
     slew_cN_s = slope_cN_mm * FASTEST_PRESS_mm_s
     where = f"{place} at {at_mm:.2f} mm"
     if slew_cN_s > limits.slew_cN_s:
-        reason = (
-            f"{slope_cN_mm:.0f} cN/mm at {FASTEST_PRESS_mm_s:g} mm/s is {slew_cN_s:.3g} cN/s, "
-            f"the rig's force changes by {limits.slew_cN_s:.3g}"
-        )
+        change = f"{slope_cN_mm:.0f} cN/mm at {FASTEST_PRESS_mm_s:g} mm/s is {slew_cN_s:.3g} cN/s"
+        reason = f"{change}, the rig's force changes by {limits.slew_cN_s:.3g}"
         yield _refused(state.name, where, reason, "make the step there wider or lower")
     elif slope_cN_mm > limits.stiffness_cN_mm:
         reason = f"{slope_cN_mm:.0f} cN/mm, a held cap may buzz above {limits.stiffness_cN_mm:.0f}"
@@ -221,9 +219,8 @@ def _unreachable(program: Program) -> Iterator[Finding]:
         new += fresh
     for state in program.states:
         if state.name not in reached:
-            yield _refused(
-                state.name, "whole state", "no way leads to it", "add a transition to it, or remove it"
-            )
+            remedy = "add a transition to it, or remove it"
+            yield _refused(state.name, "whole state", "no way leads to it", remedy)
 
 
 def _hang(program: Program) -> Iterator[Finding]:

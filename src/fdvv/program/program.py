@@ -146,9 +146,8 @@ class State:
         for field, high in LARGEST.items():
             value = getattr(self, field)
             if not 0 <= value <= high or value != int(value):
-                raise ModelError(
-                    f"state {self.name!r}: {field} must be a whole number to {high}, got {value}"
-                )
+                wrong = f"{field} must be a whole number to {high}, got {value}"
+                raise ModelError(f"state {self.name!r}: {wrong}")
         if (self.repeat_signal is None) != (self.repeat_ms == 0):
             raise ModelError(f"state {self.name!r}: repeat_signal and repeat_ms go together")
         if not np.isfinite([self.bias_cN, self.bias_end_cN]).all():

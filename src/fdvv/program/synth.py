@@ -184,10 +184,10 @@ def _sampled(vibration: Vibration, counts_per_m_s2: float, duration_samples: int
     rate_Hz16 = int(16 * min(FASTEST_WAVE_Hz, (WAVE_SAMPLES - 2) / vibration.duration_s))
     fastest_Hz = max(mode.frequency_Hz for mode in vibration.modes)
     if fastest_Hz >= rate_Hz16 / 32:
-        raise ModelError(
-            f"a sampled vibration of {vibration.duration_s} s holds frequencies below {rate_Hz16 / 32:g} Hz, "
-            f"got {fastest_Hz:g} Hz; shorten it or leave out that mode"
+        held = (
+            f"a sampled vibration of {vibration.duration_s} s holds frequencies below {rate_Hz16 / 32:g} Hz"
         )
+        raise ModelError(f"{held}, got {fastest_Hz:g} Hz; shorten it or leave out that mode")
     t_s = np.arange(int(vibration.duration_s * rate_Hz16 / 16) + 2) * 16 / rate_Hz16
     # the sample after the end is interpolated towards, so it must go on as the modes do
     endless = replace(vibration, duration_s=2 * float(t_s[-1]))

@@ -55,9 +55,8 @@ def plot_surface(
     """
     speeds = model.velocities_mm_s(stroke)
     if len(speeds) < 2:
-        raise ModelError(
-            f"a surface of {model.name!r} needs {stroke} curves at 2 velocities, has {len(speeds)}"
-        )
+        needed = f"needs {stroke} curves at 2 velocities, has {len(speeds)}"
+        raise ModelError(f"a surface of {model.name!r} {needed}")
     if ax is None:
         ax = style.new_figure(7.0, 4.9).add_subplot(projection="3d")
     x = np.linspace(0.0, model.travel_mm, SURFACE_COLUMNS)

@@ -66,10 +66,9 @@ def interval_text(one: Estimate, digits: int, scale: float = 1.0) -> str:
     value = f"{scale * one.value:.{digits}f}"
     if one.low is None or one.high is None:
         return value
-    # spaces that no line breaks at: an interval stays in one piece
-    return f"{value} [{scale * one.low:.{digits}f}, {scale * one.high:.{digits}f}]".replace(
-        " ", "\N{NO-BREAK SPACE}"
-    )
+    whole = f"{value} [{scale * one.low:.{digits}f}, {scale * one.high:.{digits}f}]"
+    # no line breaks at such a space: an interval stays in one piece
+    return whole.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def listed(names: list[str]) -> str:
