@@ -68,9 +68,9 @@ class Vibration:
             raise ModelError(f"duration_s must be positive, got {self.duration_s}")
         if not self.modes:
             raise ModelError("a vibration needs at least one mode")
-        told = len(self.spread.modes) if self.spread else 0
-        if told and told != len(self.modes):
-            raise ModelError(f"the spread tells of {told} modes, the vibration has {len(self.modes)}")
+        spreads = len(self.spread.modes) if self.spread else 0
+        if spreads and spreads != len(self.modes):
+            raise ModelError(f"the spread tells of {spreads} modes, the vibration has {len(self.modes)}")
 
     def acceleration_m_s2(self, t_s: npt.ArrayLike) -> FloatArray:
         """Evaluate the cap's acceleration at times after the onset, in the shape of t_s."""
