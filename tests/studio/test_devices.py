@@ -59,11 +59,11 @@ def page(studio: Studio) -> Iterator[Page]:
 
 
 def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> None:
-    found = part.connect(studio, DeviceConnect("host"))
+    found = part.connect.function(studio, DeviceConnect("host"))
     assert (found.device, found.simulated, found.streams, found.fault) == ("host", True, True, "")
     page.wait(ScopeFrame)
-    assert part.upload(studio, CLEAR).programmed == "mx-clear"
-    part.press(studio, DevicePress(100.0))
+    assert part.upload.function(studio, CLEAR).programmed == "mx-clear"
+    part.press.function(studio, DevicePress(100.0))
     deep = page.wait(ScopeFrame, lambda told: max(told.displacement_high_mm) > 3.5)
     assert deep.bin_s == 0.01
     assert max(max(told.commanded_high_cN) for told in page.of(ScopeFrame)) > 20
@@ -76,13 +76,13 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
 
 
 def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page: Page) -> None:
-    part.connect(studio, DeviceConnect("host"))
-    part.upload(studio, CLEAR)
-    assert part.arm(studio, Empty()).fault == ""
+    part.connect.function(studio, DeviceConnect("host"))
+    part.upload.function(studio, CLEAR)
+    assert part.arm.function(studio, Empty()).fault == ""
     page.wait(DeviceStatus, lambda told: told.mode == "armed")
     other = Page(studio)
     other.channel.close()
-    assert part.status(studio, Empty()).mode == "armed"
+    assert part.status.function(studio, Empty()).mode == "armed"
     page.channel.close()
     again = Page(studio)
     again.wait(DeviceStatus, lambda told: told.mode == "idle")
@@ -90,33 +90,33 @@ def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page:
 
 
 def test_the_twin_shows_presses_without_firmware(studio: Studio, page: Page) -> None:
-    assert not part.connect(studio, DeviceConnect("twin")).streams
-    part.upload(studio, CLEAR)
-    part.press(studio, DevicePress(100.0))
+    assert not part.connect.function(studio, DeviceConnect("twin")).streams
+    part.upload.function(studio, CLEAR)
+    part.press.function(studio, DevicePress(100.0))
     told = page.wait(ScopeFrame)
     assert max(told.displacement_high_mm) > 3.5
     assert None not in told.force_high_cN
-    assert part.selftest(studio, Empty()).note
+    assert part.selftest.function(studio, Empty()).note
     with pytest.raises(DeviceError, match="no firmware"):
-        part.arm(studio, Empty())
+        part.arm.function(studio, Empty())
 
 
 def test_facts_and_self_test_are_those_of_the_firmware(studio: Studio) -> None:
-    part.connect(studio, DeviceConnect("host"))
-    facts = {fact.name: fact.value for fact in part.facts(studio, Empty()).facts}
+    part.connect.function(studio, DeviceConnect("host"))
+    facts = {fact.name: fact.value for fact in part.facts.function(studio, Empty()).facts}
     assert (facts["name"], facts["simulated"]) == ("host", "True")
-    verdicts = {found.part: found.verdict for found in part.selftest(studio, Empty()).parts}
+    verdicts = {found.part: found.verdict for found in part.selftest.function(studio, Empty()).parts}
     assert (verdicts["position_sensor"], verdicts["force_sensor"]) == ("passed", "absent")
 
 
 def test_a_device_in_view_is_not_used_by_a_job_nor_the_other_way_round(studio: Studio) -> None:
-    part.connect(studio, DeviceConnect("twin"))
+    part.connect.function(studio, DeviceConnect("twin"))
     with pytest.raises(InputError, match="twin is used by the device view"):
         studio.part(Jobs).start(learning(), DEVICES)
     with pytest.raises(InputError, match="disconnect it first"):
-        part.connect(studio, DeviceConnect("host"))
-    assert part.disconnect(studio, Empty()).device == ""
-    assert part.connect(studio, DeviceConnect("host")).device == "host"
+        part.connect.function(studio, DeviceConnect("host"))
+    assert part.disconnect.function(studio, Empty()).device == ""
+    assert part.connect.function(studio, DeviceConnect("host")).device == "host"
 
 
 @pytest.mark.parametrize(
@@ -125,11 +125,11 @@ def test_a_device_in_view_is_not_used_by_a_job_nor_the_other_way_round(studio: S
 )
 def test_only_what_is_listed_is_connected(studio: Studio, ask: DeviceConnect, told: str) -> None:
     with pytest.raises(InputError, match=told):
-        part.connect(studio, ask)
+        part.connect.function(studio, ask)
 
 
 def test_without_a_device_one_line_says_so(studio: Studio) -> None:
     for work in (part.stop, part.arm, part.facts, part.selftest):
         with pytest.raises(DeviceError, match="connect one first"):
-            work(studio, Empty())
-    assert part.status(studio, Empty()) == DeviceStatus()
+            work.function(studio, Empty())
+    assert part.status.function(studio, Empty()) == DeviceStatus()

@@ -46,7 +46,7 @@ def call(name: str) -> Call:
 def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, *calls in (("first", call("a.a")), ("second", call("b.b")), ("third", call("a.a"))):
         module = types.ModuleType(f"fdvv.studio.api.{name}")
-        module.__dict__.update(CALLS=tuple(calls), CHANNELS=())
+        module.__dict__.update({one.name: one for one in calls})
         monkeypatch.setitem(sys.modules, module.__name__, module)
 
 

@@ -7,15 +7,33 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, dataclass_transform, get_type_hints
 
-from msgspec import Struct
+from msgspec import Struct, field
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.studio.studio import Studio
 
 Tell = Callable[[Struct], None]
 """Sends a message to the page; may be called from any thread."""
+
+
+# tells mypy what msgspec inherits: a message below this one is frozen too
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+class Message(Struct, frozen=True, forbid_unknown_fields=True):
+    """What the page and the studio send each other; a misspelt field is an error, not a default."""
+
+
+class Empty(Message):
+    """A request that needs no fields."""
+
+
+class Watch(Message, tag="watch"):
+    """Send every change from now on."""
+
+
+class Watching(Message, tag="watching"):
+    """The watch is in force."""
 
 
 @dataclass(frozen=True)
@@ -32,19 +50,22 @@ class Call:
     name: str
     ask: type[Any]
     answer: type[Any]
-    function: Callable[[Studio, Any], object]
+    function: Callable[[Studio, Any], Any]
 
 
-class Empty(Struct, frozen=True, forbid_unknown_fields=True):
-    """A request that needs no fields."""
+def call(name: str) -> Callable[[Callable[[Any, Any], object]], Call]:
+    """Make a call of a function; its annotations are the types of the two messages.
 
+    Its first argument is the studio, or a service of which the studio has one instance.
+    """
 
-class Watch(Struct, frozen=True, forbid_unknown_fields=True, tag="watch"):
-    """Send every change from now on."""
+    def made(function: Callable[[Any, Any], object]) -> Call:
+        (_, service), (_, ask), (_, answer) = get_type_hints(function, include_extras=True).items()
+        if service is Studio:
+            return Call(name, ask, answer, function)
+        return Call(name, ask, answer, lambda studio, asked: function(studio.part(service), asked))
 
-
-class Watching(Struct, frozen=True, tag="watching"):
-    """The watch is in force."""
+    return made
 
 
 class Channel(Protocol):
@@ -52,7 +73,6 @@ class Channel(Protocol):
 
     def receive(self, ask: Any) -> None:
         """Take a message of the page; called in a worker thread, one after the other."""
-        ...
 
     def close(self) -> None: ...
 
@@ -111,6 +131,12 @@ class Watchers(Generic[News]):
             tell(news)
 
 
+class Watched(Protocol):
+    """A service whose changes pages may watch."""
+
+    watchers: Watchers[Struct]
+
+
 class WatchChannel:
     """One page that follows the changes of a service after it sent Watch. first : makes the first message."""
 
@@ -125,3 +151,12 @@ class WatchChannel:
 
     def close(self) -> None:
         self._watchers.forget(self._tell)
+
+
+def watch_channel(name: str, service: type[Watched], *changes: type[Struct]) -> ChannelKind:
+    """Return the channel by which pages watch a service."""
+
+    def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
+        return WatchChannel(studio.part(service).watchers, tell)
+
+    return ChannelKind(name, (Watch,), (Watching, *changes), open_channel)

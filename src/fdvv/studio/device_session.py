@@ -23,6 +23,7 @@ from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.press_check import felt_press, intended_press
 from fdvv.rendering.tuning import settings_with
+from fdvv.studio.contract import Message
 from fdvv.studio.device_thread import DeviceThread, mode_of
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
@@ -35,7 +36,7 @@ HOLDER = "the device view"
 NONE = "no device is connected"
 
 
-class DeviceStatus(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="standing"):
+class DeviceStatus(Message, tag="standing"):
     """What is connected, and how it is.
 
     device : as listed; empty if none is connected. name : as it calls itself.
@@ -62,7 +63,7 @@ class DeviceStatus(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag=
     lost_records: int = 0
 
 
-class PressSeen(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press_seen"):
+class PressSeen(Message, tag="press_seen"):
     """Force over displacement of a press that was made, and what its button asks for.
 
     displacement_mm : (n,) the grid of all columns. felt_* : None where the stroke was not.
@@ -295,7 +296,7 @@ class DeviceSession:
             return tuple(self._subscribers)
 
 
-class DeviceConnect(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeviceConnect(Message):
     """Connect a device of the list. rig, seed : of a simulated one."""
 
     device: str
@@ -303,7 +304,7 @@ class DeviceConnect(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seed: int = 0
 
 
-class DeviceUpload(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeviceUpload(Message):
     """Make a button the device's program.
 
     actuation : name of a table that was learned for it; empty: its own force.

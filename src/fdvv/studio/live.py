@@ -15,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
-from fdvv.studio.contract import Channel, ChannelKind, Tell, error_line
+from fdvv.studio.contract import Channel, ChannelKind, Message, Tell, error_line
 from fdvv.studio.studio import Studio
 
 WAITING = 4000
@@ -24,7 +24,7 @@ SLOW, MALFORMED = 4408, 4400
 log = logging.getLogger("fdvv.studio")
 
 
-class Envelope(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Envelope(Message):
     """A message of the page, its body still unread."""
 
     channel: str

@@ -17,14 +17,14 @@ from fdvv.optimize.people.user import SimulatedUser, draw_users
 from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.studio.contract import Watchers, error_line
+from fdvv.studio.contract import Message, Watchers, error_line
 from fdvv.studio.played_trial import PlayedTrial, pointing_of, require_player
 from fdvv.studio.studio import Studio
 
 log = logging.getLogger("fdvv.studio")
 
 
-class OptimizeChanged(Struct, frozen=True, tag="changed"):
+class OptimizeChanged(Message, tag="changed"):
     """A run is not what it was."""
 
     run: int

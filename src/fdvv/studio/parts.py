@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from threading import Condition
+from types import ModuleType
 from typing import TypeVar
 
 import msgspec
@@ -49,7 +50,7 @@ class PartLoader:
                 module = importlib.import_module(f"fdvv.studio.api.{name}")
                 prepare_records(prepared)
                 getattr(module, "prepare", lambda: None)()
-                self._take(getattr(module, "CALLS", ()), getattr(module, "CHANNELS", ()))
+                self._take(module)
         except BaseException as error:
             self._fault = error
         finally:
@@ -70,12 +71,14 @@ class PartLoader:
             raise self._fault
         return self._parts
 
-    def _take(self, calls: tuple[Call, ...], channels: tuple[ChannelKind, ...]) -> None:
+    def _take(self, module: ModuleType) -> None:
+        """Take what a module offers: its calls and channels, by whatever name it has them."""
         with self._changed:
-            for call in calls:
-                _add(self._parts.calls, call)
-            for channel in channels:
-                _add(self._parts.channels, channel)
+            for offer in vars(module).values():
+                if isinstance(offer, Call):
+                    _add(self._parts.calls, offer)
+                elif isinstance(offer, ChannelKind):
+                    _add(self._parts.channels, offer)
             self._changed.notify_all()
 
 

@@ -7,8 +7,6 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from msgspec import Struct
-
 from fdvv.device.open import open_device, pressed_by_person
 from fdvv.errors import DeviceError, InputError
 from fdvv.live.binary_finger import BinaryFinger
@@ -17,7 +15,7 @@ from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming
-from fdvv.studio.contract import Tell
+from fdvv.studio.contract import Message, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices
 from fdvv.studio.played_trial import PlayedTrial, PlayKept, PlayRound
 from fdvv.studio.studio import Studio
@@ -123,7 +121,7 @@ class LiveTrial:
         return None
 
 
-class PlayClick(Struct, frozen=True, forbid_unknown_fields=True, tag="click"):
+class PlayClick(Message, tag="click"):
     """A vibration starts at the cap. server_ms : when, on the server's clock."""
 
     slot: int
@@ -131,7 +129,7 @@ class PlayClick(Struct, frozen=True, forbid_unknown_fields=True, tag="click"):
     velocity_mm_s: float
 
 
-class PlayOver(Struct, frozen=True, forbid_unknown_fields=True, tag="over"):
+class PlayOver(Message, tag="over"):
     """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
 
     reason: str

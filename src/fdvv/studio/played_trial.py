@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Annotated, Literal, Protocol
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.problem import Trial, TrialState
@@ -14,6 +14,7 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.task_rounds import RoundTiming, TaskRounds
 from fdvv.optimize.tasks import TemporalPointing
+from fdvv.studio.contract import Message
 
 Count = Annotated[int, Meta(ge=0, le=2**31)]
 Time = Annotated[float, Meta(ge=0, le=1e12)]
@@ -21,14 +22,14 @@ Delay = Annotated[float, Meta(ge=0, le=1000)]
 Hand = Literal["key", "mouse", "touch", "pen", "button"]
 
 
-class PlayDelay(Struct, frozen=True, forbid_unknown_fields=True):
+class PlayDelay(Message):
     """A delay and how far it may be off."""
 
     ms: Delay
     error_ms: Delay
 
 
-class PlayRound(Struct, frozen=True, forbid_unknown_fields=True, tag="round"):
+class PlayRound(Message, tag="round"):
     """A round is over: keep it.
 
     start_ms, end_ms : presses between count. target_ms : when the target was drawn.
@@ -49,7 +50,7 @@ class PlayRound(Struct, frozen=True, forbid_unknown_fields=True, tag="round"):
     frame_ms: Delay
 
 
-class PlayKept(Struct, frozen=True, forbid_unknown_fields=True, tag="kept"):
+class PlayKept(Message, tag="kept"):
     """A round is on the disk.
 
     late_ms : of the key against the target, None if it did not go down. transport_ms : from hand to

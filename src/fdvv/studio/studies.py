@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
-from fdvv.studio.contract import Watchers
+from fdvv.studio.contract import Message, Watchers
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
@@ -29,7 +29,7 @@ NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 StudyState = Literal["draft", "frozen", "unsealed", "broken"]
 
 
-class StudiesChanged(Struct, frozen=True, tag="changed"):
+class StudiesChanged(Message, tag="changed"):
     """A study is not what it was."""
 
     study: str

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
-
 from fdvv import __version__
-from fdvv.studio.contract import Call, Empty
+from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.studio import Studio
 
 
-class About(Struct, frozen=True, forbid_unknown_fields=True):
+class About(Message):
     """What this studio is.
 
     project : name of the project's folder. sources : names of the folders of measured switches.
@@ -20,9 +18,7 @@ class About(Struct, frozen=True, forbid_unknown_fields=True):
     sources: list[str]
 
 
+@call("studio.about")
 def about(studio: Studio, _ask: Empty) -> About:
     """Return names only: the page needs no paths."""
     return About(__version__, studio.project.resolve().name, [s.resolve().name for s in studio.sources])
-
-
-CALLS = (Call("studio.about", Empty, About, about),)

@@ -6,14 +6,12 @@ import dataclasses
 import struct
 from collections.abc import Callable
 
-import msgspec
-
 from fdvv.device.remote import Remote
 from fdvv.errors import InputError
 from fdvv.live.tick_bins import TickBinner, TickBins, TickPiece
 from fdvv.protocol.tables import Part, SelfTestResult
 from fdvv.rendering.actuation_file import load_actuation
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell
+from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
 from fdvv.studio.device_session import (
     DeviceConnect,
     DeviceSession,
@@ -28,26 +26,26 @@ from fdvv.studio.rounding import finite_row, rounded
 from fdvv.studio.studio import Studio
 
 
-class DevicePress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DevicePress(Message):
     """Have the simulated person press once."""
 
     velocity_mm_s: float
 
 
-class DeviceFact(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeviceFact(Message):
     """Something to know of a device."""
 
     name: str
     value: str
 
 
-class DeviceFacts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeviceFacts(Message):
     """All that is to know of a device."""
 
     facts: tuple[DeviceFact, ...]
 
 
-class PartVerdict(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class PartVerdict(Message):
     """How a part of a device did in its test of itself."""
 
     part: str
@@ -55,20 +53,20 @@ class PartVerdict(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     value: int
 
 
-class SelfTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class SelfTest(Message):
     """The test of all parts; note says why there is none."""
 
     parts: tuple[PartVerdict, ...]
     note: str
 
 
-class WatchScope(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_scope"):
+class WatchScope(Message, tag="watch_scope"):
     """Send the minima and maxima of ticks in bins of bin_s, and the device's status."""
 
     bin_s: float
 
 
-class ScopeFrame(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="scope"):
+class ScopeFrame(Message, tag="scope"):
     """Bins of ticks, every column (m,); a bin begins at bin * bin_s on the device's clock.
 
     bin : numbers of the bins; those without a tick are not among them.
@@ -138,42 +136,51 @@ def scope_frame(found: TickBins, bin_s: float) -> ScopeFrame:
     )
 
 
-def connect(studio: Studio, ask: DeviceConnect) -> DeviceStatus:
-    return studio.part(DeviceSession).connect(ask, device_names())
+@call("device.connect")
+def connect(session: DeviceSession, ask: DeviceConnect) -> DeviceStatus:
+    return session.connect(ask, device_names())
 
 
-def disconnect(studio: Studio, _ask: Empty) -> DeviceStatus:
-    return studio.part(DeviceSession).disconnect()
+@call("device.disconnect")
+def disconnect(session: DeviceSession, _ask: Empty) -> DeviceStatus:
+    return session.disconnect()
 
 
+@call("device.upload")
 def upload(studio: Studio, ask: DeviceUpload) -> DeviceStatus:
     model = studio.catalog.model(ask.button)
     file = result_file(studio.project, "actuation", ask.actuation) if ask.actuation else None
     return studio.part(DeviceSession).upload(ask, model, load_actuation(file) if file else None)
 
 
-def press(studio: Studio, ask: DevicePress) -> DeviceStatus:
-    return studio.part(DeviceSession).press(ask.velocity_mm_s)
+@call("device.press")
+def press(session: DeviceSession, ask: DevicePress) -> DeviceStatus:
+    return session.press(ask.velocity_mm_s)
 
 
-def arm(studio: Studio, _ask: Empty) -> DeviceStatus:
-    return studio.part(DeviceSession).do(lambda remote: remote.client.arm())
+@call("device.arm")
+def arm(session: DeviceSession, _ask: Empty) -> DeviceStatus:
+    return session.do(lambda remote: remote.client.arm())
 
 
-def stop(studio: Studio, _ask: Empty) -> DeviceStatus:
-    return studio.part(DeviceSession).do(lambda remote: remote.stop())
+@call("device.stop")
+def stop(session: DeviceSession, _ask: Empty) -> DeviceStatus:
+    return session.do(lambda remote: remote.stop())
 
 
-def clear_fault(studio: Studio, _ask: Empty) -> DeviceStatus:
-    return studio.part(DeviceSession).do(lambda remote: remote.clear_fault())
+@call("device.clear_fault")
+def clear_fault(session: DeviceSession, _ask: Empty) -> DeviceStatus:
+    return session.do(lambda remote: remote.clear_fault())
 
 
-def status(studio: Studio, _ask: Empty) -> DeviceStatus:
-    return studio.part(DeviceSession).refresh()
+@call("device.standing")
+def status(session: DeviceSession, _ask: Empty) -> DeviceStatus:
+    return session.refresh()
 
 
-def facts(studio: Studio, _ask: Empty) -> DeviceFacts:
-    held = studio.part(DeviceSession).held()
+@call("device.facts")
+def facts(session: DeviceSession, _ask: Empty) -> DeviceFacts:
+    held = session.held()
     found = {name: str(value) for name, value in dataclasses.asdict(held.device.info()).items()}
     if held.remote:
         remote = held.remote
@@ -189,8 +196,9 @@ def _firmware(remote: Remote) -> dict[str, str]:
     return known | {name: str(value) for name, value in counters.items()}
 
 
-def selftest(studio: Studio, _ask: Empty) -> SelfTest:
-    held = studio.part(DeviceSession).held()
+@call("device.selftest")
+def selftest(session: DeviceSession, _ask: Empty) -> SelfTest:
+    held = session.held()
     if not held.remote:
         return SelfTest((), "there is no firmware in this device, so there is nothing to test")
     reply = held.do(held.remote.client.selftest)
@@ -201,17 +209,4 @@ def selftest(studio: Studio, _ask: Empty) -> SelfTest:
     return SelfTest(tuple(parts), "")
 
 
-CALLS = (
-    Call("device.connect", DeviceConnect, DeviceStatus, connect),
-    Call("device.disconnect", Empty, DeviceStatus, disconnect),
-    Call("device.upload", DeviceUpload, DeviceStatus, upload),
-    Call("device.press", DevicePress, DeviceStatus, press),
-    Call("device.arm", Empty, DeviceStatus, arm),
-    Call("device.stop", Empty, DeviceStatus, stop),
-    Call("device.clear_fault", Empty, DeviceStatus, clear_fault),
-    Call("device.standing", Empty, DeviceStatus, status),
-    Call("device.facts", Empty, DeviceFacts, facts),
-    Call("device.selftest", Empty, SelfTest, selftest),
-)
-
-CHANNELS = (ChannelKind("scope", (WatchScope,), (DeviceStatus, ScopeFrame, PressSeen), ScopeChannel),)
+CHANNEL = ChannelKind("scope", (WatchScope,), (DeviceStatus, ScopeFrame, PressSeen), ScopeChannel)

@@ -11,20 +11,20 @@ from fdvv.project.documents import ChangeSaved, DocumentState, DocumentStore
 from fdvv.project.history import EditPin, EditStep, HistoryChange
 from fdvv.project.new_document import ModelTemplate, new_model
 from fdvv.project.patch import model_of, record_of
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watchers, Watching
+from fdvv.studio.contract import Empty, Message, Watchers, call, watch_channel
 from fdvv.studio.studio import Studio
 
 ButtonId = Annotated[str, Meta(min_length=1, max_length=300)]
 ButtonName = Annotated[str, Meta(max_length=300)]
 
 
-class DocumentAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentAsk(Message):
     """Ask for a button with its history; one that is not the person's own has none."""
 
     button: ButtonId
 
 
-class Document(Struct, frozen=True):
+class Document(Message):
     """A button and what was done to it.
 
     editable : whether it is the person's own; another one is copied first. revision : counts its changes.
@@ -40,7 +40,7 @@ class Document(Struct, frozen=True):
     pins: list[EditPin]
 
 
-class DocumentChange(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentChange(Message):
     """Change a button; revision is the one the change was made on."""
 
     button: ButtonId
@@ -48,21 +48,21 @@ class DocumentChange(Struct, frozen=True, forbid_unknown_fields=True):
     change: HistoryChange
 
 
-class DocumentAnswer(Struct, frozen=True):
+class DocumentAnswer(Message):
     """What became of a change: the newest revision; where it was refused, the button as others left it."""
 
     revision: int
     conflict: Document | None
 
 
-class DocumentCopy(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentCopy(Message):
     """Copy any button to one of the person's own; a name near that of the button if none is given."""
 
     button: ButtonId
     name: ButtonName | None
 
 
-class DocumentCreate(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentCreate(Message):
     """Make a button of one's own from a template, or from a model; without a name one is found."""
 
     name: ButtonName | None
@@ -70,26 +70,26 @@ class DocumentCreate(Struct, frozen=True, forbid_unknown_fields=True):
     model: dict[str, Any] | None
 
 
-class DocumentRename(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentRename(Message):
     """Rename one's own button."""
 
     button: ButtonId
     name: ButtonName
 
 
-class DocumentDelete(Struct, frozen=True, forbid_unknown_fields=True):
+class DocumentDelete(Message):
     """Move one's own button to the project's trash."""
 
     button: ButtonId
 
 
-class DocumentNamed(Struct, frozen=True):
+class DocumentNamed(Message):
     """The button that a call made, renamed or deleted."""
 
     button: str
 
 
-class DocumentRow(Struct, frozen=True):
+class DocumentRow(Message):
     """A button of one's own; changed_s : when, since 1970."""
 
     button: str
@@ -98,20 +98,20 @@ class DocumentRow(Struct, frozen=True):
     size_bytes: int
 
 
-class DocumentRows(Struct, frozen=True):
+class DocumentRows(Message):
     """The person's own buttons, the one changed last first."""
 
     rows: list[DocumentRow]
 
 
-class DocumentChanged(Struct, frozen=True, tag_field="type", tag="changed"):
+class DocumentChanged(Message, tag_field="type", tag="changed"):
     """A button has a new revision; 0 if it is new."""
 
     button: str
     revision: int
 
 
-class DocumentGone(Struct, frozen=True, tag_field="type", tag="gone"):
+class DocumentGone(Message, tag_field="type", tag="gone"):
     """A button was deleted, or has another name now."""
 
     button: str
@@ -145,6 +145,7 @@ def _document(state: DocumentState) -> Document:
     return Document(OWN + state.name, True, state.revision, history.opening, steps, history.done, pins)
 
 
+@call("document.open")
 def open_document(studio: Studio, ask: DocumentAsk) -> Document:
     """Open any button; only one's own has a history."""
     if ask.button.startswith(OWN):
@@ -152,8 +153,8 @@ def open_document(studio: Studio, ask: DocumentAsk) -> Document:
     return Document(ask.button, False, 0, record_of(studio.catalog.model(ask.button)), [], 0, [])
 
 
-def change_document(studio: Studio, ask: DocumentChange) -> DocumentAnswer:
-    documents = studio.part(Documents)
+@call("document.change")
+def change_document(documents: Documents, ask: DocumentChange) -> DocumentAnswer:
     found = documents.store.change(_own_name(ask.button), ask.revision, ask.change)
     if isinstance(found, ChangeSaved):
         documents.watchers.tell(DocumentChanged(ask.button, found.revision))
@@ -161,6 +162,7 @@ def change_document(studio: Studio, ask: DocumentChange) -> DocumentAnswer:
     return DocumentAnswer(found.head.revision, _document(found.head))
 
 
+@call("document.copy")
 def copy_document(studio: Studio, ask: DocumentCopy) -> DocumentNamed:
     store = studio.part(Documents).store
     if ask.button.startswith(OWN):
@@ -171,6 +173,7 @@ def copy_document(studio: Studio, ask: DocumentCopy) -> DocumentNamed:
     return _new(studio, store.create(name, model))
 
 
+@call("document.create")
 def create_document(studio: Studio, ask: DocumentCreate) -> DocumentNamed:
     store = studio.part(Documents).store
     if ask.model is not None:
@@ -186,40 +189,25 @@ def _new(studio: Studio, name: str) -> DocumentNamed:
     return DocumentNamed(OWN + name)
 
 
-def rename_document(studio: Studio, ask: DocumentRename) -> DocumentNamed:
-    documents = studio.part(Documents)
+@call("document.rename")
+def rename_document(documents: Documents, ask: DocumentRename) -> DocumentNamed:
     button = OWN + documents.store.rename(_own_name(ask.button), ask.name)
     if button != ask.button:
         documents.watchers.tell(DocumentGone(ask.button, button))
     return DocumentNamed(button)
 
 
-def delete_document(studio: Studio, ask: DocumentDelete) -> DocumentNamed:
-    documents = studio.part(Documents)
+@call("document.delete")
+def delete_document(documents: Documents, ask: DocumentDelete) -> DocumentNamed:
     documents.store.delete(_own_name(ask.button))
     documents.watchers.tell(DocumentGone(ask.button, None))
     return DocumentNamed(ask.button)
 
 
-def list_documents(studio: Studio, _ask: Empty) -> DocumentRows:
-    files = studio.part(Documents).store.list()
+@call("document.list")
+def list_documents(documents: Documents, _ask: Empty) -> DocumentRows:
+    files = documents.store.list()
     return DocumentRows([DocumentRow(OWN + f.name, f.name, f.changed_s, f.size_bytes) for f in files])
 
 
-def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
-    """Open a page's end of the channel of changes."""
-    return WatchChannel(studio.part(Documents).watchers, tell)
-
-
-CALLS = (
-    Call("document.open", DocumentAsk, Document, open_document),
-    Call("document.change", DocumentChange, DocumentAnswer, change_document),
-    Call("document.copy", DocumentCopy, DocumentNamed, copy_document),
-    Call("document.create", DocumentCreate, DocumentNamed, create_document),
-    Call("document.rename", DocumentRename, DocumentNamed, rename_document),
-    Call("document.delete", DocumentDelete, DocumentNamed, delete_document),
-    Call("document.list", Empty, DocumentRows, list_documents),
-)
-
-TELLS = (Watching, DocumentChanged, DocumentGone)
-CHANNELS = (ChannelKind("documents", (Watch,), TELLS, open_channel),)
+CHANNEL = watch_channel("documents", Documents, DocumentChanged, DocumentGone)

@@ -6,27 +6,27 @@ from typing import Annotated, Literal, cast
 
 import msgspec
 import numpy as np
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.project.measured_bands import MeasuredButton, measured_button
 from fdvv.rendering.feasibility import CurveFeasibility
 from fdvv.rendering.rig_catalog import LimitedRange, RigCatalog, RigEntry, limited_ranges
 from fdvv.rendering.rig_catalog import achievable as make_achievable
-from fdvv.studio.contract import Call, Empty
+from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.studio import Studio
 
 Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
 StrokeName = Literal["press", "release"]
 
 
-class Rigs(Struct, frozen=True, forbid_unknown_fields=True):
+class Rigs(Message):
     """The rigs of the project, the shipped ones first."""
 
     rigs: list[RigEntry]
 
 
-class AchievableAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class AchievableAsk(Message):
     """Ask what a rig makes of both strokes of a model at some speeds.
 
     model : a document as in a ``*.fdvv.json`` file. velocities_mm_s : null for a curve of unknown velocity.
@@ -37,7 +37,7 @@ class AchievableAsk(Struct, frozen=True, forbid_unknown_fields=True):
     rig_id: str
 
 
-class AchievableForce(Struct, frozen=True, forbid_unknown_fields=True):
+class AchievableForce(Message):
     """One stroke at one speed, computed; expected_mean_cN : error that learning leaves, an estimate."""
 
     stroke: StrokeName
@@ -51,31 +51,31 @@ class AchievableForce(Struct, frozen=True, forbid_unknown_fields=True):
     expected_mean_cN: float
 
 
-class Achievable(Struct, frozen=True, forbid_unknown_fields=True):
+class Achievable(Message):
     """What a rig makes of the curves, presses before releases."""
 
     curves: list[AchievableForce]
 
 
-class ButtonAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class ButtonAsk(Message):
     """Ask for the model of any button, to take curves from."""
 
     button_id: str
 
 
-class ButtonModel(Struct, frozen=True, forbid_unknown_fields=True):
+class ButtonModel(Message):
     """A model as in a ``*.fdvv.json`` file; a measured button is fitted for it."""
 
     model: msgspec.Raw
 
 
-class MeasuredAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class MeasuredAsk(Message):
     """Ask for what presses of a button gave; name as in its id."""
 
     name: str
 
 
-class Measured(Struct, frozen=True, forbid_unknown_fields=True):
+class Measured(Message):
     """The presses of a button; null if none were kept."""
 
     found: MeasuredButton | None
@@ -94,21 +94,25 @@ class RigService:
         self.catalog = RigCatalog(studio.project)
 
 
+@call("editor.rigs")
 def rigs(studio: Studio, _ask: Empty) -> Rigs:
     entries = studio.part(RigService).catalog.entries()
     return Rigs(list(entries))
 
 
+@call("editor.achievable")
 def achievable(studio: Studio, ask: AchievableAsk) -> Achievable:
     model = model_from_json(bytes(ask.model), "the button")
     rig = studio.part(RigService).catalog.rig(ask.rig_id)
     return Achievable([_curve(c) for c in make_achievable(model, rig, ask.velocities_mm_s)])
 
 
+@call("editor.button")
 def button(studio: Studio, ask: ButtonAsk) -> ButtonModel:
     return ButtonModel(msgspec.Raw(model_to_json(studio.catalog.model(ask.button_id)).encode()))
 
 
+@call("editor.measured")
 def measured(studio: Studio, ask: MeasuredAsk) -> Measured:
     return Measured(measured_button(studio.project, ask.name))
 
@@ -129,11 +133,3 @@ def _curve(curve: CurveFeasibility) -> AchievableForce:
         list(curve.verdict.reasons),
         curve.expected.mean_cN,
     )
-
-
-CALLS = (
-    Call("editor.rigs", Empty, Rigs, rigs),
-    Call("editor.achievable", AchievableAsk, Achievable, achievable),
-    Call("editor.button", ButtonAsk, ButtonModel, button),
-    Call("editor.measured", MeasuredAsk, Measured, measured),
-)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-import msgspec
-
 from fdvv.device.open import pressed_by_person
 from fdvv.errors import FdvvError
 from fdvv.model.file import builtin_names
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell
+from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
 from fdvv.studio.devices import DeviceLocks, available_devices, device_names
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.file import JobRow, result_names
@@ -21,19 +19,19 @@ from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names
 
 
-class StartJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class StartJob(Message):
     """Begin long work."""
 
     order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
 
 
-class JobAsk(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobAsk(Message):
     """Name a job: to cancel or resume it, or to read its order."""
 
     job: str
 
 
-class JobAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobAnswer(Message):
     """Answer the question that a job has asked.
 
     answer : "first", "second" or "neither"; a rating from "1" to "7"; or "again" to press once more.
@@ -44,14 +42,14 @@ class JobAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     answer: str
 
 
-class JobDetail(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobDetail(Message):
     """A job and what it was ordered with."""
 
     row: JobRow
     order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
 
 
-class ButtonChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ButtonChoice(Message):
     """A button that work can be done on. vibrates : it has a vibration of the press."""
 
     button: str
@@ -59,7 +57,7 @@ class ButtonChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     vibrates: bool
 
 
-class DeviceChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeviceChoice(Message):
     """A device that there is. bench : a capture bench may be there; rig : a rig may be."""
 
     device: str
@@ -70,7 +68,7 @@ class DeviceChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     used_by: str
 
 
-class WorkChoices(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class WorkChoices(Message):
     """What forms offer.
 
     rigs : simulated. known_rigs, actuations : kept in the project, by name.
@@ -88,36 +86,36 @@ class WorkChoices(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     note: str
 
 
-class JobRows(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobRows(Message):
     """All jobs, newest first."""
 
     jobs: tuple[JobRow, ...]
 
 
-class WatchJobs(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_jobs"):
+class WatchJobs(Message, tag="watch_jobs"):
     """Send all jobs, and then each that changes."""
 
 
-class WatchJob(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="watch_job"):
+class WatchJob(Message, tag="watch_job"):
     """Send the events of one job from a number on, and then as they come; of one job at a time."""
 
     job: str
     from_event: int
 
 
-class JobList(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="jobs"):
+class JobList(Message, tag="jobs"):
     """All jobs, newest first; sent when the page subscribes."""
 
     jobs: tuple[JobRow, ...]
 
 
-class JobChanged(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="job"):
+class JobChanged(Message, tag="job"):
     """A job that is new or has changed."""
 
     row: JobRow
 
 
-class JobEvents(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="events"):
+class JobEvents(Message, tag="events"):
     """Events of a job, the first of which bears the number from_event; they count from 0."""
 
     job: str
@@ -200,43 +198,40 @@ class JobsChannel:
             self._ends.pop(name)()
 
 
-def start(studio: Studio, ask: StartJob) -> JobRow:
-    return studio.part(Jobs).start(ask.order, device_names())
+@call("jobs.start")
+def start(jobs: Jobs, ask: StartJob) -> JobRow:
+    return jobs.start(ask.order, device_names())
 
 
-def resume(studio: Studio, ask: JobAsk) -> JobRow:
-    return studio.part(Jobs).resume(ask.job)
+@call("jobs.resume")
+def resume(jobs: Jobs, ask: JobAsk) -> JobRow:
+    return jobs.resume(ask.job)
 
 
-def cancel(studio: Studio, ask: JobAsk) -> JobRow:
-    return studio.part(Jobs).cancel(ask.job)
+@call("jobs.cancel")
+def cancel(jobs: Jobs, ask: JobAsk) -> JobRow:
+    return jobs.cancel(ask.job)
 
 
-def answer(studio: Studio, ask: JobAnswer) -> JobRow:
-    return studio.part(Jobs).answer(ask.job, ask.number, ask.answer)
+@call("jobs.answer")
+def answer(jobs: Jobs, ask: JobAnswer) -> JobRow:
+    return jobs.answer(ask.job, ask.number, ask.answer)
 
 
-def detail(studio: Studio, ask: JobAsk) -> JobDetail:
-    job = studio.part(Jobs).job(ask.job)
+@call("jobs.detail")
+def detail(jobs: Jobs, ask: JobAsk) -> JobDetail:
+    job = jobs.job(ask.job)
     return JobDetail(job.row, job.record.order)
 
 
-def rows(studio: Studio, _ask: Empty) -> JobRows:
-    return JobRows(studio.part(Jobs).rows())
+@call("jobs.list")
+def rows(jobs: Jobs, _ask: Empty) -> JobRows:
+    return JobRows(jobs.rows())
 
 
+@call("jobs.choices")
 def offered(studio: Studio, _ask: Empty) -> WorkChoices:
     return choices(studio)
 
 
-CALLS = (
-    Call("jobs.start", StartJob, JobRow, start),
-    Call("jobs.resume", JobAsk, JobRow, resume),
-    Call("jobs.cancel", JobAsk, JobRow, cancel),
-    Call("jobs.answer", JobAnswer, JobRow, answer),
-    Call("jobs.detail", JobAsk, JobDetail, detail),
-    Call("jobs.list", Empty, JobRows, rows),
-    Call("jobs.choices", Empty, WorkChoices, offered),
-)
-
-CHANNELS = (ChannelKind("jobs", (WatchJobs, WatchJob), (JobList, JobChanged, JobEvents), JobsChannel),)
+CHANNEL = ChannelKind("jobs", (WatchJobs, WatchJob), (JobList, JobChanged, JobEvents), JobsChannel)

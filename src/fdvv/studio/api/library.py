@@ -8,25 +8,25 @@ from threading import Lock
 from typing import Annotated
 
 import numpy as np
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, field
 
 from fdvv.library.index import CatalogIndex, IndexStatus, RefusedFile, builtin_rows
 from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery, SearchResult
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watchers
+from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, Watch, WatchChannel, Watchers, call
 from fdvv.studio.studio import Studio
 
 Number = float | None
 
 
-class LibraryIndexAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryIndexAsk(Message):
     """Ask for rows: those from ``first`` on if ``epoch`` is still the index's, else all."""
 
     epoch: int = 0
     first: Annotated[int, Meta(ge=0)] = 0
 
 
-class LibraryStatus(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag="standing"):
+class LibraryStatus(Message, tag_field="type", tag="standing"):
     """How far the index is.
 
     epoch : counts what replaced the rows as a whole; positions hold within one. done, total : files.
@@ -43,7 +43,7 @@ class LibraryStatus(Struct, frozen=True, forbid_unknown_fields=True, tag_field="
     trouble: str
 
 
-class LibraryIndex(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryIndex(Message):
     """Rows as columns, from position ``first`` on.
 
     numbers : by name, null where there is none. sketches : base64 of 16-bit integers, lowest byte first, 64
@@ -66,14 +66,14 @@ class LibraryIndex(Struct, frozen=True, forbid_unknown_fields=True):
     sketches: str
 
 
-class LibraryRange(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryRange(Message):
     """A range of a figure; null has no end."""
 
     low: Number = None
     high: Number = None
 
 
-class LibraryFind(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryFind(Message):
     """What is sought; all of it must hold. Empty lists take every kind and origin.
 
     ranges : by the name of a number. like : id of the button that others are to feel like.
@@ -81,15 +81,15 @@ class LibraryFind(Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     text: Annotated[str, Meta(max_length=200)] = ""
-    kinds: list[ButtonType] = []
-    origins: list[Origin] = []
-    ranges: dict[str, LibraryRange] = {}
+    kinds: tuple[ButtonType, ...] = ()
+    origins: tuple[Origin, ...] = ()
+    ranges: dict[str, LibraryRange] = field(default_factory=dict)
     like: str | None = None
     sort: str = "match"
     descending: bool = False
 
 
-class LibraryHistogram(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryHistogram(Message):
     """How the buttons that match everything else spread over equal bins from lowest to highest."""
 
     lowest: float
@@ -97,7 +97,7 @@ class LibraryHistogram(Struct, frozen=True, forbid_unknown_fields=True):
     counts: list[int]
 
 
-class LibraryFound(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryFound(Message):
     """Positions of the rows that match, in order.
 
     distances_jnd : to the button they are to be like, in that order. without : how many would match if a
@@ -114,7 +114,7 @@ class LibraryFound(Struct, frozen=True, forbid_unknown_fields=True):
     mended: list[str]
 
 
-class LibraryRefused(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryRefused(Message):
     """Files that cannot be used."""
 
     files: list[RefusedFile]
@@ -213,20 +213,21 @@ class Library:
         self.watchers.tell(self.status())
 
 
-def index(studio: Studio, ask: LibraryIndexAsk) -> LibraryIndex:
-    library = studio.part(Library)
+@call("library.index")
+def index(library: Library, ask: LibraryIndexAsk) -> LibraryIndex:
     status, indexed = library.status(), library.index.status
     first = ask.first if ask.epoch == indexed.epoch else 0
     return index_columns(status, first, indexed.rows[first:])
 
 
-def find(studio: Studio, ask: LibraryFind) -> LibraryFound:
+@call("library.find")
+def find(library: Library, ask: LibraryFind) -> LibraryFound:
     """Search; positions are of library.index."""
-    found, _, indexed = studio.part(Library).find(
+    found, _, indexed = library.find(
         SearchQuery(
             text=ask.text,
-            kinds=tuple(ask.kinds),
-            origins=tuple(ask.origins),
+            kinds=ask.kinds,
+            origins=ask.origins,
             ranges={name: (r.low, r.high) for name, r in ask.ranges.items()},
             like=ask.like,
             sort=ask.sort,
@@ -236,13 +237,14 @@ def find(studio: Studio, ask: LibraryFind) -> LibraryFound:
     return search_message(found, indexed.epoch)
 
 
-def refused(studio: Studio, _ask: Empty) -> LibraryRefused:
-    found = studio.part(Library).index.status.refused
+@call("library.refused")
+def refused(library: Library, _ask: Empty) -> LibraryRefused:
+    found = library.index.status.refused
     return LibraryRefused(list(found))
 
 
-def rescan(studio: Studio, _ask: Empty) -> LibraryStatus:
-    library = studio.part(Library)
+@call("library.rescan")
+def rescan(library: Library, _ask: Empty) -> LibraryStatus:
     library.index.rescan()
     return library.status()
 
@@ -253,11 +255,4 @@ def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
     return WatchChannel(library.watchers, tell, library.status)
 
 
-CALLS = (
-    Call("library.index", LibraryIndexAsk, LibraryIndex, index),
-    Call("library.find", LibraryFind, LibraryFound, find),
-    Call("library.refused", Empty, LibraryRefused, refused),
-    Call("library.rescan", Empty, LibraryStatus, rescan),
-)
-
-CHANNELS = (ChannelKind("library", (Watch,), (LibraryStatus,), open_channel),)
+CHANNEL = ChannelKind("library", (Watch,), (LibraryStatus,), open_channel)

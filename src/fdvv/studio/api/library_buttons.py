@@ -6,7 +6,7 @@ from typing import Annotated
 
 import msgspec
 import numpy as np
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.errors import FdvvError
 from fdvv.library.figures import row_of_model
@@ -14,23 +14,23 @@ from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
 from fdvv.library.search import SearchQuery
 from fdvv.model.model import FDVVModel
 from fdvv.studio.api.library import Library, Number
-from fdvv.studio.contract import Call, error_line
+from fdvv.studio.contract import Message, call, error_line
 from fdvv.studio.studio import Studio
 
 STEP_mm, MOST_POINTS = 0.01, 2000
 """Of curves on the page."""
 
 
-class LibraryQuery(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryQuery(Message):
     """What a picker of buttons asks: as LibraryFind, with at most ``limit`` rows in the answer."""
 
     text: Annotated[str, Meta(max_length=200)] = ""
-    kinds: list[ButtonType] = []
-    origins: list[Origin] = []
+    kinds: tuple[ButtonType, ...] = ()
+    origins: tuple[Origin, ...] = ()
     limit: Annotated[int, Meta(ge=1, le=1000)] = 50
 
 
-class LibraryRow(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryRow(Message):
     """One button with its main landmarks."""
 
     id: str
@@ -47,7 +47,7 @@ class LibraryRow(Struct, frozen=True, forbid_unknown_fields=True):
     simulated: bool
 
 
-class LibraryRows(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryRows(Message):
     """The first rows that match, and how many match. ended : whether every file has been looked at."""
 
     rows: list[LibraryRow]
@@ -55,14 +55,14 @@ class LibraryRows(Struct, frozen=True, forbid_unknown_fields=True):
     ended: bool
 
 
-class LibraryLikeAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryLikeAsk(Message):
     """Ask for the buttons that feel most like one."""
 
     id: str
     limit: Annotated[int, Meta(ge=1, le=1000)] = 20
 
 
-class LibraryAlike(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryAlike(Message):
     """A button and how far it is from the one asked for, in just noticeable differences."""
 
     row: LibraryRow
@@ -72,19 +72,19 @@ class LibraryAlike(Struct, frozen=True, forbid_unknown_fields=True):
     landmarks_jnd: float
 
 
-class LibraryAlikes(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryAlikes(Message):
     """The nearest first."""
 
     alike: list[LibraryAlike]
 
 
-class LibraryCurvesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryCurvesAsk(Message):
     """Ask for the curves of some buttons."""
 
     ids: Annotated[list[str], Meta(max_length=100)]
 
 
-class LibraryStroke(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryStroke(Message):
     """Force of a stroke at start + i step, contact at 0. velocity_mm_s : null if the source tells none."""
 
     stroke: str
@@ -94,7 +94,7 @@ class LibraryStroke(Struct, frozen=True, forbid_unknown_fields=True):
     force_cN: list[float]
 
 
-class LibraryButton(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryButton(Message):
     """All that is known of a button.
 
     numbers : its landmarks by name. why : reasons of what is null, each with its subject and a colon.
@@ -119,14 +119,14 @@ class LibraryButton(Struct, frozen=True, forbid_unknown_fields=True):
     strokes: list[LibraryStroke]
 
 
-class LibraryMissing(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryMissing(Message):
     """A button that cannot be had, and why."""
 
     id: str
     reason: str
 
 
-class LibraryCurves(Struct, frozen=True, forbid_unknown_fields=True):
+class LibraryCurves(Message):
     """Buttons in the order asked for, and those that cannot be had."""
 
     buttons: list[LibraryButton]
@@ -172,15 +172,17 @@ def button_message(row: ButtonRow, strokes: list[LibraryStroke]) -> LibraryButto
     )
 
 
-def search(studio: Studio, ask: LibraryQuery) -> LibraryRows:
-    query = SearchQuery(text=ask.text, kinds=tuple(ask.kinds), origins=tuple(ask.origins))
-    found, rows, indexed = studio.part(Library).find(query)
+@call("library.search")
+def search(library: Library, ask: LibraryQuery) -> LibraryRows:
+    query = SearchQuery(text=ask.text, kinds=ask.kinds, origins=ask.origins)
+    found, rows, indexed = library.find(query)
     best = [picker_row(rows[at]) for at in found.positions[: ask.limit]]
     return LibraryRows(best, len(found.positions), indexed.ended)
 
 
-def like(studio: Studio, ask: LibraryLikeAsk) -> LibraryAlikes:
-    found, rows, _ = studio.part(Library).find(SearchQuery(like=ask.id))
+@call("library.like")
+def like(library: Library, ask: LibraryLikeAsk) -> LibraryAlikes:
+    found, rows, _ = library.find(SearchQuery(like=ask.id))
     alike = [
         LibraryAlike(picker_row(rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist())
         for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
@@ -189,6 +191,7 @@ def like(studio: Studio, ask: LibraryLikeAsk) -> LibraryAlikes:
     return LibraryAlikes(alike[: ask.limit])
 
 
+@call("library.curves")
 def curves(studio: Studio, ask: LibraryCurvesAsk) -> LibraryCurves:
     """Return curves and landmarks; a button that cannot be read does not prevent the others."""
     library = studio.part(Library)
@@ -206,10 +209,3 @@ def button_of(studio: Studio, library: Library, button_id: str) -> LibraryButton
     model = studio.catalog.curves(button_id)
     row = library.row(button_id) or row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
     return button_message(row, sampled_strokes(model))
-
-
-CALLS = (
-    Call("library.search", LibraryQuery, LibraryRows, search),
-    Call("library.like", LibraryLikeAsk, LibraryAlikes, like),
-    Call("library.curves", LibraryCurvesAsk, LibraryCurves, curves),
-)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 import numpy as np
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from fdvv.errors import FdvvError
 from fdvv.model.curve import Stroke
@@ -15,17 +15,16 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Parameter
 from fdvv.optimize.tasks import TemporalPointing
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watching, error_line
+from fdvv.studio.contract import Empty, Message, call, error_line, watch_channel
 from fdvv.studio.optimizations import Optimizations, OptimizeChanged, SimulatedPlay
 from fdvv.studio.played_trial import playable, pointing_of
-from fdvv.studio.studio import Studio
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
 Name = Annotated[str, Meta(max_length=100)]
 Level = Literal["easy", "hard"]
 
 
-class OptimizeRow(Struct, frozen=True):
+class OptimizeRow(Message):
     """A run in short.
 
     spent : trials, or comparisons, that count. problem : why it cannot be read; empty if it can.
@@ -45,19 +44,19 @@ class OptimizeRow(Struct, frozen=True):
     problem: str
 
 
-class OptimizeRows(Struct, frozen=True):
+class OptimizeRows(Message):
     """All runs, the newest first."""
 
     rows: list[OptimizeRow]
 
 
-class OptimizeAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeAsk(Message):
     """Name a run."""
 
     run: Number
 
 
-class OptimizeCurve(Struct, frozen=True):
+class OptimizeCurve(Message):
     """The press of a design, for a small picture."""
 
     step_mm: float
@@ -65,7 +64,7 @@ class OptimizeCurve(Struct, frozen=True):
     actuation_mm: float | None
 
 
-class OptimizeTrial(Struct, frozen=True):
+class OptimizeTrial(Message):
     """A trial. front : no other one is better in every objective; False where there is one objective."""
 
     number: int
@@ -79,7 +78,7 @@ class OptimizeTrial(Struct, frozen=True):
     front: bool
 
 
-class OptimizePair(Struct, frozen=True):
+class OptimizePair(Message):
     """Two designs and what was said of them."""
 
     number: int
@@ -90,7 +89,7 @@ class OptimizePair(Struct, frozen=True):
     answer: Answer | None
 
 
-class OptimizeStrip(Struct, frozen=True):
+class OptimizeStrip(Message):
     """The strip of temporal pointing, in pixels from where bullets start."""
 
     pixels: int
@@ -99,7 +98,7 @@ class OptimizeStrip(Struct, frozen=True):
     speed_px_s: float
 
 
-class OptimizeSimulated(Struct, frozen=True):
+class OptimizeSimulated(Message):
     """A simulated person who plays: how far, and whether still at it. about : the person."""
 
     running: bool
@@ -109,7 +108,7 @@ class OptimizeSimulated(Struct, frozen=True):
     fault: str
 
 
-class OptimizeDetail(Struct, frozen=True):
+class OptimizeDetail(Message):
     """A run and all of its trials.
 
     rounds : presses of a score. rules : what every design must hold. start : the design the run began with,
@@ -133,7 +132,7 @@ class OptimizeDetail(Struct, frozen=True):
     playable: bool
 
 
-class OptimizeSimulate(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeSimulate(Message):
     """Have a simulated person play so many trials. person : seed that draws them."""
 
     run: Number
@@ -227,8 +226,8 @@ def simulated_player(play: SimulatedPlay | None) -> OptimizeSimulated | None:
     return OptimizeSimulated(play.running, play.done, play.total, about, play.fault)
 
 
-def rows(studio: Studio, _ask: Empty) -> OptimizeRows:
-    optimizations = studio.part(Optimizations)
+@call("optimize.list")
+def rows(optimizations: Optimizations, _ask: Empty) -> OptimizeRows:
     return OptimizeRows([_row(optimizations, run) for run in optimizations.runs()])
 
 
@@ -240,8 +239,8 @@ def _row(optimizations: Optimizations, run: int) -> OptimizeRow:
         return broken_run(run, error_line(error))
 
 
-def detail(studio: Studio, ask: OptimizeAsk) -> OptimizeDetail:
-    optimizations = studio.part(Optimizations)
+@call("optimize.detail")
+def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
     with optimizations.session(ask.run) as session:
         setup, space = session.setup, session.space
         return OptimizeDetail(
@@ -271,28 +270,18 @@ def _start(session: Optimization) -> dict[str, float] | None:
     return session.trials[0].design if session.trials else None
 
 
-def simulate(studio: Studio, ask: OptimizeSimulate) -> OptimizeAsk:
-    studio.part(Optimizations).simulate(ask.run, ask.person, ask.trials)
+@call("optimize.simulate")
+def simulate(optimizations: Optimizations, ask: OptimizeSimulate) -> OptimizeAsk:
+    optimizations.simulate(ask.run, ask.person, ask.trials)
     return OptimizeAsk(ask.run)
 
 
-def halt(studio: Studio, ask: OptimizeAsk) -> OptimizeAsk:
-    play = studio.part(Optimizations).simulated(ask.run)
+@call("optimize.halt")
+def halt(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeAsk:
+    play = optimizations.simulated(ask.run)
     if play:
         play.close()
     return ask
 
 
-def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
-    """Open a page's end of the channel of changes."""
-    return WatchChannel(studio.part(Optimizations).watchers, tell)
-
-
-CALLS = (
-    Call("optimize.list", Empty, OptimizeRows, rows),
-    Call("optimize.detail", OptimizeAsk, OptimizeDetail, detail),
-    Call("optimize.simulate", OptimizeSimulate, OptimizeAsk, simulate),
-    Call("optimize.halt", OptimizeAsk, OptimizeAsk, halt),
-)
-
-CHANNELS = (ChannelKind("optimize", (Watch,), (Watching, OptimizeChanged), open_channel),)
+CHANNEL = watch_channel("optimize", Optimizations, OptimizeChanged)

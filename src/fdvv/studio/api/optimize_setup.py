@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from fdvv.errors import InputError, ModelError
 from fdvv.live.press_subject import button_choices
@@ -18,21 +18,21 @@ from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.rendering.rig_catalog import RigCatalog
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
-from fdvv.studio.contract import Call, Empty
+from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import pressed_devices
 from fdvv.studio.played_trial import TASK, playable, pointing_of
 from fdvv.studio.studio import Studio
 
 
-class OptimizeOffer(Struct, frozen=True):
+class OptimizeOffer(Message):
     """Something to choose: its name for the server, and what it is."""
 
     name: str
     about: str = field(name="told")
 
 
-class OptimizeOffers(Struct, frozen=True):
+class OptimizeOffers(Message):
     """What a run can be made of.
 
     engines : read scores. pair_engines : read preferences. spaces : of designs. objectives : beside the
@@ -50,13 +50,13 @@ class OptimizeOffers(Struct, frozen=True):
     others: list[OptimizeOffer]
 
 
-class OptimizeDevices(Struct, frozen=True):
+class OptimizeDevices(Message):
     """Devices that a person presses, as there are just now."""
 
     devices: list[OptimizeOffer]
 
 
-class OptimizeCreate(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeCreate(Message):
     """Begin a run.
 
     title : for people. engine, space : of the offers. preference : designs are compared, not scored.
@@ -111,6 +111,7 @@ PAIR_ENGINES_TOLD = {
 MORE_TOLD = {"lost_ratio": "share of rounds lost"}
 
 
+@call("optimize.offers")
 def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
     return OptimizeOffers(
         [OptimizeOffer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
@@ -124,10 +125,12 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
     )
 
 
+@call("optimize.devices")
 def devices(_studio: Studio, _ask: Empty) -> OptimizeDevices:
     return OptimizeDevices([OptimizeOffer(name, about) for name, about in pressed_devices()])
 
 
+@call("optimize.create")
 def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
     space, start = _space(studio, ask)
     others, prior = _others(studio, ask)
@@ -181,10 +184,3 @@ def _others(studio: Studio, ask: OptimizeCreate) -> tuple[str, tuple[Trial, ...]
         raise InputError("optimise", ask.others, reason, "begin from nothing, or choose that space")
     entry, prior = PriorDataStore(studio.project).prior(ask.others)
     return entry.about, prior
-
-
-CALLS = (
-    Call("optimize.offers", Empty, OptimizeOffers, offers),
-    Call("optimize.devices", Empty, OptimizeDevices, devices),
-    Call("optimize.create", OptimizeCreate, OptimizeAsk, create),
-)

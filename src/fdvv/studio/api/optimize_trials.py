@@ -6,33 +6,33 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated, Any
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.errors import InputError
 from fdvv.optimize.problem import Answer
 from fdvv.optimize.run.session import Optimization
 from fdvv.project.patch import record_of
 from fdvv.studio.api.optimize import Name, Number, OptimizeAsk
-from fdvv.studio.contract import Call
+from fdvv.studio.contract import Message, call
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.played_trial import open_trials
 from fdvv.studio.studio import Studio
 
 
-class OptimizeBest(Struct, frozen=True):
+class OptimizeBest(Message):
     """The design that a run recommends; None while nothing is done."""
 
     design: dict[str, float] | None
 
 
-class OptimizeTrialAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeTrialAsk(Message):
     """Name a trial of a run."""
 
     run: Number
     trial: Number
 
 
-class OptimizeEdit(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeEdit(Message):
     """Put a person's own design in the place of a suggestion that was not shown yet."""
 
     run: Number
@@ -40,7 +40,7 @@ class OptimizeEdit(Struct, frozen=True, forbid_unknown_fields=True):
     design: Annotated[dict[str, float], Meta(max_length=100)]
 
 
-class OptimizeAnswer(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeAnswer(Message):
     """Say which of two designs is preferred."""
 
     run: Number
@@ -48,14 +48,14 @@ class OptimizeAnswer(Struct, frozen=True, forbid_unknown_fields=True):
     answer: Answer
 
 
-class OptimizePairAsk(Struct, frozen=True):
+class OptimizePairAsk(Message):
     """Name a comparison of a run."""
 
     run: int
     pair: int
 
 
-class OptimizeModelAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class OptimizeModelAsk(Message):
     """Ask for the button of a design."""
 
     run: Number
@@ -63,14 +63,14 @@ class OptimizeModelAsk(Struct, frozen=True, forbid_unknown_fields=True):
     name: Name
 
 
-class OptimizeModel(Struct, frozen=True):
+class OptimizeModel(Message):
     """A button as its file holds it."""
 
     model: dict[str, Any]
 
 
-def best(studio: Studio, ask: OptimizeAsk) -> OptimizeBest:
-    optimizations = studio.part(Optimizations)
+@call("optimize.best")
+def best(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeBest:
     with optimizations.session(ask.run) as session:
         return OptimizeBest(optimizations.found(ask.run, session))
 
@@ -84,6 +84,7 @@ def _changed(studio: Studio, run: int) -> Iterator[Optimization]:
     optimizations.announce(run)
 
 
+@call("optimize.next")
 def next_trial(studio: Studio, ask: OptimizeAsk) -> OptimizeTrialAsk:
     """Return the open trial, or ask the engine for one."""
     with _changed(studio, ask.run) as session:
@@ -94,12 +95,14 @@ def next_trial(studio: Studio, ask: OptimizeAsk) -> OptimizeTrialAsk:
         return OptimizeTrialAsk(ask.run, waiting[0].number)
 
 
+@call("optimize.edit")
 def edit(studio: Studio, ask: OptimizeEdit) -> OptimizeTrialAsk:
     with _changed(studio, ask.run) as session:
         session.edit(ask.trial, ask.design)
     return OptimizeTrialAsk(ask.run, ask.trial)
 
 
+@call("optimize.abandon")
 def abandon(studio: Studio, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
     """Stop a trial; it teaches nothing and does not count."""
     with _changed(studio, ask.run) as session:
@@ -107,6 +110,7 @@ def abandon(studio: Studio, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
     return ask
 
 
+@call("optimize.pair")
 def next_pair(studio: Studio, ask: OptimizeAsk) -> OptimizePairAsk:
     """Return the open comparison, or ask the engine for one."""
     with _changed(studio, ask.run) as session:
@@ -117,24 +121,15 @@ def next_pair(studio: Studio, ask: OptimizeAsk) -> OptimizePairAsk:
         return OptimizePairAsk(ask.run, waiting.number)
 
 
+@call("optimize.answer")
 def answer(studio: Studio, ask: OptimizeAnswer) -> OptimizePairAsk:
     with _changed(studio, ask.run) as session:
         session.answer(ask.pair, ask.answer)
     return OptimizePairAsk(ask.run, ask.pair)
 
 
-def model(studio: Studio, ask: OptimizeModelAsk) -> OptimizeModel:
-    with studio.part(Optimizations).session(ask.run) as session:
+@call("optimize.model")
+def model(optimizations: Optimizations, ask: OptimizeModelAsk) -> OptimizeModel:
+    with optimizations.session(ask.run) as session:
         found = session.model(session.space.checked(ask.design), ask.name or "design")
     return OptimizeModel(record_of(found))
-
-
-CALLS = (
-    Call("optimize.best", OptimizeAsk, OptimizeBest, best),
-    Call("optimize.next", OptimizeAsk, OptimizeTrialAsk, next_trial),
-    Call("optimize.edit", OptimizeEdit, OptimizeTrialAsk, edit),
-    Call("optimize.abandon", OptimizeTrialAsk, OptimizeTrialAsk, abandon),
-    Call("optimize.pair", OptimizeAsk, OptimizePairAsk, next_pair),
-    Call("optimize.answer", OptimizeAnswer, OptimizePairAsk, answer),
-    Call("optimize.model", OptimizeModelAsk, OptimizeModel, model),
-)

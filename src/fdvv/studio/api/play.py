@@ -8,20 +8,20 @@ from __future__ import annotations
 from functools import singledispatchmethod
 from typing import Annotated, Any
 
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from fdvv.errors import InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.live.press_subject import model_subject
 from fdvv.studio.api.press_frames import ShakeSignal, shake_signal
-from fdvv.studio.contract import ChannelKind, Tell, error_line
+from fdvv.studio.contract import ChannelKind, Message, Tell, error_line
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import CLOCK, DeviceTrial, LiveTrial, PlayClick, PlayOver, Table
 from fdvv.studio.played_trial import Count, PlayedTrial, PlayKept, PlayRound, Time
 from fdvv.studio.studio import Studio
 
 
-class PlayOpen(Struct, frozen=True, forbid_unknown_fields=True, tag="open"):
+class PlayOpen(Message, tag="open"):
     """Begin a trial of a run, or begin it again: its rounds so far no longer count.
 
     device : that is pressed, one of optimize.devices; empty: a simulated button under the page's hand.
@@ -32,29 +32,29 @@ class PlayOpen(Struct, frozen=True, forbid_unknown_fields=True, tag="open"):
     device: Annotated[str, Meta(max_length=300)] = ""
 
 
-class PlayPing(Struct, frozen=True, forbid_unknown_fields=True, tag="ping"):
+class PlayPing(Message, tag="ping"):
     """Ask for the server's clock. sent_ms is returned."""
 
     sent_ms: Time
 
 
-class PlayDown(Struct, frozen=True, forbid_unknown_fields=True, tag="down"):
+class PlayDown(Message, tag="down"):
     """The hand pressed: the simulated finger goes down. at_ms : of the browser's event."""
 
     at_ms: Time
 
 
-class PlayUp(Struct, frozen=True, forbid_unknown_fields=True, tag="up"):
+class PlayUp(Message, tag="up"):
     """The hand let go."""
 
     at_ms: Time
 
 
-class PlayClose(Struct, frozen=True, forbid_unknown_fields=True, tag="close"):
+class PlayClose(Message, tag="close"):
     """Put the button away; an unfinished trial's rounds are kept and do not count."""
 
 
-class PlayReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
+class PlayReady(Message, tag="ready"):
     """The button is under the finger. attempt : how often this trial was begun. about : what is simulated."""
 
     run: int
@@ -65,7 +65,7 @@ class PlayReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
     signals: list[ShakeSignal]
 
 
-class PlayPong(Struct, frozen=True, forbid_unknown_fields=True, tag="pong"):
+class PlayPong(Message, tag="pong"):
     """The server's clock when it heard the question."""
 
     sent_ms: float
@@ -155,4 +155,4 @@ class PlayChannel:
 
 ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayRound, PlayClose)
 TELLS = (PlayReady, PlayPong, PlayClick, PlayKept, PlayOver)
-CHANNELS = (ChannelKind("play", ASKS, TELLS, PlayChannel),)
+CHANNEL = ChannelKind("play", ASKS, TELLS, PlayChannel)

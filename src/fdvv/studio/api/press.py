@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import msgspec
 import numpy as np
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from fdvv.errors import InputError, ModelError
 from fdvv.library.catalog import Catalog
@@ -39,14 +39,14 @@ from fdvv.studio.api.press_frames import (
     press_ready,
 )
 from fdvv.studio.api.programs import Programs
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell
+from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
 from fdvv.studio.studio import Studio
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
 
 
-class TraceItem(Struct, frozen=True, forbid_unknown_fields=True):
+class TraceItem(Message):
     """A trace that can be replayed, thinned for a small picture."""
 
     name: str
@@ -56,7 +56,7 @@ class TraceItem(Struct, frozen=True, forbid_unknown_fields=True):
     displacement_mm: list[float]
 
 
-class PressList(Struct, frozen=True, forbid_unknown_fields=True):
+class PressList(Message):
     """What can be pressed, replayed, and on which rigs."""
 
     buttons: list[PressChoice]
@@ -65,14 +65,14 @@ class PressList(Struct, frozen=True, forbid_unknown_fields=True):
     rigs: list[str]
 
 
-class TraceReadAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class TraceReadAsk(Message):
     """Read a file of a key's travel. name : of the file, for messages only."""
 
     name: Annotated[str, Meta(max_length=200)]
     text: Annotated[str, Meta(max_length=4_000_000)]
 
 
-class TraceRead(Struct, frozen=True, forbid_unknown_fields=True):
+class TraceRead(Message):
     """A trace that was read, ready to be replayed."""
 
     name: str
@@ -81,7 +81,7 @@ class TraceRead(Struct, frozen=True, forbid_unknown_fields=True):
     displacement_mm: list[float]
 
 
-class PressStart(Struct, frozen=True, forbid_unknown_fields=True, tag="start"):
+class PressStart(Message, tag="start"):
     """Put something under the finger: one of button, program (ids), model or code (documents).
 
     seed : of everything random.
@@ -96,7 +96,7 @@ class PressStart(Struct, frozen=True, forbid_unknown_fields=True, tag="start"):
     seed: Count = 0
 
 
-class PressLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
+class PressLead(Message, tag="lead"):
     """Lead the finger to a place that moves at a speed.
 
     near_1_s : rate at which it nears that place, critically damped. sequence : repeated in the first frame
@@ -109,20 +109,20 @@ class PressLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
     near_1_s: Annotated[float, Meta(ge=1, le=1000)] = 125.0
 
 
-class PressPush(Struct, frozen=True, forbid_unknown_fields=True, tag="push"):
+class PressPush(Message, tag="push"):
     """Push with a force."""
 
     force_cN: Number
     sequence: Count
 
 
-class PressLift(Struct, frozen=True, forbid_unknown_fields=True, tag="lift"):
+class PressLift(Message, tag="lift"):
     """Take the finger off."""
 
     sequence: Count
 
 
-class PressReplay(Struct, frozen=True, forbid_unknown_fields=True, tag="replay"):
+class PressReplay(Message, tag="replay"):
     """Lead the finger along a trace: a shipped one by its name, or the given columns."""
 
     name: Annotated[str, Meta(max_length=200)]
@@ -130,39 +130,39 @@ class PressReplay(Struct, frozen=True, forbid_unknown_fields=True, tag="replay")
     displacement_mm: list[float] | None = None
 
 
-class PressHostEvent(Struct, frozen=True, forbid_unknown_fields=True, tag="event"):
+class PressHostEvent(Message, tag="event"):
     """Send the program a host event."""
 
     number: Annotated[int, Meta(ge=0, le=31)]
 
 
-class PressHere(Struct, frozen=True, forbid_unknown_fields=True, tag="here"):
+class PressHere(Message, tag="here"):
     """The page is visible."""
 
 
-class PressPause(Struct, frozen=True, forbid_unknown_fields=True, tag="pause"):
+class PressPause(Message, tag="pause"):
     """The page is hidden."""
 
 
-class PressStop(Struct, frozen=True, forbid_unknown_fields=True, tag="stop"):
+class PressStop(Message, tag="stop"):
     """Take everything away."""
 
 
-class PressFail(Struct, frozen=True, forbid_unknown_fields=True, tag="fail"):
+class PressFail(Message, tag="fail"):
     """Have the firmware find its position sensor dead, to see what it does."""
 
 
-class PressClear(Struct, frozen=True, forbid_unknown_fields=True, tag="clear"):
+class PressClear(Message, tag="clear"):
     """Clear the latched fault."""
 
 
-class PressRefused(Struct, frozen=True, forbid_unknown_fields=True, tag="refused"):
+class PressRefused(Message, tag="refused"):
     """A request could not be done; the press continues."""
 
     reason: str
 
 
-class PressOver(Struct, frozen=True, forbid_unknown_fields=True, tag="over"):
+class PressOver(Message, tag="over"):
     """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
 
     reason: str
@@ -186,10 +186,12 @@ def _trace_item(trace: PressTrace) -> TraceItem:
     return TraceItem(trace.name, trace.origin, trace.duration_s, *thin)
 
 
+@call("press.list")
 def list_choices(studio: Studio, _ask: Empty) -> PressList:
     return choices(studio.catalog, studio.part(Programs).catalog)
 
 
+@call("press.trace")
 def read_trace(_studio: Studio, ask: TraceReadAsk) -> TraceRead:
     found = read_press_trace(ask.text.encode(), ask.name)
     return TraceRead(found.name, found.origin, found.t_s.tolist(), found.displacement_mm.tolist())
@@ -322,9 +324,4 @@ ASKS = (
 )
 
 TELLS = (PressReady, PressMeant, PressFrame, PressRefused, PressOver)
-CALLS = (
-    Call("press.list", Empty, PressList, list_choices),
-    Call("press.trace", TraceReadAsk, TraceRead, read_trace),
-)
-
-CHANNELS = (ChannelKind("press", ASKS, TELLS, PressChannel),)
+CHANNEL = ChannelKind("press", ASKS, TELLS, PressChannel)

@@ -5,17 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from msgspec import Struct, field
+from msgspec import field
 
 from fdvv.live.press import LiveEventKind
 from fdvv.live.press_subject import PressMark, PressMode, PressSubject
 from fdvv.live.run import LiveFrame
 from fdvv.model.vibration import Mode
 from fdvv.program.program import Signal
+from fdvv.studio.contract import Message
 from fdvv.units import FloatArray
 
 
-class ShakeSignal(Struct, frozen=True, forbid_unknown_fields=True):
+class ShakeSignal(Message):
     """What the vibration board plays from one slot."""
 
     name: str
@@ -23,7 +24,7 @@ class ShakeSignal(Struct, frozen=True, forbid_unknown_fields=True):
     modes: tuple[Mode, ...]
 
 
-class PressMeant(Struct, frozen=True, forbid_unknown_fields=True, tag="meant"):
+class PressMeant(Message, tag="meant"):
     """The force that is meant to be felt in a press at a speed."""
 
     velocity_mm_s: float
@@ -32,7 +33,7 @@ class PressMeant(Struct, frozen=True, forbid_unknown_fields=True, tag="meant"):
     release_cN: list[float]
 
 
-class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
+class PressReady(Message, tag="ready"):
     """Something is under the finger. about : what is between the two."""
 
     name: str
@@ -48,7 +49,7 @@ class PressReady(Struct, frozen=True, forbid_unknown_fields=True, tag="ready"):
     meant: PressMeant
 
 
-class PressHappened(Struct, frozen=True, forbid_unknown_fields=True):
+class PressHappened(Message):
     """An event: fields as fdvv.live.press.LiveEvent."""
 
     kind: LiveEventKind
@@ -59,7 +60,7 @@ class PressHappened(Struct, frozen=True, forbid_unknown_fields=True):
     reason: str = field(name="told")
 
 
-class PressFrame(Struct, frozen=True, forbid_unknown_fields=True, tag="frame"):
+class PressFrame(Message, tag="frame"):
     """What happened since the last frame.
 
     Columns have a row a millisecond; velocity_mm_s, state, key, mode, warm_K are those of the last tick.

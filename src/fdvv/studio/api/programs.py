@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.errors import InputError
 from fdvv.live.press_subject import button_choices
@@ -14,14 +14,14 @@ from fdvv.program.library import Recipe, make, programs
 from fdvv.program.surface import of_model
 from fdvv.project.program_check import ProgramCheckResult, checked_program
 from fdvv.project.programs import KeptProgram, ProgramCatalog, ProgramEntry, read_program
-from fdvv.studio.contract import Call, Empty
+from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.studio import Studio
 
 Id = Annotated[str, Meta(max_length=80)]
 Title = Annotated[str, Meta(max_length=80)]
 
 
-class ProgramParameter(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramParameter(Message):
     """A number that a recipe takes, over the base that was asked for; its unit ends its name."""
 
     name: str
@@ -31,7 +31,7 @@ class ProgramParameter(Struct, frozen=True, forbid_unknown_fields=True):
     high: float
 
 
-class ProgramRecipe(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramRecipe(Message):
     """A program before it is made."""
 
     name: str
@@ -40,7 +40,7 @@ class ProgramRecipe(Struct, frozen=True, forbid_unknown_fields=True):
     parameters: list[ProgramParameter]
 
 
-class ProgramRows(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramRows(Message):
     """Every program, every recipe, and the buttons that recipes may stand on."""
 
     programs: list[ProgramEntry]
@@ -48,13 +48,13 @@ class ProgramRows(Struct, frozen=True, forbid_unknown_fields=True):
     bases: list[str]
 
 
-class ProgramAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramAsk(Message):
     """Ask for a program by its id."""
 
     program: Id
 
 
-class SaveProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class SaveProgram(Message):
     """Write a program of the person's. revision : of the file that was opened; empty for a new one."""
 
     program: Id
@@ -62,39 +62,39 @@ class SaveProgram(Struct, frozen=True, forbid_unknown_fields=True):
     revision: Title = ""
 
 
-class KeepProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class KeepProgram(Message):
     """Keep a text as a new program of the person's, under its own name or the next free one."""
 
     text: str
 
 
-class CopyProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class CopyProgram(Message):
     """Copy a program. name : of the copy; empty: the next free one."""
 
     program: Id
     name: Title = ""
 
 
-class DeleteProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class DeleteProgram(Message):
     """Move a program to the trash. revision : of the file as it was last seen."""
 
     program: Id
     revision: Title
 
 
-class ThrownProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class ThrownProgram(Message):
     """The name of a program in the trash, by which it can be taken out again."""
 
     thrown: Title
 
 
-class CheckProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class CheckProgram(Message):
     """Check a program as it is being edited."""
 
     text: str
 
 
-class MakeProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class MakeProgram(Message):
     """Make a program by a recipe over a button. parameters : those that differ from their defaults."""
 
     recipe: Title
@@ -102,13 +102,13 @@ class MakeProgram(Struct, frozen=True, forbid_unknown_fields=True):
     parameters: Annotated[dict[str, float], Meta(max_length=20)]
 
 
-class MadeProgram(Struct, frozen=True, forbid_unknown_fields=True):
+class MadeProgram(Message):
     """The text of a program that was made; it is not kept."""
 
     text: str
 
 
-class RangesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class RangesAsk(Message):
     """Ask between what a recipe's parameters may be over a button. levels : of multi-level."""
 
     recipe: Title
@@ -116,20 +116,20 @@ class RangesAsk(Struct, frozen=True, forbid_unknown_fields=True):
     levels: Annotated[int, Meta(ge=1, le=8)] = 1
 
 
-class ProgramRanges(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramRanges(Message):
     """A recipe's parameters over a button."""
 
     parameters: list[ProgramParameter]
 
 
-class SurfaceAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class SurfaceAsk(Message):
     """Ask for the forces of one stroke of a button, to put them into a program."""
 
     button: Id
     stroke: Literal["press", "release"]
 
 
-class ProgramSurface(Struct, frozen=True, forbid_unknown_fields=True):
+class ProgramSurface(Message):
     """Force on displacement, a row per velocity, as a program's file holds it."""
 
     displacement_mm: list[float]
@@ -152,6 +152,7 @@ def _catalog(studio: Studio) -> ProgramCatalog:
     return studio.part(Programs).catalog
 
 
+@call("program.list")
 def list_programs(studio: Studio, _ask: Empty) -> ProgramRows:
     recipes = [
         ProgramRecipe(r.name, r.summary, r.details, _parameters(studio, r, PLAINEST)) for r in programs()
@@ -169,43 +170,52 @@ def _parameters(studio: Studio, recipe: Recipe, base: str, levels: int = 1) -> l
     ]
 
 
+@call("program.open")
 def open_program(studio: Studio, ask: ProgramAsk) -> KeptProgram:
     return _catalog(studio).open(ask.program)
 
 
+@call("program.save")
 def save_program(studio: Studio, ask: SaveProgram) -> KeptProgram:
     """Write a program, unless its file has changed since it was opened."""
     return _catalog(studio).save(ask.program, ask.text, ask.revision)
 
 
+@call("program.keep")
 def keep_program(studio: Studio, ask: KeepProgram) -> KeptProgram:
     catalog = _catalog(studio)
     name = catalog.free_name(read_program(ask.text, "file").name)
     return catalog.save(f"own:{name}", ask.text)
 
 
+@call("program.copy")
 def copy_program(studio: Studio, ask: CopyProgram) -> KeptProgram:
     return _catalog(studio).copy(ask.program, ask.name)
 
 
+@call("program.delete")
 def delete_program(studio: Studio, ask: DeleteProgram) -> ThrownProgram:
     return ThrownProgram(_catalog(studio).delete(ask.program, ask.revision))
 
 
+@call("program.restore")
 def restore_program(studio: Studio, ask: ThrownProgram) -> KeptProgram:
     return _catalog(studio).restore(ask.thrown)
 
 
+@call("program.check")
 def check_program(_studio: Studio, ask: CheckProgram) -> ProgramCheckResult:
     """Check a text as far as it goes; what is wrong with it is the answer, not an error."""
     return checked_program(ask.text)
 
 
+@call("program.recipe")
 def make_program(studio: Studio, ask: MakeProgram) -> MadeProgram:
     """Make a program by a recipe; it is not kept."""
     return MadeProgram(program_to_json(make(ask.recipe, studio.catalog.model(ask.base), **ask.parameters)))
 
 
+@call("program.ranges")
 def parameter_ranges(studio: Studio, ask: RangesAsk) -> ProgramRanges:
     recipe = next((r for r in programs() if r.name == ask.recipe), None)
     if recipe is None:
@@ -213,22 +223,8 @@ def parameter_ranges(studio: Studio, ask: RangesAsk) -> ProgramRanges:
     return ProgramRanges(_parameters(studio, recipe, ask.base, ask.levels))
 
 
+@call("program.surface")
 def button_surface(studio: Studio, ask: SurfaceAsk) -> ProgramSurface:
     found = of_model(studio.catalog.model(ask.button), ask.stroke)
     rows = [list(row) for row in found.force_cN]
     return ProgramSurface(list(found.displacement_mm), list(found.velocity_mm_s), rows)
-
-
-CALLS = (
-    Call("program.list", Empty, ProgramRows, list_programs),
-    Call("program.open", ProgramAsk, KeptProgram, open_program),
-    Call("program.save", SaveProgram, KeptProgram, save_program),
-    Call("program.keep", KeepProgram, KeptProgram, keep_program),
-    Call("program.copy", CopyProgram, KeptProgram, copy_program),
-    Call("program.delete", DeleteProgram, ThrownProgram, delete_program),
-    Call("program.restore", ThrownProgram, KeptProgram, restore_program),
-    Call("program.check", CheckProgram, ProgramCheckResult, check_program),
-    Call("program.recipe", MakeProgram, MadeProgram, make_program),
-    Call("program.ranges", RangesAsk, ProgramRanges, parameter_ranges),
-    Call("program.surface", SurfaceAsk, ProgramSurface, button_surface),
-)

@@ -6,11 +6,11 @@ import time
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.studio.api.study_steps import text_in
-from fdvv.studio.contract import Call, ChannelKind, Empty, Tell, Watch, WatchChannel, Watching, error_line
+from fdvv.studio.contract import Empty, Message, call, error_line, watch_channel
 from fdvv.studio.devices import available_devices, device_names
 from fdvv.studio.studies import TWIN, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
@@ -27,7 +27,7 @@ Secret = Annotated[str, Meta(min_length=1, max_length=200)]
 Text = Annotated[str, Meta(max_length=200_000)]
 
 
-class StudiesRow(Struct, frozen=True):
+class StudiesRow(Message):
     """A study in short. problem : why it cannot be read; empty if it can."""
 
     name: str
@@ -39,26 +39,26 @@ class StudiesRow(Struct, frozen=True):
     problem: str
 
 
-class StudiesRows(Struct, frozen=True):
+class StudiesRows(Message):
     """All studies by name."""
 
     rows: list[StudiesRow]
 
 
-class StudiesAsk(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesAsk(Message):
     """Name a study."""
 
     study: Name
 
 
-class StudiesFreeze(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesFreeze(Message):
     """Freeze a study. passphrase : the key holder's, stored nowhere."""
 
     study: Name
     passphrase: Secret
 
 
-class StudiesPerson(Struct, frozen=True):
+class StudiesPerson(Message):
     """A person's progress. here : at a screen now. answered, trials : that count. note : may be empty."""
 
     person: str
@@ -71,20 +71,20 @@ class StudiesPerson(Struct, frozen=True):
     note: str = field(name="told")
 
 
-class StudiesDevice(Struct, frozen=True):
+class StudiesDevice(Message):
     """Something that may render a study. name : as calls name it. about : for people."""
 
     name: str
     about: str
 
 
-class StudiesDevices(Struct, frozen=True):
+class StudiesDevices(Message):
     """All that may render a study now."""
 
     devices: list[StudiesDevice]
 
 
-class StudiesDetail(Struct, frozen=True):
+class StudiesDetail(Message):
     """A study for the operator.
 
     history : what was done with it, one line each. waiting : open invitations.
@@ -101,21 +101,21 @@ class StudiesDetail(Struct, frozen=True):
     device: str
 
 
-class StudiesUse(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesUse(Message):
     """Choose the device that renders a study."""
 
     study: Name
     device: Annotated[str, Meta(max_length=200)]
 
 
-class StudiesSeat(Struct, frozen=True):
+class StudiesSeat(Message):
     """An invitation. seat : the one-time word in the address of the participant's screen."""
 
     study: str
     seat: str
 
 
-class StudiesPause(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesPause(Message):
     """Pause all screens, or that of one person."""
 
     study: Name
@@ -123,7 +123,7 @@ class StudiesPause(Struct, frozen=True, forbid_unknown_fields=True):
     on: bool
 
 
-class StudiesWithdraw(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesWithdraw(Message):
     """Take a person out. delete : and their answers off the disk."""
 
     study: Name
@@ -131,13 +131,13 @@ class StudiesWithdraw(Struct, frozen=True, forbid_unknown_fields=True):
     delete: bool
 
 
-class StudiesVerified(Struct, frozen=True):
+class StudiesVerified(Message):
     """What a check of the frozen files and journals found; nothing if all is as it was."""
 
     problems: list[str]
 
 
-class StudiesUnseal(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesUnseal(Message):
     """Open what the labels hid, for good and on record."""
 
     study: Name
@@ -146,7 +146,7 @@ class StudiesUnseal(Struct, frozen=True, forbid_unknown_fields=True):
     why: Line
 
 
-class StudiesUnsealed(Struct, frozen=True):
+class StudiesUnsealed(Message):
     """How much was unsealed, and where it lies below the study's folder."""
 
     rows: int
@@ -154,7 +154,7 @@ class StudiesUnsealed(Struct, frozen=True):
     folder: str
 
 
-class StudiesReport(Struct, frozen=True):
+class StudiesReport(Message):
     """The report as a page to keep."""
 
     name: str
@@ -251,8 +251,8 @@ TOLD = {
 }
 
 
-def rows(studio: Studio, _ask: Empty) -> StudiesRows:
-    studies = studio.part(Studies)
+@call("studies.list")
+def rows(studies: Studies, _ask: Empty) -> StudiesRows:
     return StudiesRows([_row(studies, name) for name in studies.names()])
 
 
@@ -263,57 +263,62 @@ def _row(studies: Studies, name: str) -> StudiesRow:
         return broken_study(name, error_line(error))
 
 
-def detail(studio: Studio, ask: StudiesAsk) -> StudiesDetail:
-    return study_detail(studio.part(Studies), ask.study)
+@call("studies.detail")
+def detail(studies: Studies, ask: StudiesAsk) -> StudiesDetail:
+    return study_detail(studies, ask.study)
 
 
-def freeze(studio: Studio, ask: StudiesFreeze) -> StudiesDetail:
-    studies = studio.part(Studies)
+@call("studies.freeze")
+def freeze(studies: Studies, ask: StudiesFreeze) -> StudiesDetail:
     studies.study(ask.study).freeze(ask.passphrase)
     studies.announce(ask.study)
     return study_detail(studies, ask.study)
 
 
-def seat(studio: Studio, ask: StudiesAsk) -> StudiesSeat:
-    found = studio.part(Studies).invite(ask.study)
+@call("studies.seat")
+def seat(studies: Studies, ask: StudiesAsk) -> StudiesSeat:
+    found = studies.invite(ask.study)
     return StudiesSeat(found.study, found.word)
 
 
-def use(studio: Studio, ask: StudiesUse) -> StudiesDetail:
-    studies = studio.part(Studies)
+@call("studies.use")
+def use(studies: Studies, ask: StudiesUse) -> StudiesDetail:
     studies.use_device(ask.study, ask.device, device_names())
     return study_detail(studies, ask.study)
 
 
+@call("studies.devices")
 def devices(_studio: Studio, _ask: Empty) -> StudiesDevices:
     return StudiesDevices(all_devices())
 
 
-def pause(studio: Studio, ask: StudiesPause) -> StudiesDetail:
-    studies = studio.part(Studies)
+@call("studies.pause")
+def pause(studies: Studies, ask: StudiesPause) -> StudiesDetail:
     studies.pause(ask.study, ask.person, ask.on)
     return study_detail(studies, ask.study)
 
 
-def withdraw(studio: Studio, ask: StudiesWithdraw) -> StudiesDetail:
-    studies = studio.part(Studies)
+@call("studies.withdraw")
+def withdraw(studies: Studies, ask: StudiesWithdraw) -> StudiesDetail:
     studies.withdraw(ask.study, ask.person, ask.delete)
     return study_detail(studies, ask.study)
 
 
-def verify(studio: Studio, ask: StudiesAsk) -> StudiesVerified:
-    return StudiesVerified(list(studio.part(Studies).study(ask.study).verify()))
+@call("studies.verify")
+def verify(studies: Studies, ask: StudiesAsk) -> StudiesVerified:
+    return StudiesVerified(list(studies.study(ask.study).verify()))
 
 
-def unseal(studio: Studio, ask: StudiesUnseal) -> StudiesUnsealed:
-    studies = studio.part(Studies)
+@call("studies.unseal")
+def unseal(studies: Studies, ask: StudiesUnseal) -> StudiesUnsealed:
     answers = studies.study(ask.study).unseal(ask.passphrase, ask.who, ask.why)
     studies.announce(ask.study)
     return StudiesUnsealed(len(answers.person), int((~answers.counts).sum()), UNSEALED)
 
 
-def report(studio: Studio, ask: StudiesAsk) -> StudiesReport:
-    study = studio.part(Studies).study(ask.study)
+@call("studies.report")
+def report(studies: Studies, ask: StudiesAsk) -> StudiesReport:
+    study = studies.study(ask.study)
     if state_of(study) != "unsealed":
         raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
     found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)
@@ -321,23 +326,4 @@ def report(studio: Studio, ask: StudiesAsk) -> StudiesReport:
     return StudiesReport(f"{ask.study}-report.html", study_html(found, study.plan, footer))
 
 
-def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
-    """Open a page's end of the channel of changes."""
-    return WatchChannel(studio.part(Studies).watchers, tell)
-
-
-CALLS = (
-    Call("studies.list", Empty, StudiesRows, rows),
-    Call("studies.freeze", StudiesFreeze, StudiesDetail, freeze),
-    Call("studies.detail", StudiesAsk, StudiesDetail, detail),
-    Call("studies.seat", StudiesAsk, StudiesSeat, seat),
-    Call("studies.devices", Empty, StudiesDevices, devices),
-    Call("studies.use", StudiesUse, StudiesDetail, use),
-    Call("studies.pause", StudiesPause, StudiesDetail, pause),
-    Call("studies.withdraw", StudiesWithdraw, StudiesDetail, withdraw),
-    Call("studies.verify", StudiesAsk, StudiesVerified, verify),
-    Call("studies.unseal", StudiesUnseal, StudiesUnsealed, unseal),
-    Call("studies.report", StudiesAsk, StudiesReport, report),
-)
-
-CHANNELS = (ChannelKind("studies", (Watch,), (Watching, StudiesChanged), open_channel),)
+CHANNEL = watch_channel("studies", Studies, StudiesChanged)

@@ -6,7 +6,7 @@ from functools import singledispatchmethod
 from threading import RLock
 from typing import Annotated, Any
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.studio.api.press import Count, Number
@@ -19,7 +19,7 @@ from fdvv.studio.api.study_steps import (
     step_message,
     unnamed_sound,
 )
-from fdvv.studio.contract import ChannelKind, Tell
+from fdvv.studio.contract import ChannelKind, Message, Tell
 from fdvv.studio.studies import Invitation, Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study
@@ -33,7 +33,7 @@ Long = Annotated[str, Meta(max_length=4000)]
 Holder = Annotated[str, Meta(min_length=16, max_length=100)]
 
 
-class StudyLook(Struct, frozen=True, forbid_unknown_fields=True, tag="look"):
+class StudyLook(Message, tag="look"):
     """Ask what the study is, before anybody sits down.
 
     seat : that the link holds, or empty. holder : see JoinSession.
@@ -44,7 +44,7 @@ class StudyLook(Struct, frozen=True, forbid_unknown_fields=True, tag="look"):
     holder: Holder
 
 
-class JoinSession(Struct, frozen=True, forbid_unknown_fields=True, tag="sit"):
+class JoinSession(Message, tag="sit"):
     """Sit down as a new person.
 
     seat : the one-time word that the operator's link holds. holder : a word that this page drew and tells
@@ -57,7 +57,7 @@ class JoinSession(Struct, frozen=True, forbid_unknown_fields=True, tag="sit"):
     language: Short
 
 
-class StudyResume(Struct, frozen=True, forbid_unknown_fields=True, tag="resume"):
+class StudyResume(Message, tag="resume"):
     """Resume the session of a person who has a card. code : printed on it."""
 
     study: Short
@@ -65,19 +65,19 @@ class StudyResume(Struct, frozen=True, forbid_unknown_fields=True, tag="resume")
     code: Short
 
 
-class StudyShown(Struct, frozen=True, forbid_unknown_fields=True, tag="shown"):
+class StudyShown(Message, tag="shown"):
     """The trial is on the screen."""
 
     number: Count
 
 
-class ContinueStep(Struct, frozen=True, forbid_unknown_fields=True, tag="go"):
+class ContinueStep(Message, tag="go"):
     """Bring what a label hides under the finger."""
 
     label: Short
 
 
-class StudyLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
+class StudyLead(Message, tag="lead"):
     """Lead the finger to a place that moves at a speed, as PressLead does."""
 
     referent_mm: Number
@@ -85,17 +85,17 @@ class StudyLead(Struct, frozen=True, forbid_unknown_fields=True, tag="lead"):
     near_1_s: Annotated[float, Meta(ge=1, le=1000)] = 125.0
 
 
-class StudyPush(Struct, frozen=True, forbid_unknown_fields=True, tag="push"):
+class StudyPush(Message, tag="push"):
     """Push with a force."""
 
     force_cN: Number
 
 
-class StudyLift(Struct, frozen=True, forbid_unknown_fields=True, tag="lift"):
+class StudyLift(Message, tag="lift"):
     """Take the finger off."""
 
 
-class StudyAnswered(Struct, frozen=True, forbid_unknown_fields=True, tag="answer"):
+class StudyAnswered(Message, tag="answer"):
     """Answer a trial. choice : a label, "equal", or "" where only ratings are asked. ratings : by label."""
 
     number: Count
@@ -103,7 +103,7 @@ class StudyAnswered(Struct, frozen=True, forbid_unknown_fields=True, tag="answer
     ratings: Annotated[dict[Short, dict[Short, float]], Meta(max_length=20)]
 
 
-class StudyFilled(Struct, frozen=True, forbid_unknown_fields=True, tag="page"):
+class StudyFilled(Message, tag="page"):
     """Answer a page's questions, and its consent where it asks for that."""
 
     name: Short
@@ -111,23 +111,23 @@ class StudyFilled(Struct, frozen=True, forbid_unknown_fields=True, tag="page"):
     agreed: bool
 
 
-class StudyAgain(Struct, frozen=True, forbid_unknown_fields=True, tag="again"):
+class StudyAgain(Message, tag="again"):
     """Set up the button that broke."""
 
 
-class EndBreak(Struct, frozen=True, forbid_unknown_fields=True, tag="rested"):
+class EndBreak(Message, tag="rested"):
     """Continue after the break."""
 
 
-class StudyWithdraw(Struct, frozen=True, forbid_unknown_fields=True, tag="withdraw"):
+class StudyWithdraw(Message, tag="withdraw"):
     """Leave the study for good."""
 
 
-class Heartbeat(Struct, frozen=True, forbid_unknown_fields=True, tag="here"):
+class Heartbeat(Message, tag="here"):
     """The page is visible."""
 
 
-class StudyAbout(Struct, frozen=True, tag="about"):
+class StudyAbout(Message, tag="about"):
     """What the study is. seat : it can be taken by this page. titles : by language."""
 
     study: str
@@ -136,7 +136,7 @@ class StudyAbout(Struct, frozen=True, tag="about"):
     seat: bool
 
 
-class StudyCard(Struct, frozen=True, tag="card"):
+class StudyCard(Message, tag="card"):
     """The person at this screen. code : for them to write down; sent nowhere else, empty after a resume."""
 
     person: str
@@ -144,19 +144,19 @@ class StudyCard(Struct, frozen=True, tag="card"):
     code: str
 
 
-class StudyFelt(Struct, frozen=True, tag="felt"):
+class StudyFelt(Message, tag="felt"):
     """A label is under the finger."""
 
     label: str
 
 
-class StudyPaused(Struct, frozen=True, tag="paused"):
+class StudyPaused(Message, tag="paused"):
     """The operator pauses: the screen waits, whatever step it is at."""
 
     on: bool
 
 
-class StudyStopped(Struct, frozen=True, tag="stopped"):
+class StudyStopped(Message, tag="stopped"):
     """The session at this screen has ended. reason : one line."""
 
     reason: str
@@ -396,4 +396,4 @@ TELLS = (
     StudyStopped,
 )
 
-CHANNELS = (ChannelKind("study", ASKS, TELLS, StudyScreen),)
+CHANNEL = ChannelKind("study", ASKS, TELLS, StudyScreen)

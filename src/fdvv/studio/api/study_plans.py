@@ -5,12 +5,12 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from msgspec import Struct, field
+from msgspec import field
 
 from fdvv.errors import InputError
 from fdvv.report.report import Section
 from fdvv.studio.api.studies import TOLD, Name, StudiesAsk, Text
-from fdvv.studio.contract import Call, Empty, error_line
+from fdvv.studio.contract import Empty, Message, call, error_line
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.preview import preview_sections
@@ -26,34 +26,34 @@ from fdvv.study.plan.plan_file import (
 )
 
 
-class StudiesOffer(Struct, frozen=True):
+class StudiesOffer(Message):
     """A template. about : what it is for."""
 
     name: str
     about: str = field(name="told")
 
 
-class StudiesOffers(Struct, frozen=True):
+class StudiesOffers(Message):
     """All templates."""
 
     templates: list[StudiesOffer]
 
 
-class StudiesCreate(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesCreate(Message):
     """Declare a study from a template."""
 
     name: Name
     template: Name
 
 
-class StudiesTable(Struct, frozen=True):
+class StudiesTable(Message):
     """A table of a preview."""
 
     heads: list[str]
     rows: list[list[str]]
 
 
-class StudiesSection(Struct, frozen=True):
+class StudiesSection(Message):
     """A part of a preview."""
 
     title: str
@@ -61,7 +61,7 @@ class StudiesSection(Struct, frozen=True):
     tables: list[StudiesTable]
 
 
-class StudiesPlan(Struct, frozen=True):
+class StudiesPlan(Message):
     """The declaration.
 
     problems : what is wrong with it. preview : what it comes to; nothing where it has
@@ -74,7 +74,7 @@ class StudiesPlan(Struct, frozen=True):
     preview: list[StudiesSection]
 
 
-class StudiesWrite(Struct, frozen=True, forbid_unknown_fields=True):
+class StudiesWrite(Message):
     """Check a declaration, and keep it if that is asked for and the study is not frozen."""
 
     study: Name
@@ -87,12 +87,13 @@ def preview_section(one: Section) -> StudiesSection:
     return StudiesSection(one.title, list(one.paragraphs), tables)
 
 
+@call("studies.offers")
 def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
     return StudiesOffers([StudiesOffer(name, TOLD.get(name, "")) for name in template_names()])
 
 
-def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
-    studies = studio.part(Studies)
+@call("studies.create")
+def create(studies: Studies, ask: StudiesCreate) -> StudiesAsk:
     template_text(ask.template)  # a wrong name leaves no folder
     with tempfile.TemporaryDirectory() as building:
         Study.declare(studies.path(ask.name), write_template(ask.template, Path(building)))
@@ -100,12 +101,13 @@ def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
     return StudiesAsk(ask.name)
 
 
-def plan(studio: Studio, ask: StudiesAsk) -> StudiesPlan:
-    return _kept(ask.study, studio.part(Studies).study(ask.study))
+@call("studies.plan")
+def plan(studies: Studies, ask: StudiesAsk) -> StudiesPlan:
+    return _kept(ask.study, studies.study(ask.study))
 
 
-def write(studio: Studio, ask: StudiesWrite) -> StudiesPlan:
-    studies = studio.part(Studies)
+@call("studies.write")
+def write(studies: Studies, ask: StudiesWrite) -> StudiesPlan:
     study = studies.study(ask.study)
     if not ask.keep:
         return StudiesPlan(ask.study, ask.text, _problems(ask.text), [])
@@ -130,11 +132,3 @@ def _kept(name: str, study: Study) -> StudiesPlan:
         return StudiesPlan(name, text, [error_line(error)], [])
     sections = [] if look.problems else [preview_section(one) for one in preview_sections(look)]
     return StudiesPlan(name, text, list(look.problems), sections)
-
-
-CALLS = (
-    Call("studies.offers", Empty, StudiesOffers, offers),
-    Call("studies.create", StudiesCreate, StudiesAsk, create),
-    Call("studies.plan", StudiesAsk, StudiesPlan, plan),
-    Call("studies.write", StudiesWrite, StudiesPlan, write),
-)

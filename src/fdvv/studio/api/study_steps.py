@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from typing import Literal
 
 import msgspec
-from msgspec import Struct
 
 from fdvv.errors import DeviceError, InputError
 from fdvv.program.program import Signal
 from fdvv.studio.api.press_frames import DIGITS, ShakeSignal, shake_signal
-from fdvv.studio.contract import Tell
+from fdvv.studio.contract import Message, Tell
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.studies import TWIN, Studies
 from fdvv.studio.studio import Studio
@@ -103,7 +102,7 @@ def unnamed_sound(signal: Signal) -> ShakeSignal:
 StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
 
 
-class StudyScale(Struct, frozen=True):
+class StudyScale(Message):
     """A scale on which every hidden rendering is rated; words in the person's language."""
 
     name: str
@@ -113,7 +112,7 @@ class StudyScale(Struct, frozen=True):
     points: int
 
 
-class StudyAsked(Struct, frozen=True):
+class StudyAsked(Message):
     """A question of a page; choices empty: a number from low to high, or free text."""
 
     name: str
@@ -124,7 +123,7 @@ class StudyAsked(Struct, frozen=True):
     required: bool
 
 
-class StudyForm(Struct, frozen=True):
+class StudyForm(Message):
     """A page outside the trials; consent : it asks for agreement."""
 
     name: str
@@ -134,7 +133,7 @@ class StudyForm(Struct, frozen=True):
     consent: bool
 
 
-class StudyTask(Struct, frozen=True):
+class StudyTask(Message):
     """A trial. number : of the person, practice included.
 
     at, of : for people, among trials that count, or among those of practice; of : 0 where it is not known.
@@ -156,7 +155,7 @@ class StudyTask(Struct, frozen=True):
     scales: list[StudyScale]
 
 
-class StudyStep(Struct, frozen=True, tag="step"):
+class StudyStep(Message, tag="step"):
     """What comes next. progress_ratio : of the whole session. left_s : of a break, or None."""
 
     kind: StepKind
@@ -166,7 +165,7 @@ class StudyStep(Struct, frozen=True, tag="step"):
     left_s: float | None = None
 
 
-class StudyClick(Struct, frozen=True):
+class StudyClick(Message):
     """A vibration starts at the cap. sound : its place among the trial's signals."""
 
     sound: int
@@ -174,7 +173,7 @@ class StudyClick(Struct, frozen=True):
     velocity_mm_s: float
 
 
-class StudyFrame(Struct, frozen=True, tag="frame"):
+class StudyFrame(Message, tag="frame"):
     """What the cap did since the last frame; no force is sent.
 
     t_s, displacement_mm : of its end. pressed : presses that ended. dropped_s : time that
@@ -228,7 +227,7 @@ class StudyStages:
         self._tell(StudyBroke())
 
 
-class StudyReady(Struct, frozen=True, tag="ready"):
+class StudyReady(Message, tag="ready"):
     """A trial's labels can be felt; nothing here differs between them.
 
     travel_mm : scale of the drawing, the same for all labels. signals : of all labels together, without
@@ -240,5 +239,5 @@ class StudyReady(Struct, frozen=True, tag="ready"):
     signals: list[ShakeSignal]
 
 
-class StudyBroke(Struct, frozen=True, tag="broke"):
+class StudyBroke(Message, tag="broke"):
     """The button fell to zero force and is set up anew: the trial's labels are felt once more."""

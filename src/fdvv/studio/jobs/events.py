@@ -6,8 +6,10 @@ from typing import Literal
 
 import msgspec
 
+from fdvv.studio.contract import Message
 
-class TakeAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="take_asked"):
+
+class TakeAsked(Message, tag="take_asked"):
     """One take is asked for.
 
     step : what is recorded. velocity_mm_s : None at rest. number, total : of the steps.
@@ -27,11 +29,11 @@ class TakeAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="ta
     length_s: float
 
 
-class CueStarted(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="cue"):
+class CueStarted(Message, tag="cue"):
     """The cue of the take asked for last begins now."""
 
 
-class PaceProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class PaceProgress(Message):
     """How far one pace is; achieved_mm_s of the good presses."""
 
     velocity_mm_s: float
@@ -42,7 +44,7 @@ class PaceProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     achieved_mm_s: tuple[float, ...]
 
 
-class TakeEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="take"):
+class TakeEvent(Message, tag="take"):
     """A take that is on file.
 
     reason : why it cannot be used and what to do; empty if it can.
@@ -66,7 +68,7 @@ class TakeEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="ta
 StrokeName = Literal["press", "release"]
 
 
-class JobStarted(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="begun"):
+class JobStarted(Message, tag="begun"):
     """The work begins, or continues.
 
     run : counts the starts from 1. simulated : the device is.
@@ -77,20 +79,20 @@ class JobStarted(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="b
     simulated: bool
 
 
-class StageEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="stage"):
+class StageEvent(Message, tag="stage"):
     """A part of the work begins."""
 
     stage: Literal["compensate", "probe", "capture", "process", "tune"]
     text: str
 
 
-class JobNoticed(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="notice"):
+class JobNoticed(Message, tag="notice"):
     """What a person should know."""
 
     text: str
 
 
-class CurveIntended(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="intended"):
+class CurveIntended(Message, tag="intended"):
     """What a button asks for at one speed, and how much of a difference is just noticeable.
 
     displacement_mm, press_cN, release_cN : (n,).
@@ -105,7 +107,7 @@ class CurveIntended(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag
     noticeable_release_cN: float
 
 
-class CurveProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CurveProgress(Message):
     """How far one curve is.
 
     error_cN : error_k of every press used, in order.
@@ -119,14 +121,14 @@ class CurveProgress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_error_cN: float | None
 
 
-class FeltCurve(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class FeltCurve(Message):
     """Force on the finger over true displacement, on the grid of CurveIntended; None in bins without any."""
 
     press_cN: tuple[float | None, ...]
     release_cN: tuple[float | None, ...]
 
 
-class PressAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press_asked"):
+class PressAsked(Message, tag="press_asked"):
     """A person is asked for one press."""
 
     velocity_mm_s: float
@@ -135,7 +137,7 @@ class PressAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="p
     total: int
 
 
-class PressEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="press"):
+class PressEvent(Message, tag="press"):
     """A press that is on file.
 
     done, total : presses used, and those it takes.
@@ -158,14 +160,14 @@ class PressEvent(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="p
     felt: FeltCurve | None
 
 
-class PlayedWave(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class PlayedWave(Message):
     """Acceleration of the cap, to be played."""
 
     rate_Hz: float
     acceleration_m_s2: tuple[float, ...]
 
 
-class QuestionAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="asked"):
+class QuestionAsked(Message, tag="asked"):
     """A question to the observer; the waves are anonymous.
 
     waves : one to rate, or two to compare, in the order pressed. measured : what they should be like.
@@ -178,7 +180,7 @@ class QuestionAsked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag
     measured: PlayedWave
 
 
-class TuneCandidate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TuneCandidate(Message):
     """How one vibration stands: its strongest mode, score with standard error, and whether it may be best."""
 
     name: str
@@ -190,7 +192,7 @@ class TuneCandidate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     best: bool
 
 
-class TuneRanking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TuneRanking(Message):
     """What the answers at one velocity say."""
 
     velocity_mm_s: float
@@ -199,7 +201,7 @@ class TuneRanking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     candidates: tuple[TuneCandidate, ...]
 
 
-class QuestionAnswered(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="answered"):
+class QuestionAnswered(Message, tag="answered"):
     """An answer that is on file: who was preferred, or a rating; and what all so far say."""
 
     number: int
@@ -209,7 +211,7 @@ class QuestionAnswered(msgspec.Struct, frozen=True, forbid_unknown_fields=True, 
     rankings: tuple[TuneRanking, ...]
 
 
-class JobOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="outcome"):
+class JobOutcome(Message, tag="outcome"):
     """What came out of a part of the work.
 
     sentence : in words. presses : made in all, or answers. skipped : of them not used.
@@ -226,7 +228,7 @@ class JobOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="o
     warnings: tuple[str, ...] = ()
 
 
-class JobEnded(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="ended"):
+class JobEnded(Message, tag="ended"):
     """The work is over for now; line says why where it was not finished."""
 
     state: Literal["done", "cancelled", "failed"]

@@ -19,6 +19,7 @@ from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
 from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
+from fdvv.studio.contract import Message
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order, ProbeOrder, TuneOrder
 
@@ -29,7 +30,7 @@ JOURNAL = JournalKind({"event": Any}, REMEDY)
 LARGEST_bytes = 1_000_000
 
 
-class JobRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobRecord(Message):
     """A job as its file keeps it.
 
     line : why it was not finished; empty otherwise. run : counts its starts.
@@ -132,14 +133,14 @@ def _event(path: Path, record: dict[str, Any]) -> JobEvent:
 JobState = Literal["waiting", "running", "needs you", "done", "cancelled", "failed"]
 
 
-class JobResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobResult(Message):
     """Something that a job left in the project: by its kind and name there."""
 
     kind: Literal["actuation", "measured", "rig", "button", "recording"]
     name: str
 
 
-class JobRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobRow(Message):
     """A job as a list shows it.
 
     line : why it failed or was cancelled; empty otherwise. now : what is being done.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-import msgspec
+from fdvv.studio.contract import Message
 
 
-class CompensateOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="compensate"):
+class CompensateOrder(Message, tag="compensate"):
     """Learn the actuation that makes a rig feel like a button, and judge it on fresh presses.
 
     button : id of the model. name : of what comes out.
@@ -33,7 +33,7 @@ class CompensateOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, t
     probe_presses: int = 5
 
 
-class ProbeOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="probe"):
+class ProbeOrder(Message, tag="probe"):
     """Judge a learned table on fresh presses.
 
     actuation : name of a learned table; empty for the model's own force.
@@ -51,7 +51,7 @@ class ProbeOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="p
     pace_ratio: float = 0.35
 
 
-class CaptureOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="capture"):
+class CaptureOrder(Message, tag="capture"):
     """Record a real button under guidance, and make a model of it.
 
     name : of the button that comes out.
@@ -75,7 +75,7 @@ class CaptureOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag=
     watch: bool = False
 
 
-class TuneOrder(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="tune"):
+class TuneOrder(Message, tag="tune"):
     """Tune the vibration of a button's press with a person, or with a made-up observer.
 
     name : of the button that comes out. actuation : name of a learned table; empty for the model's own force.
