@@ -24,6 +24,15 @@ class Message(Struct, frozen=True, forbid_unknown_fields=True):
     """What the page and the studio send each other; a misspelt field is an error, not a default."""
 
 
+M = TypeVar("M", bound=Message)
+
+
+def message_of(kind: type[M], record: object, **others: Any) -> M:
+    """Make a message of the fields that a record has by the same names, and of others."""
+    alike = (name for name in kind.__struct_fields__ if name not in others and hasattr(record, name))
+    return kind(**{name: getattr(record, name) for name in alike}, **others)
+
+
 class Empty(Message):
     """A request that needs no fields."""
 
@@ -137,26 +146,28 @@ class Watched(Protocol):
     watchers: Watchers[Struct]
 
 
-class WatchChannel:
+W = TypeVar("W", bound=Watched)
+
+
+class WatchChannel(Generic[W]):
     """One page that follows the changes of a service after it sent Watch. first : makes the first message."""
 
-    def __init__(
-        self, watchers: Watchers[Struct], tell: Tell, first: Callable[[], Struct] = Watching
-    ) -> None:
-        self._watchers, self._tell, self._first = watchers, tell, first
+    def __init__(self, service: W, tell: Tell, first: Callable[[W], Struct] | None) -> None:
+        self._service, self._tell, self._first = service, tell, first
 
     def receive(self, _ask: Watch) -> None:
-        self._watchers.watch(self._tell)
-        self._tell(self._first())
+        self._service.watchers.watch(self._tell)
+        self._tell(self._first(self._service) if self._first else Watching())
 
     def close(self) -> None:
-        self._watchers.forget(self._tell)
+        self._service.watchers.forget(self._tell)
 
 
-def watch_channel(name: str, service: type[Watched], *changes: type[Struct]) -> ChannelKind:
-    """Return the channel by which pages watch a service."""
-
-    def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
-        return WatchChannel(studio.part(service).watchers, tell)
-
-    return ChannelKind(name, (Watch,), (Watching, *changes), open_channel)
+def watch_channel(
+    name: str, service: type[W], *changes: type[Struct], first: Callable[[W], Struct] | None = None
+) -> ChannelKind:
+    """Return the channel by which pages watch a service. first : makes the first message, else Watching."""
+    tells: tuple[type[Struct], ...] = changes if first else (Watching, *changes)
+    return ChannelKind(
+        name, (Watch,), tells, lambda studio, tell: WatchChannel(studio.part(service), tell, first)
+    )

@@ -14,10 +14,10 @@ from fdvv.live.device_key import DeviceKey
 from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
-from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming
+from fdvv.optimize.run.task_rounds import ClockSource
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices
-from fdvv.studio.played_trial import PlayedTrial, PlayKept, PlayRound
+from fdvv.studio.played_trial import PlayDelay, PlayedTrial, PlayKept, PlayRound
 from fdvv.studio.studio import Studio
 
 log = logging.getLogger("fdvv.studio")
@@ -45,7 +45,7 @@ class LiveTrial:
         self._faulted, self._pressed_s = False, (0.0, 0.0)
         self._came_ms: list[tuple[float, float]] = []
         press = LivePress(subject, seed=played.seed)
-        self.run = LiveRun(press, self._show, log.warning, self._over, CLOCK)
+        self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(PlayOver(reason)), CLOCK)
 
     def down(self, at_ms: float) -> None:
         """Press the simulated finger down; at_ms : when the hand pressed."""
@@ -55,9 +55,6 @@ class LiveTrial:
     def up(self, at_ms: float) -> None:
         """Release after as long as the hand held: less input latency this time shortens no press."""
         self.run.ask(lambda press: self._release(press, at_ms / 1e3))
-
-    def here(self) -> None:
-        self.run.here()
 
     def close(self) -> None:
         self.run.close()
@@ -93,25 +90,11 @@ class LiveTrial:
             press.clear_fault()
             self._faulted = False
 
-    def _over(self, reason: str) -> None:
-        self._tell(PlayOver(reason))
-
     def keep(self, ask: PlayRound) -> PlayKept:
         """Bring a round to the disk, and score the trial after the last one."""
-        timing = RoundTiming(
-            ClockSource.PAGE,
-            ask.display.ms,
-            ask.display.error_ms,
-            ask.input.ms,
-            ask.input.error_ms,
-            ask.clock_ms,
-            ask.clock_error_ms,
-            self._transport_ms(ask),
-            ask.frame_ms,
-            ask.hand,
-        )
+        timing = ask.timing(ClockSource.PAGE, ask.input, self._transport_ms(ask), ask.hand)
         found = self._times.between(ask.start_ms / 1e3, ask.end_ms / 1e3)
-        return self.played.over(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
+        return self.played.keep(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
 
     def _transport_ms(self, ask: PlayRound) -> float | None:
         """Return the latency of the round's first press."""
@@ -201,15 +184,6 @@ class DeviceTrial:
         self._played, self._key = played, key
         key.render(played.model)
 
-    def down(self, at_ms: float) -> None:
-        """Do nothing: what the hand does on the page is no press."""
-
-    def up(self, at_ms: float) -> None:
-        """Do nothing."""
-
-    def here(self) -> None:
-        """Do nothing: a device renders whether or not a page is looked at."""
-
     def keep(self, ask: PlayRound) -> PlayKept:
         """Bring a round to the disk, and score the trial after the last one.
 
@@ -218,21 +192,11 @@ class DeviceTrial:
         if ask.clock_ms is None:
             reason = "the page's clock is not yet joined with the studio's"
             raise InputError("round", f"round {ask.number}", reason, "wait a second and play the trial again")
-        timing = RoundTiming(
-            ClockSource.KEY,
-            ask.display.ms,
-            ask.display.error_ms,
-            0.0,
-            self._key.clock_error_ms,
-            ask.clock_ms,
-            ask.clock_error_ms,
-            None,
-            ask.frame_ms,
-            "button",
-        )
+        # the key tells its own times, so that nothing lies between finger and event but the clocks' error
+        timing = ask.timing(ClockSource.KEY, PlayDelay(0.0, self._key.clock_error_ms), None, "button")
         start_s, end_s = (1e-3 * (at_ms + ask.clock_ms) for at_ms in (ask.start_ms, ask.end_ms))
         pressed_s = self._key.pressed_s(start_s, end_s)
-        return self._played.over(ask, tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s), timing)
+        return self._played.keep(ask, tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s), timing)
 
     def close(self) -> None:
         """Set zero force and close the trial."""

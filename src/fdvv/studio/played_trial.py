@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
-from pathlib import Path
-from typing import Annotated, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta
 
@@ -12,9 +10,12 @@ from fdvv.errors import InputError, ModelError
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.run.task_rounds import RoundTiming, TaskRounds
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
+from fdvv.optimize.tasks import TaskPress, TemporalPointing
 from fdvv.studio.contract import Message
+
+if TYPE_CHECKING:
+    from fdvv.studio.optimizations import Optimizations
 
 Count = Annotated[int, Meta(ge=0, le=2**31)]
 Time = Annotated[float, Meta(ge=0, le=1e12)]
@@ -48,6 +49,23 @@ class PlayRound(Message, tag="round"):
     clock_ms: Annotated[float, Meta(ge=-1e15, le=1e15)] | None
     clock_error_ms: Delay | None
     frame_ms: Delay
+
+    def timing(
+        self, source: ClockSource, pressed: PlayDelay, transport_ms: float | None, hand: str
+    ) -> RoundTiming:
+        """Return how the round was timed. pressed : delay from the finger to what tells of a press."""
+        return RoundTiming(
+            source,
+            self.display.ms,
+            self.display.error_ms,
+            pressed.ms,
+            pressed.error_ms,
+            self.clock_ms,
+            self.clock_error_ms,
+            transport_ms,
+            self.frame_ms,
+            hand,
+        )
 
 
 class PlayKept(Message, tag="kept"):
@@ -88,20 +106,6 @@ def pointing_of(setup: OptimizeSetup) -> TemporalPointing:
     return TemporalPointing(setup.level or "easy", setup.presses, quantised=False, also=also)
 
 
-class Runs(Protocol):
-    """What a played trial needs of the project's runs; `Optimizations` has it."""
-
-    def folder(self, run: int) -> Path: ...
-
-    def session(self, run: int) -> AbstractContextManager[Optimization]: ...
-
-    def hold(self, run: int) -> object: ...
-
-    def leave(self, run: int) -> None: ...
-
-    def announce(self, run: int) -> None: ...
-
-
 class PlayedTrial:
     """One beginning of one trial.
 
@@ -113,7 +117,7 @@ class PlayedTrial:
     Raises InputError if the trial has come to its end, or the run's task is not played here.
     """
 
-    def __init__(self, runs: Runs, run: int, number: int) -> None:
+    def __init__(self, runs: Optimizations, run: int, number: int) -> None:
         self._runs, self._run, self._number = runs, run, number
         self._over = False
         runs.hold(run)
@@ -131,27 +135,25 @@ class PlayedTrial:
             runs.leave(run)
             raise
 
-    def keep(self, target_s: float, activations_s: tuple[float, ...], timing: RoundTiming) -> bool:
-        """Keep a round; after the last one score the trial and give True. InputError if it is over."""
+    def keep(self, ask: PlayRound, activations_s: tuple[float, ...], timing: RoundTiming) -> PlayKept:
+        """Keep a round with what was pressed in it; score the trial after the last. InputError."""
         if self._over:
             raise InputError("optimise", f"trial {self._number + 1}", "is played elsewhere", "begin it again")
+        target_s = (ask.target_ms + ask.display.ms) / 1e3
         self._rounds.add(self._number, target_s, activations_s, timing)
         counting = self._rounds.counting(self._number)
-        if len(counting) < self.task.rounds:
-            return False
-        with self._runs.session(self._run) as session:
-            try:
-                session.done(self._number, self.task.scores([one.press for one in counting]))
-            except ModelError as error:
-                session.fail(self._number, str(error))
-        return True
-
-    def over(self, ask: PlayRound, activations_s: tuple[float, ...], timing: RoundTiming) -> PlayKept:
-        """Keep a round that the page tells of, with what was pressed in it; InputError as of keep()."""
-        target_s = (ask.target_ms + ask.display.ms) / 1e3
-        finished = self.keep(target_s, activations_s, timing)
+        finished = len(counting) >= self.task.rounds
+        if finished:
+            self._score([one.press for one in counting])
         late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
         return PlayKept(ask.number, late_ms, timing.transport_ms, finished)
+
+    def _score(self, presses: list[TaskPress]) -> None:
+        with self._runs.session(self._run) as session:
+            try:
+                session.done(self._number, self.task.scores(presses))
+            except ModelError as error:
+                session.fail(self._number, str(error))
 
     def fail(self, reason: str) -> None:
         """Keep that this design cannot be played, and let go of the run."""

@@ -15,9 +15,9 @@ def finite_or_none(value: float) -> float | None:
     return round(value, DIGITS) if math.isfinite(value) else None
 
 
-def rounded(row: FloatArray) -> tuple[float, ...]:
+def rounded(row: FloatArray, digits: int = DIGITS) -> tuple[float, ...]:
     """Round a row that is known throughout, (n,)."""
-    return tuple(row.round(DIGITS).tolist())
+    return tuple(row.round(digits).tolist())
 
 
 def finite_row(row: FloatArray) -> tuple[float | None, ...]:

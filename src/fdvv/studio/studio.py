@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
     from fdvv.library.catalog import Catalog
+    from fdvv.project.programs import ProgramCatalog
+    from fdvv.rendering.rig_catalog import RigCatalog
 
 P = TypeVar("P")
 
@@ -28,20 +30,34 @@ class Studio:
         self._parts: dict[type[Any], Any] = {}
         self._lock = RLock()
 
+    # imported at first use, for the page need not wait for them
+
     @property
     def catalog(self) -> Catalog:
-        from fdvv.library.catalog import Catalog  # here, for the page need not wait for it
+        from fdvv.library.catalog import Catalog
 
-        with self._lock:
-            if Catalog not in self._parts:
-                self._parts[Catalog] = Catalog(self.project, self.sources)
-            return cast(Catalog, self._parts[Catalog])
+        return self._only(Catalog, self.project, self.sources)
+
+    @property
+    def programs(self) -> ProgramCatalog:
+        from fdvv.project.programs import ProgramCatalog
+
+        return self._only(ProgramCatalog, self.project)
+
+    @property
+    def rigs(self) -> RigCatalog:
+        from fdvv.rendering.rig_catalog import RigCatalog
+
+        return self._only(RigCatalog, self.project)
 
     def part(self, service: type[P]) -> P:
         """Return the one instance of a service, made with this studio on first use."""
+        return self._only(service, self)
+
+    def _only(self, service: type[P], *given: Any) -> P:
         with self._lock:
             if service not in self._parts:
-                self._parts[service] = service(self)  # type: ignore[call-arg]
+                self._parts[service] = service(*given)
             return cast(P, self._parts[service])
 
     def close(self) -> None:

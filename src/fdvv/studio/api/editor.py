@@ -11,9 +11,10 @@ from msgspec import Meta
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.project.measured_bands import MeasuredButton, measured_button
 from fdvv.rendering.feasibility import CurveFeasibility
-from fdvv.rendering.rig_catalog import LimitedRange, RigCatalog, RigEntry, limited_ranges
+from fdvv.rendering.rig_catalog import LimitedRange, RigEntry, limited_ranges
 from fdvv.rendering.rig_catalog import achievable as make_achievable
 from fdvv.studio.contract import Empty, Message, call
+from fdvv.studio.rounding import rounded
 from fdvv.studio.studio import Studio
 
 Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
@@ -42,12 +43,12 @@ class AchievableForce(Message):
 
     stroke: StrokeName
     velocity_mm_s: float
-    displacement_mm: list[float]
-    intended_cN: list[float]
-    achievable_cN: list[float]
-    limited: list[LimitedRange]
+    displacement_mm: tuple[float, ...]
+    intended_cN: tuple[float, ...]
+    achievable_cN: tuple[float, ...]
+    limited: tuple[LimitedRange, ...]
     verdict: str
-    reasons: list[str]
+    reasons: tuple[str, ...]
     expected_mean_cN: float
 
 
@@ -87,23 +88,15 @@ DECIMALS = 4
 """Of mm and cN on the way to a screen."""
 
 
-class RigService:
-    """The project's rigs, each read or identified once."""
-
-    def __init__(self, studio: Studio) -> None:
-        self.catalog = RigCatalog(studio.project)
-
-
 @call("editor.rigs")
 def rigs(studio: Studio, _ask: Empty) -> Rigs:
-    entries = studio.part(RigService).catalog.entries()
-    return Rigs(list(entries))
+    return Rigs(list(studio.rigs.entries()))
 
 
 @call("editor.achievable")
 def achievable(studio: Studio, ask: AchievableAsk) -> Achievable:
     model = model_from_json(bytes(ask.model), "the button")
-    rig = studio.part(RigService).catalog.rig(ask.rig_id)
+    rig = studio.rigs.rig(ask.rig_id)
     return Achievable([_curve(c) for c in make_achievable(model, rig, ask.velocities_mm_s)])
 
 
@@ -121,7 +114,7 @@ def _curve(curve: CurveFeasibility) -> AchievableForce:
     reached, x = curve.reached, curve.reached.displacement_mm
     places = np.linspace(x[0], x[-1], min(POINTS, x.size))
     forces = (np.interp(places, x, column) for column in (reached.intended_cN, reached.achievable_cN))
-    x_mm, intended_cN, achievable_cN = (column.round(DECIMALS).tolist() for column in (places, *forces))
+    x_mm, intended_cN, achievable_cN = (rounded(column, DECIMALS) for column in (places, *forces))
     return AchievableForce(
         cast(StrokeName, str(curve.stroke)),
         curve.velocity_mm_s,

@@ -8,12 +8,12 @@ from threading import Lock
 from typing import Annotated
 
 import numpy as np
-from msgspec import Meta, Struct, field
+from msgspec import Meta, Struct, field, structs
 
 from fdvv.library.index import CatalogIndex, IndexStatus, RefusedFile, builtin_rows
 from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery, SearchResult
-from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, Watch, WatchChannel, Watchers, call
+from fdvv.studio.contract import Empty, Message, Watchers, call, message_of, watch_channel
 from fdvv.studio.studio import Studio
 
 Number = float | None
@@ -58,8 +58,8 @@ class LibraryIndex(Message):
     collections: list[str]
     origins: list[Origin]
     kinds: list[ButtonType]
-    stated: list[list[str]]
-    speeds_mm_s: list[list[float]]
+    stated: list[tuple[str, ...]]
+    speeds_mm_s: list[tuple[float, ...]]
     dates: list[str | None]
     simulated: list[bool]
     numbers: dict[str, list[Number]]
@@ -111,7 +111,7 @@ class LibraryFound(Message):
     kinds: dict[str, int]
     origins: dict[str, int]
     without: dict[str, int]
-    mended: list[str]
+    mended: tuple[str, ...]
 
 
 class LibraryRefused(Message):
@@ -124,23 +124,25 @@ NO_STROKE = -32768
 """In place of every force of a stroke that is not there."""
 
 
+COLUMNS = {
+    "ids": "id",
+    "names": "name",
+    "collections": "collection",
+    "origins": "origin",
+    "kinds": "kind",
+    "stated": "stated",
+    "speeds_mm_s": "speeds_mm_s",
+    "dates": "date",
+    "simulated": "simulated",
+}
+"""What a column of LibraryIndex holds of every row."""
+
+
 def index_columns(status: LibraryStatus, first: int, rows: Sequence[ButtonRow]) -> LibraryIndex:
     """Return rows as columns; first : position of the first of them."""
-    return LibraryIndex(
-        standing=status,
-        first=first,
-        ids=[row.id for row in rows],
-        names=[row.name for row in rows],
-        collections=[row.collection for row in rows],
-        origins=[row.origin for row in rows],
-        kinds=[row.kind for row in rows],
-        stated=[list(row.stated) for row in rows],
-        speeds_mm_s=[list(row.speeds_mm_s) for row in rows],
-        dates=[row.date for row in rows],
-        simulated=[row.simulated for row in rows],
-        numbers={name: [getattr(row, name) for row in rows] for name in NUMBERS},
-        sketches=_packed(rows),
-    )
+    columns = {column: [getattr(row, name) for row in rows] for column, name in COLUMNS.items()}
+    numbers = {name: [getattr(row, name) for row in rows] for name in NUMBERS}
+    return LibraryIndex(standing=status, first=first, numbers=numbers, sketches=_packed(rows), **columns)
 
 
 def _packed(rows: Sequence[ButtonRow]) -> str:
@@ -151,7 +153,9 @@ def _packed(rows: Sequence[ButtonRow]) -> str:
 
 def search_message(found: SearchResult, epoch: int) -> LibraryFound:
     """Return a search result; epoch : of the rows that its positions count."""
-    return LibraryFound(
+    return message_of(
+        LibraryFound,
+        found,
         epoch=epoch,
         positions=found.positions.tolist(),
         distances_jnd=np.round(found.distances, 3).tolist(),
@@ -159,10 +163,6 @@ def search_message(found: SearchResult, epoch: int) -> LibraryFound:
             name: LibraryHistogram(h.lowest, h.highest, h.counts.tolist())
             for name, h in found.histograms.items()
         },
-        kinds=found.kinds,
-        origins=found.origins,
-        without=found.without,
-        mended=list(found.mended),
     )
 
 
@@ -187,9 +187,9 @@ class Library:
         self.index.close()
 
     def status(self) -> LibraryStatus:
-        s = self.index.status
-        rows, refused = len(s.rows), len(s.refused)
-        return LibraryStatus(s.epoch, rows, refused, s.done, s.total, s.ended, self._sources, s.trouble)
+        now = self.index.status
+        counts = {"rows": len(now.rows), "refused": len(now.refused), "sources": self._sources}
+        return message_of(LibraryStatus, now, **counts)
 
     def find(self, query: SearchQuery) -> tuple[SearchResult, Sequence[ButtonRow], IndexStatus]:
         """Search the rows that were read so far; positions are of the rows given."""
@@ -223,24 +223,14 @@ def index(library: Library, ask: LibraryIndexAsk) -> LibraryIndex:
 @call("library.find")
 def find(library: Library, ask: LibraryFind) -> LibraryFound:
     """Search; positions are of library.index."""
-    found, _, indexed = library.find(
-        SearchQuery(
-            text=ask.text,
-            kinds=ask.kinds,
-            origins=ask.origins,
-            ranges={name: (r.low, r.high) for name, r in ask.ranges.items()},
-            like=ask.like,
-            sort=ask.sort,
-            descending=ask.descending,
-        )
-    )
+    ranges = {name: (r.low, r.high) for name, r in ask.ranges.items()}
+    found, _, indexed = library.find(SearchQuery(**{**structs.asdict(ask), "ranges": ranges}))
     return search_message(found, indexed.epoch)
 
 
 @call("library.refused")
 def refused(library: Library, _ask: Empty) -> LibraryRefused:
-    found = library.index.status.refused
-    return LibraryRefused(list(found))
+    return LibraryRefused(list(library.index.status.refused))
 
 
 @call("library.rescan")
@@ -249,10 +239,4 @@ def rescan(library: Library, _ask: Empty) -> LibraryStatus:
     return library.status()
 
 
-def open_channel(studio: Studio, tell: Tell) -> WatchChannel:
-    """Open a page's end of the channel: the status of the index, now and whenever it changes."""
-    library = studio.part(Library)
-    return WatchChannel(library.watchers, tell, library.status)
-
-
-CHANNEL = ChannelKind("library", (Watch,), (LibraryStatus,), open_channel)
+CHANNEL = watch_channel("library", Library, LibraryStatus, first=Library.status)

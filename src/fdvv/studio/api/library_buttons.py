@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import msgspec
 import numpy as np
 from msgspec import Meta
 
 from fdvv.errors import FdvvError
 from fdvv.library.figures import row_of_model
-from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.library.row import NUMBERS, ButtonType, Origin
 from fdvv.library.search import SearchQuery
 from fdvv.model.model import FDVVModel
 from fdvv.studio.api.library import Library, Number
-from fdvv.studio.contract import Message, call, error_line
+from fdvv.studio.contract import Message, call, error_line, message_of
 from fdvv.studio.studio import Studio
 
 STEP_mm, MOST_POINTS = 0.01, 2000
@@ -38,7 +37,7 @@ class LibraryRow(Message):
     origin: Origin
     kind: ButtonType
     collection: str
-    stated: list[str]
+    stated: tuple[str, ...]
     peak_cN: Number
     drop_cN: Number
     actuation_mm: Number
@@ -107,9 +106,9 @@ class LibraryButton(Message):
     kind: ButtonType
     kind_reason: str
     collection: str
-    stated: list[str]
+    stated: tuple[str, ...]
     numbers: dict[str, Number]
-    why: list[str]
+    why: tuple[str, ...]
     cycles: int | None
     used: int | None
     date: str | None
@@ -133,11 +132,6 @@ class LibraryCurves(Message):
     missing: list[LibraryMissing]
 
 
-def picker_row(row: ButtonRow) -> LibraryRow:
-    """Return what a picker shows of a row."""
-    return msgspec.convert(row, LibraryRow, from_attributes=True)
-
-
 def sampled_strokes(model: FDVVModel) -> list[LibraryStroke]:
     """Sample every curve of a model about every 10 um from its start to its end, in reading order."""
     strokes = []
@@ -150,33 +144,11 @@ def sampled_strokes(model: FDVVModel) -> list[LibraryStroke]:
     return strokes
 
 
-def button_message(row: ButtonRow, strokes: list[LibraryStroke]) -> LibraryButton:
-    """Return all that is known of a button, with its curves."""
-    return LibraryButton(
-        id=row.id,
-        name=row.name,
-        origin=row.origin,
-        kind=row.kind,
-        kind_reason=row.kind_reason,
-        collection=row.collection,
-        stated=list(row.stated),
-        numbers={name: getattr(row, name) for name in NUMBERS},
-        why=list(row.why),
-        cycles=row.cycles,
-        used=row.used,
-        date=row.date,
-        source=row.source,
-        licence=row.licence,
-        simulated=row.simulated,
-        strokes=strokes,
-    )
-
-
 @call("library.search")
 def search(library: Library, ask: LibraryQuery) -> LibraryRows:
     query = SearchQuery(text=ask.text, kinds=ask.kinds, origins=ask.origins)
     found, rows, indexed = library.find(query)
-    best = [picker_row(rows[at]) for at in found.positions[: ask.limit]]
+    best = [message_of(LibraryRow, rows[at]) for at in found.positions[: ask.limit]]
     return LibraryRows(best, len(found.positions), indexed.ended)
 
 
@@ -184,7 +156,9 @@ def search(library: Library, ask: LibraryQuery) -> LibraryRows:
 def like(library: Library, ask: LibraryLikeAsk) -> LibraryAlikes:
     found, rows, _ = library.find(SearchQuery(like=ask.id))
     alike = [
-        LibraryAlike(picker_row(rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist())
+        LibraryAlike(
+            message_of(LibraryRow, rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist()
+        )
         for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
         if np.isfinite(distance)
     ]
@@ -208,4 +182,5 @@ def button_of(studio: Studio, library: Library, button_id: str) -> LibraryButton
     """Return a button with its curves; one that is not indexed yet is read. InputError."""
     model = studio.catalog.curves(button_id)
     row = library.row(button_id) or row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
-    return button_message(row, sampled_strokes(model))
+    numbers = {name: getattr(row, name) for name in NUMBERS}
+    return message_of(LibraryButton, row, numbers=numbers, strokes=sampled_strokes(model))

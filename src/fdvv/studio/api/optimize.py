@@ -15,8 +15,8 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Parameter
 from fdvv.optimize.tasks import TemporalPointing
-from fdvv.studio.contract import Empty, Message, call, error_line, watch_channel
-from fdvv.studio.optimizations import Optimizations, OptimizeChanged, SimulatedPlay
+from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
+from fdvv.studio.optimizations import Optimizations, OptimizeChanged
 from fdvv.studio.played_trial import playable, pointing_of
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
@@ -153,23 +153,17 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
     name = setup.objectives[0].name
     scores = [one.scores[name] for one in trials if one.state is TrialState.DONE and name in one.scores]
     best = min(scores, key=lambda score: score.value, default=None)
-    return OptimizeRow(
-        run,
-        str(setup.about.get(TITLE, "")) or f"run {run}",
-        setup.engine,
-        setup.preference,
-        setup.simulated,
-        setup.level or "",
-        answered if setup.preference else counting,
-        setup.budget,
-        best,
-        setup.created,
-        "",
+    return message_of(
+        OptimizeRow,
+        setup,
+        run=run,
+        title=str(setup.about.get(TITLE, "")) or f"run {run}",
+        level=setup.level or "",
+        spent=answered if setup.preference else counting,
+        best=best,
+        made=setup.created,
+        problem="",
     )
-
-
-def broken_run(run: int, reason: str) -> OptimizeRow:
-    return OptimizeRow(run, f"run {run}", "", False, False, "", 0, 0, None, "", reason)
 
 
 def strip_of(setup: OptimizeSetup) -> OptimizeStrip:
@@ -183,31 +177,23 @@ def trial_list(session: Optimization) -> list[OptimizeTrial]:
     several = len(session.problem.objectives) > 1
     front = {one.number for one in session.front().trials} if several else set()
     return [
-        OptimizeTrial(
-            one.number,
-            one.design,
-            one.suggested is not None,
-            one.state,
-            dict(one.scores),
-            one.reason,
-            one.origin,
-            press_picture(session.model(one.design)),
-            one.number in front,
+        message_of(
+            OptimizeTrial,
+            one,
+            edited=one.suggested is not None,
+            curve=press_picture(session.model(one.design)),
+            front=one.number in front,
         )
         for one in session.trials
     ]
 
 
 def pair_list(session: Optimization) -> list[OptimizePair]:
+    def picture(design: dict[str, float]) -> OptimizeCurve:
+        return press_picture(session.model(design))
+
     return [
-        OptimizePair(
-            one.number,
-            one.first,
-            one.second,
-            press_picture(session.model(one.first)),
-            press_picture(session.model(one.second)),
-            one.answer,
-        )
+        message_of(OptimizePair, one, first_curve=picture(one.first), second_curve=picture(one.second))
         for one in session.comparisons
     ]
 
@@ -217,13 +203,6 @@ def press_picture(model: FDVVModel) -> OptimizeCurve:
     x = np.linspace(0.0, model.travel_mm, PICTURE_POINTS)
     force = model.force_cN(x, 0.0, Stroke.PRESS)
     return OptimizeCurve(float(x[1]), force.round(DIGITS).tolist(), model.actuation_mm)
-
-
-def simulated_player(play: SimulatedPlay | None) -> OptimizeSimulated | None:
-    if play is None:
-        return None
-    about = f"simulated person {play.person}"
-    return OptimizeSimulated(play.running, play.done, play.total, about, play.fault)
 
 
 @call("optimize.list")
@@ -236,13 +215,14 @@ def _row(optimizations: Optimizations, run: int) -> OptimizeRow:
         with optimizations.session(run) as session:
             return run_row(run, session)
     except FdvvError as error:
-        return broken_run(run, error_line(error))
+        return OptimizeRow(run, f"run {run}", "", False, False, "", 0, 0, None, "", error_line(error))
 
 
 @call("optimize.detail")
 def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
     with optimizations.session(ask.run) as session:
         setup, space = session.setup, session.space
+        play = optimizations.simulated(ask.run)
         return OptimizeDetail(
             run_row(ask.run, session),
             setup.seed,
@@ -256,7 +236,7 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             _start(session),
             str(setup.about.get(START) or ""),
             str(setup.about.get(OTHERS) or ""),
-            simulated_player(optimizations.simulated(ask.run)),
+            message_of(OptimizeSimulated, play, about=f"simulated person {play.person}") if play else None,
             playable(setup),
         )
 

@@ -15,7 +15,6 @@ from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import PriorDataStore
 from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.optimize.tasks import LEVELS_px_s
-from fdvv.rendering.rig_catalog import RigCatalog
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
 from fdvv.studio.contract import Empty, Message, call
@@ -117,7 +116,7 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
         [OptimizeOffer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
         [OptimizeOffer(name, PAIR_ENGINES_TOLD.get(name, "")) for name in pair_engine_names()],
         [OptimizeOffer(name, about) for name, about in SPACES_TOLD.items()],
-        [OptimizeOffer(entry.rig_id, entry.about) for entry in RigCatalog(studio.project).entries()],
+        [OptimizeOffer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
         [OptimizeOffer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
         [OptimizeOffer(name, MORE_TOLD[name]) for name in MORE_TOLD],
         [OptimizeOffer(choice.id, choice.name) for choice in button_choices(studio.catalog)],

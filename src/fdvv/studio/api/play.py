@@ -5,8 +5,7 @@ Times in ms are on the page's clock (performance.now) unless the name says serve
 
 from __future__ import annotations
 
-from functools import singledispatchmethod
-from typing import Annotated, Any
+from typing import Annotated
 
 from msgspec import Meta, field
 
@@ -80,9 +79,29 @@ class PlayChannel:
         self._table = Table(studio, lambda line: tell(PlayOver(line)))
         self._live: LiveTrial | DeviceTrial | None = None
 
-    def receive(self, ask: Any) -> None:
+    def receive(self, ask: Message) -> None:
         """Do what the page asks; without a trial most asks have come too late and do nothing."""
-        self._do(ask)
+        live = self._live
+        match ask:
+            case PlayOpen():
+                self._open(ask)
+            case PlayPing():
+                self._tell(PlayPong(ask.sent_ms, 1e3 * CLOCK()))
+                # a device renders whether or not a page is looked at
+                if isinstance(live, LiveTrial):
+                    live.run.here()
+            case PlayDown() if isinstance(live, LiveTrial):
+                live.down(ask.at_ms)
+            case PlayUp() if isinstance(live, LiveTrial):
+                live.up(ask.at_ms)
+            case PlayRound() if live:
+                kept = live.keep(ask)
+                if kept.finished:
+                    self._put_away()
+                self._tell(kept)
+            case PlayClose():
+                self._put_away()
+                self._tell(PlayOver(""))
 
     def close(self) -> None:
         self._put_away()
@@ -93,12 +112,7 @@ class PlayChannel:
             self._live.close()
         self._live = None
 
-    @singledispatchmethod
-    def _do(self, ask: Any) -> None:
-        raise TypeError(f"no such ask: {ask}")
-
-    @_do.register
-    def _(self, ask: PlayOpen) -> None:
+    def _open(self, ask: PlayOpen) -> None:
         self._put_away()
         key = self._table.put(ask.device)
         played = self._optimizations.play(ask.run, ask.trial)
@@ -121,36 +135,6 @@ class PlayChannel:
         subject = model_subject(played.model)
         signals = [shake_signal(signal) for signal in subject.signals]
         return LiveTrial(played, subject, self._tell), subject.description, signals
-
-    @_do.register
-    def _(self, ask: PlayPing) -> None:
-        self._tell(PlayPong(ask.sent_ms, 1e3 * CLOCK()))
-        if self._live:
-            self._live.here()
-
-    @_do.register
-    def _(self, ask: PlayDown) -> None:
-        if self._live:
-            self._live.down(ask.at_ms)
-
-    @_do.register
-    def _(self, ask: PlayUp) -> None:
-        if self._live:
-            self._live.up(ask.at_ms)
-
-    @_do.register
-    def _(self, ask: PlayRound) -> None:
-        if not self._live:
-            return
-        kept = self._live.keep(ask)
-        if kept.finished:
-            self._put_away()
-        self._tell(kept)
-
-    @_do.register
-    def _(self, _ask: PlayClose) -> None:
-        self._put_away()
-        self._tell(PlayOver(""))
 
 
 ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayRound, PlayClose)

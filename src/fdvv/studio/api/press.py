@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import singledispatchmethod
 from typing import Annotated, Any
 
 import msgspec
@@ -10,7 +9,6 @@ import numpy as np
 from msgspec import Meta, field
 
 from fdvv.errors import InputError, ModelError
-from fdvv.library.catalog import Catalog
 from fdvv.live.press import LiveEventKind, LivePress
 from fdvv.live.press_subject import (
     PRESS_RIGS,
@@ -27,19 +25,18 @@ from fdvv.live.press_trace import PressTrace, drawn_traces, read_press_trace
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.model.file import model_from_json
 from fdvv.program.file import program_from_json
-from fdvv.project.programs import ProgramCatalog
 from fdvv.protocol.tables import Fault
 from fdvv.studio.api.press_frames import (
+    DIGITS,
     PressFrame,
     PressMeant,
     PressReady,
-    _column,
     meant_force,
     press_frame,
     press_ready,
 )
-from fdvv.studio.api.programs import Programs
 from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
+from fdvv.studio.rounding import rounded
 from fdvv.studio.studio import Studio
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
@@ -52,8 +49,8 @@ class TraceItem(Message):
     name: str
     about: str = field(name="told")
     duration_s: float
-    t_s: list[float]
-    displacement_mm: list[float]
+    t_s: tuple[float, ...]
+    displacement_mm: tuple[float, ...]
 
 
 class PressList(Message):
@@ -77,8 +74,8 @@ class TraceRead(Message):
 
     name: str
     about: str = field(name="told")
-    t_s: list[float]
-    displacement_mm: list[float]
+    t_s: tuple[float, ...]
+    displacement_mm: tuple[float, ...]
 
 
 class PressStart(Message, tag="start"):
@@ -171,30 +168,26 @@ class PressOver(Message, tag="over"):
 PICTURE_POINTS = 60
 
 
-def choices(catalog: Catalog, programs: ProgramCatalog) -> PressList:
-    return PressList(
-        list(button_choices(catalog)),
-        list(program_choices(programs)),
-        [_trace_item(trace) for trace in drawn_traces()],
-        list(PRESS_RIGS),
-    )
-
-
 def _trace_item(trace: PressTrace) -> TraceItem:
     every = max(1, trace.t_s.size // PICTURE_POINTS)
-    thin = [_column(column[::every]) for column in (trace.t_s, trace.displacement_mm)]
+    thin = [rounded(column[::every], DIGITS) for column in (trace.t_s, trace.displacement_mm)]
     return TraceItem(trace.name, trace.origin, trace.duration_s, *thin)
 
 
 @call("press.list")
 def list_choices(studio: Studio, _ask: Empty) -> PressList:
-    return choices(studio.catalog, studio.part(Programs).catalog)
+    return PressList(
+        list(button_choices(studio.catalog)),
+        list(program_choices(studio.programs)),
+        [_trace_item(trace) for trace in drawn_traces()],
+        list(PRESS_RIGS),
+    )
 
 
 @call("press.trace")
 def read_trace(_studio: Studio, ask: TraceReadAsk) -> TraceRead:
     found = read_press_trace(ask.text.encode(), ask.name)
-    return TraceRead(found.name, found.origin, found.t_s.tolist(), found.displacement_mm.tolist())
+    return TraceRead(found.name, found.origin, tuple(found.t_s), tuple(found.displacement_mm))
 
 
 def subject_of(studio: Studio, ask: PressStart) -> PressSubject:
@@ -207,7 +200,7 @@ def subject_of(studio: Studio, ask: PressStart) -> PressSubject:
     if ask.model is not None:
         return model_subject(model_from_json(msgspec.json.encode(ask.model), "model"), ask.mode, ask.rig)
     if ask.program is not None:
-        return program_subject(studio.part(Programs).catalog.program(ask.program), ask.mode, ask.rig)
+        return program_subject(studio.programs.program(ask.program), ask.mode, ask.rig)
     return program_subject(program_from_json(msgspec.json.encode(ask.code), "program"), ask.mode, ask.rig)
 
 
@@ -218,21 +211,23 @@ class PressChannel:
         self._studio, self._tell = studio, tell
         self._run: LiveRun | None = None
 
-    def receive(self, ask: Any) -> None:
+    def receive(self, ask: Message) -> None:
         """Do what the page asks; without a run most asks have come too late and do nothing."""
-        self._do(ask)
+        match ask:
+            case PressStart():
+                self._start(ask)
+            case PressStop():
+                self.close()
+                self._tell(PressOver(""))
+            case _ if self._run:
+                _lead(self._run, ask)
 
     def close(self) -> None:
         if self._run:
             self._run.close()
         self._run = None
 
-    @singledispatchmethod
-    def _do(self, ask: Any) -> None:
-        raise TypeError(f"no such ask: {ask}")
-
-    @_do.register
-    def _(self, ask: PressStart) -> None:
+    def _start(self, ask: PressStart) -> None:
         self.close()
         subject = subject_of(self._studio, ask)
         press = LivePress(subject, ask.seed)
@@ -251,53 +246,29 @@ class PressChannel:
             if event.kind is LiveEventKind.PRESSED:
                 self._tell(meant_force(press.subject, round(event.velocity_mm_s, 1)))
 
-    @_do.register
-    def _(self, ask: PressLead) -> None:
-        self._ask(lambda press: press.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s), ask.sequence)
 
-    @_do.register
-    def _(self, ask: PressPush) -> None:
-        self._ask(lambda press: press.push(ask.force_cN), ask.sequence)
-
-    @_do.register
-    def _(self, ask: PressLift) -> None:
-        self._ask(LivePress.lift, ask.sequence)
-
-    @_do.register
-    def _(self, ask: PressReplay) -> None:
-        trace = _given_trace(ask)
-        self._ask(lambda press: press.replay(trace))
-
-    @_do.register
-    def _(self, ask: PressHostEvent) -> None:
-        self._ask(lambda press: press.event(ask.number))
-
-    @_do.register
-    def _(self, _ask: PressFail) -> None:
-        self._ask(lambda press: press.fail(Fault.POSITION_STUCK))
-
-    @_do.register
-    def _(self, _ask: PressClear) -> None:
-        self._ask(LivePress.clear_fault)
-
-    @_do.register
-    def _(self, _ask: PressHere) -> None:
-        if self._run:
-            self._run.here()
-
-    @_do.register
-    def _(self, _ask: PressPause) -> None:
-        if self._run:
-            self._run.pause()
-
-    @_do.register
-    def _(self, _ask: PressStop) -> None:
-        self.close()
-        self._tell(PressOver(""))
-
-    def _ask(self, work: Any, sequence: int | None = None) -> None:
-        if self._run:
-            self._run.ask(work, sequence)
+def _lead(run: LiveRun, ask: Message) -> None:
+    """Pass on what the page asks of a run."""
+    match ask:
+        case PressLead():
+            run.ask(lambda press: press.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s), ask.sequence)
+        case PressPush():
+            run.ask(lambda press: press.push(ask.force_cN), ask.sequence)
+        case PressLift():
+            run.ask(LivePress.lift, ask.sequence)
+        case PressReplay():
+            trace = _given_trace(ask)
+            run.ask(lambda press: press.replay(trace))
+        case PressHostEvent():
+            run.ask(lambda press: press.event(ask.number))
+        case PressFail():
+            run.ask(lambda press: press.fail(Fault.POSITION_STUCK))
+        case PressClear():
+            run.ask(LivePress.clear_fault)
+        case PressHere():
+            run.here()
+        case PressPause():
+            run.pause()
 
 
 def _given_trace(ask: PressReplay) -> PressTrace:
@@ -310,18 +281,8 @@ def _given_trace(ask: PressReplay) -> PressTrace:
 
 
 ASKS = (
-    PressStart,
-    PressLead,
-    PressPush,
-    PressLift,
-    PressReplay,
-    PressHostEvent,
-    PressHere,
-    PressPause,
-    PressStop,
-    PressFail,
-    PressClear,
+    *(PressStart, PressLead, PressPush, PressLift, PressReplay, PressHostEvent),
+    *(PressHere, PressPause, PressStop, PressFail, PressClear),
 )
-
 TELLS = (PressReady, PressMeant, PressFrame, PressRefused, PressOver)
 CHANNEL = ChannelKind("press", ASKS, TELLS, PressChannel)

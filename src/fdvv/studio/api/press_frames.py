@@ -13,6 +13,7 @@ from fdvv.live.run import LiveFrame
 from fdvv.model.vibration import Mode
 from fdvv.program.program import Signal
 from fdvv.studio.contract import Message
+from fdvv.studio.rounding import rounded
 from fdvv.units import FloatArray
 
 
@@ -28,9 +29,9 @@ class PressMeant(Message, tag="meant"):
     """The force that is meant to be felt in a press at a speed."""
 
     velocity_mm_s: float
-    displacement_mm: list[float]
-    press_cN: list[float]
-    release_cN: list[float]
+    displacement_mm: tuple[float, ...]
+    press_cN: tuple[float, ...]
+    release_cN: tuple[float, ...]
 
 
 class PressReady(Message, tag="ready"):
@@ -67,10 +68,10 @@ class PressFrame(Message, tag="frame"):
     sequence : of the last lead that had taken effect. dropped_s : not simulated, since the start.
     """
 
-    t_s: list[float]
-    displacement_mm: list[float]
-    force_cN: list[float]
-    finger_mm: list[float]
+    t_s: tuple[float, ...]
+    displacement_mm: tuple[float, ...]
+    force_cN: tuple[float, ...]
+    finger_mm: tuple[float, ...]
     velocity_mm_s: float
     commanded_cN: float
     state: int
@@ -89,7 +90,7 @@ ROW_s = 0.001
 """Between two rows of a frame."""
 
 
-DIGITS = 4
+DIGITS, FORCE_DIGITS = 4, 2
 
 
 def press_ready(subject: PressSubject) -> PressReady:
@@ -110,17 +111,22 @@ def press_ready(subject: PressSubject) -> PressReady:
 
 def meant_force(subject: PressSubject, velocity_mm_s: float) -> PressMeant:
     press, release = subject.meant_cN(velocity_mm_s)
-    return PressMeant(velocity_mm_s, _column(subject.displacement_mm), _column(press, 2), _column(release, 2))
+    return PressMeant(
+        velocity_mm_s,
+        rounded(subject.displacement_mm, DIGITS),
+        rounded(press, FORCE_DIGITS),
+        rounded(release, FORCE_DIGITS),
+    )
 
 
 def press_frame(seen: LiveFrame, replaying: bool) -> PressFrame:
     c = seen.columns
     rows = _rows(c.t_s)
     return PressFrame(
-        t_s=_column(c.t_s[rows]),
-        displacement_mm=_column(c.displacement_mm[rows]),
-        force_cN=_column(c.force_cN[rows], 2),
-        finger_mm=_column(c.finger_mm[rows]),
+        t_s=rounded(c.t_s[rows], DIGITS),
+        displacement_mm=rounded(c.displacement_mm[rows], DIGITS),
+        force_cN=rounded(c.force_cN[rows], FORCE_DIGITS),
+        finger_mm=rounded(c.finger_mm[rows], DIGITS),
         velocity_mm_s=_last(c.velocity_mm_s),
         commanded_cN=_last(c.commanded_cN),
         state=int(_last(c.state)),
@@ -144,10 +150,6 @@ def _rows(t_s: FloatArray) -> Any:
     chosen = np.diff(np.floor(t_s / ROW_s + 1e-6), prepend=-1.0) > 0
     chosen[-1:] = True
     return chosen
-
-
-def _column(values: FloatArray, digits: int = DIGITS) -> list[float]:
-    return [float(value) for value in np.round(values, digits)]
 
 
 def _last(values: Any) -> float:

@@ -13,7 +13,7 @@ from fdvv.program.file import program_to_json
 from fdvv.program.library import Recipe, make, programs
 from fdvv.program.surface import of_model
 from fdvv.project.program_check import ProgramCheckResult, checked_program
-from fdvv.project.programs import KeptProgram, ProgramCatalog, ProgramEntry, read_program
+from fdvv.project.programs import KeptProgram, ProgramEntry, read_program
 from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.studio import Studio
 
@@ -141,24 +141,13 @@ PLAINEST = "builtin:mx-red"
 """The button that recipes stand on by default: linear, so that nothing distracts."""
 
 
-class Programs:
-    """The programs of a studio's project."""
-
-    def __init__(self, studio: Studio) -> None:
-        self.catalog = ProgramCatalog(studio.project)
-
-
-def _catalog(studio: Studio) -> ProgramCatalog:
-    return studio.part(Programs).catalog
-
-
 @call("program.list")
 def list_programs(studio: Studio, _ask: Empty) -> ProgramRows:
     recipes = [
         ProgramRecipe(r.name, r.summary, r.details, _parameters(studio, r, PLAINEST)) for r in programs()
     ]
     return ProgramRows(
-        list(_catalog(studio).entries()), recipes, [b.id for b in button_choices(studio.catalog)]
+        list(studio.programs.entries()), recipes, [b.id for b in button_choices(studio.catalog)]
     )
 
 
@@ -172,35 +161,35 @@ def _parameters(studio: Studio, recipe: Recipe, base: str, levels: int = 1) -> l
 
 @call("program.open")
 def open_program(studio: Studio, ask: ProgramAsk) -> KeptProgram:
-    return _catalog(studio).open(ask.program)
+    return studio.programs.open(ask.program)
 
 
 @call("program.save")
 def save_program(studio: Studio, ask: SaveProgram) -> KeptProgram:
     """Write a program, unless its file has changed since it was opened."""
-    return _catalog(studio).save(ask.program, ask.text, ask.revision)
+    return studio.programs.save(ask.program, ask.text, ask.revision)
 
 
 @call("program.keep")
 def keep_program(studio: Studio, ask: KeepProgram) -> KeptProgram:
-    catalog = _catalog(studio)
+    catalog = studio.programs
     name = catalog.free_name(read_program(ask.text, "file").name)
     return catalog.save(f"own:{name}", ask.text)
 
 
 @call("program.copy")
 def copy_program(studio: Studio, ask: CopyProgram) -> KeptProgram:
-    return _catalog(studio).copy(ask.program, ask.name)
+    return studio.programs.copy(ask.program, ask.name)
 
 
 @call("program.delete")
 def delete_program(studio: Studio, ask: DeleteProgram) -> ThrownProgram:
-    return ThrownProgram(_catalog(studio).delete(ask.program, ask.revision))
+    return ThrownProgram(studio.programs.delete(ask.program, ask.revision))
 
 
 @call("program.restore")
 def restore_program(studio: Studio, ask: ThrownProgram) -> KeptProgram:
-    return _catalog(studio).restore(ask.thrown)
+    return studio.programs.restore(ask.thrown)
 
 
 @call("program.check")
