@@ -19,7 +19,7 @@ ButtonName = Annotated[str, Meta(max_length=300)]
 
 
 class DocumentAsk(Message):
-    """Ask for a button with its history; one that is not the person's own has none."""
+    """Name a button."""
 
     button: ButtonId
 
@@ -75,12 +75,6 @@ class DocumentRename(Message):
 
     button: ButtonId
     name: ButtonName
-
-
-class DocumentDelete(Message):
-    """Move one's own button to the project's trash."""
-
-    button: ButtonId
 
 
 class DocumentNamed(Message):
@@ -147,7 +141,7 @@ def _document(state: DocumentState) -> Document:
 
 @call("document.open")
 def open_document(studio: Studio, ask: DocumentAsk) -> Document:
-    """Open any button; only one's own has a history."""
+    """Open any button with its history; one that is not the person's own has none."""
     if ask.button.startswith(OWN):
         return _document(studio.part(Documents).store.open(_own_name(ask.button)))
     return Document(ask.button, False, 0, record_of(studio.catalog.model(ask.button)), [], 0, [])
@@ -198,7 +192,8 @@ def rename_document(documents: Documents, ask: DocumentRename) -> DocumentNamed:
 
 
 @call("document.delete")
-def delete_document(documents: Documents, ask: DocumentDelete) -> DocumentNamed:
+def delete_document(documents: Documents, ask: DocumentAsk) -> DocumentNamed:
+    """Move one's own button to the project's trash."""
     documents.store.delete(_own_name(ask.button))
     documents.watchers.tell(DocumentGone(ask.button, None))
     return DocumentNamed(ask.button)

@@ -14,7 +14,7 @@ from fdvv.program.library import Recipe, make, programs
 from fdvv.program.surface import of_model
 from fdvv.project.program_check import ProgramCheckResult, checked_program
 from fdvv.project.programs import KeptProgram, ProgramEntry, read_program
-from fdvv.studio.contract import Empty, Message, call
+from fdvv.studio.contract import Empty, Message, call, message_of
 from fdvv.studio.studio import Studio
 
 Id = Annotated[str, Meta(max_length=80)]
@@ -62,12 +62,6 @@ class SaveProgram(Message):
     revision: Title = ""
 
 
-class KeepProgram(Message):
-    """Keep a text as a new program of the person's, under its own name or the next free one."""
-
-    text: str
-
-
 class CopyProgram(Message):
     """Copy a program. name : of the copy; empty: the next free one."""
 
@@ -88,12 +82,6 @@ class ThrownProgram(Message):
     thrown: Title
 
 
-class CheckProgram(Message):
-    """Check a program as it is being edited."""
-
-    text: str
-
-
 class MakeProgram(Message):
     """Make a program by a recipe over a button. parameters : those that differ from their defaults."""
 
@@ -102,8 +90,8 @@ class MakeProgram(Message):
     parameters: Annotated[dict[str, float], Meta(max_length=20)]
 
 
-class MadeProgram(Message):
-    """The text of a program that was made; it is not kept."""
+class ProgramSource(Message):
+    """The text of a program that is not kept, or not yet."""
 
     text: str
 
@@ -132,9 +120,9 @@ class SurfaceAsk(Message):
 class ProgramSurface(Message):
     """Force on displacement, a row per velocity, as a program's file holds it."""
 
-    displacement_mm: list[float]
-    velocity_mm_s: list[float]
-    force_cN: list[list[float]]
+    displacement_mm: tuple[float, ...]
+    velocity_mm_s: tuple[float, ...]
+    force_cN: tuple[tuple[float, ...], ...]
 
 
 PLAINEST = "builtin:mx-red"
@@ -171,10 +159,10 @@ def save_program(studio: Studio, ask: SaveProgram) -> KeptProgram:
 
 
 @call("program.keep")
-def keep_program(studio: Studio, ask: KeepProgram) -> KeptProgram:
-    catalog = studio.programs
-    name = catalog.free_name(read_program(ask.text, "file").name)
-    return catalog.save(f"own:{name}", ask.text)
+def keep_program(studio: Studio, ask: ProgramSource) -> KeptProgram:
+    """Keep a text as a new program of the person's, under its own name or the next free one."""
+    name = studio.programs.free_name(read_program(ask.text, "file").name)
+    return studio.programs.save(f"own:{name}", ask.text)
 
 
 @call("program.copy")
@@ -193,15 +181,15 @@ def restore_program(studio: Studio, ask: ThrownProgram) -> KeptProgram:
 
 
 @call("program.check")
-def check_program(_studio: Studio, ask: CheckProgram) -> ProgramCheckResult:
+def check_program(_studio: Studio, ask: ProgramSource) -> ProgramCheckResult:
     """Check a text as far as it goes; what is wrong with it is the answer, not an error."""
     return checked_program(ask.text)
 
 
 @call("program.recipe")
-def make_program(studio: Studio, ask: MakeProgram) -> MadeProgram:
+def make_program(studio: Studio, ask: MakeProgram) -> ProgramSource:
     """Make a program by a recipe; it is not kept."""
-    return MadeProgram(program_to_json(make(ask.recipe, studio.catalog.model(ask.base), **ask.parameters)))
+    return ProgramSource(program_to_json(make(ask.recipe, studio.catalog.model(ask.base), **ask.parameters)))
 
 
 @call("program.ranges")
@@ -214,6 +202,4 @@ def parameter_ranges(studio: Studio, ask: RangesAsk) -> ProgramRanges:
 
 @call("program.surface")
 def button_surface(studio: Studio, ask: SurfaceAsk) -> ProgramSurface:
-    found = of_model(studio.catalog.model(ask.button), ask.stroke)
-    rows = [list(row) for row in found.force_cN]
-    return ProgramSurface(list(found.displacement_mm), list(found.velocity_mm_s), rows)
+    return message_of(ProgramSurface, of_model(studio.catalog.model(ask.button), ask.stroke))

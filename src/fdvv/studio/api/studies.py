@@ -10,7 +10,7 @@ from msgspec import Meta, field
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.studio.api.study_steps import text_in
-from fdvv.studio.contract import Empty, Message, call, error_line, watch_channel
+from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.devices import available_devices, device_names
 from fdvv.studio.studies import TWIN, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
@@ -172,8 +172,9 @@ def study_row(name: str, study: Study) -> StudiesRow:
     return StudiesRow(name, title, plan.kind, state_of(study), len(study.people()), plan.people, "")
 
 
-def broken_study(name: str, reason: str) -> StudiesRow:
-    return StudiesRow(name, name, "", "broken", 0, 0, reason)
+@call("studies.detail")
+def detail(studies: Studies, ask: StudiesAsk) -> StudiesDetail:
+    return study_detail(studies, ask.study)
 
 
 def study_detail(studies: Studies, name: str) -> StudiesDetail:
@@ -193,18 +194,6 @@ def study_detail(studies: Studies, name: str) -> StudiesDetail:
     )
 
 
-def all_devices() -> list[StudiesDevice]:
-    """List what may render a study: the twin, and what keeps the labels of a trial ready side by side."""
-    return [
-        StudiesDevice(TWIN, "the twin, under a hand on the screen"),
-        *(
-            StudiesDevice(name, f"{name}: {about}" if about else name)
-            for name, about in available_devices()[0]
-            if name.startswith(ON_THE_TABLE)
-        ),
-    ]
-
-
 def history_line(record: Mapping[str, Any]) -> str:
     """Return a record of a study's log as one line, without keys and sums."""
     ((event, details),) = record.items()
@@ -219,16 +208,8 @@ def when(stamp: str) -> str:
 
 
 def _person(one: PersonView, here: bool, paused: bool) -> StudiesPerson:
-    return StudiesPerson(
-        one.person,
-        one.language,
-        place_of(one),
-        one.answered,
-        one.trials,
-        here,
-        paused,
-        SIMULATED if one.simulated else "",
-    )
+    note = SIMULATED if one.simulated else ""
+    return message_of(StudiesPerson, one, state=place_of(one), here=here, paused=paused, note=note)
 
 
 def place_of(one: PersonView) -> str:
@@ -260,12 +241,7 @@ def _row(studies: Studies, name: str) -> StudiesRow:
     try:
         return study_row(name, studies.study(name))
     except FdvvError as error:
-        return broken_study(name, error_line(error))
-
-
-@call("studies.detail")
-def detail(studies: Studies, ask: StudiesAsk) -> StudiesDetail:
-    return study_detail(studies, ask.study)
+        return StudiesRow(name, name, "", "broken", 0, 0, error_line(error))
 
 
 @call("studies.freeze")
@@ -289,7 +265,13 @@ def use(studies: Studies, ask: StudiesUse) -> StudiesDetail:
 
 @call("studies.devices")
 def devices(_studio: Studio, _ask: Empty) -> StudiesDevices:
-    return StudiesDevices(all_devices())
+    """List what may render a study: the twin, and what keeps the labels of a trial ready side by side."""
+    found = [
+        StudiesDevice(name, f"{name}: {about}" if about else name)
+        for name, about in available_devices()[0]
+        if name.startswith(ON_THE_TABLE)
+    ]
+    return StudiesDevices([StudiesDevice(TWIN, "the twin, under a hand on the screen"), *found])
 
 
 @call("studies.pause")

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from functools import singledispatchmethod
 from threading import RLock
-from typing import Annotated, Any
+from typing import Annotated
 
 from msgspec import Meta
 
@@ -179,7 +178,7 @@ class StudyScreen:
         # the operator may use it while the page's own thread does
         self._lock, self._gone = RLock(), False
 
-    def receive(self, ask: Any) -> None:
+    def receive(self, ask: Message) -> None:
         """Do what the page asks; without a participant most asks have come too late and do nothing."""
         if isinstance(ask, StudyLead | StudyPush | StudyLift | Heartbeat):
             self._move_finger(ask)
@@ -227,18 +226,22 @@ class StudyScreen:
             if self._participant:
                 self._advance(self._participant.withdraw(delete=delete))
 
-    @singledispatchmethod
-    def _do(self, ask: Any) -> None:
-        raise TypeError(f"no such ask: {ask}")
+    def _do(self, ask: Message) -> None:
+        match ask:
+            case StudyLook():
+                plan = self._studies.study(ask.study).plan
+                free = self._studies.invitation(ask.study, ask.seat, ask.holder) is not None
+                self._tell(StudyAbout(ask.study, plan.title, list(plan.languages), free))
+            case JoinSession():
+                self._join(ask)
+            case StudyResume():
+                self._leave_session()
+                self._resume(self._studies.study(ask.study), ask.study, ask.person, ask.code)
+                self._begin("")
+            case _ if self._participant and self._stage:
+                self._go_on(ask, self._participant, self._stage)
 
-    @_do.register
-    def _(self, ask: StudyLook) -> None:
-        plan = self._studies.study(ask.study).plan
-        free = self._studies.invitation(ask.study, ask.seat, ask.holder) is not None
-        self._tell(StudyAbout(ask.study, plan.title, list(plan.languages), free))
-
-    @_do.register
-    def _(self, ask: JoinSession) -> None:
+    def _join(self, ask: JoinSession) -> None:
         invitation = self._studies.invitation(ask.study, ask.seat, ask.holder)
         if invitation is None:
             raise taken_error()
@@ -257,69 +260,48 @@ class StudyScreen:
             self._invitation = invitation
         self._begin(invitation.code)
 
-    @_do.register
-    def _(self, ask: StudyResume) -> None:
-        self._leave_session()
-        self._resume(self._studies.study(ask.study), ask.study, ask.person, ask.code)
-        self._begin("")
+    def _go_on(self, ask: Message, participant: Participant, stage: ScreenRenderer) -> None:
+        """Do what only a participant can ask for."""
+        match ask:
+            case StudyShown():
+                self._forget_code()
+                participant.show_trial(ask.number)
+                signals = [unnamed_sound(signal) for signal in stage.sounds]
+                self._tell(StudyReady(ask.number, stage.travel_mm, signals))
+            case ContinueStep():
+                self._require_running(participant)
+                participant.go_to(ask.label)
+                self._tell(StudyFelt(ask.label))
+            case StudyAgain():
+                self._stage = self._stages.open(participant.study)
+                participant.reconnect(self._stage)
+                self._tell_step()
+            case StudyAnswered():
+                self._require_running(participant)
+                answer = TrialAnswer(choice=ask.choice, ratings=ask.ratings)
+                self._advance(participant.answer(ask.number, answer))
+            case StudyFilled():
+                self._forget_code()
+                self._advance(participant.answer_page(ask.name, ask.values, ask.agreed))
+            case EndBreak():
+                self._advance(participant.end_break())
+            case StudyWithdraw():
+                self.withdraw(delete=True)
 
-    @_do.register
-    def _(self, ask: StudyShown) -> None:
-        if self._participant and self._stage:
-            self._forget_code()
-            self._participant.show_trial(ask.number)
-            signals = [unnamed_sound(signal) for signal in self._stage.sounds]
-            self._tell(StudyReady(ask.number, self._stage.travel_mm, signals))
-
-    @_do.register
-    def _(self, ask: ContinueStep) -> None:
-        if self._participant:
-            self._require_running()
-            self._participant.go_to(ask.label)
-            self._tell(StudyFelt(ask.label))
-
-    @_do.register
-    def _(self, _ask: StudyAgain) -> None:
-        if self._participant:
-            self._stage = self._stages.open(self._participant.study)
-            self._participant.reconnect(self._stage)
-            self._tell_step()
-
-    @_do.register
-    def _(self, ask: StudyAnswered) -> None:
-        if self._participant:
-            self._require_running()
-            answer = TrialAnswer(choice=ask.choice, ratings=ask.ratings)
-            self._advance(self._participant.answer(ask.number, answer))
-
-    @_do.register
-    def _(self, ask: StudyFilled) -> None:
-        if self._participant:
-            self._forget_code()
-            self._advance(self._participant.answer_page(ask.name, ask.values, ask.agreed))
-
-    @_do.register
-    def _(self, _ask: EndBreak) -> None:
-        if self._participant:
-            self._advance(self._participant.end_break())
-
-    @_do.register
-    def _(self, _ask: StudyWithdraw) -> None:
-        self.withdraw(delete=True)
-
-    def _move_finger(self, ask: Any) -> None:
+    def _move_finger(self, ask: StudyLead | StudyPush | StudyLift | Heartbeat) -> None:
         """Lead the finger; many of these come, and none waits for anything."""
         stage = self._stage
         if stage is None:
             return
-        if isinstance(ask, Heartbeat):
-            stage.here()
-        elif isinstance(ask, StudyLead):
-            stage.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s)
-        elif isinstance(ask, StudyPush):
-            stage.push(ask.force_cN)
-        else:
-            stage.lift()
+        match ask:
+            case Heartbeat():
+                stage.here()
+            case StudyLead():
+                stage.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s)
+            case StudyPush():
+                stage.push(ask.force_cN)
+            case StudyLift():
+                stage.lift()
 
     def _resume(self, study: Study, name: str, person: str, code: str) -> None:
         """Resume a person's session; another screen that serves them, or is about to, ends first."""
@@ -347,9 +329,8 @@ class StudyScreen:
             self._studies.discard(self._invitation)
             self._invitation = None
 
-    def _require_running(self) -> None:
-        assert self._participant is not None
-        if self._studies.paused(self._name, self._participant.person):
+    def _require_running(self, participant: Participant) -> None:
+        if self._studies.paused(self._name, participant.person):
             raise InputError("study", "screen", "the study pauses", "wait a moment")
 
     def _advance(self, step: Step) -> None:
@@ -368,32 +349,11 @@ class StudyScreen:
 
 
 ASKS = (
-    StudyLook,
-    JoinSession,
-    StudyResume,
-    StudyShown,
-    ContinueStep,
-    StudyLead,
-    StudyPush,
-    StudyLift,
-    StudyAgain,
-    StudyAnswered,
-    StudyFilled,
-    EndBreak,
-    StudyWithdraw,
-    Heartbeat,
+    *(StudyLook, JoinSession, StudyResume, StudyShown, ContinueStep, StudyLead, StudyPush, StudyLift),
+    *(StudyAgain, StudyAnswered, StudyFilled, EndBreak, StudyWithdraw, Heartbeat),
 )
-
 TELLS = (
-    StudyAbout,
-    StudyCard,
-    StudyStep,
-    StudyReady,
-    StudyFelt,
-    StudyFrame,
-    StudyBroke,
-    StudyPaused,
-    StudyStopped,
+    *(StudyAbout, StudyCard, StudyStep, StudyReady, StudyFelt),
+    *(StudyFrame, StudyBroke, StudyPaused, StudyStopped),
 )
-
 CHANNEL = ChannelKind("study", ASKS, TELLS, StudyScreen)

@@ -49,15 +49,15 @@ class StudiesCreate(Message):
 class StudiesTable(Message):
     """A table of a preview."""
 
-    heads: list[str]
-    rows: list[list[str]]
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
 
 
 class StudiesSection(Message):
     """A part of a preview."""
 
     title: str
-    paragraphs: list[str]
+    paragraphs: tuple[str, ...]
     tables: list[StudiesTable]
 
 
@@ -70,7 +70,7 @@ class StudiesPlan(Message):
 
     study: str
     text: str
-    problems: list[str]
+    problems: tuple[str, ...]
     preview: list[StudiesSection]
 
 
@@ -83,8 +83,8 @@ class StudiesWrite(Message):
 
 
 def preview_section(one: Section) -> StudiesSection:
-    tables = [StudiesTable(list(table.columns), [list(row) for row in table.rows]) for table in one.tables]
-    return StudiesSection(one.title, list(one.paragraphs), tables)
+    tables = [StudiesTable(table.columns, table.rows) for table in one.tables]
+    return StudiesSection(one.title, one.paragraphs, tables)
 
 
 @call("studies.offers")
@@ -116,11 +116,11 @@ def write(studies: Studies, ask: StudiesWrite) -> StudiesPlan:
     return _kept(ask.study, study)
 
 
-def _problems(text: str) -> list[str]:
+def _problems(text: str) -> tuple[str, ...]:
     try:
-        return list(plan_problems(read_plan_text(text, STUDY_FILE)))
+        return plan_problems(read_plan_text(text, STUDY_FILE))
     except InputError as error:
-        return [error_line(error)]
+        return (error_line(error),)
 
 
 def _kept(name: str, study: Study) -> StudiesPlan:
@@ -129,6 +129,6 @@ def _kept(name: str, study: Study) -> StudiesPlan:
     try:
         look = review_study(study.folder)
     except InputError as error:
-        return StudiesPlan(name, text, [error_line(error)], [])
+        return StudiesPlan(name, text, (error_line(error),), [])
     sections = [] if look.problems else [preview_section(one) for one in preview_sections(look)]
-    return StudiesPlan(name, text, list(look.problems), sections)
+    return StudiesPlan(name, text, look.problems, sections)

@@ -11,7 +11,7 @@ import msgspec
 from fdvv.errors import DeviceError, InputError
 from fdvv.program.program import Signal
 from fdvv.studio.api.press_frames import DIGITS, ShakeSignal, shake_signal
-from fdvv.studio.contract import Message, Tell
+from fdvv.studio.contract import Message, Tell, message_of
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.studies import TWIN, Studies
 from fdvv.studio.studio import Studio
@@ -22,7 +22,7 @@ from fdvv.study.plan.plan_words import equal_text, question_text
 from fdvv.study.plan.session import SessionState, Step
 from fdvv.study.plan.trial import EQUAL
 from fdvv.study.stimulus.open import ScreenRenderer, open_screen_renderer
-from fdvv.study.stimulus.twin import PersonFrame
+from fdvv.study.stimulus.twin import PersonClick, PersonFrame
 
 PARTED = re.compile(r"\n\s*\n")
 
@@ -61,10 +61,10 @@ def task_message(plan: StudyPlan, state: SessionState, language: str, face: Tria
         len(alike) if known else 0,
         face.item,
         question_text(plan, language),
-        list(face.labels),
+        face.labels,
         [choice for choice in choices_of(plan) if choice != EQUAL],
         equal_text(plan, language),
-        list(rated_labels(face)) if plan.ratings else [],
+        rated_labels(face) if plan.ratings else (),
         [_scale(rating, language) for rating in plan.ratings],
     )
 
@@ -81,17 +81,13 @@ def _scale(rating: Rating, language: str) -> StudyScale:
 
 def _asked(question: Question, language: str) -> StudyAsked:
     choices = question.choices.get(language) or next(iter(question.choices.values()), ())
-    about = (question.low, question.high, question.required)
-    return StudyAsked(question.name, text_in(question.question, language), list(choices), *about)
+    return message_of(StudyAsked, question, question=text_in(question.question, language), choices=choices)
 
 
 def frame_message(frame: PersonFrame) -> StudyFrame:
     """Return a frame: the position of the cap at its end, and its clicks."""
-    clicks = [StudyClick(one.sound, one.t_s, one.velocity_mm_s) for one in frame.clicks]
     t_s, displacement_mm = (round(float(column[-1]), DIGITS) for column in (frame.t_s, frame.displacement_mm))
-    return StudyFrame(
-        frame.label, t_s, displacement_mm, frame.key > 0, frame.pressed, frame.dropped_s, clicks
-    )
+    return message_of(StudyFrame, frame, t_s=t_s, displacement_mm=displacement_mm, key=frame.key > 0)
 
 
 def unnamed_sound(signal: Signal) -> ShakeSignal:
@@ -117,7 +113,7 @@ class StudyAsked(Message):
 
     name: str
     question: str
-    choices: list[str]
+    choices: tuple[str, ...]
     low: float | None
     high: float | None
     required: bool
@@ -148,10 +144,10 @@ class StudyTask(Message):
     of: int
     item: str
     question: str
-    places: list[str]
+    places: tuple[str, ...]
     choices: list[str]
     equal: str
-    rated: list[str]
+    rated: tuple[str, ...]
     scales: list[StudyScale]
 
 
@@ -163,14 +159,6 @@ class StudyStep(Message, tag="step"):
     form: StudyForm | None = None
     task: StudyTask | None = None
     left_s: float | None = None
-
-
-class StudyClick(Message):
-    """A vibration starts at the cap. sound : its place among the trial's signals."""
-
-    sound: int
-    t_s: float
-    velocity_mm_s: float
 
 
 class StudyFrame(Message, tag="frame"):
@@ -186,7 +174,7 @@ class StudyFrame(Message, tag="frame"):
     key: bool
     pressed: int
     dropped_s: float
-    clicks: list[StudyClick]
+    clicks: tuple[PersonClick, ...]
 
 
 class StudyStages:
