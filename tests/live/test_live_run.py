@@ -49,14 +49,12 @@ def begun(seen: Seen, silent_s: float = 60.0) -> LiveRun:
 
 
 def test_time_that_cannot_be_kept_up_with_is_dropped_and_told() -> None:
-    times = iter([0.0, 0.01, 0.02, 0.52, 0.53, 9.0, 9.01])
-    pace = RealTimeClock(lambda: next(times), longest_s=0.1)
+    times = iter([0.0, 0.01, 0.02, 0.52, 0.53])
+    pace = RealTimeClock(lambda: next(times))
     found = [pace.due() for _ in range(5)]
     assert np.array(found) == pytest.approx(
         np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.0), (0.1, 0.4), (0.01, 0.0)])
     )
-    pace.pause()
-    assert np.array([pace.due(), pace.due()]) == pytest.approx(np.array([(0.0, 0.0), (0.01, 0.0)]))
 
 
 def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:

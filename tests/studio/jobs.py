@@ -53,7 +53,7 @@ class Follower:
         self.numbers: list[int] = []
         self._news = threading.Condition()
         self._jobs, self._job = jobs, job
-        self.end = jobs.listen(job, from_event, self._heard)
+        self.end = jobs.job(job).listen(from_event, self._heard)
 
     def _heard(self, number: int, events: Sequence[JobEvent]) -> None:
         with self._news:

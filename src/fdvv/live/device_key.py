@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
@@ -38,19 +39,15 @@ class DeviceLine(Protocol):
 
     def do(self, work: Callable[[], Found]) -> Found:
         """Call work with exclusive access to the device; its exceptions are raised here."""
-        ...
 
     def now_s(self) -> float:
         """Return the time by which changes are measured."""
-        ...
 
     def wait(self, time_s: float) -> None:
         """Let time pass."""
-        ...
 
     def close(self) -> None:
         """Listen no more."""
-        ...
 
 
 class SimulatedLine:
@@ -60,19 +57,16 @@ class SimulatedLine:
         self._device = device
 
     def do(self, work: Callable[[], Found]) -> Found:
-        """Do it."""
         return work()
 
     def now_s(self) -> float:
-        """Return the board's own time."""
         return self._device.client.port.now_s()
 
     def wait(self, time_s: float) -> None:
-        """Let the board run."""
         self._device.client.listen(self.now_s() + time_s)
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing: there is no thread."""
 
 
 class RealLine:
@@ -117,11 +111,9 @@ class RealLine:
                     raise DeviceError(f"{name}: nobody listens to it any more; open it again") from None
 
     def now_s(self) -> float:
-        """Return the host's monotonic clock."""
         return time.monotonic()
 
     def wait(self, time_s: float) -> None:
-        """Sleep."""
         time.sleep(time_s)
 
     def close(self) -> None:
@@ -170,32 +162,27 @@ class DeviceKey:
     device : open; closed with this. failed : called once with one line when the device has fallen to zero
         force or is gone, from a thread of this.
 
+    Attributes
+    ----------
+    problem : why the device no longer renders, in one line; empty while it does.
+
     Raises InputError on a device that no person presses.
     """
 
     def __init__(self, device: Device, failed: Callable[[str], None] = lambda _line: None) -> None:
         if not isinstance(device, PressedDevice):
             raise InputError("device", device.info().name, "is pressed by no person", "use serial:PORT")
-        self._device, self._failed = device, failed
-        self._level, self._pressed_s, self._missed = 0, list[float](), 0
-        self._problem, self._rendering, self._lock = "", False, Lock()
+        self.device, self._failed = device, failed
+        self._level, self._pressed_s, self._missed = 0, deque[float](maxlen=KEPT), 0
+        self.problem, self._rendering, self._lock = "", False, Lock()
         device.client.on_key = self._key
-        self._line = RealLine(device, self._heard, self._look, self._lost)
-
-    @property
-    def device(self) -> PressedDevice:
-        """The device."""
-        return self._device
-
-    @property
-    def problem(self) -> str:
-        """Why the device no longer renders, in one line; empty while it does."""
-        return self._problem
+        # keys are reported separately, so that nothing is to be done with telemetry
+        self._line = RealLine(device, lambda _columns: None, self._look, lambda error: self._end(str(error)))
 
     @property
     def clock_error_ms(self) -> float:
         """Error bound between the device's clock and the host's: half of the quickest exchange."""
-        return self._line.do(lambda: 0.5e-3 * self._device.client.clocks().shortest_us)
+        return self._line.do(lambda: 0.5e-3 * self.device.client.clocks().shortest_us)
 
     def render(self, model: FDVVModel) -> None:
         """Put a button under the hand.
@@ -203,9 +190,13 @@ class DeviceKey:
         Raises InputError, ModelError on one that the device cannot hold, DeviceError.
         """
         self._check()
-        limits = Limits(self._device.settings())
+        limits = Limits(self.device.settings())
         image = compile_button(model, limits=limits).image
-        self._guarded(lambda: self._load(image))
+        try:
+            self._line.do(lambda: self._load(image))
+        except DeviceError as error:
+            self._end(str(error))
+            raise
 
     def pressed_s(self, start_s: float, end_s: float) -> tuple[float, ...]:
         """Return the times the key went down from start to end, on the host's monotonic clock, rising.
@@ -213,10 +204,10 @@ class DeviceKey:
         DeviceError if the device has failed, or if the line lost frames that may have reported a press.
         """
         self._check()
-        missed = self._line.do(lambda: self._device.client.telemetry.missing_frames)
+        missed = self._line.do(lambda: self.device.client.telemetry.missing_frames)
         lost, self._missed = missed - self._missed, missed
         if lost:
-            name = self._device.info().name
+            name = self.device.info().name
             raise DeviceError(f"{name}: the line lost {lost} frames, maybe a press; play it again")
         with self._lock:
             return tuple(sorted(at for at in self._pressed_s if start_s <= at <= end_s))
@@ -224,21 +215,21 @@ class DeviceKey:
     def rest(self) -> None:
         """Fall to zero force until the next button; nothing happens if the device is gone."""
         self._rendering = False
-        if not self._problem:
+        if not self.problem:
             with suppress(DeviceError):
-                self._line.do(self._device.stop)
+                self._line.do(self.device.stop)
 
     def close(self) -> None:
         """Fall to zero force and let the device go."""
         self.rest()
-        self._problem = self._problem or "the device is closed; open it again"
+        self.problem = self.problem or "the device is closed; open it again"
         self._line.close()
-        self._device.close()
+        self.device.close()
 
     # -- in the line's thread ------------------------------------------------------------------------------
 
     def _load(self, image: bytes) -> None:
-        device, client = self._device, self._device.client
+        device, client = self.device, self.device.client
         device.stop()
         clear_latched(device, lambda _line: None)
         try:
@@ -256,39 +247,24 @@ class DeviceKey:
     def _key(self, notice: KeyRequest) -> None:
         """Note a key that went down, or on to the next level."""
         if notice.key > self._level:
-            at_s = self._device.client.host_s(notice.time_us)
+            at_s = self.device.client.host_s(notice.time_us)
             with self._lock:
-                self._pressed_s = [*self._pressed_s, at_s][-KEPT:]
+                self._pressed_s.append(at_s)
         self._level = notice.key
 
-    def _heard(self, _columns: TickColumns) -> None:
-        """Ignore telemetry: keys are reported separately."""
-
     def _look(self) -> None:
-        if self._rendering and not self._problem:
-            found = self._device.fault()
+        if self._rendering and not self.problem:
+            found = self.device.fault()
             if found.fault is not Fault.NONE:
                 reason = found.fault.name.lower().replace("_", " ")
-                self._end(
-                    f"{self._device.info().name}: fell to zero force: {reason}; let go and play it again"
-                )
-
-    def _lost(self, error: DeviceError) -> None:
-        self._end(str(error))
+                name = self.device.info().name
+                self._end(f"{name}: fell to zero force: {reason}; let go and play it again")
 
     def _end(self, line: str) -> None:
-        if self._problem:
-            return
-        self._problem, self._rendering = line, False
-        self._failed(line)
-
-    def _guarded(self, work: Callable[[], None]) -> None:
-        try:
-            self._line.do(work)
-        except DeviceError as error:
-            self._end(str(error))
-            raise
+        if not self.problem:
+            self.problem, self._rendering = line, False
+            self._failed(line)
 
     def _check(self) -> None:
-        if self._problem:
-            raise DeviceError(self._problem)
+        if self.problem:
+            raise DeviceError(self.problem)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from operator import attrgetter
 from threading import Lock
 
 import numpy as np
@@ -20,7 +22,7 @@ from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import NONE, Fault, Mode, Refusal
 from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
 from fdvv.twin.plant import NEAR_1_s
-from fdvv.units import FloatArray, mm_from_m
+from fdvv.units import FloatArray
 
 TOP_mm, DEEP_mm = 0.1, 0.3
 """A press begins where the cap passes the first; it counts once it was deeper than the second."""
@@ -74,8 +76,7 @@ class Descent:
         self._t_s: list[float] = []
         self._x_mm: list[float] = []
 
-    @property
-    def begun(self) -> bool:
+    def __bool__(self) -> bool:
         """Whether the cap is down."""
         return bool(self._t_s)
 
@@ -84,13 +85,11 @@ class Descent:
         if x_mm[0] <= TOP_mm:
             return self._over(float(t_s[0]))
         steps = np.floor(x_mm / STEP_mm)
-        deeper = steps > np.maximum.accumulate(np.concatenate([[self._deepest_step()], steps[:-1]]))
+        deepest = np.floor(self._x_mm[-1] / STEP_mm) if self._x_mm else -1.0
+        deeper = steps > np.maximum.accumulate([deepest, *steps[:-1]])
         self._t_s += t_s[deeper].tolist()
         self._x_mm += x_mm[deeper].tolist()
         return None
-
-    def _deepest_step(self) -> float:
-        return float(np.floor(self._x_mm[-1] / STEP_mm)) if self._x_mm else -1.0
 
     def _over(self, now_s: float) -> LiveEvent | None:
         t, x = np.array(self._t_s), np.array(self._x_mm)
@@ -124,6 +123,10 @@ class LivePress:
     subject : what is pressed, on which rig.
     seed : of everything random; None: nothing is.
 
+    Attributes
+    ----------
+    due_s : time requested since the beginning; less than a tick of it is not simulated yet.
+
     Time passes in advance() only. Not to be used from two threads at once.
     """
 
@@ -132,7 +135,7 @@ class LivePress:
         self.rig = InteractiveRig(subject.image, subject.rig, subject.finger, subject.settings, seed)
         self._tick_s = subject.rig.controller.tick_s
         self._latency_s = subject.rig.exciter.latency_s
-        self._due_s = 0.0
+        self.due_s = 0.0
         self._key, self._faulted = 0, False
         self._path: DisplacementPath | None = None
         self._descent = Descent()
@@ -141,11 +144,6 @@ class LivePress:
     def time_s(self) -> float:
         """Simulated time since the beginning."""
         return self.rig.time_s
-
-    @property
-    def due_s(self) -> float:
-        """Time requested since the beginning; less than a tick of it is not simulated yet."""
-        return self._due_s
 
     @property
     def replaying(self) -> bool:
@@ -180,8 +178,8 @@ class LivePress:
 
         Parts of a tick wait for the next call. ModelError if the motion diverged.
         """
-        self._due_s += duration_s
-        ticks = max(0, int((self._due_s - self.time_s) / self._tick_s + 1e-6))
+        self.due_s += duration_s
+        ticks = max(0, int((self.due_s - self.time_s) / self._tick_s + 1e-6))
         pieces: list[InteractiveTicks] = []
         while ticks or not pieces:
             count = self._lead_along(ticks)
@@ -215,9 +213,8 @@ class LivePress:
             return
         refusal = core.ask(CoreRequest.CLEAR, core.fault)
         if refusal is not Refusal.NONE:
-            raise DeviceError(
-                f"the fault {core.fault.name.lower()} cannot be cleared: its cause is still there"
-            )
+            name = core.fault.name.lower()
+            raise DeviceError(f"the fault {name} cannot be cleared: its cause is still there")
         self.lift()
         core.arm()
         self._faulted = False
@@ -234,9 +231,8 @@ class LivePress:
         return min(ticks, max(1, round(step.holds_s / self._tick_s)))
 
     def _events(self, columns: InteractiveTicks) -> tuple[LiveEvent, ...]:
-        found = [*self._keys(columns), *self._vibrations(columns), *self._presses(columns)]
-        found += self._faults(columns)
-        return tuple(sorted(found, key=lambda event: event.t_s))
+        kinds = (self._keys, self._vibrations, self._presses, self._faults)
+        return tuple(sorted((event for of in kinds for event in of(columns)), key=attrgetter("t_s")))
 
     def _keys(self, columns: InteractiveTicks) -> list[LiveEvent]:
         if not columns.key.size:
@@ -255,7 +251,7 @@ class LivePress:
 
     def _presses(self, columns: InteractiveTicks) -> list[LiveEvent]:
         """Return presses that ended; the next one is announced at their speed."""
-        found = [self._descent.take(t, x) for t, x in stretches(columns, self._descent.begun)]
+        found = [self._descent.take(t, x) for t, x in stretches(columns, bool(self._descent))]
         ended = [event for event in found if event]
         for event in ended:
             self.rig.announce(float(np.clip(event.velocity_mm_s, *PACE_mm_s)))
@@ -269,11 +265,6 @@ class LivePress:
         event = _event(LiveEventKind.FAULT, columns, int(fell[0]), int(self.rig.core.fault))
         return [replace(event, message=str(self.fault()))]
 
-    @property
-    def travel_limit_mm(self) -> float:
-        """Deepest place of the rig's stop."""
-        return float(mm_from_m(self.subject.rig.stops.travel_limit_m))
-
 
 def _change(was: int, key: int) -> LiveEventKind:
     if was and key:
@@ -282,13 +273,8 @@ def _change(was: int, key: int) -> LiveEventKind:
 
 
 def _event(kind: LiveEventKind, columns: InteractiveTicks, i: int, number: int) -> LiveEvent:
-    return LiveEvent(
-        kind,
-        float(columns.t_s[i]),
-        float(columns.displacement_mm[i]),
-        float(columns.velocity_mm_s[i]),
-        number,
-    )
+    c = columns
+    return LiveEvent(kind, float(c.t_s[i]), float(c.displacement_mm[i]), float(c.velocity_mm_s[i]), number)
 
 
 KEPT = 200
@@ -305,14 +291,14 @@ class PressTimes:
     """
 
     def __init__(self) -> None:
-        self._leads: list[tuple[float, float]] = []
-        self._activations_s: list[float] = []
+        self._leads = deque[tuple[float, float]](maxlen=KEPT)
+        self._activations_s = deque[float](maxlen=KEPT)
         self._lock = Lock()
 
     def led(self, simulated_s: float, hand_s: float) -> None:
         """Note that a press of the hand at hand_s takes effect at a simulated time, later than the last."""
         with self._lock:
-            self._leads = [*self._leads, (simulated_s, hand_s)][-KEPT:]
+            self._leads.append((simulated_s, hand_s))
 
     def activated(self, simulated_s: float) -> None:
         """Note that the key went down; one that no lead came before is nobody's press."""
@@ -320,7 +306,7 @@ class PressTimes:
             at = bisect_right(self._leads, simulated_s, key=lambda lead: lead[0]) - 1
             if at >= 0:
                 led_s, hand_s = self._leads[at]
-                self._activations_s = [*self._activations_s, hand_s + simulated_s - led_s][-KEPT:]
+                self._activations_s.append(hand_s + simulated_s - led_s)
 
     def between(self, start_s: float, end_s: float) -> tuple[float, ...]:
         """Return the activations from start to end on the hand's clock, rising."""

@@ -16,34 +16,22 @@ LONGEST_s = 0.1
 
 
 class RealTimeClock:
-    """Paces simulated time by a monotonic clock.
+    """Paces simulated time by a monotonic clock (s).
 
-    Parameters
-    ----------
-    clock : monotonic, s.
-    longest_s : most that is caught up at once.
+    last_s : the clock as due() read it last; None before.
     """
 
-    def __init__(self, clock: Callable[[], float], longest_s: float = LONGEST_s) -> None:
-        self._clock, self._longest_s = clock, longest_s
-        self._last_s: float | None = None
-
-    @property
-    def last_s(self) -> float:
-        """The clock as due() read it last; 0 before."""
-        return self._last_s or 0.0
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self.last_s: float | None = None
 
     def due(self) -> tuple[float, float]:
-        """Return the time due since the last call, and the time dropped; zeros after pause()."""
-        now = self._clock()
-        passed = 0.0 if self._last_s is None else now - self._last_s
-        self._last_s = now
-        run = min(passed, self._longest_s)
-        return run, passed - run
-
-    def pause(self) -> None:
-        """Stop the clock: time until the next call is neither due nor dropped."""
-        self._last_s = None
+        """Return the time due since the last call, and the time dropped; zeros at first."""
+        now_s = self._clock()
+        passed_s = 0.0 if self.last_s is None else now_s - self.last_s
+        self.last_s = now_s
+        due_s = min(passed_s, LONGEST_s)
+        return due_s, passed_s - due_s
 
 
 STEP_s = 0.004
@@ -146,16 +134,13 @@ class LiveRun:
         try:
             while not self._over:
                 self._look()
-                self._wait_for_someone()
+                with self._changed:
+                    self._changed.wait_for(lambda: self._over or self._looking)
         except FdvvError as error:
             self._failed(str(error))
         except Exception:
             self._failed("the live press failed; the studio's terminal tells why")
             raise
-
-    def _wait_for_someone(self) -> None:
-        with self._changed:
-            self._changed.wait_for(lambda: self._over or self._looking)
 
     def _look(self) -> None:
         """Simulate in real time while a page watches; then lift the finger."""
@@ -166,10 +151,10 @@ class LiveRun:
             gathered.led |= self._do_asked()
             began_s = self._clock()
             gathered.take(*self._press.advance(due_s), self._clock() - began_s)
-            gathered.zero_s = pace.last_s - self._press.due_s
+            gathered.zero_s = (pace.last_s or 0.0) - self._press.due_s
             if gathered.due(self._clock()):
                 gathered = self._frame(gathered)
-        if not gathered.empty:
+        if gathered.columns:
             self._frame(gathered)
         self._press.lift()
 
@@ -203,32 +188,21 @@ class _Gathered:
     """Accumulates the next frame."""
 
     def __init__(self, now_s: float) -> None:
-        self.since_s, self.led, self.zero_s = now_s, False, 0.0
-        self._columns: list[InteractiveTicks] = []
+        self.since_s, self.led, self.zero_s, self._busy_s = now_s, False, 0.0, 0.0
+        self.columns: list[InteractiveTicks] = []
         self._events: list[LiveEvent] = []
-        self._busy_s = 0.0
 
     def due(self, now_s: float) -> bool:
         """Whether to show it: at once with events, after half a frame with input, else after a frame."""
         waited_s = now_s - self.since_s
         return bool(self._events) or waited_s >= (FRAME_s / 2 if self.led else FRAME_s)
 
-    @property
-    def empty(self) -> bool:
-        return not self._columns
-
     def take(self, columns: InteractiveTicks, events: tuple[LiveEvent, ...], busy_s: float) -> None:
-        self._columns.append(columns)
+        self.columns.append(columns)
         self._events += events
         self._busy_s += busy_s
 
     def frame(self, sequence: int, dropped_s: float, now_s: float) -> LiveFrame:
-        ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
-        return LiveFrame(
-            InteractiveTicks.joined(self._columns),
-            tuple(self._events),
-            sequence,
-            dropped_s,
-            ratio,
-            self.zero_s,
-        )
+        columns, events = InteractiveTicks.joined(self.columns), tuple(self._events)
+        busy_ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
+        return LiveFrame(columns, events, sequence, dropped_s, busy_ratio, self.zero_s)

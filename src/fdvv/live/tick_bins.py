@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +15,7 @@ BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False)
-class TickPiece:
+class TickPiece(NamedTuple):
     """Some ticks in rising time, every column (n,).
 
     Attributes
@@ -68,34 +68,12 @@ class TickBinner:
 
     def add(self, piece: TickPiece) -> TickBins:
         """Add a piece, later than all before; return the bins that are complete now."""
-        whole = joined(self._kept, piece) if self._kept else piece
+        pieces = (self._kept, piece) if self._kept else (piece,)
+        whole = TickPiece(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
         number = np.floor(whole.t_s / self.bin_s).astype(np.int64)
         last = number == number[-1] if number.size else np.zeros(0, dtype=np.bool_)
-        self._kept = _part(whole, last)
-        return _binned(_part(whole, ~last), number[~last])
-
-
-def joined(first: TickPiece, second: TickPiece) -> TickPiece:
-    """Concatenate two pieces."""
-    return TickPiece(
-        np.concatenate([first.t_s, second.t_s]),
-        np.concatenate([first.displacement_mm, second.displacement_mm]),
-        np.concatenate([first.force_cN, second.force_cN]),
-        np.concatenate([first.commanded_cN, second.commanded_cN]),
-        np.concatenate([first.state, second.state]),
-        np.concatenate([first.cut, second.cut]),
-    )
-
-
-def _part(piece: TickPiece, chosen: BoolArray) -> TickPiece:
-    return TickPiece(
-        piece.t_s[chosen],
-        piece.displacement_mm[chosen],
-        piece.force_cN[chosen],
-        piece.commanded_cN[chosen],
-        piece.state[chosen],
-        piece.cut[chosen],
-    )
+        self._kept = TickPiece(*(column[last] for column in whole))
+        return _binned(TickPiece(*(column[~last] for column in whole)), number[~last])
 
 
 def _binned(piece: TickPiece, number: IntArray) -> TickBins:

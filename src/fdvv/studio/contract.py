@@ -27,7 +27,7 @@ class Message(Struct, frozen=True, forbid_unknown_fields=True):
 M = TypeVar("M", bound=Message)
 
 
-def message_of(kind: type[M], record: object, **others: Any) -> M:
+def message_of(kind: type[M], record: object, /, **others: Any) -> M:
     """Make a message of the fields that a record has by the same names, and of others."""
     alike = (name for name in kind.__struct_fields__ if name not in others and hasattr(record, name))
     return kind(**{name: getattr(record, name) for name in alike}, **others)

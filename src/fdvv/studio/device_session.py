@@ -5,11 +5,9 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import msgspec
 
-from fdvv.device.contract import FaultReport
 from fdvv.device.open import open_device
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FdvvError, InputError
@@ -23,7 +21,7 @@ from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.press_check import felt_press, intended_press
 from fdvv.rendering.tuning import settings_with
-from fdvv.studio.contract import Message
+from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_thread import DeviceThread, mode_of
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
@@ -34,6 +32,25 @@ from fdvv.twin.files import load_rig
 STEP_mm = 0.05
 HOLDER = "the device view"
 NONE = "no device is connected"
+
+
+class DeviceConnect(Message):
+    """Connect a device of the list. rig, seed : of a simulated one."""
+
+    device: str
+    rig: str = "default"
+    seed: int = 0
+
+
+class DeviceUpload(Message):
+    """Make a button the device's program.
+
+    actuation : name of a table that was learned for it; empty: its own force.
+    """
+
+    button: str
+    actuation: str = ""
+    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
 
 
 class DeviceStatus(Message, tag="standing"):
@@ -84,16 +101,12 @@ def with_faults(known: DeviceStatus, remote: Remote) -> DeviceStatus:
     return msgspec.structs.replace(
         known,
         mode="fault" if report.fault is not Fault.NONE else mode_of(remote),
-        fault=_fault_line(report),
+        fault="" if report.fault is Fault.NONE else str(report),
         missing_ticks=telemetry.missing_ticks,
         late_ticks=telemetry.late_ticks,
         missing_frames=telemetry.missing_frames,
         lost_records=telemetry.lost_records,
     )
-
-
-def _fault_line(report: FaultReport) -> str:
-    return "" if report.fault is Fault.NONE else str(report)
 
 
 def put_button(
@@ -126,13 +139,8 @@ def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSee
     )
 
 
-@dataclass(frozen=True, eq=False)
-class TelemetrySubscriber:
-    """One page that follows the device; its functions are called from the device's thread."""
-
-    ticks: Callable[[TickPiece], None]
-    status: Callable[[DeviceStatus], None]
-    press: Callable[[PressSeen], None]
+Subscriber = tuple[Callable[[TickPiece], None], Tell]
+"""One page that follows the device: what takes its ticks, and what takes status and presses."""
 
 
 class DeviceSession:
@@ -145,7 +153,7 @@ class DeviceSession:
         self._held: DeviceThread | None = None
         self._status = DeviceStatus()
         self._model: FDVVModel | None = None
-        self._subscribers: list[TelemetrySubscriber] = []
+        self._subscribers: list[Subscriber] = []
 
     def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStatus:
         """Open a device of the list. InputError, DeviceError."""
@@ -160,9 +168,8 @@ class DeviceSession:
             self._locks.acquire(ask.device, HOLDER)
             try:
                 rig = load_rig(ask.rig) if ask.rig != "default" else None
-                self._held = DeviceThread(
-                    open_device(ask.device, rig, None, ask.seed), self._ticks, self._lost
-                )
+                device = open_device(ask.device, rig, None, ask.seed)
+                self._held = DeviceThread(device, self._ticks, self._lost)
             except BaseException:
                 self._locks.release(ask.device)
                 raise
@@ -205,9 +212,7 @@ class DeviceSession:
         finally:
             self.refresh()
         if self._model:
-            seen = press_seen(press, self._model, velocity_mm_s)
-            for subscriber in self._current_subscribers():
-                subscriber.press(seen)
+            self._tell(press_seen(press, self._model, velocity_mm_s))
         return self._status
 
     def do(self, work: Callable[[Remote], None]) -> DeviceStatus:
@@ -230,11 +235,12 @@ class DeviceSession:
                     self._status = found
         return self._changed()
 
-    def subscribe(self, subscriber: TelemetrySubscriber) -> Callable[[], None]:
-        """Send telemetry to a subscriber until the returned function is called."""
+    def subscribe(self, ticks: Callable[[TickPiece], None], tell: Tell) -> Callable[[], None]:
+        """Send telemetry to a page until the returned function is called; both are called by any thread."""
+        subscriber = (ticks, tell)
         with self._lock:
             self._subscribers.append(subscriber)
-        subscriber.status(self._status)
+        tell(self._status)
 
         def end() -> None:
             with self._lock:
@@ -242,18 +248,14 @@ class DeviceSession:
                     self._subscribers.remove(subscriber)
                 alone = not self._subscribers
             if alone:
-                self._zero_force()
+                # there may be no device, or one that holds no force between presses
+                with contextlib.suppress(FdvvError):
+                    self.do(lambda remote: remote.stop())
 
         return end
 
     def close(self) -> None:
         self.disconnect()
-
-    def _zero_force(self) -> None:
-        """Set zero force: no page is subscribed any more."""
-        # there may be none, or one that holds no force between presses
-        with contextlib.suppress(FdvvError):
-            self.do(lambda remote: remote.stop())
 
     def _read(self, held: DeviceThread, device: str, programmed: str) -> DeviceStatus:
         info, remote = held.device.info(), held.remote
@@ -271,8 +273,8 @@ class DeviceSession:
         return held.do(lambda: with_faults(common, remote)) if remote else common
 
     def _ticks(self, piece: TickPiece) -> None:
-        for subscriber in self._current_subscribers():
-            subscriber.ticks(piece)
+        for take, _ in self._current_subscribers():
+            take(piece)
         with self._lock:
             held, mode = self._held, self._status.mode
         # a mode that changes by itself is sent at once: a fault, heat
@@ -287,29 +289,13 @@ class DeviceSession:
         self._changed()
 
     def _changed(self) -> DeviceStatus:
-        for subscriber in self._current_subscribers():
-            subscriber.status(self._status)
+        self._tell(self._status)
         return self._status
 
-    def _current_subscribers(self) -> tuple[TelemetrySubscriber, ...]:
+    def _tell(self, message: Message) -> None:
+        for _, tell in self._current_subscribers():
+            tell(message)
+
+    def _current_subscribers(self) -> tuple[Subscriber, ...]:
         with self._lock:
             return tuple(self._subscribers)
-
-
-class DeviceConnect(Message):
-    """Connect a device of the list. rig, seed : of a simulated one."""
-
-    device: str
-    rig: str = "default"
-    seed: int = 0
-
-
-class DeviceUpload(Message):
-    """Make a button the device's program.
-
-    actuation : name of a table that was learned for it; empty: its own force.
-    """
-
-    button: str
-    actuation: str = ""
-    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -32,19 +32,6 @@ BETWEEN_s = 0.25
 CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
 
 
-class _Turn:
-    """Something that is asked of a device."""
-
-    def __init__(self, work: Callable[[], Any]) -> None:
-        self.work, self.answer = work, Future[Any]()
-
-    def run(self) -> None:
-        try:
-            self.answer.set_result(self.work())
-        except BaseException as error:
-            self.answer.set_exception(error)
-
-
 class DeviceThread:
     """A device in use by the studio.
 
@@ -59,7 +46,7 @@ class DeviceThread:
     ) -> None:
         self.device = device
         self._ticks, self._lost = ticks, lost
-        self._asked: queue.Queue[_Turn] = queue.Queue()
+        self._asked: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
         self._over, self._lock = threading.Event(), threading.Lock()
         self._twin_s = 0.0
         self._thread = threading.Thread(target=self._serve, name="device", daemon=True)
@@ -74,13 +61,13 @@ class DeviceThread:
         """Run work in the device's thread. Raises what it raises; DeviceError if the device is gone."""
         if threading.current_thread() is self._thread:
             return work()
-        turn = _Turn(work)
+        answer: Future[Answer] = Future()
         with self._lock:
             if self._over.is_set():
                 raise DeviceError(GONE)
-            self._asked.put(turn)
+            self._asked.put((work, answer))
         try:
-            return cast(Answer, turn.answer.result(PATIENCE_s))
+            return answer.result(PATIENCE_s)
         except TimeoutError:
             raise DeviceError(f"the device has not answered for {PATIENCE_s:g} s; disconnect it") from None
 
@@ -118,15 +105,19 @@ class DeviceThread:
         with self._lock:
             self._over.set()
             while not self._asked.empty():
-                self._asked.get().answer.set_exception(DeviceError(GONE))
+                self._asked.get()[1].set_exception(DeviceError(GONE))
 
     def _turn(self) -> None:
         """Do what is asked, or look at what the device tells for a moment."""
         wait_s = self._watch() if self.remote else GLANCE_s
         try:
-            self._asked.get(timeout=max(wait_s, 0.001)).run()
+            work, answer = self._asked.get(timeout=max(wait_s, 0.001))
         except queue.Empty:
             return
+        try:
+            answer.set_result(work())
+        except BaseException as error:
+            answer.set_exception(error)
         if self.remote:
             # what was not sent while something else was done is not missing
             self.remote.client.telemetry.clear()

@@ -18,7 +18,6 @@ from fdvv.studio.device_session import (
     DeviceStatus,
     DeviceUpload,
     PressSeen,
-    TelemetrySubscriber,
 )
 from fdvv.studio.devices import device_names
 from fdvv.studio.jobs.file import result_file
@@ -105,7 +104,7 @@ class ScopeChannel:
             raise InputError("bin_s", "bin_s", reason, f"use {LEAST_bin_s:g} to {MOST_bin_s:g} s")
         self._binner = TickBinner(ask.bin_s)
         if self._end is None:
-            self._end = self._devices.subscribe(TelemetrySubscriber(self._ticks, self._tell, self._tell))
+            self._end = self._devices.subscribe(self._ticks, self._tell)
 
     def close(self) -> None:
         if self._end:

@@ -13,7 +13,7 @@ from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.file import JobRow, result_names
 from fdvv.studio.jobs.inputs import BENCH, RIGS
 from fdvv.studio.jobs.jobs import Jobs
-from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, ProbeOrder, TuneOrder
+from fdvv.studio.jobs.orders import Order
 from fdvv.studio.studio import Studio
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names
@@ -22,7 +22,7 @@ from fdvv.twin.files import button_names
 class StartJob(Message):
     """Begin long work."""
 
-    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+    order: Order
 
 
 class JobAsk(Message):
@@ -46,7 +46,7 @@ class JobDetail(Message):
     """A job and what it was ordered with."""
 
     row: JobRow
-    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+    order: Order
 
 
 class ButtonChoice(Message):
@@ -123,22 +123,12 @@ class JobEvents(Message, tag="events"):
     events: tuple[JobEvent, ...]
 
 
-def choices(studio: Studio) -> WorkChoices:
+@call("jobs.choices")
+def choices(studio: Studio, _ask: Empty) -> WorkChoices:
     known, note = available_devices()
-    locks = studio.part(DeviceLocks)
     return WorkChoices(
         tuple(_buttons(studio)),
-        tuple(
-            DeviceChoice(
-                name,
-                about,
-                not pressed_by_person(name),
-                True,
-                name == "twin" or pressed_by_person(name),
-                locks.holder(name) or locks.holder(BENCH + name),
-            )
-            for name, about in known
-        ),
+        tuple(_device(studio.part(DeviceLocks), name, about) for name, about in known),
         RIGS,
         result_names(studio.project, "rig"),
         result_names(studio.project, "actuation"),
@@ -146,6 +136,12 @@ def choices(studio: Studio) -> WorkChoices:
         tuple(PARTICIPANTS),
         note,
     )
+
+
+def _device(locks: DeviceLocks, name: str, about: str) -> DeviceChoice:
+    person = pressed_by_person(name)
+    used_by = locks.holder(name) or locks.holder(BENCH + name)
+    return DeviceChoice(name, about, not person, rig=True, bench=person or name == "twin", used_by=used_by)
 
 
 def _buttons(studio: Studio) -> list[ButtonChoice]:
@@ -172,30 +168,28 @@ class JobsChannel:
 
     def __init__(self, studio: Studio, tell: Tell) -> None:
         self._jobs, self._tell = studio.part(Jobs), tell
-        self._ends: dict[str, Callable[[], None]] = {}
+        self._end_of_events: Callable[[], None] = lambda: None
 
     def receive(self, ask: WatchJobs | WatchJob) -> None:
         """Begin to follow all jobs, or the events of one. InputError."""
         if isinstance(ask, WatchJobs):
-            self._end("rows")
-            self._ends["rows"] = self._jobs.watch(lambda row: self._tell(JobChanged(row)))
+            self._jobs.watchers.watch(self._changed)
             self._tell(JobList(self._jobs.rows()))
             return
-        self._end("events")
+        self._end_of_events()
 
         def heard(number: int, events: Sequence[JobEvent]) -> None:
             for first in range(0, len(events), AT_ONCE):
                 self._tell(JobEvents(ask.job, number + first, tuple(events[first : first + AT_ONCE])))
 
-        self._ends["events"] = self._jobs.listen(ask.job, ask.from_event, heard)
+        self._end_of_events = self._jobs.job(ask.job).listen(ask.from_event, heard)
 
     def close(self) -> None:
-        for name in tuple(self._ends):
-            self._end(name)
+        self._jobs.watchers.forget(self._changed)
+        self._end_of_events()
 
-    def _end(self, name: str) -> None:
-        if name in self._ends:
-            self._ends.pop(name)()
+    def _changed(self, row: JobRow) -> None:
+        self._tell(JobChanged(row))
 
 
 @call("jobs.start")
@@ -227,11 +221,6 @@ def detail(jobs: Jobs, ask: JobAsk) -> JobDetail:
 @call("jobs.list")
 def rows(jobs: Jobs, _ask: Empty) -> JobRows:
     return JobRows(jobs.rows())
-
-
-@call("jobs.choices")
-def offered(studio: Studio, _ask: Empty) -> WorkChoices:
-    return choices(studio)
 
 
 CHANNEL = ChannelKind("jobs", (WatchJobs, WatchJob), (JobList, JobChanged, JobEvents), JobsChannel)

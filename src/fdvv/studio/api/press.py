@@ -187,7 +187,9 @@ def list_choices(studio: Studio, _ask: Empty) -> PressList:
 @call("press.trace")
 def read_trace(_studio: Studio, ask: TraceReadAsk) -> TraceRead:
     found = read_press_trace(ask.text.encode(), ask.name)
-    return TraceRead(found.name, found.origin, tuple(found.t_s), tuple(found.displacement_mm))
+    return TraceRead(
+        found.name, found.origin, tuple(found.t_s.tolist()), tuple(found.displacement_mm.tolist())
+    )
 
 
 def subject_of(studio: Studio, ask: PressStart) -> PressSubject:

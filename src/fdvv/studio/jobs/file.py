@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import chain, count
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,7 +22,7 @@ from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.studio.contract import Message
 from fdvv.studio.jobs.events import JobEvent
-from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order, ProbeOrder, TuneOrder
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
 
 JOB, EVENTS = "job.json", "events.jsonl"
 REMEDY = "put the job's folder elsewhere, or begin the work anew"
@@ -40,7 +41,7 @@ class JobRecord(Message):
 
     format: Literal["fdvv-job"]
     version: Literal[1]
-    order: CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
+    order: Order
     title: str
     simulated: bool
     created: str
@@ -88,14 +89,15 @@ class JobFolder:
         """Read the record of the job. InputError."""
         path = self.path / JOB
         text = read_limited(path, LARGEST_bytes, REMEDY)
-        return read_document(text, path, KIND, _record, lambda _: None)
+        decode = msgspec.json.Decoder(JobRecord).decode
+        return read_document(text, path, KIND, decode, lambda _: None)
 
     def open_journal(self) -> Journal:
         """Open the events to append to them; an incomplete last record is cut off. InputError, OSError."""
         path = self.path / EVENTS
         busy = InputError(path, "job", "another process is at work on it", "wait until it is done")
         journal = Journal(path, busy)
-        journal.cut(whole_bytes(path))
+        journal.cut(max((end for _, end in read_records(path, JOURNAL)), default=0))
         return journal
 
     def events(self) -> list[JobEvent]:
@@ -108,18 +110,6 @@ class JobFolder:
 
 def utc_now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
-
-
-def whole_bytes(path: Path) -> int:
-    """Return the byte offset at which the last whole record of a journal ends."""
-    end = 0
-    for _record_there, after in read_records(path, JOURNAL):
-        end = after
-    return end
-
-
-def _record(data: bytes) -> JobRecord:
-    return msgspec.json.decode(data, type=JobRecord)
 
 
 def _event(path: Path, record: dict[str, Any]) -> JobEvent:
@@ -238,14 +228,7 @@ def rig_name(order: Order) -> str:
 
 def _put(project: Path, kind: str, name: str, content: bytes) -> JobResult:
     place = RESULT_FOLDERS[kind]
-    free = _free(project, place, name) if place.fresh else name
+    names = chain((name,), (f"{name} {number}" for number in count(2)))
+    free = next(n for n in names if not (place.fresh and place.file(project, n).exists()))
     write_atomic(place.file(project, free), content)
-    return JobResult(kind, free)  # type: ignore[arg-type]  # the keys of PLACES are its kinds
-
-
-def _free(project: Path, place: ResultFolder, name: str) -> str:
-    found, count = name, 1
-    while place.file(project, found).exists():
-        count += 1
-        found = f"{name} {count}"
-    return found
+    return JobResult(kind, free)  # type: ignore[arg-type]  # the keys of RESULT_FOLDERS are its kinds

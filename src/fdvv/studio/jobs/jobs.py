@@ -8,13 +8,14 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.eventlog import Journal
 from fdvv.io.files import write_atomic
-from fdvv.studio.contract import Watchers, error_line
+from fdvv.studio.contract import Watchers, error_line, message_of
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.jobs.events import (
     JobEnded,
@@ -59,31 +60,29 @@ class JobProgress:
 
     def after(self, event: JobEvent) -> JobProgress:
         """Return the progress after an event."""
-        done, total = self.done, self.total
-        if isinstance(event, StageEvent):
-            return JobProgress("running", event.text, 0, 0)
-        if isinstance(event, PressEvent):
-            outcome = event.skipped or event.summary
-            return JobProgress(
-                "running", f"{event.velocity_mm_s:g} mm/s: {outcome}".rstrip(": "), event.done, event.total
-            )
-        if isinstance(event, PressAsked):
-            return JobProgress(
-                "needs you", f"press at {event.velocity_mm_s:g} mm/s", event.number - 1, event.total
-            )
-        if isinstance(event, TakeAsked):
-            return JobProgress("needs you", "follow the cue", event.number - 1, event.total)
-        if isinstance(event, TakeEvent):
-            outcome = event.reason or "good"
-            return JobProgress("running", f"take {event.number}: {outcome}", event.done, event.total)
-        if isinstance(event, QuestionAsked):
-            now = f"question {event.number} of {event.total} at most"
-            return JobProgress("needs you", now, event.number - 1, event.total, event.number)
-        if isinstance(event, QuestionAnswered):
-            return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
-        if isinstance(event, JobOutcome):
-            return JobProgress("running", event.sentence, done, total)
-        return self if self.state != "waiting" else JobProgress("running", self.now, done, total)
+        match event:
+            case StageEvent():
+                return JobProgress("running", event.text)
+            case PressEvent():
+                now = f"{event.velocity_mm_s:g} mm/s: {event.skipped or event.summary}".rstrip(": ")
+                return JobProgress("running", now, event.done, event.total)
+            case PressAsked():
+                now = f"press at {event.velocity_mm_s:g} mm/s"
+                return JobProgress("needs you", now, event.number - 1, event.total)
+            case TakeAsked():
+                return JobProgress("needs you", "follow the cue", event.number - 1, event.total)
+            case TakeEvent():
+                now = f"take {event.number}: {event.reason or 'good'}"
+                return JobProgress("running", now, event.done, event.total)
+            case QuestionAsked():
+                now = f"question {event.number} of {event.total} at most"
+                return JobProgress("needs you", now, event.number - 1, event.total, event.number)
+            case QuestionAnswered():
+                return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
+            case JobOutcome():
+                return JobProgress("running", event.sentence, self.done, self.total)
+        started = self.state != "waiting"
+        return self if started else dataclasses.replace(self, state="running", question=0)
 
 
 class LiveJob:
@@ -115,23 +114,18 @@ class LiveJob:
     def row(self) -> JobRow:
         with self.lock:
             record, progress = self.record, self.progress
-            over = record.state not in UNFINISHED
-            return JobRow(
-                self.name,
-                kind_of(record.order),
-                record.title,
-                record.order.device,
-                record.simulated,
-                record.state if over else progress.state,
-                record.line,
-                progress.now,
-                progress.done,
-                progress.total,
-                record.events if self._events is None else len(self._events),
-                record.state in ("cancelled", "failed"),
-                record.created,
-                record.ended,
-                record.results,
+            return message_of(
+                JobRow,
+                record,
+                job=self.name,
+                kind=kind_of(record.order),
+                device=record.order.device,
+                state=progress.state if record.state in UNFINISHED else record.state,
+                now=progress.now,
+                done=progress.done,
+                total=progress.total,
+                events=record.events if self._events is None else len(self._events),
+                resumable=record.state in ("cancelled", "failed"),
             )
 
     def begin(self) -> None:
@@ -152,19 +146,20 @@ class LiveJob:
             for listener in self._listeners:
                 listener(number, (event,))
 
-    def settle(self, record: JobRecord) -> None:
-        """Save the record of the job; the journal is closed with the end of a start. OSError."""
+    def settle(self, **changed: Any) -> None:
+        """Save the record of the job with changes; the journal is closed with the end of a start. OSError."""
         with self.lock:
             counts = {"done": self.progress.done, "total": self.progress.total, "events": len(self.events)}
-            self.record = msgspec.structs.replace(record, **counts)
+            self.record = msgspec.structs.replace(self.record, **changed, **counts)
             self.folder.save(self.record)
-            if record.state not in UNFINISHED and self._journal:
+            if self.record.state not in UNFINISHED and self._journal:
                 self._journal.close()
                 self._journal = None
 
     def listen(self, from_event: int, heard: Heard) -> Callable[[], None]:
         """Send events from a number on, and then as they come; the returned function ends it. InputError."""
         with self.lock:
+            from_event = max(0, from_event)
             if from_event < len(self.events):
                 heard(from_event, self.events[from_event:])
             self._listeners.append(heard)
@@ -195,7 +190,7 @@ class Jobs:
         self._folder = studio.project / JOBS
         self._locks = studio.part(DeviceLocks)
         self._lock = threading.RLock()
-        self._watchers = Watchers[JobRow]()
+        self.watchers = Watchers[JobRow]()
         self._jobs = {job.name: job for job in _jobs_on_disk(self._folder)}
 
     def rows(self) -> tuple[JobRow, ...]:
@@ -214,7 +209,8 @@ class Jobs:
         """Begin a job. devices : that there are. InputError on an order that cannot be done; OSError."""
         inputs = inputs_of(order, self._studio.catalog, self._studio.project, devices)
         with self._lock:
-            name = f"{_last_number(self._folder) + 1:04d}"
+            names = [path.name for path in self._folder.iterdir()] if self._folder.is_dir() else []
+            name = f"{max((int(n) for n in names if n.isdecimal()), default=0) + 1:04d}"
             self._locks.acquire(inputs.device, f"job {int(name)}, {inputs.title}")
             try:
                 job = self._made(name, order, inputs)
@@ -259,15 +255,6 @@ class Jobs:
             job.start.answer(number, answer)
         return job.row
 
-    def watch(self, changed: Callable[[JobRow], None]) -> Callable[[], None]:
-        """Send a job's row whenever it changes; the returned function ends it."""
-        self._watchers.watch(changed)
-        return lambda: self._watchers.forget(changed)
-
-    def listen(self, name: str, from_event: int, heard: Heard) -> Callable[[], None]:
-        """Send a job's events from a number on; the returned function ends it. InputError."""
-        return self.job(name).listen(max(0, from_event), heard)
-
     def close(self) -> None:
         """Stop all that is under way, and wait for it."""
         with self._lock:
@@ -292,7 +279,7 @@ class Jobs:
             with job.lock:
                 job.begin()
                 run = job.record.run + 1
-                job.settle(msgspec.structs.replace(job.record, state="running", line="", run=run, ended=None))
+                job.settle(state="running", line="", run=run, ended=None)
                 job.start = JobStart(
                     job.folder.path,
                     run,
@@ -302,11 +289,11 @@ class Jobs:
         except BaseException:
             self._locks.release(device)
             raise
-        self._changed(job)
+        self.watchers.tell(job.row)
 
     def _heard(self, job: LiveJob, event: JobEvent) -> None:
         job.heard(event)
-        self._changed(job)
+        self.watchers.tell(job.row)
 
     def _over(self, job: LiveJob, device: str, end: JobEnded) -> None:
         """Put what was made in its place, and keep how the job ended."""
@@ -315,21 +302,14 @@ class Jobs:
             try:
                 results = publish(self._studio.project, job.folder, job.record.order)
             except (OSError, FdvvError) as error:
-                end = JobEnded(
-                    "failed", f"what was made could not be kept in the project: {error_line(error)}"
-                )
+                line = f"what was made could not be kept in the project: {error_line(error)}"
+                end = JobEnded("failed", line)
         job.heard(end)
-        record = msgspec.structs.replace(
-            job.record, state=end.state, line=end.line, ended=utc_now(), results=results
-        )
         with job.lock:
             job.start = None
-            job.settle(record)
+            job.settle(state=end.state, line=end.line, ended=utc_now(), results=results)
         self._locks.release(device)
-        self._changed(job)
-
-    def _changed(self, job: LiveJob) -> None:
-        self._watchers.tell(job.row)
+        self.watchers.tell(job.row)
 
 
 def _jobs_on_disk(folder: Path) -> list[LiveJob]:
@@ -345,18 +325,13 @@ def _jobs_on_disk(folder: Path) -> list[LiveJob]:
     return found
 
 
-def _last_number(folder: Path) -> int:
-    names = [path.name for path in folder.iterdir()] if folder.is_dir() else []
-    return max((int(name) for name in names if name.isdecimal()), default=0)
-
-
 def _job_on_disk(path: Path) -> LiveJob:
     folder = JobFolder(path)
     job = LiveJob(path.name, folder, folder.load())
     if job.record.state in UNFINISHED:
         for event in job.events:
             job.progress = job.progress.after(event)
-        job.settle(msgspec.structs.replace(job.record, state="cancelled", line=BROKEN_OFF, ended=utc_now()))
+        job.settle(state="cancelled", line=BROKEN_OFF, ended=utc_now())
     return job
 
 

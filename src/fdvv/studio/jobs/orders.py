@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, cast
 
 from fdvv.studio.contract import Message
 
 
-class CompensateOrder(Message, tag="compensate"):
+class RigOrder(Message):
+    """What work of a button on a rig has in common.
+
+    button : id of the model. name : of what comes out.
+    device : one of those listed. rig : of a simulated one, by its shipped name.
+    pace_ratio : part by which a press may miss its speed.
+    """
+
+    button: str
+    name: str
+    device: str = "twin"
+    rig: str = "default"
+    seed: int = 0
+    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
+    pace_ratio: float = 0.35
+
+
+class CompensateOrder(RigOrder, tag="compensate"):
     """Learn the actuation that makes a rig feel like a button, and judge it on fresh presses.
 
     button : id of the model. name : of what comes out.
@@ -19,36 +36,23 @@ class CompensateOrder(Message, tag="compensate"):
     probe_presses : fresh presses per velocity that judge the result; 0 for none.
     """
 
-    button: str
-    name: str
-    device: str = "twin"
-    rig: str = "default"
-    seed: int = 0
-    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
     method: Literal["rig-aware", "paper"] = "rig-aware"
     rounds: int = 3
     presses: int = 12
     known_rig: str = ""
-    pace_ratio: float = 0.35
     probe_presses: int = 5
 
 
-class ProbeOrder(Message, tag="probe"):
+class ProbeOrder(RigOrder, tag="probe"):
     """Judge a learned table on fresh presses.
 
     actuation : name of a learned table; empty for the model's own force.
-    presses : per velocity. The rest is as in CompensateOrder.
+    presses : per velocity. seed : another than what was learned with. The rest is as in CompensateOrder.
     """
 
-    button: str
-    name: str
     actuation: str = ""
-    device: str = "twin"
-    rig: str = "default"
     seed: int = 1
-    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
     presses: int = 10
-    pace_ratio: float = 0.35
 
 
 class CaptureOrder(Message, tag="capture"):
@@ -75,7 +79,7 @@ class CaptureOrder(Message, tag="capture"):
     watch: bool = False
 
 
-class TuneOrder(Message, tag="tune"):
+class TuneOrder(RigOrder, tag="tune"):
     """Tune the vibration of a button's press with a person, or with a made-up observer.
 
     name : of the button that comes out. actuation : name of a learned table; empty for the model's own force.
@@ -85,20 +89,13 @@ class TuneOrder(Message, tag="tune"):
     frequency_ratios, gain_ratios : of the measured vibration, what is tried.
     """
 
-    button: str
-    name: str
     actuation: str = ""
-    device: str = "twin"
-    rig: str = "default"
-    seed: int = 0
-    velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
     observer: Literal["person", "simulated observer"] = "person"
     asking: Literal["compare", "rate"] = "compare"
     comparisons: int = 0
     repeats: int = 3
     frequency_ratios: tuple[float, ...] = (1.0,)
     gain_ratios: tuple[float, ...] = (1.0, 2.0)
-    pace_ratio: float = 0.35
 
 
 KindName = Literal["compensate", "probe", "capture", "tune"]
@@ -106,9 +103,5 @@ Order = CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
 
 
 def kind_of(order: Order) -> KindName:
-    """Name the kind of an order."""
-    if isinstance(order, CompensateOrder):
-        return "compensate"
-    if isinstance(order, ProbeOrder):
-        return "probe"
-    return "capture" if isinstance(order, CaptureOrder) else "tune"
+    """Return the kind by which an order is tagged."""
+    return cast(KindName, order.__struct_config__.tag)

@@ -17,6 +17,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import IO
 
 import msgspec
@@ -25,7 +26,7 @@ from fdvv.errors import DeviceError, FdvvError
 from fdvv.studio.contract import error_line
 from fdvv.studio.jobs.events import JobEnded, JobEvent
 from fdvv.studio.jobs.file import JobFolder
-from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, ProbeOrder
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, ProbeOrder, TuneOrder
 from fdvv.studio.jobs.work import Work
 
 STOPPED = "stopped; what was made is kept"
@@ -68,21 +69,19 @@ def _interrupt() -> None:
         os.kill(os.getpid(), signal.SIGINT)  # breaks off what the main thread waits for, too
 
 
+WORK = {
+    CaptureOrder: "fdvv.studio.jobs.work_capture:capture",
+    CompensateOrder: "fdvv.studio.jobs.work_learn:learn",
+    ProbeOrder: "fdvv.studio.jobs.work_learn:judge",
+    TuneOrder: "fdvv.studio.jobs.work_tune:tune",
+}
+"""What does an order; imported when it is known which, for the others need seconds."""
+
+
 def work_on(work: Work) -> None:
     """Do what the job's order says."""
     order = work.folder.load().order
-    if isinstance(order, CaptureOrder):
-        from fdvv.studio.jobs.work_capture import capture
-
-        capture(work, order)
-    elif isinstance(order, CompensateOrder | ProbeOrder):
-        from fdvv.studio.jobs.work_learn import judge, learn
-
-        learn(work, order) if isinstance(order, CompensateOrder) else judge(work, order)
-    else:
-        from fdvv.studio.jobs.work_tune import tune
-
-        tune(work, order)
+    resolve_name(WORK[type(order)])(work, order)
 
 
 def ended(work: Work) -> JobEnded:

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from fdvv.compensation.method import CurveOutcome
-from fdvv.device.contract import Device
+from fdvv.compensation.presses import AcceptanceLimits
+from fdvv.device.bench import BenchInfo
+from fdvv.device.contract import Device, DeviceInfo
 from fdvv.device.open import pressed_by_person
 from fdvv.model.model import FDVVModel
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.press_check import felt_press, intended_press, noticeable_cN
-from fdvv.rendering.session_run import Guide, PressDone, PressRequest
+from fdvv.rendering.session import Session
+from fdvv.rendering.session_run import Guide, PressDone
+from fdvv.studio.contract import message_of
 from fdvv.studio.jobs.events import (
     CurveIntended,
     CurveProgress,
     FeltCurve,
     JobEvent,
     JobNoticed,
+    JobStarted,
     PressAsked,
     PressEvent,
 )
 from fdvv.studio.jobs.file import JobFolder
+from fdvv.studio.jobs.orders import RigOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
 
 
@@ -45,7 +55,9 @@ class Work:
 
     def guide(self, device: str) -> Guide:
         """Return the guide of a session; only a person is asked for every press."""
-        return Guide(self._asked if pressed_by_person(device) else lambda _ask: None, self.notice)
+        if not pressed_by_person(device):
+            return Guide(notice=self.notice)
+        return Guide(lambda ask: self.tell(message_of(PressAsked, ask)), self.notice)
 
     def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
         """Report the intended force of the model at each speed."""
@@ -57,8 +69,25 @@ class Work:
     def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
         return lambda done: self.tell(press_event(done, travel_mm))
 
-    def _asked(self, ask: PressRequest) -> None:
-        self.tell(PressAsked(ask.velocity_mm_s, ask.travel_mm, ask.number, ask.total))
+    def learned(self) -> CompensationResult | None:
+        """Return the learned table that is worked on; None: the model's own force."""
+        return load_actuation(self.folder.actuation) if self.folder.actuation.exists() else None
+
+    @contextmanager
+    def session(self, order: RigOrder, folder: Path, seed: int) -> Iterator[tuple[Device, Session]]:
+        """Open the device of an order for a session in a folder; it is closed at the end."""
+        rig = self.folder.rig if self.folder.rig.exists() else None
+        session = Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio))
+        device: Any = session.open_device(order.device)
+        try:
+            yield device, session
+        finally:
+            if hasattr(device, "close"):
+                device.close()
+
+    def begin(self, info: DeviceInfo | BenchInfo) -> None:
+        """Report that the work begins, or continues, on a device."""
+        self.tell(JobStarted(self.run, info.name, info.simulated))
 
 
 def press_event(done: PressDone, travel_mm: float) -> PressEvent:
@@ -87,10 +116,3 @@ def curve_progress(curve: CurveOutcome) -> CurveProgress:
         finite_or_none(curve.mean_error_cN),
         finite_or_none(curve.max_error_cN),
     )
-
-
-def let_close(device: Device) -> None:
-    """Close a device that can be closed."""
-    found: Any = device
-    if hasattr(found, "close"):
-        found.close()

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
+from functools import cache
 from typing import Literal
 
 from fdvv.bench.capture import CaptureGuide, TakeDone, TakeRequest, VelocityProgress, capture_session
 from fdvv.bench.model import process_recording
 from fdvv.bench.plan import CapturePlan, cue_events, cue_length_s
-from fdvv.device.bench import open_bench
+from fdvv.device.bench import open_bench, show_nothing
 from fdvv.model.file import save_model
 from fdvv.recording.types import Stage
+from fdvv.studio.contract import message_of
 from fdvv.studio.jobs.events import (
     CueStarted,
     JobOutcome,
-    JobStarted,
     PaceProgress,
     StageEvent,
     TakeAsked,
@@ -26,30 +28,23 @@ from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none
 
 StepName = Literal["rest", "probe", "press"]
+PLANNED = ("paces_mm_s", "presses", "probe", "shuffled", "seed", "repeats", "pace_ratio")
+"""What an order says of the plan, by the same names."""
+
 STEPS: dict[Stage, StepName] = {Stage.REST: "rest", Stage.PROBE: "probe", Stage.PRESS: "press"}
 
 
 def capture(work: Work, order: CaptureOrder) -> None:
     """Record what the plan asks for, and process it into a model."""
-    plan = CapturePlan(
-        order.paces_mm_s,
-        order.presses,
-        order.probe,
-        order.shuffled,
-        order.seed,
-        order.repeats,
-        order.pace_ratio,
-    )
+    plan = CapturePlan(**{name: getattr(order, name) for name in PLANNED})
     bench = open_bench(order.device, order.switch, order.participant, order.seed, order.watch)
-    try:
+    with closing(bench):
         info = bench.facts()
-        work.tell(JobStarted(work.run, info.name, info.simulated))
+        work.begin(info)
         work.tell(StageEvent("capture", "recording the button"))
         paced = order.watch or not info.simulated
         guide = CaptureGuide(_cue(work, paced), lambda done: work.tell(_take(done)), work.notice)
         capture_session(bench, work.folder.recording, order.name, plan, guide)
-    finally:
-        bench.close()
     _process(work, order)
 
 
@@ -71,59 +66,48 @@ def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], N
     """Return the callback that reports a cue as it begins; only a paced cue is reported."""
 
     def cue(ask: TakeRequest) -> Callable[[float], None]:
-        started = not paced
-        if paced:
-            work.tell(_asked(ask))
-
-        def show(_t_s: float) -> None:
-            nonlocal started
-            if not started:
-                started = True
-                work.tell(CueStarted())
-
-        return show
+        if not paced:
+            return show_nothing
+        work.tell(_asked(ask))
+        started = cache(lambda: work.tell(CueStarted()))  # told at the first moment of the cue only
+        return lambda _t_s: started()
 
     return cue
 
 
 def _asked(ask: TakeRequest) -> TakeAsked:
-    velocity = ask.step.velocity_mm_s
+    velocity, stage = ask.step.velocity_mm_s, ask.step.stage
     moments = dict(cue_events(velocity, ask.travel_mm))
-    return TakeAsked(
-        STEPS[ask.step.stage],
-        velocity,
-        ask.travel_mm,
-        ask.number,
-        ask.total,
-        ask.again,
-        moments.get("cue contact"),
-        moments.get("cue bottom"),
-        cue_length_s(ask.step.stage, velocity, ask.travel_mm),
+    return message_of(
+        TakeAsked,
+        ask,
+        step=STEPS[stage],
+        velocity_mm_s=velocity,
+        contact_s=moments.get("cue contact"),
+        bottom_s=moments.get("cue bottom"),
+        length_s=cue_length_s(stage, velocity, ask.travel_mm),
     )
 
 
 def _take(done: TakeDone) -> TakeEvent:
     take, check = done.take, done.check
-    return TakeEvent(
-        take.number,
-        STEPS[take.stage],
-        take.velocity_mm_s,
-        check.ok,
-        check.reason,
-        finite_or_none(check.achieved_mm_s),
-        finite_or_none(check.travel_mm),
-        done.done,
-        done.total,
-        done.missed,
-        tuple(_pace(pace) for pace in done.progress),
+    return message_of(
+        TakeEvent,
+        done,
+        number=take.number,
+        step=STEPS[take.stage],
+        velocity_mm_s=take.velocity_mm_s,
+        ok=check.ok,
+        reason=check.reason,
+        achieved_mm_s=finite_or_none(check.achieved_mm_s),
+        travel_mm=finite_or_none(check.travel_mm),
+        paces=tuple(_pace(pace) for pace in done.progress),
     )
 
 
 def _pace(progress: VelocityProgress) -> PaceProgress:
     speeds = tuple(round(v, DIGITS) for v in progress.achieved_mm_s)
-    return PaceProgress(
-        progress.velocity_mm_s, progress.good, progress.wanted, progress.made, progress.missed, speeds
-    )
+    return message_of(PaceProgress, progress, achieved_mm_s=speeds)
 
 
 def _counted(count: int, what: str) -> str:

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import NamedTuple
 
 from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.paper import PaperLaw
-from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device
 from fdvv.io.files import write_atomic
 from fdvv.model.file import load_model
 from fdvv.model.model import FDVVModel
-from fdvv.rendering.actuation_file import load_actuation, save_actuation
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.actuation_file import save_actuation
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
-from fdvv.studio.jobs.events import JobOutcome, JobStarted, StageEvent
-from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder
-from fdvv.studio.jobs.work import Work, curve_progress, let_close
+from fdvv.studio.jobs.events import JobOutcome, StageEvent
+from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder
+from fdvv.studio.jobs.work import Work, curve_progress
 
 PROBE_SEED = 1
 """Added to the seed that was learned with: what judges is fresh."""
@@ -29,58 +29,49 @@ PROBE_SEED = 1
 def learn(work: Work, order: CompensateOrder) -> None:
     """Learn, keep what was learned, and judge it on fresh presses if that is wanted."""
     model = load_model(work.folder.button)
-    session = _session(work, order, order.seed, probing=False)
-    device = session.open_device(order.device)
-    try:
-        _begin(work, device, model, order.velocities_mm_s)
+    with work.session(order, work.folder.session, order.seed) as (device, session):
+        _begin(work, device, model, order)
         work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
-        result = compensate(
-            device,
-            model,
-            order.velocities_mm_s,
-            _law(work, order),
-            work.pressed(model.travel_mm),
-            session,
-            work.guide(order.device),
-        )
-    finally:
-        let_close(device)
+        report_press, guide = work.pressed(model.travel_mm), work.guide(order.device)
+        law, speeds = _law(work, order), order.velocities_mm_s
+        result = compensate(device, model, speeds, law, report_press, session, guide)
     _keep(work, result)
     if order.probe_presses:
-        _judge_learned(work, order, model, result)
+        with work.session(order, work.folder.probe, order.seed + PROBE_SEED) as pressed:
+            _probe(work, order, pressed, model, _table(result), order.probe_presses)
 
 
 def judge(work: Work, order: ProbeOrder) -> None:
     """Judge a learned table, or the model's own force, on fresh presses."""
-    model = load_model(work.folder.button)
-    learned = load_actuation(work.folder.actuation) if work.folder.actuation.exists() else None
-    session = _session(work, order, order.seed, probing=True)
-    device = session.open_device(order.device)
-    try:
-        _begin(work, device, model, order.velocities_mm_s)
-        surface = learned.surface if learned else uncompensated(device, model, order.velocities_mm_s)
-        about = (learned.method, learned.outcome.tuning) if learned else ("not compensated", Tuning())
-        _probe(work, order, (device, session), model, (surface, *about), order.presses)
-    finally:
-        let_close(device)
+    model, learned = load_model(work.folder.button), work.learned()
+    with work.session(order, work.folder.probe, order.seed) as (device, session):
+        _begin(work, device, model, order)
+        if learned:
+            table = _table(learned)
+        else:
+            surface = uncompensated(device, model, order.velocities_mm_s)
+            table = _Table(surface, "not compensated", Tuning())
+        _probe(work, order, (device, session), model, table, order.presses)
 
 
-def _judge_learned(work: Work, order: CompensateOrder, model: FDVVModel, result: CompensationResult) -> None:
-    session = _session(work, order, order.seed + PROBE_SEED, probing=True)
-    device = session.open_device(order.device)
-    try:
-        table = result.surface, result.method, result.outcome.tuning
-        _probe(work, order, (device, session), model, table, order.probe_presses)
-    finally:
-        let_close(device)
+class _Table(NamedTuple):
+    """What is judged, and the method and tuning it came with."""
+
+    surface: ForceSurface
+    method: str
+    tuning: Tuning
+
+
+def _table(learned: CompensationResult) -> _Table:
+    return _Table(learned.surface, learned.method, learned.outcome.tuning)
 
 
 def _probe(
     work: Work,
-    order: CompensateOrder | ProbeOrder,
+    order: RigOrder,
     pressed: tuple[Device, Session],
     model: FDVVModel,
-    table: tuple[Any, str, Tuning],
+    table: _Table,
     presses: int,
 ) -> None:
     device, session = pressed
@@ -118,13 +109,6 @@ def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
     return RigAware(order.rounds, load_learned_rig(known) if known.exists() else None)
 
 
-def _session(work: Work, order: CompensateOrder | ProbeOrder, seed: int, probing: bool) -> Session:
-    folder = work.folder.probe if probing else work.folder.session
-    rig = work.folder.rig if work.folder.rig.exists() else None
-    return Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio))
-
-
-def _begin(work: Work, device: Device, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
-    info = device.info()
-    work.tell(JobStarted(work.run, info.name, info.simulated))
-    work.intended(model, velocities_mm_s)
+def _begin(work: Work, device: Device, model: FDVVModel, order: RigOrder) -> None:
+    work.begin(device.info())
+    work.intended(model, order.velocities_mm_s)

@@ -5,16 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.model.file import load_model, save_model
 from fdvv.model.vibration import Vibration
-from fdvv.rendering.actuation_file import load_actuation
-from fdvv.rendering.session import Session
 from fdvv.rendering.tune_candidates import Candidates, candidates_for, simulated_observer
 from fdvv.rendering.tune_vibration import AnswerEvent, TunedVibration, TuneSetup, tune_vibration
 from fdvv.studio.jobs.events import (
     JobOutcome,
-    JobStarted,
     PlayedWave,
     QuestionAnswered,
     QuestionAsked,
@@ -23,7 +19,7 @@ from fdvv.studio.jobs.events import (
     TuneRanking,
 )
 from fdvv.studio.jobs.orders import TuneOrder
-from fdvv.studio.jobs.work import Work, let_close
+from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none, rounded
 from fdvv.vibration.templates import TemplateGrid
 from fdvv.vibration.tune import Preferred, Question, Rating
@@ -36,19 +32,11 @@ WAVE_Hz, QUIET_s = 8000, 0.005
 
 def tune(work: Work, order: TuneOrder) -> None:
     """Press and ask until nothing is left to ask, and keep the best in a model."""
-    model = load_model(work.folder.button)
-    learned = load_actuation(work.folder.actuation) if work.folder.actuation.exists() else None
+    model, learned = load_model(work.folder.button), work.learned()
     grid = TemplateGrid(order.frequency_ratios, order.gain_ratios)
     candidates = candidates_for(model, sorted(order.velocities_mm_s), grid)
-    setup = TuneSetup(learned.surface if learned else None, None, grid, order.observer)
-    rig = work.folder.rig if work.folder.rig.exists() else None
-    session = Session(
-        work.folder.session, order.seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio)
-    )
-    device = session.open_device(order.device)
-    try:
-        info = device.info()
-        work.tell(JobStarted(work.run, info.name, info.simulated))
+    with work.session(order, work.folder.session, order.seed) as (device, session):
+        work.begin(device.info())
         work.tell(StageEvent("tune", f"answers of a {order.observer}"))
         result = tune_vibration(
             device,
@@ -56,13 +44,11 @@ def tune(work: Work, order: TuneOrder) -> None:
             order.velocities_mm_s,
             _method(order),
             _answerer(work, order, candidates),
-            setup,
+            TuneSetup(learned.surface if learned else None, None, grid, order.observer),
             session,
             work.guide(order.device),
             lambda progress: work.tell(_answered(progress)),
         )
-    finally:
-        let_close(device)
     save_model(replace(result.model, name=order.name), work.folder.result("button"))
     rankings = tuple(_ranking(tuned) for tuned in result.tuned)
     sentence = "; ".join(f"{r.velocity_mm_s:g} mm/s: {r.sentence}" for r in rankings)
@@ -92,8 +78,7 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
 
 
 def _wave(vibration: Vibration) -> PlayedWave:
-    samples = vibration_samples(vibration, WAVE_Hz, QUIET_s)
-    return PlayedWave(WAVE_Hz, rounded(samples))
+    return PlayedWave(WAVE_Hz, rounded(vibration_samples(vibration, WAVE_Hz, QUIET_s)))
 
 
 def _answered(progress: AnswerEvent) -> QuestionAnswered:
