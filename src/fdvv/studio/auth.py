@@ -15,7 +15,6 @@ import stat
 from dataclasses import dataclass
 from pathlib import Path
 
-from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -62,20 +61,17 @@ class ServerAddress:
         changes : it could change something or stay open, so a browser must prove where it comes from.
         """
         headers = connection.headers
-        if headers.get("host", "") not in self.hosts:
+        host = headers.get("host", "")
+        if host not in self.hosts:
             return "the Host header is not this studio's; open the address that `fdvv studio` printed"
-        if "origin" in headers and not self._ours(headers):
-            return "the request comes from another site"
-        if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
+        ours = headers.get("origin", f"http://{host}") == f"http://{host}"
+        if not ours or headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return "the request comes from another site"
         if self._same(headers.get("authorization", "").removeprefix("Bearer ")):
             return ""
         if not self._same(connection.cookies.get(self.cookie, "")):
             return NO_TOKEN
         return "the Origin header is missing" if changes and "origin" not in headers else ""
-
-    def _ours(self, headers: Headers) -> bool:
-        return headers["origin"] == f"http://{headers.get('host', '')}"
 
     def _same(self, given: str) -> bool:
         return hmac.compare_digest(given.encode(), self.token.encode())
@@ -93,15 +89,16 @@ class ServerAddress:
 
 
 class AuthMiddleware:
-    """ASGI middleware that lets nothing pass a Door that is not its owner's."""
+    """ASGI middleware that lets nothing pass that is not of the studio's owner."""
 
     def __init__(self, app: ASGIApp, door: ServerAddress) -> None:
         self.app, self.door = app, door
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse, or pass on with the headers that keep the page to itself."""
-        if scope["type"] == "websocket":
-            await self._live(scope, receive, send)
+        if scope["type"] == "websocket" and self.door.refusal(HTTPConnection(scope), changes=True):
+            await receive()
+            await send({"type": "websocket.close", "code": CLOSED, "reason": "not this studio's page"})
             return
         if scope["type"] != "http":
             await self.app(scope, receive, send)
@@ -119,13 +116,6 @@ class AuthMiddleware:
         if answer is None and (reason := self.door.refusal(request, request.method not in ("GET", "HEAD"))):
             answer = PlainTextResponse(reason, 403)
         await (answer or self.app)(scope, receive, guarded)
-
-    async def _live(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if self.door.refusal(HTTPConnection(scope), changes=True):
-            await receive()
-            await send({"type": "websocket.close", "code": CLOSED, "reason": "not this studio's page"})
-            return
-        await self.app(scope, receive, send)
 
 
 TOKEN_FILE, IGNORE_FILE = ".studio-token", ".gitignore"

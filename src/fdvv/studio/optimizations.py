@@ -178,9 +178,8 @@ class Optimizations:
         with self._lock:
             known = self._simulated.get(run)
             if known and known.running:
-                raise InputError(
-                    "optimise", f"run {run}", "a simulated person is at it", "stop that one first"
-                )
+                reason = "a simulated person is at it"
+                raise InputError("optimise", f"run {run}", reason, "stop that one first")
             self._simulated[run] = SimulatedPlay(self, run, person, trials)
 
     def simulated(self, run: int) -> SimulatedPlay | None:
@@ -204,8 +203,5 @@ class Optimizations:
 
     def close(self) -> None:
         """End everything that is at work; what is on the disk stays."""
-        simulated, played = list(self._simulated.values()), list(self._played.values())
-        for person in simulated:
-            person.close()
-        for trial in played:
-            trial.close()
+        for player in [*self._simulated.values(), *self._played.values()]:
+            player.close()

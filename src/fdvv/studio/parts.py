@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from threading import Condition
 from types import ModuleType
-from typing import TypeVar
+from typing import Any
 
 import msgspec
 
@@ -75,19 +75,13 @@ class PartLoader:
         """Take what a module offers: its calls and channels, by whatever name it has them."""
         with self._changed:
             for offer in vars(module).values():
-                if isinstance(offer, Call):
-                    _add(self._parts.calls, offer)
-                elif isinstance(offer, ChannelKind):
-                    _add(self._parts.channels, offer)
+                if isinstance(offer, Call | ChannelKind):
+                    known: dict[str, Any] = (
+                        self._parts.calls if isinstance(offer, Call) else self._parts.channels
+                    )
+                    if known.setdefault(offer.name, offer) is not offer:
+                        raise ValueError(f"two parts of the studio offer {offer.name}")
             self._changed.notify_all()
-
-
-N = TypeVar("N", Call, ChannelKind)
-
-
-def _add(there: dict[str, N], one: N) -> None:
-    if there.setdefault(one.name, one) is not one:
-        raise ValueError(f"two parts of the studio offer {one.name}")
 
 
 def load_parts() -> Parts:

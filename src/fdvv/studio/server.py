@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from importlib import resources
+from pathlib import PurePath
 from threading import Thread
 
 import msgspec
@@ -56,7 +57,7 @@ def page_files() -> dict[str, PageFile]:
 
 
 def _read(name: str, content: bytes) -> PageFile:
-    media_type = TYPES.get(name[name.rfind(".") :], "application/octet-stream")
+    media_type = TYPES.get(PurePath(name).suffix, "application/octet-stream")
     tag = f'"{hashlib.sha256(content).hexdigest()[:16]}"'
     return PageFile(media_type, content, gzip.compress(content, mtime=0), tag)
 
@@ -80,20 +81,14 @@ LARGEST_bytes = 8_000_000
 call_log = logging.getLogger("fdvv.studio")
 
 
-class TooLargeError(Exception):
-    """A question is beyond LARGEST_bytes."""
-
-
-async def body_of(request: Request) -> bytes:
-    """Read a body that may claim any length, or none, without holding more than is allowed."""
-    parts: list[bytes] = []
-    size = 0
+async def body_of(request: Request) -> bytes | None:
+    """Read a body that may claim any length, or none; None, without holding it, if it is too large."""
+    body = bytearray()
     async for part in request.stream():
-        size += len(part)
-        if size > LARGEST_bytes:
-            raise TooLargeError
-        parts.append(part)
-    return b"".join(parts)
+        body += part
+        if len(body) > LARGEST_bytes:
+            return None
+    return bytes(body)
 
 
 def error_response(reason: str, status: int) -> Response:
@@ -105,11 +100,12 @@ async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
     if not request.headers.get("content-type", "").startswith("application/json"):
         return error_response("the question must be application/json", 415)
     try:
-        ask = msgspec.json.decode(await body_of(request), type=call.ask)
+        body = await body_of(request)
+        if body is None:
+            return error_response(f"the question is larger than {LARGEST_bytes // 1_000_000} MB", 413)
+        ask = msgspec.json.decode(body, type=call.ask)
     except ClientDisconnect:
         return error_response("the page has gone", 400)
-    except TooLargeError:
-        return error_response(f"the question is larger than {LARGEST_bytes // 1_000_000} MB", 413)
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         return error_response(f"{call.name}: {error}", 400)
     try:
@@ -137,11 +133,10 @@ def create_app(studio: Studio, door: ServerAddress) -> Starlette:
         return file_response(files, request)
 
     async def api(request: Request) -> Response:
-        name = request.path_params["name"]
-        call = await run_in_threadpool(loader.call, name)
-        return (
-            await answer_call(studio, call, request) if call else error_response("there is no such call", 404)
-        )
+        call = await run_in_threadpool(loader.call, request.path_params["name"])
+        if call is None:
+            return error_response("there is no such call", 404)
+        return await answer_call(studio, call, request)
 
     async def live(socket: WebSocket) -> None:
         parts = await run_in_threadpool(loader.all)

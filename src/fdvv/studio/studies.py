@@ -56,15 +56,12 @@ class Screen(Protocol):
 
     def pause(self, on: bool) -> None:
         """Pause or continue."""
-        ...
 
     def leave(self, reason: str) -> None:
         """End the session at this screen."""
-        ...
 
     def withdraw(self, delete: bool) -> None:
         """Take its person out of the study."""
-        ...
 
 
 class Studies:
@@ -115,12 +112,12 @@ class Studies:
 
     def invite(self, name: str) -> Invitation:
         """Make an invitation for one person. InputError where nobody can begin."""
-        invitation = Invitation(name, secrets.token_urlsafe(9))
         state = state_of(self.study(name))
         if state == "draft":
             raise InputError("study", name, "is not frozen", "freeze it before the first person")
         if state == "unsealed":
             raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
+        invitation = Invitation(name, secrets.token_urlsafe(9))
         with self._lock:
             self._invitations[invitation.word] = invitation
         self.announce(name)
@@ -140,10 +137,7 @@ class Studies:
 
     def waiting(self, name: str) -> int:
         with self._lock:
-            return sum(
-                invitation.study == name and not invitation.person
-                for invitation in self._invitations.values()
-            )
+            return sum(one.study == name and not one.person for one in self._invitations.values())
 
     def attach(self, name: str, person: str, screen: Screen) -> None:
         """Register a person's screen and end the session at an earlier one."""

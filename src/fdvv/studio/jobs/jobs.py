@@ -17,18 +17,8 @@ from fdvv.eventlog import Journal
 from fdvv.io.files import write_atomic
 from fdvv.studio.contract import Watchers, error_line, message_of
 from fdvv.studio.devices import DeviceLocks
-from fdvv.studio.jobs.events import (
-    JobEnded,
-    JobEvent,
-    JobOutcome,
-    PressAsked,
-    PressEvent,
-    QuestionAnswered,
-    QuestionAsked,
-    StageEvent,
-    TakeAsked,
-    TakeEvent,
-)
+from fdvv.studio.jobs import events
+from fdvv.studio.jobs.events import JobEnded, JobEvent
 from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, JobState, publish, utc_now
 from fdvv.studio.jobs.inputs import BENCH, Inputs, inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, Order, kind_of
@@ -61,25 +51,25 @@ class JobProgress:
     def after(self, event: JobEvent) -> JobProgress:
         """Return the progress after an event."""
         match event:
-            case StageEvent():
+            case events.StageEvent():
                 return JobProgress("running", event.text)
-            case PressEvent():
+            case events.PressEvent():
                 now = f"{event.velocity_mm_s:g} mm/s: {event.skipped or event.summary}".rstrip(": ")
                 return JobProgress("running", now, event.done, event.total)
-            case PressAsked():
+            case events.PressAsked():
                 now = f"press at {event.velocity_mm_s:g} mm/s"
                 return JobProgress("needs you", now, event.number - 1, event.total)
-            case TakeAsked():
+            case events.TakeAsked():
                 return JobProgress("needs you", "follow the cue", event.number - 1, event.total)
-            case TakeEvent():
+            case events.TakeEvent():
                 now = f"take {event.number}: {event.reason or 'good'}"
                 return JobProgress("running", now, event.done, event.total)
-            case QuestionAsked():
+            case events.QuestionAsked():
                 now = f"question {event.number} of {event.total} at most"
                 return JobProgress("needs you", now, event.number - 1, event.total, event.number)
-            case QuestionAnswered():
+            case events.QuestionAnswered():
                 return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
-            case JobOutcome():
+            case events.JobOutcome():
                 return JobProgress("running", event.sentence, self.done, self.total)
         started = self.state != "waiting"
         return self if started else dataclasses.replace(self, state="running", question=0)

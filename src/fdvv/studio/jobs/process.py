@@ -15,7 +15,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import IO
@@ -99,19 +99,12 @@ def ended(work: Work) -> JobEnded:
     return JobEnded("done", "")
 
 
-@contextlib.contextmanager
-def _own_output() -> Iterator[IO[bytes]]:
-    """Yield the line to the studio; what anything prints goes to standard error."""
-    with os.fdopen(os.dup(1), "wb", buffering=0) as out:
-        os.dup2(2, 1)
-        yield out
-
-
 def main() -> None:
     """Do one start of the job in the folder that the command line names."""
     # a shell lets what it starts in the background ignore Ctrl-C, and that is inherited
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    with _own_output() as out:
+    with os.fdopen(os.dup(1), "wb", buffering=0) as out:
+        os.dup2(2, 1)  # what anything prints is no event: it goes to standard error
 
         def tell(event: JobEvent) -> None:
             out.write(msgspec.json.encode(event) + b"\n")

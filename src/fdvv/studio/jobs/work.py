@@ -20,16 +20,7 @@ from fdvv.rendering.press_check import felt_press, intended_press, noticeable_cN
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone
 from fdvv.studio.contract import message_of
-from fdvv.studio.jobs.events import (
-    CurveIntended,
-    CurveProgress,
-    FeltCurve,
-    JobEvent,
-    JobNoticed,
-    JobStarted,
-    PressAsked,
-    PressEvent,
-)
+from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
 from fdvv.studio.jobs.orders import RigOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
@@ -47,24 +38,24 @@ class Work:
 
     folder: JobFolder
     run: int
-    tell: Callable[[JobEvent], None]
+    tell: Callable[[events.JobEvent], None]
     ask: Callable[[int], str]
 
     def notice(self, text: str) -> None:
-        self.tell(JobNoticed(text))
+        self.tell(events.JobNoticed(text))
 
     def guide(self, device: str) -> Guide:
         """Return the guide of a session; only a person is asked for every press."""
         if not pressed_by_person(device):
             return Guide(notice=self.notice)
-        return Guide(lambda ask: self.tell(message_of(PressAsked, ask)), self.notice)
+        return Guide(lambda ask: self.tell(message_of(events.PressAsked, ask)), self.notice)
 
     def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
         """Report the intended force of the model at each speed."""
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
             x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
-            self.tell(CurveIntended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
+            self.tell(events.CurveIntended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
 
     def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
         return lambda done: self.tell(press_event(done, travel_mm))
@@ -87,13 +78,13 @@ class Work:
 
     def begin(self, info: DeviceInfo | BenchInfo) -> None:
         """Report that the work begins, or continues, on a device."""
-        self.tell(JobStarted(self.run, info.name, info.simulated))
+        self.tell(events.JobStarted(self.run, info.name, info.simulated))
 
 
-def press_event(done: PressDone, travel_mm: float) -> PressEvent:
+def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
     standing = next((s for s in done.progress() if s.velocity_mm_s == done.velocity_mm_s), None)
     felt = felt_press(done.press, travel_mm) if done.press else None
-    return PressEvent(
+    return events.PressEvent(
         "probe" if done.stage == "probe" else "compensate",
         done.velocity_mm_s,
         done.presses_done,
@@ -104,12 +95,12 @@ def press_event(done: PressDone, travel_mm: float) -> PressEvent:
         standing.made if standing else 0,
         standing.wanted if standing else None,
         tuple(curve_progress(curve) for curve in standing.curves) if standing else (),
-        FeltCurve(finite_row(felt.press_cN), finite_row(felt.release_cN)) if felt else None,
+        events.FeltCurve(finite_row(felt.press_cN), finite_row(felt.release_cN)) if felt else None,
     )
 
 
-def curve_progress(curve: CurveOutcome) -> CurveProgress:
-    return CurveProgress(
+def curve_progress(curve: CurveOutcome) -> events.CurveProgress:
+    return events.CurveProgress(
         "press" if str(curve.stroke) == "press" else "release",
         curve.velocity_mm_s,
         tuple(round(error, DIGITS) for error in curve.error_cN),

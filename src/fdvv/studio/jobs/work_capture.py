@@ -15,14 +15,7 @@ from fdvv.device.bench import open_bench, show_nothing
 from fdvv.model.file import save_model
 from fdvv.recording.types import Stage
 from fdvv.studio.contract import message_of
-from fdvv.studio.jobs.events import (
-    CueStarted,
-    JobOutcome,
-    PaceProgress,
-    StageEvent,
-    TakeAsked,
-    TakeEvent,
-)
+from fdvv.studio.jobs import events
 from fdvv.studio.jobs.orders import CaptureOrder
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none
@@ -41,7 +34,7 @@ def capture(work: Work, order: CaptureOrder) -> None:
     with closing(bench):
         info = bench.facts()
         work.begin(info)
-        work.tell(StageEvent("capture", "recording the button"))
+        work.tell(events.StageEvent("capture", "recording the button"))
         paced = order.watch or not info.simulated
         guide = CaptureGuide(_cue(work, paced), lambda done: work.tell(_take(done)), work.notice)
         capture_session(bench, work.folder.recording, order.name, plan, guide)
@@ -49,7 +42,7 @@ def capture(work: Work, order: CaptureOrder) -> None:
 
 
 def _process(work: Work, order: CaptureOrder) -> None:
-    work.tell(StageEvent("process", "making a model of the recording"))
+    work.tell(events.StageEvent("process", "making a model of the recording"))
     found = process_recording(work.folder.recording)
     model = replace(found.model, name=order.name)
     save_model(model, work.folder.result("button"))
@@ -59,7 +52,8 @@ def _process(work: Work, order: CaptureOrder) -> None:
         f"travel {model.travel_mm:.2f} mm, from {used} presses"
     )
     presses, simulated = len(found.processed.judged), model.provenance.simulated
-    work.tell(JobOutcome("capture", sentence, presses, presses - used, simulated, warnings=found.warnings))
+    counts = presses, presses - used
+    work.tell(events.JobOutcome("capture", sentence, *counts, simulated, warnings=found.warnings))
 
 
 def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], None]]:
@@ -69,17 +63,17 @@ def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], N
         if not paced:
             return show_nothing
         work.tell(_asked(ask))
-        started = cache(lambda: work.tell(CueStarted()))  # told at the first moment of the cue only
+        started = cache(lambda: work.tell(events.CueStarted()))  # told at the first moment of the cue only
         return lambda _t_s: started()
 
     return cue
 
 
-def _asked(ask: TakeRequest) -> TakeAsked:
+def _asked(ask: TakeRequest) -> events.TakeAsked:
     velocity, stage = ask.step.velocity_mm_s, ask.step.stage
     moments = dict(cue_events(velocity, ask.travel_mm))
     return message_of(
-        TakeAsked,
+        events.TakeAsked,
         ask,
         step=STEPS[stage],
         velocity_mm_s=velocity,
@@ -89,10 +83,10 @@ def _asked(ask: TakeRequest) -> TakeAsked:
     )
 
 
-def _take(done: TakeDone) -> TakeEvent:
+def _take(done: TakeDone) -> events.TakeEvent:
     take, check = done.take, done.check
     return message_of(
-        TakeEvent,
+        events.TakeEvent,
         done,
         number=take.number,
         step=STEPS[take.stage],
@@ -105,9 +99,9 @@ def _take(done: TakeDone) -> TakeEvent:
     )
 
 
-def _pace(progress: VelocityProgress) -> PaceProgress:
+def _pace(progress: VelocityProgress) -> events.PaceProgress:
     speeds = tuple(round(v, DIGITS) for v in progress.achieved_mm_s)
-    return message_of(PaceProgress, progress, achieved_mm_s=speeds)
+    return message_of(events.PaceProgress, progress, achieved_mm_s=speeds)
 
 
 def _counted(count: int, what: str) -> str:

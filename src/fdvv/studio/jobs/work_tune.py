@@ -9,15 +9,7 @@ from fdvv.model.file import load_model, save_model
 from fdvv.model.vibration import Vibration
 from fdvv.rendering.tune_candidates import Candidates, candidates_for, simulated_observer
 from fdvv.rendering.tune_vibration import AnswerEvent, TunedVibration, TuneSetup, tune_vibration
-from fdvv.studio.jobs.events import (
-    JobOutcome,
-    PlayedWave,
-    QuestionAnswered,
-    QuestionAsked,
-    StageEvent,
-    TuneCandidate,
-    TuneRanking,
-)
+from fdvv.studio.jobs import events
 from fdvv.studio.jobs.orders import TuneOrder
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none, rounded
@@ -37,7 +29,7 @@ def tune(work: Work, order: TuneOrder) -> None:
     candidates = candidates_for(model, sorted(order.velocities_mm_s), grid)
     with work.session(order, work.folder.session, order.seed) as (device, session):
         work.begin(device.info())
-        work.tell(StageEvent("tune", f"answers of a {order.observer}"))
+        work.tell(events.StageEvent("tune", f"answers of a {order.observer}"))
         result = tune_vibration(
             device,
             model,
@@ -52,7 +44,7 @@ def tune(work: Work, order: TuneOrder) -> None:
     save_model(replace(result.model, name=order.name), work.folder.result("button"))
     rankings = tuple(_ranking(tuned) for tuned in result.tuned)
     sentence = "; ".join(f"{r.velocity_mm_s:g} mm/s: {r.sentence}" for r in rankings)
-    work.tell(JobOutcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
+    work.tell(events.JobOutcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
 
 
 def _method(order: TuneOrder) -> Rating | Comparing:
@@ -70,26 +62,28 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
         found = candidates[question.place]
         waves = tuple(_wave(found.vibrations[template]) for template in question.templates)
         about = question.number, question.total, found.velocity_mm_s
-        work.tell(QuestionAsked(*about, waves, _wave(found.vibrations[0])))
+        work.tell(events.QuestionAsked(*about, waves, _wave(found.vibrations[0])))
         said = work.ask(question.number)
         return None if said == "again" else int(said) if said.isdigit() else Preferred(said)
 
     return answer
 
 
-def _wave(vibration: Vibration) -> PlayedWave:
-    return PlayedWave(WAVE_Hz, rounded(vibration_samples(vibration, WAVE_Hz, QUIET_s)))
+def _wave(vibration: Vibration) -> events.PlayedWave:
+    return events.PlayedWave(WAVE_Hz, rounded(vibration_samples(vibration, WAVE_Hz, QUIET_s)))
 
 
-def _answered(progress: AnswerEvent) -> QuestionAnswered:
+def _answered(progress: AnswerEvent) -> events.QuestionAnswered:
     given = progress.given
     rankings = tuple(_ranking(tuned) for tuned in progress.tuned if tuned.standing.answers)
-    return QuestionAnswered(given.number, progress.total, given.velocity_mm_s, str(given.answer), rankings)
+    return events.QuestionAnswered(
+        given.number, progress.total, given.velocity_mm_s, str(given.answer), rankings
+    )
 
 
-def _ranking(tuned: TunedVibration) -> TuneRanking:
+def _ranking(tuned: TunedVibration) -> events.TuneRanking:
     standing = tuned.standing
-    return TuneRanking(
+    return events.TuneRanking(
         tuned.candidates.velocity_mm_s,
         standing.answers,
         tuned.sentence,
@@ -97,10 +91,10 @@ def _ranking(tuned: TunedVibration) -> TuneRanking:
     )
 
 
-def _candidate(tuned: TunedVibration, i: int) -> TuneCandidate:
+def _candidate(tuned: TunedVibration, i: int) -> events.TuneCandidate:
     standing, vibration = tuned.standing, tuned.candidates.vibrations[i]
     strongest = max(vibration.modes, key=lambda mode: abs(mode.amplitude_m_s2))
-    return TuneCandidate(
+    return events.TuneCandidate(
         f"template {i}" if i else "measured",
         round(strongest.frequency_Hz, 1),
         round(strongest.amplitude_m_s2, DIGITS),
