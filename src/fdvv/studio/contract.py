@@ -37,6 +37,13 @@ class Empty(Message):
     """A request that needs no fields."""
 
 
+class Offer(Message):
+    """Something to choose: its name for the server, and what it is."""
+
+    name: str
+    about: str = field(name="told")
+
+
 class Watch(Message, tag="watch"):
     """Send every change from now on."""
 

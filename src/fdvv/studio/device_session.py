@@ -23,7 +23,7 @@ from fdvv.rendering.press_check import felt_press, intended_press
 from fdvv.rendering.tuning import settings_with
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_thread import DeviceThread, mode_of
-from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.devices import DeviceLocks, require_listed
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
 from fdvv.studio.rounding import finite_row, rounded
 from fdvv.studio.studio import Studio
@@ -157,22 +157,16 @@ class DeviceSession:
 
     def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStatus:
         """Open a device of the list. InputError, DeviceError."""
-        if ask.device not in devices:
-            raise InputError("device", "device", f"there is no {ask.device[:80]!r}", "choose one of the list")
-        if ask.rig not in RIGS:
-            raise InputError("rig", "rig", f"there is no {ask.rig[:80]!r}", f"use one of {', '.join(RIGS)}")
+        require_listed("device", ask.device, devices, "choose one of the list")
+        require_listed("rig", ask.rig, RIGS)
         with self._lock:
             if self._held:
                 reason = f"{self._status.device} is connected"
                 raise InputError("device", "device", reason, "disconnect it first")
-            self._locks.acquire(ask.device, HOLDER)
-            try:
+            with self._locks.acquired(ask.device, HOLDER):
                 rig = load_rig(ask.rig) if ask.rig != "default" else None
                 device = open_device(ask.device, rig, None, ask.seed)
                 self._held = DeviceThread(device, self._ticks, self._lost)
-            except BaseException:
-                self._locks.release(ask.device)
-                raise
             self._status = DeviceStatus(ask.device)
         return self.refresh("")
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 
 from fdvv.device.open import BUILT_ELF, KINDS
 from fdvv.device.serial import serial_ports
@@ -25,6 +27,16 @@ class DeviceLocks:
                 raise InputError(device, "device", reason, "wait until that is over, or end it")
             self._holders[device] = holder
 
+    @contextmanager
+    def acquired(self, device: str, holder: str) -> Iterator[None]:
+        """Acquire a device, and release it again if what is done then fails."""
+        self.acquire(device, holder)
+        try:
+            yield
+        except BaseException:
+            self.release(device)
+            raise
+
     def release(self, device: str) -> None:
         """Release a device; a second time does nothing."""
         with self._lock:
@@ -39,12 +51,19 @@ class DeviceLocks:
 def available_devices() -> tuple[tuple[tuple[str, str], ...], str]:
     """Return every available device with its description, and why serial ports cannot be listed, if so."""
     emulator = BUILT_ELF.is_file() and "emulated" in installed("devices")
-    names = ["twin", "host", *(["emulated"] if emulator else [])]
-    found = [(name, KINDS[name]) for name in names]
+    names = ("twin", "host", *(["emulated"] if emulator else []))
+    found = tuple((name, KINDS[name]) for name in names)
     try:
         return (*found, *((f"serial:{path}", about) for path, about in serial_ports())), ""
     except BuildError as error:
-        return tuple(found), str(error)
+        return found, str(error)
+
+
+def require_listed(what: str, given: str, choices: Collection[str], remedy: str = "") -> None:
+    """Refuse what is none of the choices. InputError; remedy : else the choices are named."""
+    if given not in choices:
+        reason = f"there is no {given[:80]!r}"
+        raise InputError(what, what, reason, remedy or f"use one of {', '.join(choices)}")
 
 
 def device_names() -> tuple[str, ...]:

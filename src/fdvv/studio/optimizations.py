@@ -203,5 +203,6 @@ class Optimizations:
 
     def close(self) -> None:
         """End everything that is at work; what is on the disk stays."""
-        for player in [*self._simulated.values(), *self._played.values()]:
+        players: list[SimulatedPlay | PlayedTrial] = [*self._simulated.values(), *self._played.values()]
+        for player in players:
             player.close()

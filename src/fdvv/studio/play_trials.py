@@ -16,7 +16,7 @@ from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.optimize.run.task_rounds import ClockSource
 from fdvv.studio.contract import Message, Tell
-from fdvv.studio.devices import DeviceLocks, available_devices
+from fdvv.studio.devices import DeviceLocks, available_devices, require_listed
 from fdvv.studio.played_trial import PlayDelay, PlayedTrial, PlayKept, PlayRound
 from fdvv.studio.studio import Studio
 
@@ -159,14 +159,9 @@ class Table:
             self._locks.release(name)
 
     def _open(self, name: str) -> None:
-        if name not in dict(pressed_devices()):
-            raise InputError("device", "device", f"there is no {name[:80]!r}", "choose one of the list")
-        self._locks.acquire(name, HOLDER)
-        try:
+        require_listed("device", name, dict(pressed_devices()), "choose one of the list")
+        with self._locks.acquired(name, HOLDER):
             self._key = DeviceKey(open_device(name), self._failed)
-        except BaseException:
-            self._locks.release(name)
-            raise
         self._name = name
 
 

@@ -16,6 +16,7 @@ from msgspec import Struct
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
 from fdvv.studio.contract import Message, Watchers
+from fdvv.studio.devices import require_listed
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
@@ -103,8 +104,7 @@ class Studies:
         InputError on one that is not there, or that cannot hide a change between the study's buttons.
         """
         study = self.study(name)
-        if device not in (TWIN, *known):
-            raise InputError("device", "device", f"there is no {device[:80]!r}", "choose one of the list")
+        require_listed("device", device, (TWIN, *known), "choose one of the list")
         for problem in device_problems(study.plan, study.folder) if device != TWIN else ():
             raise InputError("device", device, problem, "use the twin, or change the plan")
         write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")

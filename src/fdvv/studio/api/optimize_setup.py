@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from msgspec import Meta, field
+from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
 from fdvv.live.press_subject import button_choices
@@ -17,18 +17,11 @@ from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, m
 from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
-from fdvv.studio.contract import Empty, Message, call
+from fdvv.studio.contract import Empty, Message, Offer, call
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import pressed_devices
 from fdvv.studio.played_trial import TASK, playable, pointing_of
 from fdvv.studio.studio import Studio
-
-
-class OptimizeOffer(Message):
-    """Something to choose: its name for the server, and what it is."""
-
-    name: str
-    about: str = field(name="told")
 
 
 class OptimizeOffers(Message):
@@ -39,20 +32,20 @@ class OptimizeOffers(Message):
     paper's space may begin from.
     """
 
-    engines: list[OptimizeOffer]
-    pair_engines: list[OptimizeOffer]
-    spaces: list[OptimizeOffer]
-    rigs: list[OptimizeOffer]
-    levels: list[OptimizeOffer]
-    objectives: list[OptimizeOffer]
-    starts: list[OptimizeOffer]
-    others: list[OptimizeOffer]
+    engines: list[Offer]
+    pair_engines: list[Offer]
+    spaces: list[Offer]
+    rigs: list[Offer]
+    levels: list[Offer]
+    objectives: list[Offer]
+    starts: list[Offer]
+    others: list[Offer]
 
 
 class OptimizeDevices(Message):
     """Devices that a person presses, as there are just now."""
 
-    devices: list[OptimizeOffer]
+    devices: list[Offer]
 
 
 class OptimizeCreate(Message):
@@ -92,41 +85,35 @@ ENGINES_TOLD = {
     "gp-ei": "as in the paper: a Gaussian process and expected improvement",
     "botorch": "the strongest; needs the extra fdvv[botorch]",
 }
-
-
 SPACES_TOLD = {
     PAPER: "eight parameters of the paper, three points, activation, vibration",
     "FDV": "variations of the button you start from: force, bump, activation, vibration",
     "FDVV": "the same and a scale of force for every speed it knows",
 }
-
-
 PAIR_ENGINES_TOLD = {
     "preference": "learns from which of two you prefer",
     "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
 }
-
-
 MORE_TOLD = {"lost_ratio": "share of rounds lost"}
 
 
 @call("optimize.offers")
 def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
     return OptimizeOffers(
-        [OptimizeOffer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
-        [OptimizeOffer(name, PAIR_ENGINES_TOLD.get(name, "")) for name in pair_engine_names()],
-        [OptimizeOffer(name, about) for name, about in SPACES_TOLD.items()],
-        [OptimizeOffer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
-        [OptimizeOffer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
-        [OptimizeOffer(name, MORE_TOLD[name]) for name in MORE_TOLD],
-        [OptimizeOffer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
-        [OptimizeOffer(entry.name, entry.about) for entry in PriorDataStore(studio.project).entries()],
+        [Offer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
+        [Offer(name, PAIR_ENGINES_TOLD.get(name, "")) for name in pair_engine_names()],
+        [Offer(name, about) for name, about in SPACES_TOLD.items()],
+        [Offer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
+        [Offer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
+        [Offer(name, about) for name, about in MORE_TOLD.items()],
+        [Offer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
+        [Offer(entry.name, entry.about) for entry in PriorDataStore(studio.project).entries()],
     )
 
 
 @call("optimize.devices")
 def devices(_studio: Studio, _ask: Empty) -> OptimizeDevices:
-    return OptimizeDevices([OptimizeOffer(name, about) for name, about in pressed_devices()])
+    return OptimizeDevices([Offer(name, about) for name, about in pressed_devices()])
 
 
 @call("optimize.create")
@@ -167,9 +154,8 @@ def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, f
     if ask.space not in SPACES_TOLD:
         raise InputError("optimise", ask.space, "there is no such space", f"use {', '.join(SPACES_TOLD)}")
     if base is None:
-        raise InputError(
-            "optimise", ask.space, "varies a button, and none was named", "choose one to start from"
-        )
+        reason = "varies a button, and none was named"
+        raise InputError("optimise", ask.space, reason, "choose one to start from")
     setup = model_space_setup(base, (ask.space,), rig=ask.rig)
     return setup, neutral_design(model_space(base, (ask.space,)), base)
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from msgspec import field
-
 from fdvv.errors import InputError
 from fdvv.report.report import Section
 from fdvv.studio.api.studies import TOLD, Name, StudiesAsk, Text
-from fdvv.studio.contract import Empty, Message, call, error_line
+from fdvv.studio.contract import Empty, Message, Offer, call, error_line
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.preview import preview_sections
@@ -26,17 +24,10 @@ from fdvv.study.plan.plan_file import (
 )
 
 
-class StudiesOffer(Message):
-    """A template. about : what it is for."""
-
-    name: str
-    about: str = field(name="told")
-
-
 class StudiesOffers(Message):
-    """All templates."""
+    """All templates, and what each is for."""
 
-    templates: list[StudiesOffer]
+    templates: list[Offer]
 
 
 class StudiesCreate(Message):
@@ -89,7 +80,7 @@ def preview_section(one: Section) -> StudiesSection:
 
 @call("studies.offers")
 def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
-    return StudiesOffers([StudiesOffer(name, TOLD.get(name, "")) for name in template_names()])
+    return StudiesOffers([Offer(name, TOLD.get(name, "")) for name in template_names()])
 
 
 @call("studies.create")

@@ -13,8 +13,9 @@ from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
+from fdvv.studio.devices import require_listed
 from fdvv.studio.jobs.file import JobFolder, check_name, result_file
-from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, RigOrder, TuneOrder, kind_of
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names, load_rig, rig_to_toml
 
@@ -56,8 +57,7 @@ def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[s
     check_name(order.name)
     _check_counts(order)
     _check_ratio("pace_ratio", order.pace_ratio, 0.05, 1.0)
-    if order.device not in devices:
-        raise InputError("device", "device", f"there is no {order.device[:80]!r}", "choose one of the list")
+    require_listed("device", order.device, devices, "choose one of the list")
     if isinstance(order, CaptureOrder):
         return _capture(order)
     model = catalog.model(order.button)
@@ -67,9 +67,8 @@ def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[s
         _check_tuning(order, model)
     if isinstance(order, CompensateOrder):
         _check_learning(order)
-    words = {CompensateOrder: "Compensate", ProbeOrder: "Probe", TuneOrder: "Tune"}
-    simulated = not pressed_by_person(order.device)
-    return Inputs(f"{words[type(order)]} {model.name} on {order.device}", order.device, simulated, files)
+    title = f"{kind_of(order).capitalize()} {model.name} on {order.device}"
+    return Inputs(title, order.device, not pressed_by_person(order.device), files)
 
 
 def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float) -> None:
@@ -84,33 +83,27 @@ def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float) -> None:
 def _capture(order: CaptureOrder) -> Inputs:
     check_speeds(order.paces_mm_s, 20.0)
     simulated = order.device == "twin"
-    if simulated and order.switch not in button_names():
-        raise InputError("switch", "switch", f"there is no {order.switch[:80]!r}", "choose one of the list")
-    if simulated and order.participant not in PARTICIPANTS:
-        reason = f"there is no {order.participant[:80]!r}"
-        raise InputError("participant", "participant", reason, f"use one of {', '.join(PARTICIPANTS)}")
-    if not simulated and not pressed_by_person(order.device):
+    if simulated:
+        require_listed("switch", order.switch, button_names(), "choose one of the list")
+        require_listed("participant", order.participant, PARTICIPANTS)
+    elif not pressed_by_person(order.device):
         reason = f"{order.device} is no capture bench"
         raise InputError("device", "device", reason, "use the simulated bench, or one on a serial port")
     on = BENCH + order.device if simulated else order.device
     return Inputs(f"Capture {order.name} on {on}", on, simulated)
 
 
-def _shared_files(
-    order: CompensateOrder | ProbeOrder | TuneOrder, model: FDVVModel, project: Path
-) -> dict[str, str | bytes]:
+def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str, str | bytes]:
     """Copy the button, the simulated rig, and what was learned before."""
     names = JobFolder(Path())
-    if order.rig not in RIGS:
-        raise InputError("rig", "rig", f"there is no {order.rig[:80]!r}", f"use one of {', '.join(RIGS)}")
+    require_listed("rig", order.rig, RIGS)
     files: dict[str, str | bytes] = {names.button.name: model_to_json(model)}
     if order.rig != "default":
         files[names.rig.name] = rig_to_toml(load_rig(order.rig))
-    if isinstance(order, CompensateOrder):
-        if order.known_rig:
-            files[names.known_rig.name] = result_file(project, "rig", order.known_rig).read_bytes()
-    elif order.actuation:
-        files[names.actuation.name] = result_file(project, "actuation", order.actuation).read_bytes()
+    learned = (("rig", "known_rig", names.known_rig), ("actuation", "actuation", names.actuation))
+    for kind, asked, copy in learned:
+        if name := getattr(order, asked, ""):
+            files[copy.name] = result_file(project, kind, name).read_bytes()
     return files
 
 

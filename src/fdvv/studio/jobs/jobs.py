@@ -201,13 +201,8 @@ class Jobs:
         with self._lock:
             names = [path.name for path in self._folder.iterdir()] if self._folder.is_dir() else []
             name = f"{max((int(n) for n in names if n.isdecimal()), default=0) + 1:04d}"
-            self._locks.acquire(inputs.device, f"job {int(name)}, {inputs.title}")
-            try:
-                job = self._made(name, order, inputs)
-            except BaseException:
-                self._locks.release(inputs.device)
-                raise
-            self._jobs[name] = job
+            with self._locks.acquired(inputs.device, f"job {int(name)}, {inputs.title}"):
+                job = self._jobs[name] = self._made(name, order, inputs)
         self._run(job, inputs.device)
         return job.row
 

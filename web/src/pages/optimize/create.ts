@@ -2,7 +2,7 @@
 
 import { go } from "../../app/route";
 import { call } from "../../net";
-import type { OptimizeCreate, OptimizeOffer, OptimizeOffers } from "../../net/messages";
+import type { Offer, OptimizeCreate, OptimizeOffers } from "../../net/messages";
 import { button, choice, h, numberField, onCleanup, type Signal, signal, tell, toggle } from "../../ui";
 
 type Kind = "play" | "prefer" | "simulated";
@@ -227,7 +227,7 @@ function titleField(form: Form): HTMLElement {
   return h("span", { class: "field" }, h("label", { for: "opt-title" }, "Name"), input);
 }
 
-function options(offers: readonly OptimizeOffer[]): (readonly [string, string])[] {
+function options(offers: readonly Offer[]): (readonly [string, string])[] {
   return offers.map(
     (offer) => [offer.name, offer.told ? `${offer.name}: ${offer.told}` : offer.name] as const,
   );

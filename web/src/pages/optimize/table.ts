@@ -1,7 +1,7 @@
 /** What is pressed: a simulated button under the page's own hand, or a device on the table beside it. */
 
 import { call } from "../../net";
-import type { OptimizeOffer } from "../../net/messages";
+import type { Offer } from "../../net/messages";
 import { choice, h, type Signal, signal } from "../../ui";
 
 /** No device: the simulated button. */
@@ -17,7 +17,7 @@ export interface Table {
 
 export function table(busy: () => boolean): Table {
   const device = signal(SIMULATED);
-  const devices = signal<readonly OptimizeOffer[]>([]);
+  const devices = signal<readonly Offer[]>([]);
   // without devices there is nothing to choose, whatever the reason
   call("optimize.devices", {}).then(
     (found) => devices.set(found.devices),

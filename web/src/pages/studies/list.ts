@@ -2,7 +2,7 @@
 
 import { address, go } from "../../app/route";
 import { call } from "../../net";
-import type { StudiesOffer, StudiesRow } from "../../net/messages";
+import type { Offer, StudiesRow } from "../../net/messages";
 import { choice, empty, h, onCleanup, signal, tell } from "../../ui";
 import { watchStudies } from "./store";
 
@@ -55,12 +55,12 @@ export function stateTag(state: StudiesRow["state"]): HTMLElement {
 }
 
 function newStudy(): HTMLElement {
-  const offers = signal<readonly StudiesOffer[]>([]);
+  const offers = signal<readonly Offer[]>([]);
   const template = signal("");
   const busy = signal(false);
   let gone = false;
   onCleanup(() => (gone = true));
-  const offered = (found: readonly StudiesOffer[]) => {
+  const offered = (found: readonly Offer[]) => {
     template.set(found.find((one) => one.name === "realism")?.name ?? found[0]?.name ?? "");
     offers.set(found);
   };
