@@ -128,14 +128,14 @@ def model_subject(
     """
     name, rig = _rig(mode, rig_name)
     learned = known_rendering(_pressable(model), name) if mode is PressMode.COMPENSATED else None
-    return _of_model(model, mode, name, rig, learned)
+    return _of_model(model, mode, name, rig, learned, _description(mode, name))
 
 
 def learned_subject(model: FDVVModel, learned: CompensationResult, rig_name: str) -> PressSubject:
     """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does."""
+    description = f"on the simulated rig {rig_name!r}, by an actuation learned before"
     mode = PressMode.COMPENSATED
-    subject = _of_model(model, mode, *_rig(mode, rig_name), learned)
-    return replace(subject, description=f"on the simulated rig {rig_name!r}, by an actuation learned before")
+    return _of_model(model, mode, *_rig(mode, rig_name), learned, description)
 
 
 def _pressable(model: FDVVModel) -> FDVVModel:
@@ -145,14 +145,18 @@ def _pressable(model: FDVVModel) -> FDVVModel:
 
 
 def _of_model(
-    model: FDVVModel, mode: PressMode, rig_name: str, rig: Rig, learned: CompensationResult | None
+    model: FDVVModel,
+    mode: PressMode,
+    rig_name: str,
+    rig: Rig,
+    learned: CompensationResult | None,
+    description: str,
 ) -> PressSubject:
     program = button_program(_pressable(model), learned.surface if learned else None)
-    limits = rig_limits(rig, learned is not None)
     tuning = learned.outcome.tuning if learned else Tuning()
+    subject = _subject(program, mode, rig_name, rig, tuning, description, learned is not None)
     meant = button_program(model)
     down, up = (state.transitions[0].when.value for state in meant.states)
-    subject = _subject(program, mode, rig_name, rig, limits, tuning, _description(mode, rig_name))
     marks = (PressMark("actuation", down), PressMark("reset", up))
     press, release = _surfaces(meant)
     return replace(subject, actuation_mm=down, reset_mm=up, marks=marks, press=press, release=release)
@@ -172,8 +176,7 @@ def program_subject(
         law = RigAware()
         model = learned_rig(name).rig
         tuning = tuning_of(model, program.travel_mm, law.bandwidth_Hz, law.friction_mm_s)
-    description = _description(mode, name, program=True)
-    return _subject(program, mode, name, rig, rig_limits(rig), tuning, description)
+    return _subject(program, mode, name, rig, tuning, _description(mode, name, program=True))
 
 
 @cache
@@ -211,9 +214,9 @@ def _subject(
     mode: PressMode,
     rig_name: str,
     rig: Rig,
-    limits: Limits,
     tuning: Tuning,
     description: str,
+    learned: bool = False,
 ) -> PressSubject:
     try:
         settings = settings_with(settings_of(rig), tuning)
@@ -224,7 +227,7 @@ def _subject(
         mode,
         rig_name,
         description,
-        compile_program(program, limits).image,
+        compile_program(program, rig_limits(rig, learned)).image,
         settings,
         rig,
         load_finger("paper"),
@@ -256,10 +259,8 @@ def _marks(program: Program) -> tuple[PressMark, ...]:
 
 def _description(mode: PressMode, rig_name: str, program: bool = False) -> str:
     if mode is PressMode.INTENDED:
-        return (
-            "as intended: a simulated rig of perfect parts (cap of 1 g, no weight, no friction); vibrations "
-            "are heard, not felt"
-        )
+        parts = "a simulated rig of perfect parts (cap of 1 g, no weight, no friction)"
+        return f"as intended: {parts}; vibrations are heard, not felt"
     if mode is PressMode.RENDERED:
         return f"on the simulated rig {rig_name!r}, not compensated: its own forces come on top"
     if program:
@@ -290,9 +291,8 @@ class PressChoice:
 
 def button_choices(shelf: Catalog) -> tuple[PressChoice, ...]:
     """List the built-in buttons and the person's own."""
-    own = sorted(
-        path.name.removesuffix(MODEL_SUFFIX) for path in (shelf.project / BUTTONS).glob(f"*{MODEL_SUFFIX}")
-    )
+    files = (shelf.project / BUTTONS).glob(f"*{MODEL_SUFFIX}")
+    own = sorted(path.name.removesuffix(MODEL_SUFFIX) for path in files)
     return (
         *(PressChoice(f"builtin:{name}", name, "built-in") for name in builtin_names()),
         *(PressChoice(f"own:{name}", name, "your own") for name in own),

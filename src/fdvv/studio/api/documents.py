@@ -40,10 +40,9 @@ class Document(Message):
     pins: list[EditPin]
 
 
-class DocumentChange(Message):
+class DocumentChange(DocumentAsk):
     """Change a button; revision is the one the change was made on."""
 
-    button: ButtonId
     revision: Annotated[int, Meta(ge=0)]
     change: HistoryChange
 
@@ -55,10 +54,9 @@ class DocumentAnswer(Message):
     conflict: Document | None
 
 
-class DocumentCopy(Message):
+class DocumentCopy(DocumentAsk):
     """Copy any button to one of the person's own; a name near that of the button if none is given."""
 
-    button: ButtonId
     name: ButtonName | None
 
 
@@ -70,10 +68,9 @@ class DocumentCreate(Message):
     model: dict[str, Any] | None
 
 
-class DocumentRename(Message):
+class DocumentRename(DocumentAsk):
     """Rename one's own button."""
 
-    button: ButtonId
     name: ButtonName
 
 

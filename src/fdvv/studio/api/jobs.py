@@ -31,13 +31,12 @@ class JobAsk(Message):
     job: str
 
 
-class JobAnswer(Message):
+class JobAnswer(JobAsk):
     """Answer the question that a job has asked.
 
     answer : "first", "second" or "neither"; a rating from "1" to "7"; or "again" to press once more.
     """
 
-    job: str
     number: int
     answer: str
 

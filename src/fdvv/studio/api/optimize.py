@@ -132,10 +132,9 @@ class OptimizeDetail(Message):
     playable: bool
 
 
-class OptimizeSimulate(Message):
+class OptimizeSimulate(OptimizeAsk):
     """Have a simulated person play so many trials. person : seed that draws them."""
 
-    run: Number
     person: Number
     trials: Annotated[int, Meta(ge=1, le=500)]
 

@@ -25,25 +25,21 @@ class OptimizeBest(Message):
     design: dict[str, float] | None
 
 
-class OptimizeTrialAsk(Message):
+class OptimizeTrialAsk(OptimizeAsk):
     """Name a trial of a run."""
 
-    run: Number
     trial: Number
 
 
-class OptimizeEdit(Message):
+class OptimizeEdit(OptimizeTrialAsk):
     """Put a person's own design in the place of a suggestion that was not shown yet."""
 
-    run: Number
-    trial: Number
     design: Annotated[dict[str, float], Meta(max_length=100)]
 
 
-class OptimizeAnswer(Message):
+class OptimizeAnswer(OptimizeAsk):
     """Say which of two designs is preferred."""
 
-    run: Number
     pair: Number
     answer: Answer
 
@@ -55,10 +51,9 @@ class OptimizePairAsk(Message):
     pair: int
 
 
-class OptimizeModelAsk(Message):
+class OptimizeModelAsk(OptimizeAsk):
     """Ask for the button of a design."""
 
-    run: Number
     design: Annotated[dict[str, float], Meta(max_length=100)]
     name: Name
 

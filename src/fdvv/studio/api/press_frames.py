@@ -12,7 +12,7 @@ from fdvv.live.press_subject import PressMark, PressMode, PressSubject
 from fdvv.live.run import LiveFrame
 from fdvv.model.vibration import Mode
 from fdvv.program.program import Signal
-from fdvv.studio.contract import Message
+from fdvv.studio.contract import Message, message_of
 from fdvv.studio.rounding import rounded
 from fdvv.units import FloatArray
 
@@ -44,8 +44,8 @@ class PressReady(Message, tag="ready"):
     travel_mm: float
     actuation_mm: float | None
     reset_mm: float | None
-    places: list[PressMark]
-    states: list[str]
+    places: tuple[PressMark, ...]
+    states: tuple[str, ...]
     signals: list[ShakeSignal]
     meant: PressMeant
 
@@ -94,18 +94,14 @@ DIGITS, FORCE_DIGITS = 4, 2
 
 
 def press_ready(subject: PressSubject) -> PressReady:
-    return PressReady(
-        subject.name,
-        subject.description,
-        subject.mode,
-        subject.rig_name,
-        subject.travel_mm,
-        subject.actuation_mm,
-        subject.reset_mm,
-        list(subject.marks),
-        list(subject.states),
-        [shake_signal(signal) for signal in subject.signals],
-        meant_force(subject, 0.0),
+    return message_of(
+        PressReady,
+        subject,
+        about=subject.description,
+        rig=subject.rig_name,
+        places=subject.marks,
+        signals=[shake_signal(signal) for signal in subject.signals],
+        meant=meant_force(subject, 0.0),
     )
 
 
@@ -134,10 +130,7 @@ def press_frame(seen: LiveFrame, replaying: bool) -> PressFrame:
         mode=int(_last(c.mode)),
         saturated=bool(c.saturated.any()),
         warm_K=_last(c.warm_K),
-        events=[
-            PressHappened(e.kind, e.t_s, e.displacement_mm, e.velocity_mm_s, e.number, e.message)
-            for e in seen.events
-        ],
+        events=[message_of(PressHappened, event, reason=event.message) for event in seen.events],
         sequence=seen.sequence,
         dropped_s=round(seen.dropped_s, DIGITS),
         busy_ratio=round(seen.busy_ratio, DIGITS),
@@ -157,4 +150,4 @@ def _last(values: Any) -> float:
 
 
 def shake_signal(signal: Signal) -> ShakeSignal:
-    return ShakeSignal(signal.name, signal.duration_s, signal.modes)
+    return message_of(ShakeSignal, signal)

@@ -54,25 +54,22 @@ class ProgramAsk(Message):
     program: Id
 
 
-class SaveProgram(Message):
+class SaveProgram(ProgramAsk):
     """Write a program of the person's. revision : of the file that was opened; empty for a new one."""
 
-    program: Id
     text: str
     revision: Title = ""
 
 
-class CopyProgram(Message):
+class CopyProgram(ProgramAsk):
     """Copy a program. name : of the copy; empty: the next free one."""
 
-    program: Id
     name: Title = ""
 
 
-class DeleteProgram(Message):
+class DeleteProgram(ProgramAsk):
     """Move a program to the trash. revision : of the file as it was last seen."""
 
-    program: Id
     revision: Title
 
 

@@ -51,10 +51,9 @@ class StudiesAsk(Message):
     study: Name
 
 
-class StudiesFreeze(Message):
+class StudiesFreeze(StudiesAsk):
     """Freeze a study. passphrase : the key holder's, stored nowhere."""
 
-    study: Name
     passphrase: Secret
 
 
@@ -101,10 +100,9 @@ class StudiesDetail(Message):
     device: str
 
 
-class StudiesUse(Message):
+class StudiesUse(StudiesAsk):
     """Choose the device that renders a study."""
 
-    study: Name
     device: Annotated[str, Meta(max_length=200)]
 
 
@@ -115,18 +113,16 @@ class StudiesSeat(Message):
     seat: str
 
 
-class StudiesPause(Message):
+class StudiesPause(StudiesAsk):
     """Pause all screens, or that of one person."""
 
-    study: Name
     person: Name | None
     on: bool
 
 
-class StudiesWithdraw(Message):
+class StudiesWithdraw(StudiesAsk):
     """Take a person out. delete : and their answers off the disk."""
 
-    study: Name
     person: Name
     delete: bool
 
@@ -137,10 +133,9 @@ class StudiesVerified(Message):
     problems: list[str]
 
 
-class StudiesUnseal(Message):
+class StudiesUnseal(StudiesAsk):
     """Open what the labels hid, for good and on record."""
 
-    study: Name
     passphrase: Secret
     who: Line
     why: Line

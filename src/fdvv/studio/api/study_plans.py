@@ -65,10 +65,9 @@ class StudiesPlan(Message):
     preview: list[StudiesSection]
 
 
-class StudiesWrite(Message):
+class StudiesWrite(StudiesAsk):
     """Check a declaration, and keep it if that is asked for and the study is not frozen."""
 
-    study: Name
     text: Text
     keep: bool
 
