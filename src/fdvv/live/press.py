@@ -5,12 +5,13 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from enum import StrEnum
 from operator import attrgetter
 from threading import Lock
 
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from fdvv.device.contract import FaultReport
 from fdvv.errors import DeviceError
@@ -48,8 +49,7 @@ class LiveEventKind(StrEnum):
     FAULT = "fault"
 
 
-@dataclass(frozen=True)
-class LiveEvent:
+class LiveEvent(Struct, frozen=True):
     """Something that happened at one moment, simulated.
 
     Attributes
@@ -65,8 +65,8 @@ class LiveEvent:
     t_s: float
     displacement_mm: float
     velocity_mm_s: float
-    number: int = 0
-    message: str = ""
+    number: int
+    message: str = field(name="told")
 
 
 class Descent:
@@ -99,7 +99,7 @@ class Descent:
         down = int(np.argmax(x >= DOWN_RATIO * x[-1]))
         # a cap that is down within a tick moved at the highest measurable speed
         speed = float((x[down] - x[0]) / max(t[down] - t[0], 1e-4))
-        return LiveEvent(LiveEventKind.PRESSED, now_s, float(x[-1]), speed)
+        return LiveEvent(LiveEventKind.PRESSED, now_s, float(x[-1]), speed, 0, "")
 
 
 def stretches(columns: InteractiveTicks, was_down: bool) -> Iterator[tuple[FloatArray, FloatArray]]:
@@ -274,7 +274,8 @@ def _change(was: int, key: int) -> LiveEventKind:
 
 def _event(kind: LiveEventKind, columns: InteractiveTicks, i: int, number: int) -> LiveEvent:
     c = columns
-    return LiveEvent(kind, float(c.t_s[i]), float(c.displacement_mm[i]), float(c.velocity_mm_s[i]), number)
+    where = float(c.displacement_mm[i]), float(c.velocity_mm_s[i])
+    return LiveEvent(kind, float(c.t_s[i]), *where, number, "")
 
 
 KEPT = 200

@@ -12,8 +12,8 @@ from msgspec import Meta, field
 from fdvv.errors import InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.live.press_subject import model_subject
-from fdvv.studio.api.press_frames import ShakeSignal, shake_signal
-from fdvv.studio.contract import ChannelKind, Message, Tell, error_line
+from fdvv.studio.api.press_frames import ShakeSignal
+from fdvv.studio.contract import ChannelKind, Message, Tell, error_line, message_of
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import CLOCK, DeviceTrial, LiveTrial, PlayClick, PlayOver, Table
 from fdvv.studio.played_trial import Count, PlayedTrial, PlayKept, PlayRound, Time
@@ -133,7 +133,7 @@ class PlayChannel:
         if key:
             return DeviceTrial(played, key), f"{key.device.info().name}, under your own finger", []
         subject = model_subject(played.model)
-        signals = [shake_signal(signal) for signal in subject.signals]
+        signals = [message_of(ShakeSignal, signal) for signal in subject.signals]
         return LiveTrial(played, subject, self._tell), subject.description, signals
 
 

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from msgspec import field
 
-from fdvv.live.press import LiveEventKind
+from fdvv.live.press import LiveEvent
 from fdvv.live.press_subject import PressMark, PressMode, PressSubject
 from fdvv.live.run import LiveFrame
 from fdvv.model.vibration import Mode
-from fdvv.program.program import Signal
 from fdvv.studio.contract import Message, message_of
 from fdvv.studio.rounding import rounded
 from fdvv.units import FloatArray
@@ -50,17 +49,6 @@ class PressReady(Message, tag="ready"):
     meant: PressMeant
 
 
-class PressHappened(Message):
-    """An event: fields as fdvv.live.press.LiveEvent."""
-
-    kind: LiveEventKind
-    t_s: float
-    displacement_mm: float
-    velocity_mm_s: float
-    number: int
-    reason: str = field(name="told")
-
-
 class PressFrame(Message, tag="frame"):
     """What happened since the last frame.
 
@@ -79,7 +67,7 @@ class PressFrame(Message, tag="frame"):
     mode: int
     saturated: bool
     warm_K: float
-    events: list[PressHappened]
+    events: tuple[LiveEvent, ...]
     sequence: int
     dropped_s: float
     busy_ratio: float
@@ -100,7 +88,7 @@ def press_ready(subject: PressSubject) -> PressReady:
         about=subject.description,
         rig=subject.rig_name,
         places=subject.marks,
-        signals=[shake_signal(signal) for signal in subject.signals],
+        signals=[message_of(ShakeSignal, signal) for signal in subject.signals],
         meant=meant_force(subject, 0.0),
     )
 
@@ -130,7 +118,7 @@ def press_frame(seen: LiveFrame, replaying: bool) -> PressFrame:
         mode=int(_last(c.mode)),
         saturated=bool(c.saturated.any()),
         warm_K=_last(c.warm_K),
-        events=[message_of(PressHappened, event, reason=event.message) for event in seen.events],
+        events=seen.events,
         sequence=seen.sequence,
         dropped_s=round(seen.dropped_s, DIGITS),
         busy_ratio=round(seen.busy_ratio, DIGITS),
@@ -147,7 +135,3 @@ def _rows(t_s: FloatArray) -> Any:
 
 def _last(values: Any) -> float:
     return round(float(values[-1]), DIGITS) if len(values) else 0.0
-
-
-def shake_signal(signal: Signal) -> ShakeSignal:
-    return message_of(ShakeSignal, signal)

@@ -6,11 +6,9 @@ import re
 from collections.abc import Mapping
 from typing import Literal
 
-import msgspec
-
 from fdvv.errors import DeviceError, InputError
 from fdvv.program.program import Signal
-from fdvv.studio.api.press_frames import DIGITS, ShakeSignal, shake_signal
+from fdvv.studio.api.press_frames import DIGITS, ShakeSignal
 from fdvv.studio.contract import Message, Tell, message_of
 from fdvv.studio.devices import DeviceLocks
 from fdvv.studio.studies import TWIN, Studies
@@ -92,7 +90,7 @@ def frame_message(frame: PersonFrame) -> StudyFrame:
 
 def unnamed_sound(signal: Signal) -> ShakeSignal:
     """Return a sound without its name, which may reveal the stimulus."""
-    return msgspec.structs.replace(shake_signal(signal), name="")
+    return message_of(ShakeSignal, signal, name="")
 
 
 StepKind = Literal["page", "practice", "trial", "break", "done", "declined", "withdrawn"]
