@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock, RLock
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 from msgspec import Struct
 
@@ -21,6 +21,9 @@ from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import EVERYBODY
+
+if TYPE_CHECKING:
+    from fdvv.studio.api.study import StudyScreen
 
 FOLDER, DEVICE_SUFFIX = "studies", ".device"
 TWIN = "twin"
@@ -52,19 +55,6 @@ class Invitation:
     lock: Lock = field(default_factory=Lock)
 
 
-class Screen(Protocol):
-    """A participant's screen, as the operator may use it."""
-
-    def pause(self, on: bool) -> None:
-        """Pause or continue."""
-
-    def leave(self, reason: str) -> None:
-        """End the session at this screen."""
-
-    def withdraw(self, delete: bool) -> None:
-        """Take its person out of the study."""
-
-
 class Studies:
     """The studies in ``studies/NAME`` of a project."""
 
@@ -72,7 +62,7 @@ class Studies:
         self.folder = studio.project / FOLDER
         self.watchers = Watchers[Struct]()
         self._invitations: dict[str, Invitation] = {}
-        self._screens: dict[tuple[str, str], Screen] = {}
+        self._screens: dict[tuple[str, str], StudyScreen] = {}
         self._person_locks: dict[tuple[str, str], Lock] = {}
         # held briefly only: the thread of a screen may take it
         self._lock = RLock()
@@ -139,7 +129,7 @@ class Studies:
         with self._lock:
             return sum(one.study == name and not one.person for one in self._invitations.values())
 
-    def attach(self, name: str, person: str, screen: Screen) -> None:
+    def attach(self, name: str, person: str, screen: StudyScreen) -> None:
         """Register a person's screen and end the session at an earlier one."""
         with self._lock:
             before = self._screens.pop((name, person), None)
@@ -148,7 +138,7 @@ class Studies:
             before.leave("this study continues at another screen")
         self.announce(name)
 
-    def detach(self, name: str, person: str, screen: Screen) -> None:
+    def detach(self, name: str, person: str, screen: StudyScreen) -> None:
         """Note that a screen serves a person no more."""
         with self._lock:
             if self._screens.get((name, person)) is screen:
@@ -170,7 +160,7 @@ class Studies:
         finally:
             lock.release()
 
-    def screen(self, name: str, person: str) -> Screen | None:
+    def screen(self, name: str, person: str) -> StudyScreen | None:
         with self._lock:
             return self._screens.get((name, person))
 

@@ -180,7 +180,9 @@ class Library:
         self._lock = Lock()
         self._search, self._epoch = CatalogSearch(), 0
         cache = studio.project / "cache" / "shelf.jsonl"
-        self.index = CatalogIndex(studio.catalog, cache, self._status_changed, libraries=studio.libraries)
+        self.index = CatalogIndex(
+            studio.catalog, cache, lambda _: self.watchers.tell(self.status()), libraries=studio.libraries
+        )
         self.index.start()
 
     def close(self) -> None:
@@ -208,9 +210,6 @@ class Library:
             self._search, self._epoch = CatalogSearch(), indexed.epoch
         self._search.extend(indexed.rows[len(self._search.rows) :])
         return indexed, self._search
-
-    def _status_changed(self, _status: IndexStatus) -> None:
-        self.watchers.tell(self.status())
 
 
 @call("library.index")

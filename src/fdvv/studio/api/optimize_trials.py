@@ -16,7 +16,6 @@ from fdvv.studio.api.optimize import Name, Number, OptimizeAsk
 from fdvv.studio.contract import Message, call
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.played_trial import open_trials
-from fdvv.studio.studio import Studio
 
 
 class OptimizeBest(Message):
@@ -71,18 +70,17 @@ def best(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeBest:
 
 
 @contextmanager
-def _changed(studio: Studio, run: int) -> Iterator[Optimization]:
+def _changed(optimizations: Optimizations, run: int) -> Iterator[Optimization]:
     """Open a run to change it, and inform all pages if that succeeds."""
-    optimizations = studio.part(Optimizations)
     with optimizations.session(run) as session:
         yield session
     optimizations.announce(run)
 
 
 @call("optimize.next")
-def next_trial(studio: Studio, ask: OptimizeAsk) -> OptimizeTrialAsk:
+def next_trial(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeTrialAsk:
     """Return the open trial, or ask the engine for one."""
-    with _changed(studio, ask.run) as session:
+    with _changed(optimizations, ask.run) as session:
         waiting = open_trials(session) or session.ask()
         if not waiting:
             remedy = "look at what was found, or begin another run"
@@ -91,34 +89,34 @@ def next_trial(studio: Studio, ask: OptimizeAsk) -> OptimizeTrialAsk:
 
 
 @call("optimize.edit")
-def edit(studio: Studio, ask: OptimizeEdit) -> OptimizeTrialAsk:
-    with _changed(studio, ask.run) as session:
+def edit(optimizations: Optimizations, ask: OptimizeEdit) -> OptimizeTrialAsk:
+    with _changed(optimizations, ask.run) as session:
         session.edit(ask.trial, ask.design)
     return OptimizeTrialAsk(ask.run, ask.trial)
 
 
 @call("optimize.abandon")
-def abandon(studio: Studio, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
+def abandon(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
     """Stop a trial; it teaches nothing and does not count."""
-    with _changed(studio, ask.run) as session:
+    with _changed(optimizations, ask.run) as session:
         session.abandon(ask.trial, "stopped on the page")
     return ask
 
 
 @call("optimize.pair")
-def next_pair(studio: Studio, ask: OptimizeAsk) -> OptimizePairAsk:
+def next_pair(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizePairAsk:
     """Return the open comparison, or ask the engine for one."""
-    with _changed(studio, ask.run) as session:
+    with _changed(optimizations, ask.run) as session:
         waiting = session.compare()
         if waiting is None:
-            reason = "its comparisons are all made"
-            raise InputError("optimise", f"run {ask.run}", reason, "look at what was found")
+            reason, remedy = "its comparisons are all made", "look at what was found"
+            raise InputError("optimise", f"run {ask.run}", reason, remedy)
         return OptimizePairAsk(ask.run, waiting.number)
 
 
 @call("optimize.answer")
-def answer(studio: Studio, ask: OptimizeAnswer) -> OptimizePairAsk:
-    with _changed(studio, ask.run) as session:
+def answer(optimizations: Optimizations, ask: OptimizeAnswer) -> OptimizePairAsk:
+    with _changed(optimizations, ask.run) as session:
         session.answer(ask.pair, ask.answer)
     return OptimizePairAsk(ask.run, ask.pair)
 

@@ -166,7 +166,7 @@ def taken_error() -> InputError:
 
 
 class StudyScreen:
-    """What serves one page: no one, or a participant. See Screen for what the operator does with it."""
+    """What serves one page: no one, or a participant, whom the operator may pause or withdraw."""
 
     def __init__(self, studio: Studio, tell: Tell) -> None:
         self._studies, self._tell = studio.part(Studies), tell

@@ -103,21 +103,15 @@ class JobFolder:
     def events(self) -> list[JobEvent]:
         """Read all events; none if there is no file. InputError on a damaged one."""
         path = self.path / EVENTS
-        if not path.is_file():
-            return []
-        return [_event(path, record) for record, _ in read_records(path, JOURNAL)]
+        records = read_records(path, JOURNAL) if path.is_file() else ()
+        try:
+            return [msgspec.convert(record["event"], JobEvent) for record, _ in records]
+        except msgspec.ValidationError as error:
+            raise InputError(path, "event", str(error), REMEDY) from error
 
 
 def utc_now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
-
-
-def _event(path: Path, record: dict[str, Any]) -> JobEvent:
-    try:
-        found: JobEvent = msgspec.convert(record["event"], JobEvent)
-        return found
-    except msgspec.ValidationError as error:
-        raise InputError(path, "event", str(error), REMEDY) from error
 
 
 JobState = Literal["waiting", "running", "needs you", "done", "cancelled", "failed"]
@@ -212,9 +206,8 @@ def publish(project: Path, folder: JobFolder, order: Order) -> tuple[JobResult, 
     """
     files = {kind: folder.result(kind) for kind in RESULT_FOLDERS} | {"recording": folder.recording}
     names = dict.fromkeys(RESULT_FOLDERS, order.name) | {"rig": rig_name(order)}
-    return tuple(
-        _put(project, kind, names[kind], file.read_bytes()) for kind, file in files.items() if file.exists()
-    )
+    made = {kind: file.read_bytes() for kind, file in files.items() if file.exists()}
+    return tuple(_put(project, kind, names[kind], content) for kind, content in made.items())
 
 
 def rig_name(order: Order) -> str:

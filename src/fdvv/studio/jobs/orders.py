@@ -8,12 +8,7 @@ from fdvv.studio.contract import Message
 
 
 class RigOrder(Message):
-    """What work of a button on a rig has in common.
-
-    button : id of the model. name : of what comes out.
-    device : one of those listed. rig : of a simulated one, by its shipped name.
-    pace_ratio : part by which a press may miss its speed.
-    """
+    """What every order of work on a rig says; see CompensateOrder."""
 
     button: str
     name: str

@@ -41,7 +41,7 @@ faster than the firmware believes of a cap, and it falls to zero force."""
 
 @dataclass(frozen=True)
 class PersonClick:
-    """A vibration that starts: when (as in its frame), which of the trial's sounds, how fast the cap was."""
+    """A vibration that starts at the cap, at a time of its frame. sound : its place among the trial's sounds."""
 
     t_s: float
     sound: int
