@@ -44,6 +44,16 @@ class Offer(Message):
     about: str = field(name="told")
 
 
+class Over(Message, tag="over"):
+    """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
+
+    reason: str
+
+
+class Here(Message, tag="here"):
+    """The page is visible."""
+
+
 class Watch(Message, tag="watch"):
     """Send every change from now on."""
 

@@ -129,10 +129,9 @@ class LiveConnection:
     def _say(self, body: bytes, channel: str = "studio", error: str = "") -> None:
         if self._over:
             return
-        head = msgspec.json.encode({"channel": channel, **({"error": error} if error else {})})
-        whole = head if error else head[:-1] + b',"body":' + body + b"}"
+        content = {"error": error} if error else {"body": msgspec.Raw(body)}
         try:
-            self._outgoing.put_nowait(whole)
+            self._outgoing.put_nowait(msgspec.json.encode({"channel": channel, **content}))
         except asyncio.QueueFull:
             # it will connect again and ask for what it missed
             self._workers.append(asyncio.create_task(self._socket.close(SLOW, "the page does not read")))

@@ -15,7 +15,7 @@ from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.optimize.run.task_rounds import ClockSource
-from fdvv.studio.contract import Message, Tell
+from fdvv.studio.contract import Message, Over, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices, require_listed
 from fdvv.studio.played_trial import PlayDelay, PlayedTrial, PlayKept, PlayRound
 from fdvv.studio.studio import Studio
@@ -45,7 +45,7 @@ class LiveTrial:
         self._faulted, self._pressed_s = False, (0.0, 0.0)
         self._came_ms: list[tuple[float, float]] = []
         press = LivePress(subject, seed=played.seed)
-        self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(PlayOver(reason)), CLOCK)
+        self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(Over(reason)), CLOCK)
 
     def down(self, at_ms: float) -> None:
         """Press the simulated finger down; at_ms : when the hand pressed."""
@@ -110,12 +110,6 @@ class PlayClick(Message, tag="click"):
     slot: int
     server_ms: float
     velocity_mm_s: float
-
-
-class PlayOver(Message, tag="over"):
-    """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
-
-    reason: str
 
 
 HOLDER = "the pointing task"

@@ -102,10 +102,8 @@ class WatchJob(Message, tag="watch_job"):
     from_event: int
 
 
-class JobList(Message, tag="jobs"):
+class JobList(JobRows, tag="jobs"):
     """All jobs, newest first; sent when the page subscribes."""
-
-    jobs: tuple[JobRow, ...]
 
 
 class JobChanged(Message, tag="job"):

@@ -13,9 +13,9 @@ from fdvv.errors import InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.live.press_subject import model_subject
 from fdvv.studio.api.press_frames import ShakeSignal
-from fdvv.studio.contract import ChannelKind, Message, Tell, error_line, message_of
+from fdvv.studio.contract import ChannelKind, Message, Over, Tell, error_line, message_of
 from fdvv.studio.optimizations import Optimizations
-from fdvv.studio.play_trials import CLOCK, DeviceTrial, LiveTrial, PlayClick, PlayOver, Table
+from fdvv.studio.play_trials import CLOCK, DeviceTrial, LiveTrial, PlayClick, Table
 from fdvv.studio.played_trial import Count, PlayedTrial, PlayKept, PlayRound, Time
 from fdvv.studio.studio import Studio
 
@@ -76,7 +76,7 @@ class PlayChannel:
 
     def __init__(self, studio: Studio, tell: Tell) -> None:
         self._optimizations, self._tell = studio.part(Optimizations), tell
-        self._table = Table(studio, lambda line: tell(PlayOver(line)))
+        self._table = Table(studio, lambda line: tell(Over(line)))
         self._live: LiveTrial | DeviceTrial | None = None
 
     def receive(self, ask: Message) -> None:
@@ -101,7 +101,7 @@ class PlayChannel:
                 self._tell(kept)
             case PlayClose():
                 self._put_away()
-                self._tell(PlayOver(""))
+                self._tell(Over(""))
 
     def close(self) -> None:
         self._put_away()
@@ -138,5 +138,5 @@ class PlayChannel:
 
 
 ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayRound, PlayClose)
-TELLS = (PlayReady, PlayPong, PlayClick, PlayKept, PlayOver)
+TELLS = (PlayReady, PlayPong, PlayClick, PlayKept, Over)
 CHANNEL = ChannelKind("play", ASKS, TELLS, PlayChannel)

@@ -35,7 +35,7 @@ from fdvv.studio.api.press_frames import (
     press_frame,
     press_ready,
 )
-from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
+from fdvv.studio.contract import ChannelKind, Empty, Here, Message, Over, Tell, call
 from fdvv.studio.rounding import rounded
 from fdvv.studio.studio import Studio
 
@@ -43,14 +43,19 @@ Count = Annotated[int, Meta(ge=0, le=2**53)]
 Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
 
 
-class TraceItem(Message):
-    """A trace that can be replayed, thinned for a small picture."""
+class TraceRead(Message):
+    """A trace that was read, ready to be replayed."""
 
     name: str
     about: str = field(name="told")
-    duration_s: float
     t_s: tuple[float, ...]
     displacement_mm: tuple[float, ...]
+
+
+class TraceItem(TraceRead):
+    """A shipped trace, thinned for a small picture."""
+
+    duration_s: float
 
 
 class PressList(Message):
@@ -67,15 +72,6 @@ class TraceReadAsk(Message):
 
     name: Annotated[str, Meta(max_length=200)]
     text: Annotated[str, Meta(max_length=4_000_000)]
-
-
-class TraceRead(Message):
-    """A trace that was read, ready to be replayed."""
-
-    name: str
-    about: str = field(name="told")
-    t_s: tuple[float, ...]
-    displacement_mm: tuple[float, ...]
 
 
 class PressStart(Message, tag="start"):
@@ -133,10 +129,6 @@ class PressHostEvent(Message, tag="event"):
     number: Annotated[int, Meta(ge=0, le=31)]
 
 
-class PressHere(Message, tag="here"):
-    """The page is visible."""
-
-
 class PressPause(Message, tag="pause"):
     """The page is hidden."""
 
@@ -159,19 +151,13 @@ class PressRefused(Message, tag="refused"):
     reason: str
 
 
-class PressOver(Message, tag="over"):
-    """Nothing is under the finger any more. reason : one line, empty if it was asked for."""
-
-    reason: str
-
-
 PICTURE_POINTS = 60
 
 
 def _trace_item(trace: PressTrace) -> TraceItem:
     every = max(1, trace.t_s.size // PICTURE_POINTS)
-    thin = [rounded(column[::every], DIGITS) for column in (trace.t_s, trace.displacement_mm)]
-    return TraceItem(trace.name, trace.origin, trace.duration_s, *thin)
+    t_s, displacement_mm = (rounded(c[::every], DIGITS) for c in (trace.t_s, trace.displacement_mm))
+    return TraceItem(trace.name, trace.origin, t_s, displacement_mm, trace.duration_s)
 
 
 @call("press.list")
@@ -220,7 +206,7 @@ class PressChannel:
                 self._start(ask)
             case PressStop():
                 self.close()
-                self._tell(PressOver(""))
+                self._tell(Over(""))
             case _ if self._run:
                 _lead(self._run, ask)
 
@@ -238,7 +224,7 @@ class PressChannel:
             press,
             lambda seen: self._show(press, seen),
             lambda line: self._tell(PressRefused(line)),
-            lambda line: self._tell(PressOver(line)),
+            lambda line: self._tell(Over(line)),
         )
 
     def _show(self, press: LivePress, seen: LiveFrame) -> None:
@@ -267,7 +253,7 @@ def _lead(run: LiveRun, ask: Message) -> None:
             run.ask(lambda press: press.fail(Fault.POSITION_STUCK))
         case PressClear():
             run.ask(LivePress.clear_fault)
-        case PressHere():
+        case Here():
             run.here()
         case PressPause():
             run.pause()
@@ -284,7 +270,7 @@ def _given_trace(ask: PressReplay) -> PressTrace:
 
 ASKS = (
     *(PressStart, PressLead, PressPush, PressLift, PressReplay, PressHostEvent),
-    *(PressHere, PressPause, PressStop, PressFail, PressClear),
+    *(Here, PressPause, PressStop, PressFail, PressClear),
 )
-TELLS = (PressReady, PressMeant, PressFrame, PressRefused, PressOver)
+TELLS = (PressReady, PressMeant, PressFrame, PressRefused, Over)
 CHANNEL = ChannelKind("press", ASKS, TELLS, PressChannel)

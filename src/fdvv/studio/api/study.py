@@ -18,7 +18,7 @@ from fdvv.studio.api.study_steps import (
     step_message,
     unnamed_sound,
 )
-from fdvv.studio.contract import ChannelKind, Message, Tell
+from fdvv.studio.contract import ChannelKind, Here, Message, Tell
 from fdvv.studio.studies import Invitation, Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study
@@ -122,10 +122,6 @@ class StudyWithdraw(Message, tag="withdraw"):
     """Leave the study for good."""
 
 
-class Heartbeat(Message, tag="here"):
-    """The page is visible."""
-
-
 class StudyAbout(Message, tag="about"):
     """What the study is. seat : it can be taken by this page. titles : by language."""
 
@@ -180,7 +176,7 @@ class StudyScreen:
 
     def receive(self, ask: Message) -> None:
         """Do what the page asks; without a participant most asks have come too late and do nothing."""
-        if isinstance(ask, StudyLead | StudyPush | StudyLift | Heartbeat):
+        if isinstance(ask, StudyLead | StudyPush | StudyLift | Here):
             self._move_finger(ask)
             return
         with self._lock:
@@ -288,13 +284,13 @@ class StudyScreen:
             case StudyWithdraw():
                 self.withdraw(delete=True)
 
-    def _move_finger(self, ask: StudyLead | StudyPush | StudyLift | Heartbeat) -> None:
+    def _move_finger(self, ask: StudyLead | StudyPush | StudyLift | Here) -> None:
         """Lead the finger; many of these come, and none waits for anything."""
         stage = self._stage
         if stage is None:
             return
         match ask:
-            case Heartbeat():
+            case Here():
                 stage.here()
             case StudyLead():
                 stage.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s)
@@ -350,7 +346,7 @@ class StudyScreen:
 
 ASKS = (
     *(StudyLook, JoinSession, StudyResume, StudyShown, ContinueStep, StudyLead, StudyPush, StudyLift),
-    *(StudyAgain, StudyAnswered, StudyFilled, EndBreak, StudyWithdraw, Heartbeat),
+    *(StudyAgain, StudyAnswered, StudyFilled, EndBreak, StudyWithdraw, Here),
 )
 TELLS = (
     *(StudyAbout, StudyCard, StudyStep, StudyReady, StudyFelt),

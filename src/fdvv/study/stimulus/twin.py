@@ -41,7 +41,7 @@ faster than the firmware believes of a cap, and it falls to zero force."""
 
 @dataclass(frozen=True)
 class PersonClick:
-    """A vibration that starts at the cap, at a time of its frame. sound : its place among the trial's sounds."""
+    """A vibration that starts, at a time of its frame. sound : its place among the trial's sounds."""
 
     t_s: float
     sound: int
