@@ -11,8 +11,6 @@ from fdvv.units import N_from_cN, mm_from_m
 
 FINGER_PAD_mm = 0.5
 """Compression of the finger pad."""
-
-
 LIFTED_mm = -2.0
 
 

@@ -27,11 +27,10 @@ Found = TypeVar("Found")
 
 GLANCE_s = 0.01
 """What is asked for waits no longer while a real line is listened to."""
-
 WATCH_s = 0.5
 """A warning that does not end the force is looked for so often."""
-
 ASKS_s = 0.1
+"""So often who waits for an answer looks whether anybody listens any more."""
 
 
 class DeviceLine(Protocol):
@@ -134,7 +133,7 @@ class RealLine:
                 self._lost(error)
                 self._over = True
             self._do_asked()
-        self._do_asked()
+        self._do_asked()  # what was asked for meanwhile fails or is done, but nobody waits for ever
 
     def _do_asked(self) -> None:
         while True:
@@ -146,10 +145,8 @@ class RealLine:
 
 PINGS = 12
 """Before the first press, to join the clocks; then every exchange goes on joining them."""
-
 EVERY = 10
 """Ticks between two records: frames come steadily, so that a lost one is noticed."""
-
 KEPT = 200
 """Of presses; a round has a handful."""
 
@@ -220,7 +217,6 @@ class DeviceKey:
                 self._line.do(self.device.stop)
 
     def close(self) -> None:
-        """Fall to zero force and let the device go."""
         self.rest()
         self.problem = self.problem or "the device is closed; open it again"
         self._line.close()

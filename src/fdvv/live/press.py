@@ -27,9 +27,7 @@ from fdvv.units import FloatArray
 
 TOP_mm, DEEP_mm = 0.1, 0.3
 """A press begins where the cap passes the first; it counts once it was deeper than the second."""
-
 STEP_mm = 0.02
-
 DOWN_RATIO = 0.9
 """Of its depth: there a press counts as down; what follows may be a finger that holds."""
 
@@ -142,12 +140,10 @@ class LivePress:
 
     @property
     def time_s(self) -> float:
-        """Simulated time since the beginning."""
         return self.rig.time_s
 
     @property
     def replaying(self) -> bool:
-        """Whether a trace leads the finger."""
         return self._path is not None
 
     def lead(self, referent_mm: float, velocity_mm_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
@@ -161,7 +157,6 @@ class LivePress:
         self.rig.push(force_cN)
 
     def lift(self) -> None:
-        """Take the finger off."""
         self._path = None
         self.rig.lift()
 
@@ -179,9 +174,10 @@ class LivePress:
         Parts of a tick wait for the next call. ModelError if the motion diverged.
         """
         self.due_s += duration_s
+        # the small number: sums of floats may end just below a whole tick
         ticks = max(0, int((self.due_s - self.time_s) / self._tick_s + 1e-6))
         pieces: list[InteractiveTicks] = []
-        while ticks or not pieces:
+        while ticks or not pieces:  # a piece without a tick has columns as well
             count = self._lead_along(ticks)
             pieces.append(self.rig.advance(count))
             ticks -= count
@@ -189,7 +185,6 @@ class LivePress:
         return columns, self._events(columns)
 
     def fault(self) -> FaultReport:
-        """Return the latched fault."""
         core = self.rig.core
         found = core.evidence
         return FaultReport(

@@ -14,15 +14,9 @@ from fdvv.units import FloatArray, N_from_cN, mm_from_m
 
 REPLAY_STEP_s = 0.004
 """How often a finger that follows a trace is led anew."""
-
-
 SMOOTH_s = 0.004
 """Of the trace, one standard deviation: keyboards tell places in steps."""
-
-
 NEAR_1_s = 500.0
-
-
 TOUCH_mm = 0.1
 """Over so much displacement the finger takes the button's force up."""
 
@@ -72,6 +66,7 @@ def path_of(trace: PressTrace, subject: PressSubject, start_s: float) -> Displac
 
 
 def _smooth(x: FloatArray) -> FloatArray:
+    # beyond four standard deviations a weight is below a thousandth
     reach = np.arange(-4, 5) * REPLAY_STEP_s
     weights = np.exp(-0.5 * (reach / SMOOTH_s) ** 2)
     padded = np.concatenate([np.full(4, x[0]), x, np.full(4, x[-1])])

@@ -37,7 +37,6 @@ from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray, cN_from_N
 
 IDEAL_RIG = "ideal"
-
 PRESS_RIGS = ("paper", "light")
 """Shipped rigs that one may choose between; intended renders on the ideal one."""
 
@@ -45,7 +44,6 @@ TEACHER = "mx-clear"
 """The button whose presses identify a rig."""
 
 TAUGHT_mm_s, RENDERED_mm_s = (50.0, 100.0, 150.0, 200.0), (10.0, 50.0, 100.0, 150.0, 200.0)
-
 STEP_mm = 0.02
 
 
@@ -242,13 +240,11 @@ def _subject(
 
 
 def _surfaces(program: Program) -> tuple[ProgramSurface, ProgramSurface]:
-    """Return press and release of the start state."""
     start = program.state(program.start)
     return program.surface(start.press), program.surface(start.release)
 
 
 def _marks(program: Program) -> tuple[PressMark, ...]:
-    """Return the places at which states change."""
     return tuple(
         PressMark(f"{state.name} → {way.to}", way.when.value)
         for state in program.states

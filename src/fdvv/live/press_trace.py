@@ -13,24 +13,18 @@ from fdvv.errors import InputError, ModelError
 from fdvv.units import FloatArray
 
 LARGEST_bytes = 4_000_000
-
 LONGEST_s, DEEPEST_mm = 120.0, 10.0
-
 FEWEST = 4
-
 TIMES = {"t_s": 1.0, "time_s": 1.0, "t_ms": 1e-3, "time_ms": 1e-3, "unixtime": 1e-3}
 """Columns that hold time, and what turns them into seconds."""
 
 PLACES = ("displacement_mm", "travel_mm", "x_mm")
-
 RATIO, KEY = "keyValue", "keyCode"
 """Columns of analogue keyboards: depth as a part of the travel, and which key."""
 
 FULL_mm = 4.0
 """Travel that a part of it is taken of."""
-
 STEP_s = 0.002
-
 SILENT_s = 0.02
 """A keyboard that reports a key only while it moves: after such a silence it had not moved."""
 
@@ -66,7 +60,6 @@ class PressTrace:
 
     @property
     def duration_s(self) -> float:
-        """Length."""
         return float(self.t_s[-1])
 
 

@@ -109,7 +109,6 @@ class LiveRun:
             self._hear()
 
     def here(self) -> None:
-        """Note that a page watches."""
         with self._changed:
             self._hear()
 

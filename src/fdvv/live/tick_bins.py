@@ -71,6 +71,7 @@ class TickBinner:
         pieces = (self._kept, piece) if self._kept else (piece,)
         whole = TickPiece(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
         number = np.floor(whole.t_s / self.bin_s).astype(np.int64)
+        # the last bin may go on in the next piece
         last = number == number[-1] if number.size else np.zeros(0, dtype=np.bool_)
         self._kept = TickPiece(*(column[last] for column in whole))
         return _binned(TickPiece(*(column[~last] for column in whole)), number[~last])

@@ -44,8 +44,6 @@ NO_TOKEN = "Only its owner may open this studio: open the whole address that `fd
 class ServerAddress:
     """Where the studio is, and what opens it.
 
-    Attributes
-    ----------
     hosts : values of the Host header that mean this studio, such as ``127.0.0.1:8765``.
     token : the secret of this run.
     cookie : name of the cookie that holds it; cookies do not know ports, so the port is in the name.

@@ -66,8 +66,6 @@ class Watching(Message, tag="watching"):
 class Call:
     """A question that is answered once, served as ``POST /api/NAME``.
 
-    Attributes
-    ----------
     name : part and verb, such as ``library.search``.
     ask, answer : types of the request and of what is returned: structs, or plain dataclasses for answers.
     function : runs in a worker thread. What it raises of FdvvError is one line on the page.
@@ -107,8 +105,6 @@ class Channel(Protocol):
 class ChannelKind:
     """Messages that come and go as long as the page is open.
 
-    Attributes
-    ----------
     name : of the channel.
     asks, tells : message types, tagged: what the page sends and what it gets.
     open : called when a page first sends on it.

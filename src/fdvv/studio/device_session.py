@@ -190,7 +190,7 @@ class DeviceSession:
     def upload(self, ask: DeviceUpload, model: FDVVModel, learned: CompensationResult | None) -> DeviceStatus:
         """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
         held = self.held()
-        check_speeds(ask.velocities_mm_s, 5.0)
+        check_speeds(ask.velocities_mm_s)
         held.do(lambda: put_button(held, model, learned, sorted(ask.velocities_mm_s)))
         self._model = model
         return self.refresh(f"{model.name}{f', {ask.actuation}' if ask.actuation else ''}")
@@ -198,7 +198,7 @@ class DeviceSession:
     def press(self, velocity_mm_s: float) -> DeviceStatus:
         """Make one simulated press and send it to all subscribers. DeviceError."""
         held = self.held()
-        check_speeds((velocity_mm_s,), 5.0)
+        check_speeds((velocity_mm_s,))
         if not held.device.info().simulated:
             raise DeviceError("a person presses this device; arm it and press")
         try:

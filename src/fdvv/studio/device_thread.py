@@ -35,8 +35,6 @@ CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
 class DeviceThread:
     """A device in use by the studio.
 
-    Parameters
-    ----------
     device : open; closed with this.
     ticks : called with ticks as they come. lost : called once if the device goes away. Both in the thread.
     """
@@ -82,7 +80,6 @@ class DeviceThread:
         return press
 
     def close(self) -> None:
-        """Set zero force and close the device."""
         self._over.set()
         self._thread.join(PATIENCE_s)
 

@@ -33,8 +33,6 @@ class OptimizeChanged(Message, tag="changed"):
 class SimulatedPlay:
     """Trials that a simulated person plays. What is done is in the run's ledger, whatever ends the studio.
 
-    Attributes
-    ----------
     person : seed of who plays. done, total : trials. running : whether still at it.
     fault : why it ended early; empty if it did not.
     """
@@ -79,6 +77,8 @@ class SimulatedPlay:
                 return False
             trial = session.show(trials[0].number)
             model = session.model(trial.design)
+        # the person learns from every press, so the trials before this one count; the session is left while
+        # the trial is simulated, which takes long, so that pages can read the run
         before = task.rounds * trial.number
         scores = score_design(task, model, user, seed + trial.number, presses_before=before)
         with self._runs.session(self._run) as session:

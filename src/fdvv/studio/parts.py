@@ -85,7 +85,6 @@ class PartLoader:
 
 
 def load_parts() -> Parts:
-    """Import every part, here and now."""
     loader = PartLoader()
     loader.load()
     return loader.all()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -24,18 +25,14 @@ log = logging.getLogger("fdvv.studio")
 CLOCK = time.monotonic
 LONGEST_s = 5.0
 """No hold lasts longer, whatever a page says."""
-
 LET_GO_cN = 1.0
 """A finger that pushes no harder has let go."""
-
 DOWN = (LiveEventKind.ACTUATION, LiveEventKind.LEVEL)
 
 
 class LiveTrial:
     """A trial under the finger.
 
-    Parameters
-    ----------
     played : the trial, its rounds and its task. subject : its button, on its rig. tell : to the page.
     """
 
@@ -43,13 +40,13 @@ class LiveTrial:
         self.played, self._tell = played, tell
         self._times, self._hand = PressTimes(), BinaryFinger.of(subject)
         self._faulted, self._pressed_s = False, (0.0, 0.0)
-        self._came_ms: list[tuple[float, float]] = []
+        self._came_ms = deque[tuple[float, float]](maxlen=10)  # a round has a handful of presses
         press = LivePress(subject, seed=played.seed)
         self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(Over(reason)), CLOCK)
 
     def down(self, at_ms: float) -> None:
         """Press the simulated finger down; at_ms : when the hand pressed."""
-        self._came_ms = [*self._came_ms[-9:], (at_ms, 1e3 * CLOCK())]
+        self._came_ms.append((at_ms, 1e3 * CLOCK()))
         self.run.ask(lambda press: self._press(press, at_ms / 1e3))
 
     def up(self, at_ms: float) -> None:
@@ -91,7 +88,6 @@ class LiveTrial:
             self._faulted = False
 
     def keep(self, ask: PlayRound) -> PlayKept:
-        """Bring a round to the disk, and score the trial after the last one."""
         timing = ask.timing(ClockSource.PAGE, ask.input, self._transport_ms(ask), ask.hand)
         found = self._times.between(ask.start_ms / 1e3, ask.end_ms / 1e3)
         return self.played.keep(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
@@ -116,15 +112,12 @@ HOLDER = "the pointing task"
 
 
 def pressed_devices() -> tuple[tuple[str, str], ...]:
-    """Return the available devices that a person presses."""
     return tuple((name, about) for name, about in available_devices()[0] if pressed_by_person(name))
 
 
 class Table:
     """The table beside one page: the device on it is open from its first trial until the page goes.
 
-    Parameters
-    ----------
     failed : called with one line when the device fell to zero force or is gone, from a thread of the device.
     """
 
@@ -145,7 +138,6 @@ class Table:
         return self._key
 
     def clear(self) -> None:
-        """Set zero force and close the device."""
         key, name = self._key, self._name
         self._name, self._key = "", None
         if key:
@@ -162,8 +154,6 @@ class Table:
 class DeviceTrial:
     """A trial on a device: the page leads no finger and shows nothing but the bullet.
 
-    Parameters
-    ----------
     played : the trial, its rounds and its task. key : of the device, which renders the trial's button.
 
     Raises InputError, ModelError on a button that the device cannot hold, DeviceError.
@@ -188,6 +178,5 @@ class DeviceTrial:
         return self._played.keep(ask, tuple(at_s - 1e-3 * ask.clock_ms for at_s in pressed_s), timing)
 
     def close(self) -> None:
-        """Set zero force and close the trial."""
         self._key.rest()
         self._played.close()

@@ -109,8 +109,6 @@ def pointing_of(setup: OptimizeSetup) -> TemporalPointing:
 class PlayedTrial:
     """One beginning of one trial.
 
-    Attributes
-    ----------
     model : the button under test. seed : of everything random in its simulation.
     task : what is played. attempt : how often the trial was begun.
 
@@ -181,5 +179,4 @@ def _open_trial(session: Optimization, number: int) -> Trial:
 
 
 def open_trials(session: Optimization) -> tuple[Trial, ...]:
-    """Return the trials that are suggested or in progress."""
     return tuple(one for one in session.trials if one.state in (TrialState.SUGGESTED, TrialState.SHOWN))

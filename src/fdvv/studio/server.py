@@ -167,6 +167,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # asyncio sends at once only where TCP is named; else the end of an answer waits 40 ms for the page
     taken = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    # a studio that is started again need not wait for the port of its last run
     taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         taken.bind((host, port))

@@ -80,7 +80,6 @@ class Studies:
         return self.folder / name
 
     def study(self, name: str) -> Study:
-        """Open a study. InputError."""
         return Study.open(self.path(name))
 
     def device(self, name: str) -> str:

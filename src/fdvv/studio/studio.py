@@ -17,8 +17,6 @@ P = TypeVar("P")
 class Studio:
     """One studio: a person's project, the folders beside it, and the service of every part.
 
-    Parameters
-    ----------
     project : folder of the person's work; made when something is first kept in it.
     sources : folders of measured switches. libraries : folders of libraries of them, which save reading.
     """

@@ -118,7 +118,6 @@ class ScopeChannel:
 
 
 def scope_frame(found: TickBins, bin_s: float) -> ScopeFrame:
-    """Return the message of some bins."""
     low, high = found.low, found.high
     return ScopeFrame(
         bin_s,

@@ -76,8 +76,6 @@ class PressFrame(Message, tag="frame"):
 
 ROW_s = 0.001
 """Between two rows of a frame."""
-
-
 DIGITS, FORCE_DIGITS = 4, 2
 
 

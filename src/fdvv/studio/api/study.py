@@ -205,7 +205,6 @@ class StudyScreen:
             self._stages.release()
 
     def pause(self, on: bool) -> None:
-        """Pause or continue."""
         stage = self._stage
         if on and stage:
             stage.lift()
@@ -217,7 +216,6 @@ class StudyScreen:
         self._tell(StudyStopped(reason))
 
     def withdraw(self, delete: bool) -> None:
-        """Take the person out of the study."""
         with self._lock:
             if self._participant:
                 self._advance(self._participant.withdraw(delete=delete))
@@ -257,7 +255,6 @@ class StudyScreen:
         self._begin(invitation.code)
 
     def _go_on(self, ask: Message, participant: Participant, stage: ScreenRenderer) -> None:
-        """Do what only a participant can ask for."""
         match ask:
             case StudyShown():
                 self._forget_code()

@@ -58,8 +58,6 @@ class JobRecord(Message):
 class JobFolder:
     """Where a job keeps everything.
 
-    Attributes
-    ----------
     button : the model that is worked on. recording : the takes of a capture.
     actuation : the learned table that is worked on; absent where there is none.
     known_rig : what is known of the rig from before; absent where nothing is.
@@ -82,11 +80,9 @@ class JobFolder:
         return self.path / f"result.{kind}.json"
 
     def save(self, record: JobRecord) -> None:
-        """Write the record of the job. OSError."""
         write_atomic(self.path / JOB, pretty(msgspec.to_builtins(record)) + "\n")
 
     def load(self) -> JobRecord:
-        """Read the record of the job. InputError."""
         path = self.path / JOB
         text = read_limited(path, LARGEST_bytes, REMEDY)
         decode = msgspec.json.Decoder(JobRecord).decode
@@ -163,7 +159,6 @@ class ResultFolder:
     fresh: bool
 
     def file(self, project: Path, name: str) -> Path:
-        """Name the file of a result."""
         return project / self.folder / f"{name}{self.suffix}"
 
 
@@ -185,7 +180,6 @@ def check_name(name: str) -> str:
 
 
 def result_names(project: Path, kind: str) -> tuple[str, ...]:
-    """List the results of a kind in the project."""
     place = RESULT_FOLDERS[kind]
     found = (project / place.folder).glob(f"*{place.suffix}")
     return tuple(sorted(path.name.removesuffix(place.suffix) for path in found if path.name[0] != "."))

@@ -30,8 +30,6 @@ MOST = {
     "seed": (0, 2**31),
 }
 """Least and most of what is counted."""
-
-
 BENCH = "the capture bench "
 """Before the name of a simulated bench: it is no rig."""
 
@@ -40,8 +38,6 @@ BENCH = "the capture bench "
 class Inputs:
     """What a job begins with.
 
-    Attributes
-    ----------
     title : for people. device : that it uses, as the device locks name it. simulated : that device is.
     files : of the job's folder, by name.
     """
@@ -61,7 +57,7 @@ def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[s
     if isinstance(order, CaptureOrder):
         return _capture(order)
     model = catalog.model(order.button)
-    check_speeds(order.velocities_mm_s, SLOWEST_mm_s)
+    check_speeds(order.velocities_mm_s)
     files = _shared_files(order, model, project)
     if isinstance(order, TuneOrder):
         _check_tuning(order, model)
@@ -71,8 +67,7 @@ def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[s
     return Inputs(title, order.device, not pressed_by_person(order.device), files)
 
 
-def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float) -> None:
-    """Refuse speeds that cannot be pressed at. InputError."""
+def check_speeds(speeds_mm_s: Sequence[float], slowest_mm_s: float = SLOWEST_mm_s) -> None:
     good = all(math.isfinite(v) and slowest_mm_s <= v <= FASTEST_mm_s for v in speeds_mm_s)
     if not good or not 0 < len(set(speeds_mm_s)) == len(speeds_mm_s) <= MOST_SPEEDS:
         speeds = ", ".join(f"{v:g}" for v in speeds_mm_s[:20]) or "none"

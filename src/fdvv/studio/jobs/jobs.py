@@ -29,7 +29,6 @@ Heard = Callable[[int, Sequence[JobEvent]], None]
 """Is given the number of the first event, and events."""
 
 UNFINISHED = ("waiting", "running", "needs you")
-
 BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
 
 
@@ -37,8 +36,6 @@ BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
 class JobProgress:
     """How far a job is, as its events tell.
 
-    Attributes
-    ----------
     question : number of the one that waits for an answer; 0 if none does.
     """
 
@@ -49,7 +46,6 @@ class JobProgress:
     question: int = 0
 
     def after(self, event: JobEvent) -> JobProgress:
-        """Return the progress after an event."""
         match event:
             case events.StageEvent():
                 return JobProgress("running", event.text)
@@ -78,8 +74,6 @@ class JobProgress:
 class LiveJob:
     """A job of this studio. Any thread may ask; all changes are made under the lock.
 
-    Parameters
-    ----------
     name : of the job. folder, record : of it.
     """
 
@@ -162,10 +156,7 @@ class LiveJob:
         return end
 
 
-JOBS = "jobs"
-
-MOST_JOBS = 10_000
-
+JOBS, MOST_JOBS = "jobs", 10_000
 ANSWERS = ("first", "second", "neither", "again", *map(str, range(1, 8)))
 
 
@@ -184,12 +175,10 @@ class Jobs:
         self._jobs = {job.name: job for job in _jobs_on_disk(self._folder)}
 
     def rows(self) -> tuple[JobRow, ...]:
-        """List all jobs, newest first."""
         with self._lock:
             return tuple(job.row for job in reversed(self._jobs.values()))
 
     def job(self, name: str) -> LiveJob:
-        """Return a job by its name. InputError."""
         with self._lock:
             if name not in self._jobs:
                 raise InputError("job", "job", f"there is no job {name[:20]!r}", "choose one of the list")

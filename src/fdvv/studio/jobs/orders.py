@@ -98,5 +98,4 @@ Order = CompensateOrder | ProbeOrder | CaptureOrder | TuneOrder
 
 
 def kind_of(order: Order) -> KindName:
-    """Return the kind by which an order is tagged."""
     return cast(KindName, order.__struct_config__.tag)

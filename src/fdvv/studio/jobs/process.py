@@ -79,7 +79,6 @@ WORK = {
 
 
 def work_on(work: Work) -> None:
-    """Do what the job's order says."""
     order = work.folder.load().order
     resolve_name(WORK[type(order)])(work, order)
 
@@ -127,8 +126,6 @@ LARGEST_chars = 300
 class JobStart:
     """A process at work on a job.
 
-    Parameters
-    ----------
     folder : of the job. run : counts the starts.
     heard : called with every event, the end not among them; over : with the end; both in one thread.
     """
@@ -177,7 +174,6 @@ class JobStart:
         force.start()
 
     def wait(self, timeout_s: float | None = None) -> None:
-        """Wait until the end is reported."""
         self._thread.join(timeout_s)
 
     def _listen(self) -> None:

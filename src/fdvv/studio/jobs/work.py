@@ -30,8 +30,6 @@ from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
 class Work:
     """One start of a job.
 
-    Attributes
-    ----------
     folder : of the job. run : counts the starts.
     tell : called with each event. ask : waits for the answer to the question of that number.
     """
@@ -51,7 +49,6 @@ class Work:
         return Guide(lambda ask: self.tell(message_of(events.PressAsked, ask)), self.notice)
 
     def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
-        """Report the intended force of the model at each speed."""
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
             x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
@@ -77,7 +74,6 @@ class Work:
                 device.close()
 
     def begin(self, info: DeviceInfo | BenchInfo) -> None:
-        """Report that the work begins, or continues, on a device."""
         self.tell(events.JobStarted(self.run, info.name, info.simulated))
 
 

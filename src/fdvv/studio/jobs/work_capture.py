@@ -63,7 +63,7 @@ def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], N
         if not paced:
             return show_nothing
         work.tell(_asked(ask))
-        started = cache(lambda: work.tell(events.CueStarted()))  # told at the first moment of the cue only
+        started = cache(lambda: work.tell(events.CueStarted()))  # at its first moment only
         return lambda _t_s: started()
 
     return cue

@@ -93,7 +93,6 @@ def _probe(
 
 
 def _keep(work: Work, result: CompensationResult) -> None:
-    """Keep what was learned in the job's folder, and tell of it."""
     save_actuation(result, work.folder.result("actuation"))
     if result.learned_rig:
         save_rig(result.learned_rig, work.folder.result("rig"))

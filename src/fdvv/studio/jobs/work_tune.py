@@ -54,7 +54,6 @@ def _method(order: TuneOrder) -> Rating | Comparing:
 
 
 def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) -> Any:
-    """Return who answers."""
     if order.observer != "person":
         return simulated_observer(candidates, order.seed).answer
 
