@@ -84,7 +84,7 @@ class Descent:
             return self._over(float(t_s[0]))
         steps = np.floor(x_mm / STEP_mm)
         deepest = np.floor(self._x_mm[-1] / STEP_mm) if self._x_mm else -1.0
-        deeper = steps > np.maximum.accumulate([deepest, *steps[:-1]])
+        deeper = steps > np.maximum.accumulate(np.append(deepest, steps[:-1]))
         self._t_s += t_s[deeper].tolist()
         self._x_mm += x_mm[deeper].tolist()
         return None
