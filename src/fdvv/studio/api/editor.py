@@ -121,8 +121,8 @@ def _curve(curve: CurveFeasibility) -> AchievableForce:
         x_mm,
         intended_cN,
         achievable_cN,
-        limited_ranges(reached),
+        tuple(limited_ranges(reached)),
         str(curve.verdict.following),
-        list(curve.verdict.reasons),
+        curve.verdict.reasons,
         curve.expected.mean_cN,
     )
