@@ -7,16 +7,17 @@ unknown keys are ignored. Every parameter curve acts on all events of the patter
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from fdvv.errors import ModelError
-from fdvv.formats.exchange.exported import Exported
+from fdvv.errors import InputError, ModelError
+from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.formats.exchange.pulse import (
+    LOST,
+    LONGEST_s,
     Pulse,
     check_points,
     clipped,
@@ -25,22 +26,22 @@ from fdvv.formats.exchange.pulse import (
     pulse_of,
     read_json,
     read_scale,
-    refuse,
     scale_of,
     sharpness,
 )
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
-WHAT = "an AHAP file with at least one haptic event"
+REMEDY = "give an AHAP file with at least one haptic event"
 POINTS_per_curve = 16
 """Longer curves are cut into several. Apple states no limit; writers of AHAP are said to keep to this one."""
 TRANSIENT_s = 0.03
 """Length of a transient: Apple gives none; it is a click of a few tens of milliseconds."""
-LONGEST_s = 30.0
-"""An event may last this long in Core Haptics."""
-DEFAULT = 1.0
-DEFAULT_SHARPNESS = 0.5
+DEFAULT, DEFAULT_SHARPNESS = 1.0, 0.5
+HAPTIC = ("HapticContinuous", "HapticTransient")
+"""Event types that are read; the others are sounds."""
+CONTROLS = (("HapticIntensityControl", 1.0), ("HapticSharpnessControl", 0.0))
+"""Curves that act on all events, and what holds before their first point."""
 
 
 class Point(msgspec.Struct, rename="pascal"):
@@ -51,15 +52,11 @@ class Point(msgspec.Struct, rename="pascal"):
 
 
 class Parameter(msgspec.Struct):
-    """A fixed value of an event."""
-
     name: str = msgspec.field(name="ParameterID")
     value: float = msgspec.field(name="ParameterValue")
 
 
 class Event(msgspec.Struct, rename="pascal"):
-    """A segment of the pattern."""
-
     time: float
     event_type: str
     event_duration: float = 0.0
@@ -82,8 +79,6 @@ class Part(msgspec.Struct, rename="pascal"):
 
 
 class Pattern(msgspec.Struct, rename="pascal"):
-    """An AHAP file."""
-
     pattern: list[Part]
     metadata: dict[str, Any] = {}
 
@@ -112,18 +107,10 @@ def ahap(vibration: Vibration, name: str = "vibration") -> Exported:
     pattern += _curves("HapticIntensityControl", pulse.t_s, pulse.amplitude_m_s2 / scale)
     if np.ptp(pitch) > 1e-6:
         pattern += _curves("HapticSharpnessControl", pulse.t_s, pitch - base)
-    record = {
-        "Version": 1.0,
-        "Metadata": {"Project": name, "Description": describe_scale(scale)},
-        "Pattern": pattern,
-    }
-    return Exported(
-        "ahap",
-        (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode(),
-        ("amplitude over time", "frequency over time, as sharpness"),
-        ("phase, so the wave's own shape", "the place of the onset and the stroke", *clipped(vibration)),
-        {"full_scale_m_s2": scale},
-    )
+    about = {"Project": name, "Description": describe_scale(scale)}
+    data = json_bytes({"Version": 1.0, "Metadata": about, "Pattern": pattern})
+    kept = ("amplitude over time", "frequency over time, as sharpness")
+    return Exported("ahap", data, kept, (*LOST, *clipped(vibration)), {"full_scale_m_s2": scale})
 
 
 def _curves(name: str, t_s: FloatArray, values: FloatArray) -> list[dict[str, Any]]:
@@ -135,9 +122,8 @@ def _curves(name: str, t_s: FloatArray, values: FloatArray) -> list[dict[str, An
             {"Time": float(t) - start, "ParameterValue": float(value)}
             for t, value in zip(t_s[part], values[part], strict=True)
         ]
-        made.append(
-            {"ParameterCurve": {"ParameterID": name, "Time": start, "ParameterCurveControlPoints": points}}
-        )
+        curve = {"ParameterID": name, "Time": start, "ParameterCurveControlPoints": points}
+        made.append({"ParameterCurve": curve})
     return made
 
 
@@ -148,20 +134,19 @@ def read_ahap(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pu
     Where events overlap the stronger one sets the frequency and their powers add. Raises InputError.
     """
     name = "AHAP" if isinstance(source, bytes) else str(source)
-    found = read_json(source, Pattern, name, WHAT)
-    check_points(name, "$.Pattern", len(found.pattern), WHAT)
-    events = [p.event for p in found.pattern if p.event and p.event.event_type in DURATIONS]
+    found = read_json(source, Pattern, name, REMEDY)
+    check_points(name, "$.Pattern", len(found.pattern), REMEDY)
+    events = [p.event for p in found.pattern if p.event and p.event.event_type in HAPTIC]
     if not events:
-        raise refuse(name, "$.Pattern", "no haptic event in it", WHAT)
+        raise InputError(name, "$.Pattern", "no haptic event in it", REMEDY)
     curves = [p.parameter_curve for p in found.pattern if p.parameter_curve]
-    check_points(name, "$.Pattern", sum(len(c.points) for c in curves), WHAT)
-    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(found.metadata.get("Description"))
-    if scale is None:
-        raise refuse(name, "intensity", "the file does not say what 1 stands for", "the full scale in m/s2")
+    check_points(name, "$.Pattern", sum(len(c.points) for c in curves), REMEDY)
+    if scale_m_s2 is None:
+        scale_m_s2 = read_scale(found.metadata.get("Description"), name, "intensity")
     try:
-        return _joined(events, curves, scale)
+        return _joined(events, curves, scale_m_s2)
     except ModelError as error:
-        raise refuse(name, "$.Pattern", str(error), WHAT) from error
+        raise InputError(name, "$.Pattern", str(error), REMEDY) from error
 
 
 def _duration_s(event: Event) -> float:
@@ -199,8 +184,7 @@ def _joined(events: list[Event], curves: list[Curve], scale: float) -> Pulse:
 
 
 def _value(event: Event, name: str, default: float) -> float:
-    value = next((p.value for p in event.event_parameters if p.name == name), default)
-    return min(max(value, 0.0), 1.0)
+    return min(max(next((p.value for p in event.event_parameters if p.name == name), default), 0.0), 1.0)
 
 
 def _control(curves: list[Curve], name: str, t: FloatArray, default: float) -> FloatArray:
@@ -209,7 +193,3 @@ def _control(curves: list[Curve], name: str, t: FloatArray, default: float) -> F
         return np.full(t.size, default)
     at, value = (np.array(column) for column in zip(*points, strict=True))
     return np.asarray(np.interp(t, at, value, left=default))
-
-
-DURATIONS = ("HapticContinuous", "HapticTransient")
-CONTROLS = (("HapticIntensityControl", 1.0), ("HapticSharpnessControl", 0.0))

@@ -7,26 +7,26 @@ straight lines. Unlike AHAP and .haptic it holds phases, and several modes at on
 
 from __future__ import annotations
 
-import json
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from fdvv.errors import ModelError
-from fdvv.formats.exchange.exported import Exported
+from fdvv.errors import InputError, ModelError
+from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.formats.exchange.mjcf import polyline
-from fdvv.formats.exchange.pulse import Pulse, check_points, mode_of, read_json, read_scale, refuse
+from fdvv.formats.exchange.pulse import LONGEST_s, Pulse, check_points, mode_of, read_json, read_scale
 from fdvv.model.vibration import Mode, Vibration
+from fdvv.units import FloatArray
 
-WHAT = "an HJIF file with sine effects of a vectorial band"
+REMEDY = "give an HJIF file with sine effects of a vectorial band"
 TICKS_Hz = 48_000
 """The finest timescale of the main profile: 21 µs."""
 TOLERANCE_ratio = 0.002
 BANDS_of_level_1 = 7
 HIGHEST_Hz = 24_000
-LONGEST_s = 30.0
 
 
 class Keyframe(msgspec.Struct):
@@ -38,8 +38,6 @@ class Keyframe(msgspec.Struct):
 
 
 class Effect(msgspec.Struct):
-    """A base signal with its corners."""
-
     position: int
     effect_type: str = "Basis"
     phase: float = 0.0
@@ -48,29 +46,21 @@ class Effect(msgspec.Struct):
 
 
 class Band(msgspec.Struct):
-    """Effects of one kind."""
-
     band_type: str
     effects: list[Effect]
 
 
 class Channel(msgspec.Struct):
-    """Bands that add up."""
-
     bands: list[Band]
     gain: float = 1.0
 
 
 class Perception(msgspec.Struct):
-    """Channels of one sense."""
-
     perception_modality: str
     channels: list[Channel]
 
 
 class Hjif(msgspec.Struct):
-    """An HJIF file."""
-
     perceptions: list[Perception]
     timescale: int = 1000
     description: str = ""
@@ -116,13 +106,9 @@ def hjif(vibration: Vibration, date: str, name: str = "vibration") -> Exported:
         "perceptions": [perception],
         "syncs": [],
     }
-    return Exported(
-        "hjif",
-        (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode(),
-        ("every mode with its phase and fall",),
-        ("frequencies to a whole Hz", "the place of the onset and the stroke"),
-        {"full_scale_m_s2": scale},
-    )
+    lost = ("frequencies to a whole Hz", "the place of the onset and the stroke")
+    kept = ("every mode with its phase and fall",)
+    return Exported("hjif", json_bytes(record), kept, lost, {"full_scale_m_s2": scale})
 
 
 def _band(mode: Mode, duration_s: float, scale: float) -> dict[str, Any]:
@@ -135,11 +121,11 @@ def _band(mode: Mode, duration_s: float, scale: float) -> dict[str, Any]:
         {"relative_position": int(t), "amplitude_modulation": float(a), "frequency_modulation": pitch}
         for t, a in zip(ticks[at], fall[at], strict=True)
     ]
-    turn = 0.0 if mode.amplitude_m_s2 >= 0 else np.pi
+    half_turn = 0.0 if mode.amplitude_m_s2 >= 0 else np.pi
     effect = {
         "effect_type": "Basis",
         "position": 0,
-        "phase": float((mode.phase_rad + turn) % (2 * np.pi)),
+        "phase": float((mode.phase_rad + half_turn) % (2 * np.pi)),
         "base_signal": "Sine",
         "keyframes": frames,
     }
@@ -155,12 +141,10 @@ def read_hjif(source: Path | str | bytes, scale_m_s2: float | None = None) -> tu
     Raises InputError.
     """
     name = "HJIF" if isinstance(source, bytes) else str(source)
-    found = read_json(source, Hjif, name, WHAT)
-    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(found.description)
-    if scale is None:
-        raise refuse(name, "amplitude", "the file does not say what 1 stands for", "the full scale in m/s2")
+    found = read_json(source, Hjif, name, REMEDY)
+    scale = read_scale(found.description, name, "amplitude") if scale_m_s2 is None else scale_m_s2
     if not 0 < found.timescale <= TICKS_Hz:
-        raise refuse(name, "$.timescale", f"{found.timescale} is not 1 to {TICKS_Hz}", WHAT)
+        raise InputError(name, "$.timescale", f"{found.timescale} is not 1 to {TICKS_Hz}", REMEDY)
     effects = [
         (effect, channel.gain)
         for perception in found.perceptions
@@ -171,15 +155,16 @@ def read_hjif(source: Path | str | bytes, scale_m_s2: float | None = None) -> tu
         for effect in band.effects
         if effect.base_signal == "Sine" and effect.effect_type == "Basis"
     ]
-    check_points(name, "$.perceptions", sum(len(effect.keyframes) for effect, _ in effects), WHAT)
+    check_points(name, "$.perceptions", sum(len(effect.keyframes) for effect, _ in effects), REMEDY)
     if not effects:
-        raise refuse(name, "$.perceptions", "no sine effect in it", WHAT)
+        raise InputError(name, "$.perceptions", "no sine effect in it", REMEDY)
     if len({effect.position for effect, _ in effects}) > 1:
-        raise refuse(name, "$.perceptions", "its effects begin at different times", "the effects of one snap")
+        reason, remedy = "its effects begin at different times", "give the effects of one snap"
+        raise InputError(name, "$.perceptions", reason, remedy)
     try:
         modes = tuple(_mode(effect, gain * scale, found.timescale) for effect, gain in effects)
     except (ModelError, OverflowError) as error:
-        raise refuse(name, "$.perceptions", str(error), WHAT) from error
+        raise InputError(name, "$.perceptions", str(error), REMEDY) from error
     return modes, max(effect.keyframes[-1].relative_position for effect, _ in effects) / found.timescale
 
 
@@ -194,9 +179,7 @@ def _mode(effect: Effect, scale: float, timescale: int) -> Mode:
     return mode_of(Pulse(t, scale * np.abs(loud), pitch), effect.phase)
 
 
-def _held(values: list[float | None], first: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    held = []
-    for value in values:
-        first = first if value is None else value
-        held.append(first)
-    return np.array(held, dtype=np.float64)
+def _held(values: list[float | None], first: float) -> FloatArray:
+    """Let the last value hold where there is none."""
+    held = accumulate(values, lambda last, value: last if value is None else value, initial=first)
+    return np.array(list(held)[1:], dtype=np.float64)

@@ -7,15 +7,16 @@ own.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
-from fdvv.errors import ModelError
-from fdvv.formats.exchange.exported import Exported
+from fdvv.errors import InputError, ModelError
+from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.formats.exchange.pulse import (
+    LOST,
+    LONGEST_s,
     Pulse,
     check_points,
     clipped,
@@ -24,16 +25,14 @@ from fdvv.formats.exchange.pulse import (
     pulse_of,
     read_json,
     read_scale,
-    refuse,
     scale_of,
     sharpness,
 )
 from fdvv.model.vibration import Vibration
 
-WHAT = "a .haptic file of major version 1 with an amplitude envelope"
+REMEDY = "give a .haptic file of major version 1 with an amplitude envelope"
 MIDDLE = 0.5
 """Frequency where a file has no frequency envelope."""
-LONGEST_s = 30.0
 
 
 class Emphasis(msgspec.Struct):
@@ -44,56 +43,40 @@ class Emphasis(msgspec.Struct):
 
 
 class Amplitude(msgspec.Struct):
-    """A breakpoint of the amplitude."""
-
     time: float
     amplitude: float
     emphasis: Emphasis | None = None
 
 
 class Frequency(msgspec.Struct):
-    """A breakpoint of the frequency."""
-
     time: float
     frequency: float
 
 
 class Envelopes(msgspec.Struct):
-    """The two envelopes."""
-
     amplitude: list[Amplitude]
     frequency: list[Frequency] | None = None
 
 
 class Continuous(msgspec.Struct):
-    """The one continuous signal."""
-
     envelopes: Envelopes
 
 
 class Signals(msgspec.Struct):
-    """All signals; there is one."""
-
     continuous: Continuous
 
 
 class Version(msgspec.Struct):
-    """Of the format."""
-
     major: int
     minor: int = 0
     patch: int = 0
 
 
 class Metadata(msgspec.Struct):
-    """What people wrote about it."""
-
     description: str = ""
 
 
 class Haptic(msgspec.Struct):
-    """A .haptic file."""
-
     version: Version
     signals: Signals
     metadata: Metadata | None = None
@@ -109,24 +92,21 @@ def meta_haptic(vibration: Vibration, name: str = "vibration") -> Exported:
         "amplitude": [{"time": t, "amplitude": a} for t, a in zip(times, loud, strict=True)],
         "frequency": [{"time": t, "frequency": f} for t, f in zip(times, pitch, strict=True)],
     }
+    about = {
+        "editor": "fdvv",
+        "source": "",
+        "project": name,
+        "tags": [],
+        "description": describe_scale(scale),
+    }
     record = {
         "version": {"major": 1, "minor": 0, "patch": 0},
-        "metadata": {
-            "editor": "fdvv",
-            "source": "",
-            "project": name,
-            "tags": [],
-            "description": describe_scale(scale),
-        },
+        "metadata": about,
         "signals": {"continuous": {"envelopes": envelopes}},
     }
-    return Exported(
-        "haptic",
-        (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode(),
-        ("amplitude over time", "frequency over time, as 0 to 1"),
-        ("phase, so the wave's own shape", "the place of the onset and the stroke", *clipped(vibration)),
-        {"full_scale_m_s2": scale},
-    )
+    kept = ("amplitude over time", "frequency over time, as 0 to 1")
+    lost = (*LOST, *clipped(vibration))
+    return Exported("haptic", json_bytes(record), kept, lost, {"full_scale_m_s2": scale})
 
 
 def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pulse:
@@ -136,27 +116,25 @@ def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None
     Raises InputError.
     """
     name = ".haptic" if isinstance(source, bytes) else str(source)
-    found = read_json(source, Haptic, name, WHAT)
+    found = read_json(source, Haptic, name, REMEDY)
     if found.version.major != 1:
-        raise refuse(name, "$.version.major", f"version {found.version.major} is not known here", WHAT)
+        reason = f"version {found.version.major} is not known here"
+        raise InputError(name, "$.version.major", reason, REMEDY)
     envelopes = found.signals.continuous.envelopes
     place = "$.signals.continuous.envelopes"
-    check_points(name, place, len(envelopes.amplitude) + len(envelopes.frequency or []), WHAT)
-    text = found.metadata.description if found.metadata else ""
-    scale = scale_m_s2 if scale_m_s2 is not None else read_scale(text)
-    if scale is None:
-        raise refuse(name, "amplitude", "the file does not say what 1 stands for", "the full scale in m/s2")
+    check_points(name, place, len(envelopes.amplitude) + len(envelopes.frequency or []), REMEDY)
+    if scale_m_s2 is None:
+        scale_m_s2 = read_scale(found.metadata and found.metadata.description, name, "amplitude")
     try:
-        return _pulse(envelopes, scale)
+        return _pulse(envelopes, scale_m_s2)
     except ModelError as error:
-        raise refuse(name, place, str(error), WHAT) from error
+        raise InputError(name, place, str(error), REMEDY) from error
 
 
 def _pulse(envelopes: Envelopes, scale: float) -> Pulse:
     t = np.array([p.time for p in envelopes.amplitude])
-    loud = np.array(
-        [max(p.amplitude, p.emphasis.amplitude if p.emphasis else 0.0) for p in envelopes.amplitude]
-    )
+    clicks = [p.emphasis.amplitude if p.emphasis else 0.0 for p in envelopes.amplitude]
+    loud = np.array([max(p.amplitude, click) for p, click in zip(envelopes.amplitude, clicks, strict=True)])
     if t.size < 2 or np.any(np.diff(t) < 0) or not (t[0] >= 0 and t[-1] <= LONGEST_s):
         raise ModelError(f"the amplitude needs 2 or more times that rise from 0 to at most {LONGEST_s:g} s")
     if np.any((loud < 0) | (loud > 1)):

@@ -9,6 +9,7 @@ every file.
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -26,15 +27,15 @@ SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
 
 TOLERANCE_ratio = 0.01
-
 EXACT, AUDIBLE_ratio = 1e-3, 1e-4
-
 PIECE = 16
 """Samples of a straight piece."""
-
 FAINT_ratio = 1e-6
-
 RATE_Hz = 8000.0
+LONGEST_s = 30.0
+"""An event of Core Haptics may last this long; the other formats are held to the same."""
+LOST = ("phase, so the wave's own shape", "the place of the onset and the stroke")
+"""What two curves of amplitude and frequency cannot hold."""
 
 _SCALE = re.compile(r"\b1 is (\d[\d.e+-]*) m/s2")
 
@@ -94,7 +95,9 @@ def mode_of(pulse: Pulse, phase_rad: float = 0.0) -> Mode:
     Where the corners lie on an exponential they are samples of one, and it is taken; between them a file can
     only draw straight lines. Raises ModelError if the pulse is silent.
     """
-    t = _times(pulse)
+    between = np.linspace(pulse.t_s[:-1], pulse.t_s[1:], PIECE, endpoint=False).T.ravel()
+    even = np.linspace(0.0, pulse.t_s[-1], 50)
+    t = np.unique(np.concatenate([between, pulse.t_s, even]))
     amplitude = np.interp(t, pulse.t_s, pulse.amplitude_m_s2)
     power = float(np.trapezoid(amplitude**2, t))
     if not power:
@@ -105,12 +108,6 @@ def mode_of(pulse: Pulse, phase_rad: float = 0.0) -> Mode:
     return Mode(frequency, strength, decay, phase_rad)
 
 
-def _times(pulse: Pulse) -> FloatArray:
-    between = np.linspace(pulse.t_s[:-1], pulse.t_s[1:], PIECE, endpoint=False).T.ravel()
-    even = np.linspace(0.0, pulse.t_s[-1], 50)
-    return np.unique(np.concatenate([between, pulse.t_s, even]))
-
-
 def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
     """Return amplitude and decay of the exponential through all corners; None if there is none."""
     amplitude = pulse.amplitude_m_s2
@@ -119,9 +116,8 @@ def _through_corners(pulse: Pulse) -> tuple[float, float] | None:
         return None
     slope, start = np.polyfit(pulse.t_s[audible], np.log(amplitude[audible]), 1, w=amplitude[audible])
     off = np.abs(np.exp(start + slope * pulse.t_s) - amplitude)
-    return (
-        (float(np.exp(start)), -float(slope)) if slope <= 0 and off.max() < EXACT * amplitude.max() else None
-    )
+    exact = slope <= 0 and off.max() < EXACT * amplitude.max()
+    return (float(np.exp(start)), -float(slope)) if exact else None
 
 
 def _nearest(t: FloatArray, amplitude: FloatArray) -> tuple[float, float]:
@@ -172,14 +168,14 @@ def describe_scale(scale_m_s2: float) -> str:
     return f"1 is {scale_m_s2!r} m/s2 of the cap; 0 to 1 of sharpness is {low:g} to {high:g} Hz"
 
 
-def read_scale(description: object) -> float | None:
-    """Read the amplitude scale from a file's description; None if it states none."""
+def read_scale(description: object, name: str, place: str) -> float:
+    """Read the amplitude scale from a file's description. InputError if it states none."""
     found = _SCALE.search(description) if isinstance(description, str) else None
-    try:
+    with suppress(ValueError):
         value = float(found[1]) if found else 0.0
-    except ValueError:
-        return None
-    return value if np.isfinite(value) and value > 0 else None
+        if np.isfinite(value) and value > 0:
+            return value
+    raise InputError(name, place, "the file does not say what 1 stands for", "give the full scale in m/s2")
 
 
 def clipped(vibration: Vibration) -> tuple[str, ...]:
@@ -197,13 +193,11 @@ MOST_POINTS = 20_000
 Record = TypeVar("Record")
 
 
-def read_json(source: Path | str | bytes, record: type[Record], name: str, what: str) -> Record:
+def read_json(source: Path | str | bytes, record: type[Record], name: str, remedy: str) -> Record:
     """Read JSON into a typed record; fields it does not name are ignored, as the formats ask.
 
-    source : a path, or the file's bytes; name : of the source in messages; what : the format with its
-        article. Raises InputError.
+    source : a path, or the file's bytes; name : of the source in messages. Raises InputError.
     """
-    remedy = f"give {what}"
     data = source if isinstance(source, bytes) else read_limited(source, LARGEST_bytes, remedy)
     if len(data) > LARGEST_bytes:
         raise InputError(name, "whole file", f"larger than {LARGEST_bytes // 1_000_000} MB", remedy)
@@ -216,12 +210,7 @@ def read_json(source: Path | str | bytes, record: type[Record], name: str, what:
         raise InputError(name, "whole file", f"not valid JSON ({error})", remedy) from error
 
 
-def refuse(name: str, place: str, reason: str, what: str) -> InputError:
-    """Return the error for a wrong value of the right type."""
-    return InputError(name, place, reason, f"give {what}")
-
-
-def check_points(name: str, place: str, count: int, what: str) -> None:
+def check_points(name: str, place: str, count: int, remedy: str) -> None:
     """Refuse a list that is too long for a button's vibration."""
     if count > MOST_POINTS:
-        raise refuse(name, place, f"{count} points, at most {MOST_POINTS} are read", what)
+        raise InputError(name, place, f"{count} points, at most {MOST_POINTS} are read", remedy)

@@ -11,14 +11,13 @@ degree, lies around each centre.
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.formats.exchange.exported import Exported
+from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.model.bump import Bump, find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
@@ -93,13 +92,10 @@ def smartknob(
         "velocities",
         *(("vibrations",) if model.vibrations else ()),
     ]
-    kept = (
-        ("where it snaps and returns", "the fall of force, as a strength")
-        if snaps
-        else ("that it has no snap",)
-    )
-    data = json.dumps(asdict(detents), indent=2, ensure_ascii=False) + "\n"
-    return Exported("smartknob", data.encode(), kept, tuple(lost), _figures(model, velocity_mm_s, detents))
+    snap = ("where it snaps and returns", "the fall of force, as a strength")
+    kept = snap if snaps else ("that it has no snap",)
+    figures = _figures(model, velocity_mm_s, detents)
+    return Exported("smartknob", json_bytes(asdict(detents)), kept, tuple(lost), figures)
 
 
 def knob_detents(
