@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from itertools import zip_longest
 
 import numpy as np
 
@@ -57,15 +58,11 @@ def bluepylons_csv(
     x, force = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     # the meter writes a column of zeros where no contact was wired
     closed = np.concatenate([np.zeros(x.size) if c is None else c for x, _, c in parts])
-    lines = ["x_um,force_gf,actuated"]
-    rows = zip(x, force, closed, strict=True)
-    lines += [f"{_number(1000 * a)},{_number(gf_from_cN(b))},{int(c)}" for a, b, c in rows]
-    return Exported(
-        "bluepylons-csv",
-        ("\n".join(lines) + "\n").encode(),
-        ("one press and its release", *_points(model)),
-        _of_one(model),
-    )
+    columns = [
+        [repr(v) for v in values.tolist()] for values in (1000 * x, gf_from_cN(force), closed.astype(int))
+    ]
+    data = _table(["x_um", "force_gf", "actuated"], columns)
+    return Exported("bluepylons-csv", data, ("one press and its release", *_points(model)), _of_one(model))
 
 
 def haata_csv(model: FDVVModel, step_mm: float = STEP_mm) -> Exported:
@@ -116,11 +113,8 @@ def _as_made(
     x = np.unique(np.round(np.append(whole, [curve.end_mm, *([point] if inside else [])]), DECIMALS_mm))
     closed = None
     if model.actuation_mm is not None or model.reset_mm is not None:
-        at = (
-            round(float(point), DECIMALS_mm)
-            if inside and point is not None
-            else (np.inf if press else -np.inf)
-        )
+        never = np.inf if press else -np.inf
+        at = round(float(point), DECIMALS_mm) if inside and point is not None else never
         closed = (x >= at if press else x > at).astype(np.float64)
     order = slice(None) if press else slice(None, None, -1)
     return x[order], curve.force_cN(x)[order], None if closed is None else closed[order]
@@ -132,30 +126,18 @@ def _pair(model: FDVVModel, velocity_mm_s: float | None) -> list[ForceCurve]:
 
 
 def _label(curve: ForceCurve) -> str:
-    speed = "" if curve.velocity_mm_s is None else f"_{_plain(curve.velocity_mm_s)}mm_s"
-    return f"{curve.stroke}{speed}"
-
-
-def _plain(value: float) -> str:
-    return np.format_float_positional(value, trim="-")
-
-
-def _number(value: float) -> str:
-    return repr(float(value))
+    if curve.velocity_mm_s is None:
+        return str(curve.stroke)
+    return f"{curve.stroke}_{np.format_float_positional(curve.velocity_mm_s, trim='-')}mm_s"
 
 
 def _cells(values: FloatArray) -> list[str]:
-    return [_number(value).removesuffix(".0") for value in values]
+    return [repr(value).removesuffix(".0") for value in values.tolist()]
 
 
 def _table(titles: Sequence[str], columns: Sequence[Sequence[str]], blank: str = "") -> bytes:
-
-    def rows() -> Iterator[str]:
-        yield ",".join(titles)
-        for i in range(max(map(len, columns))):
-            yield ",".join(column[i] if i < len(column) else blank for column in columns)
-
-    return ("\n".join(rows()) + "\n").encode()
+    rows = [titles, *zip_longest(*columns, fillvalue=blank)]
+    return "".join(",".join(row) + "\n" for row in rows).encode()
 
 
 def _points(model: FDVVModel) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,22 +16,22 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.recording.types import UNITS, Recording, Stream, Take
+from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 CF = {"m/s2": "m s-2"}
 """Units as CF's conventions write them, where they differ from ours."""
 
+COLUMNS = ("take", "stage", "velocity_mm_s", "stream", "axis", "quantity", "unit", "clock", "t_s", "value")
 PRESS_UNITS = {"t_s": "s", "velocity_mm_s": "mm s-1", "displacement_mm": "mm", "force_cN": "cN"}
-
 RIG_UNITS = {"sensed_mm": "mm", "sensed_cN": "cN", "commanded_cN": "cN"}
-
 FLAGS = ("saturated", "tick")
+STEP_mm = 0.01
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""What makes a spreadsheet run a cell; a name that begins so is set off with an apostrophe."""
 
 
 def require_frames() -> None:
@@ -55,50 +55,31 @@ def recording_to_pandas(recording: Recording) -> pd.DataFrame:
     require_frames()
     import pandas as pd
 
-    rows = [_rows(take, stream) for take in recording.takes for stream in take.streams]
-    columns = [
-        "take",
-        "stage",
-        "velocity_mm_s",
-        "stream",
-        "axis",
-        "quantity",
-        "unit",
-        "clock",
-        "t_s",
-        "value",
+    rows = [
+        pd.DataFrame(dict(zip(COLUMNS, (*about, stream.t_s, values), strict=True)))
+        for about, stream, values in _series(recording)
     ]
-    table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=columns)
-    table = table[columns].astype(
-        dict.fromkeys(("stage", "stream", "axis", "quantity", "unit", "clock"), "category")
-    )
+    table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=COLUMNS)
+    labels = [name for name in COLUMNS if name not in ("take", "velocity_mm_s", "t_s", "value")]
+    table = table.astype(dict.fromkeys(labels, "category"))
     table.attrs = {**_about(recording), "units": {"velocity_mm_s": "mm s-1", "t_s": "s"}}
     return table
 
 
-def _rows(take: Take, stream: Stream) -> pd.DataFrame:
-    import pandas as pd
-
-    values = stream.values
-    axes = [""] if values.ndim == 1 else _axes(values.shape[1])
-    count = len(axes)
-    return pd.DataFrame(
-        {
-            "take": take.number,
-            "stage": str(take.stage),
-            "velocity_mm_s": np.nan if take.velocity_mm_s is None else take.velocity_mm_s,
-            "stream": stream.name,
-            "axis": np.repeat(axes, stream.t_s.size),
-            "quantity": str(stream.quantity),
-            "unit": UNITS[stream.quantity],
-            "clock": stream.clock,
-            "t_s": np.tile(stream.t_s, count),
-            "value": values.reshape(stream.t_s.size, count).T.ravel(),
-        }
-    )
+def _series(recording: Recording) -> Iterator[tuple[tuple[Any, ...], Stream, FloatArray]]:
+    """Give the first eight COLUMNS, stream and values of every stream, of a marker for each axis."""
+    for take in recording.takes:
+        velocity_mm_s = np.nan if take.velocity_mm_s is None else float(take.velocity_mm_s)
+        for stream in take.streams:
+            what = (str(stream.quantity), UNITS[stream.quantity], stream.clock)
+            for axis, values in zip(_axes(stream), np.atleast_2d(stream.values.T), strict=True):
+                yield (take.number, str(take.stage), velocity_mm_s, stream.name, axis, *what), stream, values
 
 
-def _axes(count: int) -> list[str]:
+def _axes(stream: Stream) -> list[str]:
+    if stream.raw.ndim == 1:
+        return [""]
+    count = stream.raw.shape[1]
     return ["x", "y", "z"] if count == 3 else [str(i) for i in range(count)]
 
 
@@ -131,7 +112,7 @@ def _take(take: Take) -> xr.Dataset:
         shape: tuple[str, ...] = (time,)
         if stream.raw.ndim == 2:
             shape = (time, f"axis_{name}")
-            coordinates[shape[1]] = _axes(stream.raw.shape[1])
+            coordinates[shape[1]] = _axes(stream)
         unit = UNITS[stream.quantity]
         attrs: dict[str, Any] = {"units": CF.get(unit, unit), "long_name": stream.name}
         attrs |= {"quantity": str(stream.quantity), "clock": stream.clock}
@@ -177,17 +158,8 @@ def presses_to_pandas(presses: Sequence[Press]) -> pd.DataFrame:
             part[name] = pd.array([pd.NA] * press.t_s.size if column is None else column, dtype="boolean")
         part["simulated"] = press.simulated
         parts.append(part)
-    columns = [
-        "press",
-        "velocity_mm_s",
-        "t_s",
-        "displacement_mm",
-        "force_cN",
-        *RIG_UNITS,
-        *FLAGS,
-        "simulated",
-    ]
-    table = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
+    names = ["press", "velocity_mm_s", "t_s", "displacement_mm", "force_cN", *RIG_UNITS, *FLAGS, "simulated"]
+    table = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=names)
     table.attrs["units"] = PRESS_UNITS | RIG_UNITS
     return table
 
@@ -204,18 +176,15 @@ def presses_from_pandas(table: pd.DataFrame) -> tuple[Press, ...]:
 
 
 def _press(part: pd.DataFrame) -> Press:
-    optional: dict[str, Any] = {}
-    for name, kind in (*((n, np.float64) for n in RIG_UNITS), *((n, np.bool_) for n in FLAGS)):
-        if name in part.columns and (
-            part[name].notna().all() if kind is np.bool_ else part[name].notna().any()
-        ):
-            optional[name] = part[name].to_numpy(dtype=kind)
+    there = part.notna()
+    optional: dict[str, Any] = {
+        **{n: part[n].to_numpy(dtype=np.float64) for n in RIG_UNITS if n in part and there[n].any()},
+        # a flag has no third value for a sample that lacks it
+        **{n: part[n].to_numpy(dtype=np.bool_) for n in FLAGS if n in part and there[n].all()},
+    }
     simulated = "simulated" in part.columns and bool(part["simulated"].iloc[0])
     t_s, x, force = (part[n].to_numpy(dtype=np.float64) for n in ("t_s", "displacement_mm", "force_cN"))
     return Press(t_s, x, force, float(part["velocity_mm_s"].iloc[0]), **optional, simulated=simulated)
-
-
-STEP_mm = 0.01
 
 
 def model_to_xarray(
@@ -262,12 +231,12 @@ def model_to_xarray(
 
 
 def _about_model(model: FDVVModel) -> dict[str, Any]:
-    points = {"travel": model.travel_mm, "actuation": model.actuation_mm, "reset": model.reset_mm}
-    attrs = {f"{name}_mm": np.nan if at is None else at for name, at in points.items()}
     of = model.provenance
     return {
         "name": model.name,
-        **attrs,
+        "travel_mm": model.travel_mm,
+        "actuation_mm": np.nan if model.actuation_mm is None else model.actuation_mm,
+        "reset_mm": np.nan if model.reset_mm is None else model.reset_mm,
         "interpolation": str(model.interpolation),
         "source": of.source,
         "license": of.licence,
@@ -275,12 +244,6 @@ def _about_model(model: FDVVModel) -> dict[str, Any]:
         "simulated": int(of.simulated),
         "Conventions": "CF-1.11",
     }
-
-
-COLUMNS = ("take", "stage", "velocity_mm_s", "stream", "axis", "quantity", "unit", "clock", "t_s", "value")
-
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""What makes a spreadsheet run a cell; a name that begins so is set off with an apostrophe."""
 
 
 def recording_csv(recording: Recording) -> Exported:
@@ -292,22 +255,20 @@ def recording_csv(recording: Recording) -> Exported:
     held = io.StringIO()
     writer = csv.writer(held, lineterminator="\n")
     writer.writerow(COLUMNS)
-    for take in recording.takes:
-        speed = "" if take.velocity_mm_s is None else repr(float(take.velocity_mm_s))
-        for stream in take.streams:
-            values = stream.values.reshape(stream.t_s.size, -1)
-            axes = [""] if stream.raw.ndim == 1 else "xyz" if values.shape[1] == 3 else range(values.shape[1])
-            fixed = [str(stream.quantity), UNITS[stream.quantity], _plain(stream.clock)]
-            times = [repr(t) for t in stream.t_s.tolist()]
-            for axis, column in zip(axes, values.T.tolist(), strict=True):
-                head = [take.number, str(take.stage), speed, _plain(stream.name), axis, *fixed]
-                writer.writerows(
-                    [*head, t, "" if math.isnan(value) else repr(value)]
-                    for t, value in zip(times, column, strict=True)
-                )
+    for about, stream, values in _series(recording):
+        number, stage, speed, name, axis, *what, clock = about
+        head = [number, stage, _cell(speed), _plain(name), axis, *what, _plain(clock)]
+        writer.writerows(
+            [*head, repr(t), _cell(value)]
+            for t, value in zip(stream.t_s.tolist(), values.tolist(), strict=True)
+        )
     kept = ("every sample in its unit, with take, stage, pace and clock",)
     lost = ("marks, raw counts and calibration", "bench, sources and remarks")
     return Exported("recording-csv", held.getvalue().encode(), kept, lost)
+
+
+def _cell(value: float) -> str:
+    return "" if math.isnan(value) else repr(value)
 
 
 def _plain(text: str) -> str:

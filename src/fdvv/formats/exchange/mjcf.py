@@ -9,15 +9,16 @@ friction and damping, and what that leaves is reported per stroke and velocity.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.formats.exchange.exported import Exported
-from fdvv.model.curve import Stroke
+from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
@@ -29,8 +30,7 @@ def polyline(x: FloatArray, y: FloatArray, tolerance: float) -> np.ndarray[tuple
     x : (n,) strictly rising; y : (n,). Gives the chosen indices, rising, both ends among them. Deviation is
         measured along y, which is what a force's error is.
     """
-    chosen = {0, x.size - 1}
-    spans = [(0, x.size - 1)]
+    chosen, spans = {0, x.size - 1}, [(0, x.size - 1)]
     while spans:
         first, last = spans.pop()
         inside = slice(first + 1, last)
@@ -47,12 +47,10 @@ TOLERANCE_cN = 0.25
 """Of the broken line against the curve it follows: below what fingers and the rig can resolve."""
 
 STEP_mm = 0.005
-
 CAP_g = 1.0
 """A keycap with its stem; no model knows it, and a joint of MuJoCo must have a mass."""
 
 FAR_m = 1.0
-
 UNKNOWN_mm_s = 10.0
 """Curves of unknown velocity come from slow benches; every speed gives the same there."""
 
@@ -79,10 +77,7 @@ class SpringButton:
     errors: tuple[tuple[Stroke, float | None, float, float], ...]
 
     def force_at_cN(self, displacement_mm: FloatArray, velocity_mm_s: float, stroke: Stroke) -> FloatArray:
-        """Evaluate what the springs give on a stroke.
-
-        velocity_mm_s : its speed, positive.
-        """
+        """Evaluate what the springs give on a stroke; its speed is positive."""
         line = np.interp(displacement_mm, self.displacement_mm, self.force_cN)
         sign = 1.0 if stroke is Stroke.PRESS else -1.0
         return np.asarray(line + sign * (self.friction_cN + self.damping_cN_s_mm * velocity_mm_s))
@@ -114,12 +109,8 @@ def spring_button(
     middle = np.mean(press - loop if follow == "press" else (press + release) / 2, axis=0)
     at = polyline(x, middle, tolerance_cN)
     made = SpringButton(x[at], middle[at], friction, damping, ())
-    errors = tuple(_error(model, made, x, stroke, v) for stroke in Stroke for v in _known(model, stroke))
-    return SpringButton(x[at], middle[at], friction, damping, errors)
-
-
-def _known(model: FDVVModel, stroke: Stroke) -> tuple[float | None, ...]:
-    return tuple(c.velocity_mm_s for c in model.of(stroke))
+    errors = [_error(model, made, x, curve) for stroke in Stroke for curve in model.of(stroke)]
+    return replace(made, errors=tuple(errors))
 
 
 def _strokes(model: FDVVModel, x: FloatArray, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -138,11 +129,11 @@ def _loop(speeds: FloatArray, half_cN: FloatArray) -> tuple[float, float]:
 
 
 def _error(
-    model: FDVVModel, made: SpringButton, x: FloatArray, stroke: Stroke, velocity_mm_s: float | None
+    model: FDVVModel, made: SpringButton, x: FloatArray, curve: ForceCurve
 ) -> tuple[Stroke, float | None, float, float]:
-    v = velocity_mm_s or UNKNOWN_mm_s
-    off = made.force_at_cN(x, v, stroke) - model.force_cN(x, v, stroke)
-    return stroke, velocity_mm_s, float(np.sqrt(np.mean(off**2))), float(np.abs(off).max())
+    v = curve.velocity_mm_s or UNKNOWN_mm_s
+    off = made.force_at_cN(x, v, curve.stroke) - model.force_cN(x, v, curve.stroke)
+    return curve.stroke, curve.velocity_mm_s, float(np.sqrt(np.mean(off**2))), float(np.abs(off).max())
 
 
 def mjcf(
@@ -161,101 +152,69 @@ def mjcf(
     if not (np.isfinite(cap_mass_g) and cap_mass_g > 0):
         raise ModelError(f"cap_mass_g must be positive, got {cap_mass_g}")
     springs = spring_button(model, tolerance_cN, follow, velocity_mm_s)
-    worst = max(error[3] for error in springs.errors)
     figures: dict[str, float | None] = {
         "pieces": float(springs.displacement_mm.size - 1),
         "friction_cN": springs.friction_cN,
         "damping_cN_s_mm": springs.damping_cN_s_mm,
-        "worst_cN": worst,
+        "worst_cN": max(error[3] for error in springs.errors),
     }
     for stroke, v, rms, largest in springs.errors:
         speed = "" if v is None else f"_{v:g}mm_s"
         figures |= {f"{stroke}{speed}_rms_cN": rms, f"{stroke}{speed}_max_cN": largest}
+    lost = ["how loop and speed change over displacement", "the contact's switching"]
+    lost += ["vibrations"] if model.vibrations else []
     return Exported(
         "mjcf",
         scene_xml(model, cap_mass_g, springs).encode(),
         ("force over displacement", "the median loop as friction", "travel", "contact points as numbers"),
-        ("how loop and speed change over displacement", "the contact's switching", *_vibration(model)),
+        tuple(lost),
         figures,
     )
 
 
-def _vibration(model: FDVVModel) -> tuple[str, ...]:
-    return ("vibrations",) if model.vibrations else ()
-
-
 def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None) -> str:
     """Write the scene; without springs the joint is bare and a callback gives the force."""
-    held = N_from_cN(springs.friction_cN) if springs else 0.0
-    loss = N_from_cN(springs.damping_cN_s_mm) * 1000.0 if springs else 0.0
-    joint = f'frictionloss="{held:.9g}" damping="{loss:.9g}"'
-    line, tendons = _springs(springs) if springs else ("0 0 0", "")
-    points = "".join(
-        f'    <numeric name="{name}" data="{m_from_mm(at):.9g}"/>\n'
-        for name, at in (("button_actuation_m", model.actuation_mm), ("button_reset_m", model.reset_mm))
-        if at is not None
+    from jinja2 import StrictUndefined, Template
+
+    look: Any = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
+    scene = Template(
+        files("fdvv.formats.exchange").joinpath("scene.xml").read_text(), undefined=StrictUndefined, **look
     )
-    return SCENE.format(
+    start_N, slope_N_m, bends = _springs(springs) if springs else (0.0, 0.0, [])
+    points_mm = {"button_actuation_m": model.actuation_mm, "button_reset_m": model.reset_mm}
+    text: str = scene.render(
         # XML holds no control characters, whatever a file's name was
         name=quoteattr("".join(c if c.isprintable() else "?" for c in model.name)),
-        travel=f"{m_from_mm(model.travel_mm):.9g}",
-        mass=f"{cap_mass_g / 1000:.9g}",
-        joint=joint,
-        line=line,
-        tendons=f"  <tendon>\n{tendons}  </tendon>\n" if tendons else "",
-        custom=f"  <custom>\n{points}  </custom>\n" if points else "",
-        userdata="" if springs else '  <size nuserdata="1"/>\n',
-        closed=""
-        if springs
-        else '    <user name="button_closed" dim="1" needstage="pos" datatype="positive"/>\n',
+        springs=springs,
+        travel_m=m_from_mm(model.travel_mm),
+        mass_kg=cap_mass_g / 1000,
+        friction_N=N_from_cN(springs.friction_cN) if springs else 0.0,
+        damping_N_s_m=N_from_cN(springs.damping_cN_s_mm) * 1000.0 if springs else 0.0,
+        start_N=start_N,
+        slope_N_m=slope_N_m,
+        bends=bends,
+        points_m={name: m_from_mm(at) for name, at in points_mm.items() if at is not None},
     )
+    return text
 
 
-def _springs(springs: SpringButton) -> tuple[str, str]:
+def _springs(springs: SpringButton) -> tuple[float, float, list[dict[str, Any]]]:
     """Turn the broken line into an affine bias and tendons, one for each corner.
 
     Where the slope rises by k the tendon pulls beyond the corner; where it falls by k a tendon pulls up to
     it.
     """
-    x, force = m_from_mm(springs.displacement_mm), N_from_cN(springs.force_cN)
-    slopes = np.diff(force) / np.diff(x)
-    bends = np.diff(slopes)
-    corners = x[1:-1]
+    corner_m, force_N = m_from_mm(springs.displacement_mm), N_from_cN(springs.force_cN)
+    slopes = np.diff(force_N) / np.diff(corner_m)
+    bends, corner_m = np.diff(slopes), corner_m[1:-1]
     slope = slopes[-1] - bends[bends > 0].sum()
     # what the tendons that hold back before their corner pull at 0
-    start = force[0] - (bends[bends < 0] * corners[bends < 0]).sum()
-    rows = []
-    for i, (at, bend) in enumerate(zip(corners, bends, strict=True)):
-        zone = f"{-FAR_m:g} {at:.9g}" if bend > 0 else f"{at:.9g} {FAR_m:g}"
-        rows.append(
-            f'    <fixed name="bend{i}" springlength="{zone}" stiffness="{abs(bend):.9g}">'
-            '<joint joint="button" coef="1"/></fixed>\n'
-        )
-    return f"{-start:.9g} {-slope:.9g} 0", "".join(rows)
-
-
-# limits and friction are constraints whose stiffness goes with the mass: with MuJoCo's defaults a cap of a
-# gram would sink into its stops, and friction would only be full at speeds of metres a second
-SCENE = """<mujoco model={name}>
-  <!-- SI units; the joint's position is the displacement into the button -->
-  <option timestep="0.0001" integrator="implicitfast"/>
-{userdata}  <worldbody>
-    <body name="button" gravcomp="1">
-      <joint name="button" type="slide" axis="0 0 -1" limited="true" range="0 {travel}"
-        solreflimit="0.001 1" solimplimit="0.99 0.999 0.0001"
-        solreffriction="0.0002 1" solimpfriction="0.99 0.999 0.0001" {joint}/>
-      <geom name="cap" type="box" size="0.006 0.006 0.002" mass="{mass}" contype="0" conaffinity="0"/>
-    </body>
-  </worldbody>
-{tendons}  <actuator>
-    <general name="button" joint="button" gainprm="1" biastype="affine" biasprm="{line}"/>
-  </actuator>
-  <sensor>
-    <jointpos name="button_displacement" joint="button"/>
-    <jointvel name="button_velocity" joint="button"/>
-{closed}  </sensor>
-{custom}</mujoco>
-"""
+    start = force_N[0] - (bends[bends < 0] * corner_m[bends < 0]).sum()
+    tendons = [
+        {"stiffness_N_m": abs(k), "zone_m": f"{-FAR_m:g} {at:.9g}" if k > 0 else f"{at:.9g} {FAR_m:g}"}
+        for at, k in zip(corner_m, bends, strict=True)
+    ]
+    return -start, -slope, tendons
 
 
 def fine_surface(model: FDVVModel, step_mm: float, points: int) -> ForceSurface:

@@ -68,10 +68,7 @@ class MujocoButton:
         return row, max(0.0, min(1.0, (v_mm_s - self._speeds[row]) / step)), column, across
 
     def passive(self, model: Any, data: Any) -> None:
-        """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``.
-
-        model, data : MuJoCo's own.
-        """
+        """Subtract the button's force from the joint's passive forces: MuJoCo's ``mjcb_passive``."""
         dof, force_N = self._ask(model, data)
         data.qfrc_passive[dof] -= force_N
 
@@ -86,10 +83,7 @@ class MujocoButton:
         self._switch(model, data)
 
     def sense(self, model: Any, data: Any, stage: int) -> None:
-        """Write whether the contact is closed into its sensor: MuJoCo's ``mjcb_sensor``.
-
-        model, data : MuJoCo's own.
-        """
+        """Write whether the contact is closed into its sensor: MuJoCo's ``mjcb_sensor``."""
         if stage == POSITION_STAGE:
             self._switch(model, data)
 
@@ -132,7 +126,6 @@ class MujocoButton:
 
 
 def _both(first: Callable[..., None] | None, then: Callable[..., None]) -> Callable[..., None]:
-
     def call(*arguments: Any) -> None:
         if first:
             first(*arguments)

@@ -86,12 +86,11 @@ def smartknob(
     """
     detents = knob_detents(model, velocity_mm_s, degrees_per_mm)
     snaps = detents.snaps_at_ratio is not None
-    lost = [
-        "force in cN (the knob's strength is its motor's)",
-        "preload, and every slope that is not the detent's" if snaps else "preload and the curve's shape",
-        "velocities",
-        *(("vibrations",) if model.vibrations else ()),
+    lost = ["force in cN (the knob's strength is its motor's)"]
+    lost += [
+        "preload, and every slope that is not the detent's" if snaps else "preload and the curve's shape"
     ]
+    lost += ["velocities", *(["vibrations"] if model.vibrations else [])]
     snap = ("where it snaps and returns", "the fall of force, as a strength")
     kept = snap if snaps else ("that it has no snap",)
     figures = _figures(model, velocity_mm_s, detents)
