@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.formats.force.average import average_cycles
+from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
@@ -36,7 +36,7 @@ def strokes(folder: Path) -> list[MeasuredCurve]:
     found = []
     for path in find_force_files(folder):
         try:
-            mean = average_cycles(read_force_file(path))
+            mean = average_by_velocity(read_force_file(path))[0]
         except InputError as error:
             print(f"refused: {error}")
             continue

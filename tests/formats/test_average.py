@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fdvv.formats.force.average import average_by_velocity, average_cycles
+from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import Cycle, ForceFile
 from fdvv.model.curve import MeasuredCurve, Stroke
@@ -26,13 +26,13 @@ def file(*cycles: Cycle) -> ForceFile:
 
 def test_a_single_cycle_keeps_its_raw_samples() -> None:
     one = cycle()
-    averaged = average_cycles(file(one))
+    (averaged,) = average_by_velocity(file(one))
     assert averaged.press is one.press
     assert averaged.used == ("cycle 1",)
 
 
 def test_the_mean_of_repeats_is_the_mean_of_their_forces() -> None:
-    averaged = average_cycles(file(cycle(extra_cN=-0.3), cycle(), cycle(extra_cN=0.3)))
+    (averaged,) = average_by_velocity(file(cycle(extra_cN=-0.3), cycle(), cycle(extra_cN=0.3)))
     assert averaged.left_out == ()
     assert averaged.press is not None
     x = averaged.press.displacement_mm
@@ -41,7 +41,7 @@ def test_the_mean_of_repeats_is_the_mean_of_their_forces() -> None:
 
 
 def test_small_shifts_are_aligned_so_that_the_contact_step_stays_steep() -> None:
-    averaged = average_cycles(file(cycle(-0.02), cycle(), cycle(0.02)))
+    (averaged,) = average_by_velocity(file(cycle(-0.02), cycle(), cycle(0.02)))
     assert averaged.press is not None
     assert np.diff(averaged.press.force_cN).max() > 35.0
     assert averaged.actuation_mm == 2.0
@@ -55,7 +55,7 @@ def test_small_shifts_are_aligned_so_that_the_contact_step_stays_steep() -> None
     ],
 )
 def test_an_odd_cycle_is_left_out_with_its_reason(odd: Cycle, reason: str) -> None:
-    averaged = average_cycles(file(odd, cycle(), cycle(), cycle()))
+    (averaged,) = average_by_velocity(file(odd, cycle(), cycle(), cycle()))
     assert averaged.used == ("cycle 2", "cycle 3", "cycle 4")
     ((label, why),) = averaged.left_out
     assert label == "odd"
@@ -67,13 +67,13 @@ def test_a_cycle_that_misses_a_stretch_is_left_out() -> None:
     assert whole is not None
     keep = (whole.displacement_mm < 1.0) | (whole.displacement_mm > 2.0)
     torn = Cycle(MeasuredCurve(whole.displacement_mm[keep], whole.force_cN[keep], Stroke.PRESS), None)
-    averaged = average_cycles(file(cycle(), torn, cycle()))
+    (averaged,) = average_by_velocity(file(cycle(), torn, cycle()))
     assert averaged.left_out == (("cycle 2", "1.0 mm of the press are missing"),)
 
 
 def test_without_a_majority_only_the_first_cycle_is_used() -> None:
     first = cycle()
-    averaged = average_cycles(file(first, cycle(extra_cN=20.0), cycle(1.0), cycle(extra_cN=-20.0)))
+    (averaged,) = average_by_velocity(file(first, cycle(extra_cN=20.0), cycle(1.0), cycle(extra_cN=-20.0)))
     assert averaged.press is first.press
     assert averaged.used == ("cycle 1",)
     assert averaged.warnings[0].startswith("mixed populations")
@@ -81,7 +81,6 @@ def test_without_a_majority_only_the_first_cycle_is_used() -> None:
 
 def test_velocities_are_never_mixed() -> None:
     cycles = (cycle(speed=1.0), cycle(speed=50.0), cycle(speed=1.02))
-    assert average_cycles(file(*cycles)).used == ("cycle 1", "cycle 3")
     assert [each.used for each in average_by_velocity(file(*cycles))] == [
         ("cycle 1", "cycle 3"),
         ("cycle 2",),
@@ -91,11 +90,15 @@ def test_velocities_are_never_mixed() -> None:
 def test_the_order_of_the_cycles_does_not_choose_the_population() -> None:
     cycles = [replace(cycle(shift), label=str(shift)) for shift in (0.0, 3.0, 0.01, 0.02)]
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 0, 3, 2)):
-        assert sorted(average_cycles(file(*(cycles[i] for i in order))).used) == ["0.0", "0.01", "0.02"]
+        assert sorted(average_by_velocity(file(*(cycles[i] for i in order)))[0].used) == [
+            "0.0",
+            "0.01",
+            "0.02",
+        ]
 
 
 def test_a_shifted_chart_cycle_is_left_out(files: Any, tmp_path: Path) -> None:
     text = files.haata(shifts=(0.0, 0.01, 0.01, 0.5))
-    averaged = average_cycles(read_force_file(files.write(tmp_path, "a.csv", text)))
+    (averaged,) = average_by_velocity(read_force_file(files.write(tmp_path, "a.csv", text)))
     assert averaged.used == ("Cycle 1", "Cycle 2", "Cycle 3")
     assert averaged.left_out[0][0] == "Cycle 4"

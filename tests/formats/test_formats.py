@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.formats.force.read import find_force_files, read_force_file, reader_names
+from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.units import GRAM_FORCE_cN
+from tests.formats.conftest import TEXTS
 
-FORMATS = [name for name in reader_names() if name != "bluepylons-ods"]
 
-
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", TEXTS)
 def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tmp_path: Path) -> None:
     _, text = files.TEXTS[name]
     suffix = ".downstroke.csv" if name == "stroke-pair" else ".txt"
@@ -21,7 +20,7 @@ def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tm
     assert file.format == name
 
 
-@pytest.mark.parametrize("name", [name for name in FORMATS if name not in ("stroke-pair", "tester-json")])
+@pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
 def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_path: Path) -> None:
     filename, text = files.TEXTS[name]
     cycle = read_force_file(files.write(tmp_path, filename, text())).cycles[0]

@@ -11,8 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.formats.force.average import average_cycles
-from fdvv.formats.force.read import read_force_file, reader_names
+from fdvv.formats.force.average import average_by_velocity
+from fdvv.formats.force.read import read_force_file
+from tests.formats.conftest import TEXTS
 from tests.support.damage import DAMAGES, Damage
 
 
@@ -31,12 +32,12 @@ def check(path: Path) -> None:
     assert all("\n" not in warning for warning in file.warnings)
     # a MeasuredCurve cannot be built wrong; that there is at least one is to be checked
     assert all(cycle.press is not None or cycle.release is not None for cycle in file.cycles)
-    averaged = average_cycles(file)
-    assert averaged.used
-    assert len(averaged.used) + len(averaged.left_out) == len(file.cycles)
+    means = average_by_velocity(file)
+    assert all(mean.used for mean in means)
+    assert sum(len(mean.used) + len(mean.left_out) for mean in means) == len(file.cycles)
 
 
-@pytest.mark.parametrize("name", [name for name in reader_names() if name != "bluepylons-ods"])
+@pytest.mark.parametrize("name", TEXTS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
 @settings(
     max_examples=int(os.environ.get("FDVV_EXAMPLES", "60")),

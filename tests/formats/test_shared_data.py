@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.formats.force.average import average_by_velocity, average_cycles
+from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.model.bump import find_contact_mm
 
@@ -141,7 +141,7 @@ def test_the_spreadsheet_and_its_parsed_table_are_the_same_measurement(shared_da
 def test_repeats_are_averaged_when_they_are_one_population(
     name: str, left_out: dict[str, str], shared_data: Path
 ) -> None:
-    averaged = average_cycles(read_force_file(shared_data / f"haata/{name}.csv"))
+    (averaged,) = average_by_velocity(read_force_file(shared_data / f"haata/{name}.csv"))
     assert averaged.warnings == ()
     assert {label for label, _ in averaged.left_out} == set(left_out)
     assert all(left_out[label] in reason for label, reason in averaged.left_out)
@@ -149,7 +149,9 @@ def test_repeats_are_averaged_when_they_are_one_population(
 
 
 def test_different_buttons_in_one_sheet_are_not_averaged(shared_data: Path) -> None:
-    averaged = average_cycles(read_force_file(shared_data / "bluepylons/Gateron-Yellow-leaf-vs-no-leaf.ods"))
+    (averaged,) = average_by_velocity(
+        read_force_file(shared_data / "bluepylons/Gateron-Yellow-leaf-vs-no-leaf.ods")
+    )
     assert averaged.used == ("(with leaf)",)
     assert averaged.warnings[0].startswith("mixed populations")
 

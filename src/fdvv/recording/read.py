@@ -34,12 +34,6 @@ READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines], Reading]],
 """Text formats known by their first lines."""
 
 
-def log_formats() -> tuple[str, ...]:
-    """List the formats that can be read, as in Source.format."""
-    motive = [f"motive-1.{minor}" for minor in range(21, 26)]
-    return (*motive, "fdvv-capture", "forcepeaks", "table", "counts", "wav", "flac", "ogg", "mp3")
-
-
 def read_log(
     path: Path | str, name: str = "", rate_Hz: float | None = None, full_scale_V: float | None = None
 ) -> Recording:

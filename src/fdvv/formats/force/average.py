@@ -1,9 +1,7 @@
 """One curve from repeats, when they are repeats.
 
-The population is the largest set of cycles that agree with one of them (``_gate`` says when two do). It
-must be more than half of the cycles; otherwise the populations are mixed, and only the first is used.
-
-Whether two cycles are repeats of one another.
+The population is the largest set of cycles that agree with one of them. It must be more than half of the
+cycles; otherwise the populations are mixed, and only the first is used.
 
 Two cycles are of one population when, judged on the stroke that begins them (the press if both have it),
 
@@ -22,7 +20,7 @@ wavers by 0.2 mm between repeats that otherwise agree to 0.02 mm.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,15 +30,10 @@ from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray, GRAM_FORCE_cN
 
 PLACE_mm = 0.05
-
 FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
-
 FORCE_PART = 0.02
-
 GAP_mm = 0.5
-
 STEP_mm = 0.005
-
 TRAVEL_PART = 0.9
 
 
@@ -52,21 +45,16 @@ class Shape:
     contact_mm: float
     top_cN: float
 
-    def first(self) -> tuple[FloatArray, FloatArray]:
-        return self.strokes.get(Stroke.PRESS) or self.strokes[Stroke.RELEASE]
-
     def last_below_mm(self, level_cN: float) -> float:
         """Return the deepest position where the force is below a level."""
-        x, force = self.first()
+        x, force = self.strokes.get(Stroke.PRESS) or self.strokes[Stroke.RELEASE]
         below = np.flatnonzero(force < level_cN)
         return float(x[below[-1]]) if below.size else float(x[0])
 
 
 def shape_of(cycle: Cycle) -> Shape:
     strokes = {
-        stroke: curve.by_displacement()[:2]
-        for stroke in Stroke
-        if (curve := cycle.press if stroke is Stroke.PRESS else cycle.release) is not None
+        stroke: curve.by_displacement()[:2] for stroke in Stroke if (curve := cycle.of(stroke)) is not None
     }
     x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
     return Shape(strokes, float(x[first_loaded(force)]), float(force.max()))
@@ -151,51 +139,20 @@ class Averaged:
     warnings: tuple[str, ...] = ()
 
 
-def average_cycles(file: ForceFile) -> Averaged:
-    """Average the cycles of a file that are one population at the velocity of the first one.
-
-    Cycles at other velocities are left out with a reason; ``average_by_velocity`` keeps them.
-    """
-    groups = _by_velocity(file.cycles)
-    result = _average([(file.cycles[i], _label(file.cycles[i], i)) for i in groups[0]])
-    others = tuple(
-        (_label(file.cycles[i], i), f"measured at {_velocity(file.cycles[i])} mm/s, another velocity")
-        for group in groups[1:]
-        for i in group
-    )
-    warnings = result.warnings
-    if others:
-        warnings += (f"{len(others)} cycles at other velocities than the first were left out of the mean",)
-    return replace(result, left_out=result.left_out + others, warnings=warnings)
-
-
 def average_by_velocity(file: ForceFile) -> tuple[Averaged, ...]:
     """Average the cycles of each velocity (10 % apart is another one), in the order of the file."""
-    return tuple(
-        _average([(file.cycles[i], _label(file.cycles[i], i)) for i in group])
-        for group in _by_velocity(file.cycles)
-    )
+    groups: list[list[tuple[Cycle, str]]] = []
+    for i, cycle in enumerate(file.cycles):
+        homes = (group for group in groups if _alike(_velocity(group[0][0]), _velocity(cycle)))
+        home = next(homes, None)
+        if home is None:
+            groups.append(home := [])
+        home.append((cycle, cycle.label or f"cycle {i + 1}"))
+    return tuple(map(_average, groups))
 
 
 def _velocity(cycle: Cycle) -> float | None:
     return next((curve.velocity_mm_s for curve in (cycle.press, cycle.release) if curve is not None), None)
-
-
-def _label(cycle: Cycle, index: int) -> str:
-    return cycle.label or f"cycle {index + 1}"
-
-
-def _by_velocity(cycles: Sequence[Cycle]) -> list[list[int]]:
-    groups: list[list[int]] = []
-    for i, cycle in enumerate(cycles):
-        home = next(
-            (group for group in groups if _alike(_velocity(cycles[group[0]]), _velocity(cycle))), None
-        )
-        if home is None:
-            groups.append([i])
-        else:
-            home.append(i)
-    return groups
 
 
 def _alike(a: float | None, b: float | None) -> bool:
@@ -238,16 +195,12 @@ def _median(values: list[float]) -> float | None:
     return float(np.median(values)) if values else None
 
 
-def _stroke(cycle: Cycle, stroke: Stroke) -> MeasuredCurve | None:
-    return cycle.press if stroke is Stroke.PRESS else cycle.release
-
-
 def _mean(cycles: Sequence[Cycle], stroke: Stroke) -> MeasuredCurve | None:
     if len(cycles) == 1:
-        return _stroke(cycles[0], stroke)
+        return cycles[0].of(stroke)
     contacts = [shape_of(cycle).contact_mm for cycle in cycles]
     home = float(np.median(contacts))
-    curves = [_stroke(cycle, stroke) for cycle in cycles]
+    curves = [cycle.of(stroke) for cycle in cycles]
     lines = [
         (x - contact + home, force)
         for contact, curve in zip(contacts, curves, strict=True)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fdvv.formats.force.text import Table, body, refusal
-from fdvv.formats.force.types import Notes, RawCycle, Reading, Track, stroke_name
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.io.text import cells
 from fdvv.model.curve import Stroke
 from fdvv.units import cN_from_gf
@@ -54,10 +54,9 @@ def read_haata(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     labels = list(dict.fromkeys(cycle for cycle, _, _ in places))
     _tell_missing(labels, notes)
     cycles = [_cycle(table, label, places, notes) for label in labels]
-    name = source.stem
     if not any(cycle.press or cycle.release for cycle in cycles):
         raise refusal(source, "line 1", "no column of displacement has its column of force")
-    return Reading("haata", name, cycles)
+    return Reading("haata", source.stem, cycles)
 
 
 def _tell_missing(labels: list[str], notes: Notes) -> None:
@@ -73,7 +72,8 @@ def _cycle(table: Table, label: str, places: dict[Key, int], notes: Notes) -> Ra
         x, force = places.get((label, stroke.value, "x")), places.get((label, stroke.value, "y"))
         if x is None and force is None:
             continue
-        where = f"{stroke.value.capitalize()} {label}" if label.isdigit() else stroke_name(stroke, label)
+        where = f"{stroke.capitalize()} {label}" if label.isdigit() else f"{stroke} of {label}"
+        where = where if label else str(stroke)
         if x is None or force is None:
             lacking = "displacement" if x is None else "force"
             notes.say(f"{where}: its {lacking} column is missing; the stroke was left out")

@@ -18,7 +18,7 @@ import numpy as np
 
 from fdvv.formats.force.text import LARGEST, LEAST_SAMPLES, refusal
 from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
-from fdvv.units import FloatArray, cN_from_gf
+from fdvv.units import cN_from_gf
 
 LARGEST_CONTENT = 64 * 2**20
 MOST_CELLS = 3_000_000
@@ -71,9 +71,8 @@ def _check_archive(source: Path, content: bytes) -> None:
                 raise refusal(source, "whole file", "it is a zip archive but no .ods spreadsheet")
             size = sum(info.file_size for info in archive.infolist())
             if size > LARGEST_CONTENT or len(names) > 1000:
-                raise refusal(
-                    source, "whole file", f"it unpacks to {size / 2**20:.0f} MiB; at most 64 are read"
-                )
+                reason = f"it unpacks to {size / 2**20:.0f} MiB; at most 64 are read"
+                raise refusal(source, "whole file", reason)
             xml = archive.read("content.xml")
     except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, EOFError, OSError) as error:
         raise refusal(source, "whole file", f"the .ods archive is damaged ({error})") from None
@@ -81,9 +80,8 @@ def _check_archive(source: Path, content: bytes) -> None:
         raise refusal(source, "whole file", f"the .ods archive cannot be unpacked ({error})") from None
     cells = _count_cells(xml)
     if cells > MOST_CELLS:
-        raise refusal(
-            source, "content.xml", f"its repeats unfold to {cells} cells; at most {MOST_CELLS} are read"
-        )
+        reason = f"its repeats unfold to {cells} cells; at most {MOST_CELLS} are read"
+        raise refusal(source, "content.xml", reason)
 
 
 def _count_cells(xml: bytes) -> int:
@@ -168,12 +166,8 @@ def _group(
     if len(kept) < LEAST_SAMPLES:
         return None
     x, force, *closed = np.array(kept, dtype=np.float64).T
-    return RawCycle(label, run=_track(x, force, closed))
+    return RawCycle(label, run=Track("run", np.round(x * 1e-3, 9), cN_from_gf(force), None, *closed))
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
-
-
-def _track(x_um: FloatArray, force_gf: FloatArray, closed: list[FloatArray]) -> Track:
-    return Track("run", np.round(x_um * 1e-3, 9), cN_from_gf(force_gf), closed=closed[0] if closed else None)

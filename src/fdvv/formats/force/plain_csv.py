@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from fdvv.formats.force.text import Column, Quantity, Table, body, describe, guess_length_mm, refusal
-from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
+from fdvv.formats.force.types import Notes, RawCycle, Reading, Track, pair_up
 from fdvv.io.text import cells, sniff_separator
 from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
@@ -42,12 +43,9 @@ def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, no
     """
     found = find_header(lines)
     if found is None:
-        raise refusal(
-            source,
-            "line 1",
-            "no header names a displacement and a force",
-            "name the columns with their units, e.g. displacement_mm,force_cN",
-        )
+        reason = "no header names a displacement and a force"
+        remedy = "name the columns with their units, e.g. displacement_mm,force_cN"
+        raise refusal(source, "line 1", reason, remedy)
     at, separator, columns = found
     form = FORMATS.get(tuple(c.title.lower() for c in columns), "plain-csv")
     columns = [c for c in columns if c.title not in _IGNORED.get(form, ())]
@@ -58,7 +56,9 @@ def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, no
     forces = [c for c in columns if c.quantity is Quantity.FORCE]
     _check_distinct(source, at, forces)
     cycles = [_curve(table, columns, force, stroke, len(forces) > 1, notes) for force in forces]
-    return Reading(form, _name(source, form), _pair_up(cycles))
+    runs = [cycle for cycle in cycles if cycle.run]
+    pairs = pair_up([c for c in cycles if c.press], [c for c in cycles if c.release])
+    return Reading(form, _name(source, form), runs + pairs)
 
 
 def _name(source: Path, form: str) -> str:
@@ -69,8 +69,7 @@ def _name(source: Path, form: str) -> str:
 
 
 def _tell_unread(columns: Sequence[Column], notes: Notes) -> None:
-    known = (Quantity.OTHER,)
-    unread = [repr(c.title[:30]) for c in columns if c.quantity in known and c.title]
+    unread = [repr(c.title[:30]) for c in columns if c.quantity is Quantity.OTHER and c.title]
     if unread:
         notes.say(f"header: column{'s' if len(unread) > 1 else ''} {', '.join(unread[:6])} not read")
 
@@ -82,12 +81,9 @@ def _check_distinct(source: Path, at: int, forces: Sequence[Column]) -> None:
             reason = f"{titles.count(column.title)} columns are all called {column.title[:30]!r}"
             raise refusal(source, f"line {at + 1}", reason, "give each its own name")
         if column.scale is None:
-            raise refusal(
-                source,
-                f"line {at + 1}, column {column.index + 1}",
-                f"force column {column.title[:30]!r} has no unit, and numbers cannot tell gf from cN",
-                "write the unit into the header, e.g. force_gf or force (N)",
-            )
+            place = f"line {at + 1}, column {column.index + 1}"
+            reason = f"force column {column.title[:30]!r} has no unit, and numbers cannot tell gf from cN"
+            raise refusal(source, place, reason, "write the unit into the header, e.g. force_gf or force (N)")
 
 
 def _curve(
@@ -99,20 +95,17 @@ def _curve(
     notes: Notes,
 ) -> RawCycle:
     travel = _beside(columns, Quantity.DISPLACEMENT, force) or force
-    clock, contact = (_beside(columns, q, force) for q in (Quantity.TIME, Quantity.CLOSED))
-    clock = clock if clock is not None and clock.scale is not None else None
-    extra = [c for c in (clock, contact) if c is not None]
-    read = table.columns([travel.index, force.index, *(c.index for c in extra)], notes, force.title)
-    by = {c.index: values for c, values in zip(extra, read[2:], strict=True)}
+    extra = {q: _beside(columns, q, force) for q in (Quantity.TIME, Quantity.CLOSED)}
+    # a clock without a unit tells no time
+    known = {q: column for q, column in extra.items() if column is not None and column.scale is not None}
+    picks = [travel.index, force.index, *(column.index for column in known.values())]
+    x, felt, *rest = table.columns(picks, notes, force.title)
+    scaled = {q: values * (known[q].scale or 1.0) for q, values in zip(known, rest, strict=True)}
     where = force.title if several else "run"
-    track = Track(
-        where,
-        # rounded to a picometre, so that 1880 um is 1.88 mm
-        np.round(read[0] * _length_scale(table.source, travel, read[0], notes), 9),
-        read[1] * (force.scale or 1.0),
-        None if clock is None else by[clock.index] * (clock.scale or 1.0),
-        None if contact is None else by[contact.index],
-    )
+    # rounded to a picometre, so that 1880 um is 1.88 mm
+    x_mm = np.round(x * _length_scale(table.source, travel, x, notes), 9)
+    force_cN = felt * (force.scale or 1.0)
+    track = Track(where, x_mm, force_cN, scaled.get(Quantity.TIME), scaled.get(Quantity.CLOSED))
     return _as_cycle(track, force, stroke, where if several else "")
 
 
@@ -128,12 +121,9 @@ def _length_scale(source: Path, column: Column, values: FloatArray, notes: Notes
     span = float(np.ptp(values))
     scale = guess_length_mm(span)
     if scale is None:
-        raise refusal(
-            source,
-            f"column {column.index + 1}",
-            f"{column.title[:30]!r} has no unit, and a span of {span:.3g} fits none",
-            "write the unit into the header, e.g. displacement_mm",
-        )
+        reason = f"{column.title[:30]!r} has no unit, and a span of {span:.3g} fits none"
+        remedy = "write the unit into the header, e.g. displacement_mm"
+        raise refusal(source, f"column {column.index + 1}", reason, remedy)
     unit = {1.0: "mm", 1e-3: "um", 1000.0: "m"}[scale]
     notes.say(
         f"column {column.index + 1}: {column.title[:30]!r} has no unit; read as {unit}, the only one "
@@ -145,26 +135,10 @@ def _length_scale(source: Path, column: Column, values: FloatArray, notes: Notes
 def _as_cycle(track: Track, force: Column, stroke: Stroke | None, label: str) -> RawCycle:
     x = track.x_mm
     stroke = force.stroke or stroke
+    cycle = RawCycle(label, velocity_mm_s=force.velocity_mm_s)
     turns = x.size > 8 and 0.1 * x.size < int(np.argmax(np.abs(x - x[0]))) < 0.9 * x.size
     if turns and force.stroke is None:
-        return RawCycle(label, run=track, velocity_mm_s=force.velocity_mm_s)
-    if stroke is Stroke.RELEASE or (
-        stroke is None and x[-1] < x[0] and track.force_cN[0] > track.force_cN[-1]
-    ):
-        return RawCycle(label, release=track, velocity_mm_s=force.velocity_mm_s)
-    return RawCycle(label, press=track, velocity_mm_s=force.velocity_mm_s)
-
-
-def _pair_up(cycles: list[RawCycle]) -> list[RawCycle]:
-    presses = [c for c in cycles if c.press is not None]
-    releases = [c for c in cycles if c.release is not None]
-    joined = [c for c in cycles if c.run is not None]
-    for press in presses:
-        match = next((r for r in releases if r.velocity_mm_s == press.velocity_mm_s), None)
-        if match is not None:
-            releases.remove(match)
-            press = RawCycle(
-                press.label, press=press.press, release=match.release, velocity_mm_s=press.velocity_mm_s
-            )
-        joined.append(press)
-    return joined + releases
+        return replace(cycle, run=track)
+    falls = x[-1] < x[0] and track.force_cN[0] > track.force_cN[-1]
+    released = stroke is Stroke.RELEASE or (stroke is None and falls)
+    return replace(cycle, release=track) if released else replace(cycle, press=track)

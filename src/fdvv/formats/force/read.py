@@ -2,54 +2,49 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import dropwhile
 from pathlib import Path
 
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.formats.force import repair as _repair
+from fdvv.formats.force import repair
 from fdvv.formats.force import theremingoat as goat
 from fdvv.formats.force.haata import is_haata, read_haata
 from fdvv.formats.force.ods import is_ods, read_ods
 from fdvv.formats.force.plain_csv import read_plain_csv
-from fdvv.formats.force.repair import mean_velocity_mm_s, switching_mm
 from fdvv.formats.force.split import hand_over_turn, orient, split_run
 from fdvv.formats.force.tester_json import is_tester_json, read_tester_json
 from fdvv.formats.force.text import LEAST_SAMPLES, decode, refusal
-from fdvv.formats.force.types import Cycle, ForceFile, Notes, RawCycle, Reading, Track
+from fdvv.formats.force.types import Cycle, ForceFile, Notes, RawCycle, Reading, Track, pair_up
 from fdvv.model.curve import MeasuredCurve, Stroke
 
-ENDINGS = (
-    (".downstroke", ".upstroke"),
-    ("_downstroke", "_upstroke"),
-    ("_press", "_release"),
-    (".press", ".release"),
-)
+_ENDING = re.compile(r"(?P<mark>[._])(?P<stroke>downstroke|upstroke|press|release)\Z", re.IGNORECASE)
+OTHER = {"downstroke": "upstroke", "upstroke": "downstroke", "press": "release", "release": "press"}
 
 
 def stroke_of(path: Path) -> tuple[Stroke, Path] | None:
     """Return the stroke in a file's name and the path of the other stroke; None if it names none."""
-    for press, release in ENDINGS:
-        for mine, other, stroke in ((press, release, Stroke.PRESS), (release, press, Stroke.RELEASE)):
-            if path.stem.lower().endswith(mine):
-                return stroke, path.with_name(f"{path.stem[: -len(mine)]}{other}{path.suffix}")
-    return None
+    ending = _ENDING.search(path.stem)
+    if ending is None:
+        return None
+    named = ending["stroke"].lower()
+    stroke = Stroke.PRESS if named in ("downstroke", "press") else Stroke.RELEASE
+    return stroke, path.with_name(f"{path.stem[: ending.start()]}{ending['mark']}{OTHER[named]}{path.suffix}")
 
 
 def companion(path: Path) -> Path | None:
     """Return the path of the other stroke of a pair; None if the name says no stroke."""
     named = stroke_of(path)
-    return None if named is None else named[1]
+    return named and named[1]
 
 
 def base_name(path: Path) -> str:
     """Return the name that both halves share."""
-    stem = path.stem
-    found = (ending for pair in ENDINGS for ending in pair if stem.lower().endswith(ending))
-    ending = next(found, "")
-    return stem[: len(stem) - len(ending)] or stem
+    return _ENDING.sub("", path.stem) or path.stem
 
 
 LEAST_TRAVEL_mm = 0.02
@@ -60,7 +55,8 @@ def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
     """Check a reading and make it a file; raises InputError if no stroke is left."""
     cycles: list[Cycle] = []
     for raw in reading.cycles:
-        cycles += [_cycle(part, notes) for part in split_run(_clean(raw, notes), notes)]
+        possible = raw.map(lambda track: _possible(track, notes))
+        cycles += [_cycle(part, notes) for part in split_run(possible, notes)]
     cycles = [cycle for cycle in cycles if cycle.press or cycle.release]
     if not cycles:
         why = notes.sentences[-1] if notes.sentences else "the displacement never changes"
@@ -68,21 +64,12 @@ def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
     return ForceFile(reading.name, reading.format, tuple(cycles), notes.lines())
 
 
-def _clean(raw: RawCycle, notes: Notes) -> RawCycle:
-    return replace(
-        raw,
-        run=_possible(raw.run, notes),
-        press=_possible(raw.press, notes),
-        release=_possible(raw.release, notes),
-    )
-
-
-def _possible(track: Track | None, notes: Notes) -> Track | None:
-    if track is None or track.x_mm.size == 0:
+def _possible(track: Track, notes: Notes) -> Track | None:
+    if track.x_mm.size == 0:
         return None
-    track = _repair.drop_impossible(track, notes)
+    track = repair.drop_impossible(track, notes)
     if track.x_mm.size >= 3:
-        track = _repair.drop_stray_positions(track, notes)
+        track = repair.drop_stray_positions(track, notes)
     return track if _long_enough(track, notes) else None
 
 
@@ -99,9 +86,10 @@ def _long_enough(track: Track, notes: Notes) -> bool:
 
 
 def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
-    raw = _repair.correct_slip(hand_over_turn(_orient_pair(raw, notes), notes), notes)
-    actuation = switching_mm(raw.press, Stroke.PRESS, notes)
-    reset = switching_mm(raw.release, Stroke.RELEASE, notes)
+    oriented = raw.map(lambda track: orient(track, notes))
+    raw = repair.correct_slip(hand_over_turn(oriented, notes), notes)
+    actuation = repair.switching_mm(raw.press, Stroke.PRESS, notes)
+    reset = repair.switching_mm(raw.release, Stroke.RELEASE, notes)
     return Cycle(
         _curve(raw.press, Stroke.PRESS, raw.velocity_mm_s, notes),
         _curve(raw.release, Stroke.RELEASE, raw.velocity_mm_s, notes),
@@ -111,25 +99,17 @@ def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
     )
 
 
-def _orient_pair(raw: RawCycle, notes: Notes) -> RawCycle:
-    return replace(
-        raw,
-        press=None if raw.press is None else orient(raw.press, notes),
-        release=None if raw.release is None else orient(raw.release, notes),
-    )
-
-
 def _curve(track: Track | None, stroke: Stroke, velocity: float | None, notes: Notes) -> MeasuredCurve | None:
     if track is None or not _long_enough(track, notes):
         return None
-    track = _repair.drop_lost_tare(_repair.drop_spikes(track, notes), notes)
+    track = repair.drop_lost_tare(repair.drop_spikes(track, notes), notes)
     if stroke is Stroke.PRESS:
-        track = _repair.drop_stuck_probe(track, notes)
+        track = repair.drop_stuck_probe(track, notes)
     if not _long_enough(track, notes):
         return None
-    _repair.warn_of_jumps(track, notes)
-    speed = mean_velocity_mm_s(track) if velocity is None else velocity
-    return MeasuredCurve(*_repair.rising(track, notes), stroke, speed)
+    repair.warn_of_jumps(track, notes)
+    speed = repair.mean_velocity_mm_s(track) if velocity is None else velocity
+    return MeasuredCurve(*repair.rising(track, notes), stroke, speed)
 
 
 LARGEST_FILE = 64 * 2**20
@@ -144,22 +124,6 @@ READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines, Notes], Rea
     (is_haata, read_haata),
 )
 """Text formats known by their first lines; a table with named columns is what none of them takes."""
-
-
-def reader_names() -> tuple[str, ...]:
-    """List the formats that can be read, as in ForceFile.format."""
-    return (
-        "thereminGoat-raw",
-        "thereminGoat-highres",
-        "thereminGoat-tidy",
-        "stroke-pair",
-        "haata",
-        "bluepylons-ods",
-        "bluepylons-csv",
-        "buddyog",
-        "tester-json",
-        "plain-csv",
-    )
 
 
 def read_force_file(path: str | Path) -> ForceFile:
@@ -185,7 +149,7 @@ def _read(path: Path, notes: Notes) -> Reading:
     head = [line for line in lines if line.strip()][:60] or [""]
     for recognise, read in READERS:
         if recognise(head):
-            return read(path, _from_first(lines), notes)
+            return read(path, list(dropwhile(lambda line: not line.strip(), lines)), notes)
     return _strokes_or_table(path, lines, notes)
 
 
@@ -201,11 +165,6 @@ def _content(path: Path) -> bytes:
         raise InputError(repr(str(path)), "path", str(error), "check the path") from None
 
 
-def _from_first(lines: Lines) -> Lines:
-    start = next((i for i, line in enumerate(lines) if line.strip()), 0)
-    return lines[start:] if start else lines
-
-
 def _strokes_or_table(path: Path, lines: Lines, notes: Notes) -> Reading:
     named = stroke_of(path)
     mine = _half(path, lines, named[0] if named else None, notes)
@@ -218,7 +177,7 @@ def _strokes_or_table(path: Path, lines: Lines, notes: Notes) -> Reading:
         return replace(mine, name=name)
     other_stroke = Stroke.RELEASE if stroke is Stroke.PRESS else Stroke.PRESS
     theirs = _half(sibling, decode(sibling, _content(sibling), notes), other_stroke, notes)
-    return Reading(mine.format, name, _join(mine.cycles, theirs.cycles))
+    return Reading(mine.format, name, pair_up(mine.cycles, theirs.cycles))
 
 
 def _half(path: Path, lines: Lines, stroke: Stroke | None, notes: Notes) -> Reading:
@@ -236,26 +195,7 @@ def _half(path: Path, lines: Lines, stroke: Stroke | None, notes: Notes) -> Read
     return Reading("stroke-pair", base_name(path), [cycle])
 
 
-def _join(mine: Sequence[RawCycle], theirs: Sequence[RawCycle]) -> list[RawCycle]:
-    """Join presses and releases of the same velocity from two files; others stay single."""
-    rest = list(theirs)
-    joined = []
-    for cycle in mine:
-        match = next((c for c in rest if _fits(cycle, c)), None)
-        if match is not None:
-            rest.remove(match)
-            cycle = replace(cycle, press=cycle.press or match.press, release=cycle.release or match.release)
-        joined.append(cycle)
-    return joined + rest
-
-
-def _fits(a: RawCycle, b: RawCycle) -> bool:
-    both = (a.press is None) != (b.press is None) and (a.release is None) != (b.release is None)
-    return both and a.velocity_mm_s == b.velocity_mm_s
-
-
 SUFFIXES = (".csv", ".ods", ".json", ".txt")
-
 NOT_DATA = ("readme", "license", "licence", "copying", "changelog", "contributing", "notice")
 
 
@@ -268,20 +208,18 @@ def find_force_files(folder: str | Path) -> list[Path]:
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(folder, "path", "there is no such folder", "give a folder of measurements")
-    found = [path for path in folder.rglob("*") if _is_candidate(path.relative_to(folder)) and path.is_file()]
-    known = set(found)
-    return sorted(path for path in found if not _second_half(path, known))
-
-
-def _is_candidate(inside: Path) -> bool:
-    hidden = any(part.startswith(".") for part in inside.parts)
-    return not hidden and is_force_file(inside.name)
+    visible = (
+        path
+        for path in folder.rglob("*")
+        if not any(part.startswith(".") for part in path.relative_to(folder).parts)
+    )
+    found = {path for path in visible if is_force_file(path.name) and path.is_file()}
+    return sorted(path for path in found if not _second_half(path, found))
 
 
 def is_force_file(name: str) -> bool:
     """Return whether a file's name alone may be that of force curves."""
-    lower = name.lower()
-    return lower.endswith(SUFFIXES) and not lower.startswith(NOT_DATA)
+    return name.lower().endswith(SUFFIXES) and not name.lower().startswith(NOT_DATA)
 
 
 def _second_half(path: Path, known: set[Path]) -> bool:

@@ -21,27 +21,20 @@ FAR_mm, STRONG_cN = 1000.0, 100_000.0
 """No button travels a metre or takes a kilonewton."""
 
 SPIKE_cN = 20.0
-
 SPIKE_HALF = 5
-
 SPIKE_WIDTH_mm = 0.06
 """A spike stands 20 cN off the running median of 11 samples and is back within 60 um; the undershoot
 of a real snap stays below (15 cN in the loudest click bar measured)."""
 
 STUCK_DROP_cN = 15.0
-
 STUCK_RISE_cN_mm = 150.0
-
 STUCK_WIDTH_mm = 0.5
 """A probe that sticks climbs like a stop (450 to 520 cN/mm seen) and falls in one sample back to where
 it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
 
 JUMP_mm = 0.5
-
 PULL_cN = -5.0
-
 AIR_cN = 2.0
-
 SLIP_mm = 0.25
 
 
@@ -55,7 +48,7 @@ def drop_impossible(track: Track, notes: Notes) -> Track:
     good = (np.abs(track.x_mm) <= FAR_mm) & (np.abs(track.force_cN) <= STRONG_cN)
     if good.all():
         return track
-    first = int(np.flatnonzero(~good)[0])
+    first = int(np.argmin(good))
     notes.say(
         f"{track.where}, sample {first + 1}: {track.x_mm[first]:.3g} mm, {track.force_cN[first]:.3g} cN "
         f"cannot be; {_samples(int((~good).sum()))} left out"
@@ -72,7 +65,7 @@ def drop_stray_positions(track: Track, notes: Notes) -> Track:
     stray[1:-1] &= np.abs(x[2:] - x[:-2]) < 0.2 * JUMP_mm
     if not stray.any():
         return track
-    first = int(np.flatnonzero(stray)[0])
+    first = int(np.argmax(stray))
     notes.say(
         f"{track.where}, sample {first + 1}: displacement jumps to {x[first]:.3f} mm and back; "
         f"{_samples(int(stray.sum()))} left out"
@@ -91,13 +84,10 @@ def drop_spikes(track: Track, notes: Notes) -> Track:
     padded = np.pad(force, SPIKE_HALF, mode="edge")
     off = np.abs(force - np.median(sliding_window_view(padded, 2 * SPIKE_HALF + 1), axis=1))
     spike = np.zeros(force.size, dtype=bool)
-    if off.max() <= SPIKE_cN:
-        return track
     # the feet of a spike belong to it
     for first, last in _runs(off > 0.2 * SPIKE_cN):
-        if off[first : last + 1].max() <= SPIKE_cN or last - first >= 2 * SPIKE_HALF:
-            continue
-        if first == 0 or last == force.size - 1:
+        inside = first > 0 and last < force.size - 1
+        if not inside or off[first : last + 1].max() <= SPIKE_cN or last - first >= 2 * SPIKE_HALF:
             continue
         back = abs(force[last + 1] - force[first - 1]) < 0.5 * SPIKE_cN
         if back and abs(x[last + 1] - x[first - 1]) <= SPIKE_WIDTH_mm:

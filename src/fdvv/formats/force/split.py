@@ -66,10 +66,9 @@ def turn_index(x_mm: FloatArray, force_cN: FloatArray) -> int:
 
 def split_run(cycle: RawCycle, notes: Notes) -> list[RawCycle]:
     """Split a run into cycles of press and release; strokes that are too short come out as None."""
-    run = cycle.run
-    if run is None:
+    if cycle.run is None:
         return [cycle]
-    run = orient(run, notes)
+    run = orient(cycle.run, notes)
     bounds = cycle_bounds(run.x_mm)
     return [
         _split_one(cycle, run.take(part), f"cycle {i + 1}" if len(bounds) > 1 else cycle.label, notes)

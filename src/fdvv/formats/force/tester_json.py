@@ -28,14 +28,8 @@ def read_tester_json(source: Path, lines: Sequence[str], notes: Notes) -> Readin
     release = _stroke(source, record, "up", notes)
     actuation, reset = (_point(record, name, notes) for name in POINTS)
     if release is not None and press is not None:
-        release = _rebuild_release(record, press, release, reset, notes)
-    cycle = RawCycle(
-        "",
-        press=press,
-        release=release,
-        actuation_mm=None if actuation is None else actuation[0],
-        reset_mm=None if reset is None else reset[0],
-    )
+        release = _rebuild_release(press, release, reset, notes)
+    cycle = RawCycle("", None, press, release, actuation and actuation[0], reset and reset[0])
     return Reading("tester-json", source.stem, [cycle])
 
 
@@ -43,9 +37,8 @@ def _load(source: Path, text: str) -> Mapping[str, Any]:
     try:
         record = json.loads(text)
     except json.JSONDecodeError as error:
-        raise refusal(
-            source, f"line {error.lineno}, column {error.colno}", f"not JSON: {error.msg}"
-        ) from None
+        place = f"line {error.lineno}, column {error.colno}"
+        raise refusal(source, place, f"not JSON: {error.msg}") from None
     except (ValueError, RecursionError):
         raise refusal(source, "whole file", "not JSON that can be read") from None
     if not isinstance(record, dict) or not {"down_x", "down_y"} & set(record):
@@ -105,11 +98,7 @@ def _point(record: Mapping[str, Any], name: str, notes: Notes) -> tuple[float, f
 
 
 def _rebuild_release(
-    record: Mapping[str, Any],
-    press: Track,
-    release: Track,
-    reset: tuple[float, float] | None,
-    notes: Notes,
+    press: Track, release: Track, reset: tuple[float, float] | None, notes: Notes
 ) -> Track | None:
     """Rebuild a release's displacement where the file only copies that of the press.
 

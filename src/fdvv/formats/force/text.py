@@ -203,30 +203,20 @@ def describe(index: int, title: str) -> Column:
     scale = next((UNITS[quantity][t] for t in reversed(tokens) if t in UNITS.get(quantity, {})), None)
     if quantity is Quantity.CLOSED:
         scale = 1.0
-    return Column(index, title.strip(), quantity, scale, stroke, velocity if velocity else None)
+    return Column(index, title.strip(), quantity, scale, stroke, velocity or None)
 
 
 def _quantity(tokens: list[str]) -> Quantity:
-    if NOT_MEASURED & set(tokens):
-        return Quantity.OTHER
-    if tokens == ["stroke"]:
+    if NOT_MEASURED & set(tokens) or tokens == ["stroke"]:
         return Quantity.OTHER
     # the last quantity named is the one measured: "press force", "contact force"
-    for token in reversed(tokens):
-        for quantity, words in WORDS.items():
-            if token in words:
-                return quantity
+    named = (quantity for token in reversed(tokens) for quantity, words in WORDS.items() if token in words)
     # a unit alone names a quantity, unless it is one letter that may stand for anything (n, m, s)
-    for token in reversed(tokens):
-        for quantity, units in UNITS.items():
-            if token in units and len(token) > 1 and token != "in":
-                return quantity
-    return Quantity.OTHER
+    units = [token for token in reversed(tokens) if len(token) > 1 and token != "in"]
+    measured = (quantity for token in units for quantity, known in UNITS.items() if token in known)
+    return next(named, None) or next(measured, Quantity.OTHER)
 
 
 def guess_length_mm(span: float) -> float | None:
     """Guess mm, um or m by the span of a button's travel; None if no unit fits."""
-    for scale in (1.0, 1e-3, 1000.0):
-        if 0.3 <= span * scale <= 30.0:
-            return scale
-    return None
+    return next((scale for scale in (1.0, 1e-3, 1000.0) if 0.3 <= span * scale <= 30.0), None)

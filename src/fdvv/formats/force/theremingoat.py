@@ -49,9 +49,8 @@ def _unit(source: Path, table: Table, column: int, known: dict[str, float]) -> f
     name = max(sorted(set(found)), key=found.count, default="")
     if name.lower() not in known:
         where = f"from line {table.first_line}, column {column + 1}"
-        raise refusal(
-            source, where, f"unknown unit {name[:20]!r}", "use gf, N, mm or another unit known here"
-        )
+        reason = f"unknown unit {name[:20]!r}"
+        raise refusal(source, where, reason, "use gf, N, mm or another unit known here")
     return known[name.lower()]
 
 
@@ -109,5 +108,4 @@ def clean_name(stem: str) -> str:
 
 
 def _run(form: str, name: str, x: FloatArray, force: FloatArray, time: FloatArray | None = None) -> Reading:
-    track = Track("run", x, force, time)
-    return Reading(form, name, [RawCycle("", run=track)])
+    return Reading(form, name, [RawCycle("", run=Track("run", x, force, time))])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -29,6 +29,9 @@ class Cycle:
     actuation_mm: float | None = None
     reset_mm: float | None = None
     label: str = ""
+
+    def of(self, stroke: Stroke) -> MeasuredCurve | None:
+        return self.press if stroke is Stroke.PRESS else self.release
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +92,29 @@ class RawCycle:
     reset_mm: float | None = None
     velocity_mm_s: float | None = None
 
+    def map(self, change: Callable[[Track], Track | None]) -> RawCycle:
+        """Change every track that there is; None leaves it out."""
+        run, press, release = (track and change(track) for track in (self.run, self.press, self.release))
+        return replace(self, run=run, press=press, release=release)
+
+
+def pair_up(mine: Sequence[RawCycle], theirs: Sequence[RawCycle]) -> list[RawCycle]:
+    """Join presses and releases of the same velocity; others stay single."""
+    rest = list(theirs)
+    joined = []
+    for cycle in mine:
+        match = next((other for other in rest if _belong_together(cycle, other)), None)
+        if match is not None:
+            rest.remove(match)
+            cycle = replace(cycle, press=cycle.press or match.press, release=cycle.release or match.release)
+        joined.append(cycle)
+    return joined + rest
+
+
+def _belong_together(a: RawCycle, b: RawCycle) -> bool:
+    both = (a.press is None) != (b.press is None) and (a.release is None) != (b.release is None)
+    return both and a.velocity_mm_s == b.velocity_mm_s
+
 
 @dataclass(frozen=True, eq=False)
 class Reading:
@@ -124,7 +150,3 @@ class Notes:
             for template, found in self.tallies.items()
         ]
         return (*self.sentences, *counted)
-
-
-def stroke_name(stroke: Stroke, label: str) -> str:
-    return f"{stroke.value} of {label}" if label else stroke.value
