@@ -156,27 +156,20 @@ def check_recording(path: Path | str) -> FileCheck:
         return unusable(path, A_RECORDING, error)
     if recording is None:
         return unusable(path, A_RECORDING, InputError(path, "whole file", "holds no whole record", REMEDY))
-    problems = [_cut(len(recording.takes))] if end < size else []
+    remedy = f"go on with it, which cuts the rest off; takes kept: {len(recording.takes)}"
+    problems = [FileProblem("end of file", CUT, remedy)] if end < size else []
     problems += _problems(recording)
     corrections = sum("mend" in record for record, _ in read_records(path, KIND))
     facts = {"version": VERSION, "size_bytes": size, **facts_of(recording), "corrections": corrections}
     return FileCheck(path, A_RECORDING, facts, tuple(problems), recording.warnings)
 
 
-def _cut(takes: int) -> FileProblem:
-    remedy = f"go on with it, which cuts the rest off; takes kept: {takes}"
-    return FileProblem("end of file", CUT, remedy)
-
-
-def _usual(recording: Recording, stage: Stage) -> list[str]:
-    takes = [take for take in recording.takes if take.stage is stage]
-    return list(dict.fromkeys(stream.name for take in takes for stream in take.streams))
-
-
 def _problems(recording: Recording) -> Iterator[FileProblem]:
     if not recording.takes:
         yield FileProblem("whole file", "holds no take", "go on with the capture")
-    usual = {take.stage: _usual(recording, take.stage) for take in recording.takes}
+    usual: dict[Stage, dict[str, None]] = {}
+    for take in recording.takes:
+        usual.setdefault(take.stage, {}).update(dict.fromkeys(stream.name for stream in take.streams))
     for take in recording.takes:
         there = {stream.name for stream in take.streams}
         lost = [name for name in usual[take.stage] if name not in there]
@@ -200,13 +193,14 @@ def _blind(take: Take) -> Iterator[FileProblem]:
 def _backwards(recording: Recording) -> Iterator[FileProblem]:
     ends: dict[str, tuple[float, int]] = {}
     for take in recording.takes:
-        for stream in (stream for stream in take.streams if stream.t_s.size):
+        streams = [stream for stream in take.streams if stream.t_s.size]
+        for stream in streams:
             end_s, before = ends.get(stream.clock, (-float("inf"), take.number))
             if before != take.number and stream.t_s[0] <= end_s:
                 place = f"take {take.number}, {stream.name}"
                 reason = f"begins before take {before} ended, though its clock goes on through all takes"
                 yield FileProblem(place, reason, "correct clocks_go_on of the bench if the clocks begin anew")
                 return
-        for stream in (stream for stream in take.streams if stream.t_s.size):
+        for stream in streams:
             last_s = max(ends.get(stream.clock, (-float("inf"), 0))[0], float(stream.t_s[-1]))
             ends[stream.clock] = (last_s, take.number)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,19 +16,20 @@ from fdvv.recording.records import FORMAT, VERSION, MendRecord, pack_head, pack_
 from fdvv.recording.types import Bench, Recording, Take
 
 STREAM = ("scale", "zero")
-
 TAKE = ("stage", "velocity_mm_s", "remark")
-
 RECORDING = ("licence", "person")
-
 TEXTS = (*RECORDING, "stage", "remark")
-
 BENCH = tuple(f.name for f in fields(Bench))
+RECORDING_SUFFIX = ".recording.jsonl"
+"""How a recording's name ends."""
+REMEDY = "compare with docs/reference/recording-file.md"
+KIND = JournalKind({"head": Any, "take": Any, "mend": Any}, REMEDY)
+CUT = "the last record is not whole and is left out"
 
 
 @dataclass(frozen=True)
 class Correction:
-    """A correction.
+    """What holds from now on of a stream, a take or the recording.
 
     Attributes
     ----------
@@ -71,37 +72,23 @@ def corrected(recording: Recording, correction: Correction) -> Recording:
     if correction.take is not None and not 1 <= correction.take <= len(recording.takes):
         raise ModelError(f"there is no take {correction.take} to correct, only {len(recording.takes)}")
     if correction.take is None and correction.stream is None:
-        bench = replace(recording.bench, **{k: v for k, v in correction.values.items() if k in BENCH})
-        return replace(
-            recording, bench=bench, **{k: v for k, v in correction.values.items() if k in RECORDING}
-        )
-    takes = tuple(
-        _take(take, correction) if correction.take in (None, take.number) else take
-        for take in recording.takes
-    )
-    if correction.stream is not None and all(
-        new is old for new, old in zip(takes, recording.takes, strict=True)
-    ):
-        raise ModelError(f"there is no stream {correction.stream!r} to correct")
-    return replace(recording, takes=takes)
+        of_bench = {key: value for key, value in correction.values.items() if key in BENCH}
+        own = {key: value for key, value in correction.values.items() if key in RECORDING}
+        return replace(recording, bench=replace(recording.bench, **of_bench), **own)
+    chosen = [take for take in recording.takes if correction.take in (None, take.number)]
+    if correction.stream is not None:
+        chosen = [take for take in chosen if any(s.name == correction.stream for s in take.streams)]
+        if not chosen:
+            raise ModelError(f"there is no stream {correction.stream!r} to correct")
+    new = {take.number: _take(take, correction) for take in chosen}
+    return replace(recording, takes=tuple(new.get(take.number, take) for take in recording.takes))
 
 
 def _take(take: Take, correction: Correction) -> Take:
     if correction.stream is None:
         return replace(take, **correction.values)
     streams = [replace(s, **correction.values) if s.name == correction.stream else s for s in take.streams]
-    changed = any(new is not old for new, old in zip(streams, take.streams, strict=True))
-    return replace(take, streams=tuple(streams)) if changed else take
-
-
-RECORDING_SUFFIX = ".recording.jsonl"
-"""How a recording's name ends."""
-
-REMEDY = "compare with docs/reference/recording-file.md"
-
-KIND = JournalKind({"head": Any, "take": Any, "mend": Any}, REMEDY)
-
-CUT = "the last record is not whole and is left out"
+    return replace(take, streams=tuple(streams))
 
 
 def load_recording(path: Path | str) -> Recording:
@@ -132,10 +119,6 @@ def save_recording(recording: Recording, path: Path | str) -> None:
     write_atomic(path, b"".join(lines))
 
 
-def pack_correction(correction: Correction, made: str) -> dict[str, Any]:
-    return {**asdict(correction), "values": dict(correction.values), "made": made}
-
-
 def read_file(path: Path) -> tuple[Recording | None, int, int]:
     """Read a recording, where its last whole record ends, and the size of the file; None without a head.
 
@@ -163,17 +146,16 @@ def _read(path: Path) -> tuple[Recording | None, int]:
             elif key == "take":
                 takes.append(_next(found, len(takes) + 1))
             elif recording is not None:
-                recording = corrected(replace(recording, takes=tuple(takes)), _correction(found))
+                mend = msgspec.convert(found, MendRecord)
+                correction = Correction(mend.values, mend.take, mend.stream, mend.why)
+                recording = corrected(replace(recording, takes=tuple(takes)), correction)
                 takes = list(recording.takes)
         except (ModelError, ValueError, TypeError) as error:
             reason, _, place = str(error).partition(" - at ")
-            raise InputError(path, f"line {number}{_inside(place)}", reason, REMEDY) from error
+            inside = f", {place.strip('`')}" if place else ""
+            raise InputError(path, f"line {number}{inside}", reason, REMEDY) from error
         end = after
     return (replace(recording, takes=tuple(takes)) if recording else None), end
-
-
-def _inside(place: str) -> str:
-    return f", {place.strip('`')}" if place else ""
 
 
 def _known(path: Path, found: Any) -> Any:
@@ -192,8 +174,3 @@ def _next(found: Any, number: int) -> Take:
     if take.number != number:
         raise ModelError(f"take {number} bears the number {take.number}")
     return take
-
-
-def _correction(found: Any) -> Correction:
-    record = msgspec.convert(found, MendRecord)
-    return Correction(record.values, record.take, record.stream, record.why)

@@ -48,9 +48,8 @@ def read_forcepeaks(source: Path, lines: Sequence[str]) -> Reading:
     for match in found:
         if match:
             rows[match[1]].append((int(match[2]), int(match[3])))
-    warnings = []
-    if None in found:
-        warnings.append(f"{counted(found.count(None), 'line')} garbled and left out")
+    garbled = found.count(None)
+    warnings = [f"{counted(garbled, 'line')} garbled and left out"] if garbled else []
     if not rows["S"]:
         raise refusal(source, "whole file", "it holds no beat")
     marks = [Mark(name, CLOCK, ms / 1000) for letter, name in MARKS.items() for _, ms in rows[letter]]
@@ -64,10 +63,7 @@ def _force(rows: dict[str, list[tuple[int, int]]]) -> tuple[list[Stream], list[s
     counts = np.array([value for _, value in rows["V"]], dtype=np.int64)
     scale = "force is in counts of a converter whose scale nobody stated"
     if counts.max() > np.iinfo(np.int16).max or [i for i, _ in rows["V"]] != list(range(counts.size)):
-        return [_loose(counts)], [
-            scale,
-            "samples are missing or garbled; their clock knows no pauses",
-        ]
+        return [_loose(counts)], [scale, "samples are missing or garbled; their clock knows no pauses"]
     raw = counts.astype(np.int16)
     taps_s = np.array([ms for _, ms in rows["R"]]) / 1000
     sixth_s = next((ms / 1000 for number, ms in rows["S"] if number == FIRST_BEAT), np.inf)

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.recording.reading import unlike
+from fdvv.recording.reading import distinct, unlike
 from fdvv.recording.types import Bench, Quantity, Recording, Stream, Take
 
 Known = TypeVar("Known")
@@ -58,23 +58,13 @@ def _bench(recordings: Sequence[Recording]) -> Bench:
     return Bench(**found)
 
 
-def _clocks(recording: Recording) -> set[str]:
-    streams = {stream.clock for take in recording.takes for stream in take.streams}
-    return streams | {mark.clock for take in recording.takes for mark in take.marks}
-
-
 def _apart(recordings: Sequence[Recording]) -> list[Recording]:
     met: set[str] = set()
     found = []
     for recording in recordings:
-        names = {}
-        for clock in sorted(_clocks(recording)):
-            new, count = clock, 1
-            while new in met:
-                count += 1
-                new = f"{clock} {count}"
-            names[clock] = new
-        met |= set(names.values())
+        clocks = {stream.clock for take in recording.takes for stream in take.streams}
+        clocks |= {mark.clock for take in recording.takes for mark in take.marks}
+        names = {clock: distinct(clock, met) for clock in sorted(clocks)}
         found.append(replace(recording, takes=tuple(_renamed(take, names) for take in recording.takes)))
     return found
 
@@ -132,7 +122,6 @@ def _of_take(take: Take, kept: frozenset[str], light: str) -> Take:
             streams.append(stream)
         elif stream.name == light:
             seen = np.isfinite(stream.values).reshape(stream.t_s.size, -1).all(axis=1)
-            lit_raw = np.asarray(seen, dtype=np.int8)
-            lit = Stream(stream.name, Quantity.LIGHT, stream.clock, stream.t_s, lit_raw)
-            streams.append(lit)
+            lit = np.asarray(seen, dtype=np.int8)
+            streams.append(Stream(light, Quantity.LIGHT, stream.clock, stream.t_s, lit))
     return replace(take, streams=tuple(streams))

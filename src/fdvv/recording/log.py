@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import asdict, replace
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from fdvv.errors import InputError, ModelError
 from fdvv.eventlog import Journal
-from fdvv.recording.file import CUT, Correction, corrected, pack_correction, read_file
+from fdvv.recording.file import CUT, Correction, corrected, read_file
 from fdvv.recording.records import pack_head, pack_take
 from fdvv.recording.types import Recording, Take
 
@@ -38,7 +37,8 @@ class RecordingLog:
         self.path = Path(path)
         self.warnings: list[str] = []
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._journal = Journal(self.path, _busy(self.path))
+        busy = "another process is at work on this recording", "wait for it, or name another file"
+        self._journal = Journal(self.path, InputError(self.path, "recording", *busy))
         try:
             self.recording = self._opened(replace(about, takes=()))
         except BaseException:
@@ -80,7 +80,7 @@ class RecordingLog:
         made : when, as ISO 8601. Raises ModelError if it names what is not there, OSError.
         """
         found = corrected(self.recording, mend)
-        self._journal.write({"mend": pack_correction(mend, made)})
+        self._journal.write({"mend": {**vars(mend), "values": dict(mend.values), "made": made}})
         self.recording = found
 
     def close(self) -> None:
@@ -90,15 +90,8 @@ class RecordingLog:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.close()
-
-
-def _busy(path: Path) -> InputError:
-    reason = "another process is at work on this recording"
-    return InputError(path, "recording", reason, "wait for it, or name another file")
 
 
 def _check(path: Path, there: Recording, about: Recording) -> None:

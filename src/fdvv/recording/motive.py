@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -17,18 +19,15 @@ from fdvv.recording.reading import Reading, counted, number, refusal, rising, un
 from fdvv.recording.types import Quantity, Stream
 from fdvv.units import FloatArray
 
+CLOCK = "camera"
 KNOWN = ("1.21", "1.22", "1.23", "1.24", "1.25")
-
 LENGTH_mm = {"meters": 1000.0, "centimeters": 10.0, "millimeters": 1.0, "inches": 25.4}
-
 SEEN = ("marker", "labeled marker", "unlabeled marker")
-
 LABELS = ("type", "name", "id", "parent")
-
 EXPORT = "export it again from Motive, with header information and the markers"
-
+ROUNDED_s = 0.00055
+"""Times are printed to a millisecond at some rates, to a microsecond at others."""
 _BEFORE_NOON = {"am", "a.m.", "de."}
-
 _AFTER_NOON = {"pm", "p.m.", "du."}
 """Halves of the day as English and Hungarian Windows write them."""
 
@@ -69,14 +68,8 @@ class MotiveHead:
 
     def rate_Hz(self) -> float | None:
         """Return the rate of the rows; None if the head holds no usable one."""
-        for key in ("Export Frame Rate", "Capture Frame Rate"):
-            try:
-                rate = float(self.pairs[key])
-            except (KeyError, ValueError):
-                continue
-            if 0 < rate < 1e6:
-                return rate
-        return None
+        rates = (number(self.pairs.get(key, "")) for key in ("Export Frame Rate", "Capture Frame Rate"))
+        return next((rate for rate in rates if 0 < rate < 1e6), None)
 
 
 def is_motive(head: Sequence[str]) -> bool:
@@ -96,14 +89,13 @@ def read_head(source: object, lines: Sequence[str]) -> MotiveHead:
     kinds, names, components = _rows([cells(line, ",") for line in lines[1:at] if line.strip()], len(axes))
     triples = _triples(kinds, names, components, axes)
     if not triples:
-        reason = "it holds frames and times but no marker"
-        raise refusal(source, f"line {at + 1}", reason, EXPORT)
+        raise refusal(source, f"line {at + 1}", "it holds frames and times but no marker", EXPORT)
     taken = {column for triple in triples for column in triple.at}
-    left_out: dict[str, int] = {}
-    for column in range(2, len(axes)):
-        if column not in taken:
-            what = components[column].strip().lower() or axes[column].lower() or "nameless"
-            left_out[what] = left_out.get(what, 0) + 1
+    left_out = Counter(
+        components[column].strip().lower() or axes[column].lower() or "nameless"
+        for column in range(2, len(axes))
+        if column not in taken
+    )
     return MotiveHead(pairs, triples, left_out, len(axes), at + 1)
 
 
@@ -163,17 +155,10 @@ def made(printed: str) -> str | None:
     elif 0 < hour < 13:
         return None
     text = f"{match[1]}T{hour:02}:{match[3]}:{match[4]}.{match[5]}"
-    try:
+    with suppress(ValueError):
         datetime.fromisoformat(text)
-    except ValueError:
-        return None
-    return text
-
-
-CLOCK = "camera"
-
-ROUNDED_s = 0.00055
-"""Times are printed to a millisecond at some rates, to a microsecond at others."""
+        return text
+    return None
 
 
 def read_motive(source: Path, lines: Sequence[str]) -> Reading:
@@ -193,9 +178,9 @@ def read_motive(source: Path, lines: Sequence[str]) -> Reading:
     dropped = int(keep.size - keep.sum())
     warnings += notes + ([f"{counted(dropped, 'frame')} left out: the times do not rise"] if dropped else [])
     warnings += _frames(head, table[:, 0])
-    begun = made(head.pairs.get("Capture Start Time", ""))
+    start = head.pairs.get("Capture Start Time", "")
+    begun = made(start)
     if begun is None:
-        start = head.pairs.get("Capture Start Time", "")
         warnings.append(f"the capture start {start!r:.40} tells no certain moment")
     scale = LENGTH_mm[head.pairs["Length Units"].lower()]
     streams = unlike(

@@ -20,9 +20,7 @@ from fdvv.recording.table import find_header, is_counts, read_counts, read_table
 from fdvv.recording.types import Recording, Source, Take
 
 LARGEST_bytes = 512_000_000
-
 JOURNAL = b'{"crc32": '
-
 Lines = Sequence[str]
 
 READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines], Reading]], ...] = (
@@ -67,9 +65,8 @@ def read_log(
 def _check(path: Path, rate_Hz: float | None, full_scale_V: float | None) -> None:
     for option, value in (("rate_Hz", rate_Hz), ("full_scale_V", full_scale_V)):
         if value is not None and not 0 < value < 1e9:
-            raise InputError(
-                path, option, f"must be finite and above 0, got {value}", "leave it out or mend it"
-            )
+            reason = f"must be finite and above 0, got {value}"
+            raise InputError(path, option, reason, "leave it out or mend it")
 
 
 def _read(path: Path, content: bytes, rate_Hz: float | None, full_scale_V: float | None) -> Reading:
@@ -81,12 +78,8 @@ def _read(path: Path, content: bytes, rate_Hz: float | None, full_scale_V: float
     head = [line.strip() for line in lines if line.strip()][:60]
     if not head:
         raise refusal(path, "whole file", "it is empty")
-    for recognise, read in READERS:
-        if recognise(head):
-            reading = read(path, lines)
-            break
-    else:
-        if not is_counts(head):
-            raise refusal(path, "line 1", "none of the known formats of logs")
-        reading = read_counts(path, lines, rate_Hz)
+    read = next((read for recognise, read in READERS if recognise(head)), None)
+    if read is None and not is_counts(head):
+        raise refusal(path, "line 1", "none of the known formats of logs")
+    reading = read(path, lines) if read else read_counts(path, lines, rate_Hz)
     return replace(reading, warnings=(*repaired, *reading.warnings))

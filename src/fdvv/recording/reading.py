@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain, count
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +14,6 @@ from fdvv.recording.types import Bench, Mark, Stream
 from fdvv.units import FloatArray
 
 REMEDY = "give one of the formats of docs/reference/log-files.md"
-
-
 LARGEST = 1e15
 """No instrument counts further; what is larger is a fault."""
 
@@ -59,20 +58,19 @@ def rising(t: FloatArray) -> npt.NDArray[np.bool_]:
     return keep
 
 
+def distinct(name: str, met: set[str]) -> str:
+    """Return a name with a number behind it if it was met before, and add it to those met."""
+    new = next(found for found in chain([name], (f"{name} {i}" for i in count(2))) if found not in met)
+    met.add(new)
+    return new
+
+
 def unlike(streams: Iterable[Stream]) -> tuple[Stream, ...]:
     """Make the names of streams distinct by a number behind repeated ones."""
     met: set[str] = set()
-    found = []
-    for stream in streams:
-        name, count = stream.name, 1
-        while name in met:
-            count += 1
-            name = f"{stream.name} {count}"
-        met.add(name)
-        found.append(replace(stream, name=name))
-    return tuple(found)
+    return tuple(replace(stream, name=distinct(stream.name, met)) for stream in streams)
 
 
-def counted(count: int, noun: str) -> str:
+def counted(number: int, noun: str) -> str:
     """Write a number of things: 1 line, 2 lines."""
-    return f"{count} {noun if count == 1 else noun + 's'}"
+    return f"{number} {noun if number == 1 else noun + 's'}"

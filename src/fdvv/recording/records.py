@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
@@ -143,7 +142,7 @@ def pack_take(take: Take) -> dict[str, Any]:
         "velocity_mm_s": None if take.velocity_mm_s is None else float(take.velocity_mm_s),
         "made": take.made,
         "remark": take.remark,
-        "marks": [{"name": m.name, "clock": m.clock, "t_s": float(m.t_s)} for m in take.marks],
+        "marks": [{**vars(mark), "t_s": float(mark.t_s)} for mark in take.marks],
         "streams": streams,
     }
 
@@ -172,19 +171,9 @@ def unpack_head(found: object) -> Recording:
 def unpack_take(found: object) -> Take:
     """Decode a take. Raises ValueError."""
     take = msgspec.convert(found, TakeRecord)
-    return Take(
-        take.number,
-        tuple(_unpack_stream(stream) for stream in take.streams),
-        _marks(take.marks),
-        take.stage,
-        take.velocity_mm_s,
-        take.made,
-        take.remark,
-    )
-
-
-def _marks(found: Sequence[MarkRecord]) -> tuple[Mark, ...]:
-    return tuple(Mark(mark.name, mark.clock, mark.t_s) for mark in found)
+    streams = tuple(_unpack_stream(stream) for stream in take.streams)
+    marks = tuple(Mark(mark.name, mark.clock, mark.t_s) for mark in take.marks)
+    return Take(take.number, streams, marks, take.stage, take.velocity_mm_s, take.made, take.remark)
 
 
 def _unpack_stream(found: StreamRecord) -> Stream:

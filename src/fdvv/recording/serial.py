@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from functools import reduce
+from operator import xor
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +20,15 @@ from fdvv.recording.types import Bench, Mark, Quantity, Stage, Stream, Take
 from fdvv.units import FloatArray
 
 FORMAT, VERSION = "fdvv-capture", 1
-
 TURN_us = 2**32
 """The board counts microseconds in 32 bits; the counter begins anew every 71.6 minutes."""
 
+CLOCK = "board"
+REMEDY = "compare with docs/reference/capture-serial.md"
+
 _SAMPLE = re.compile(r"([A-Z]{1,8}) (\d{1,10})((?: -?\d{1,10}){1,8})\Z", re.ASCII)
-
 _EVENT = re.compile(r"! (\d{1,10}) (\S.*)\Z", re.ASCII)
-
 _SUMMED = re.compile(r"(.*)\*([0-9A-Fa-f]{2})\Z", re.ASCII)
-
 _PAIR = re.compile(r"(\w+)=(\S+)", re.ASCII)
 
 
@@ -98,10 +99,7 @@ def _read_sample(body: Body, line: str) -> bool:
 
 def checksum(text: str) -> int:
     """Return the exclusive or of all bytes, as NMEA 0183 does."""
-    found = 0
-    for byte in text.encode():
-        found ^= byte
-    return found
+    return reduce(xor, text.encode(), 0)
 
 
 def _read_head(head: SerialHead, words: Sequence[str]) -> bool:
@@ -126,11 +124,6 @@ def _read_head(head: SerialHead, words: Sequence[str]) -> bool:
         known = {f.name for f in fields(Bench)} - {"clocks_go_on"}
         head.bench |= {key: value for key, value in pairs.items() if key in known}
     return True
-
-
-CLOCK = "board"
-
-REMEDY = "compare with docs/reference/capture-serial.md"
 
 
 class SerialCapture:

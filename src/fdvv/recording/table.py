@@ -31,7 +31,12 @@ UNITS = {
 }
 """Units as they end a name, each with the factor to the unit of its quantity."""
 
+CLOCK, COUNTS_CLOCK = "table", "converter"
+NAME_THEM = "name them with their units, as in time_s,force_cN,displacement_mm"
 TIME_s = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+MOST_COLUMNS = 8
+MOST_BAD = 0.1
+"""Of a log of numbers so large a part of the lines may hold none."""
 
 PLAIN = {
     "light": Quantity.LIGHT,
@@ -47,8 +52,10 @@ PLAIN = {
 """Names that are read without a unit; what they measure is then known only where it has none."""
 
 _TIME = re.compile(r"(?:time|t|timestamp)_(s|ms|us)\Z", re.IGNORECASE)
-
 _AXIS = re.compile(r"(.+)_([xyz])\Z", re.IGNORECASE)
+_RATE = re.compile(r"(?:^|[_\-. ])(\d+(?:\.\d+)?)(k|K|)(?:(?<=[kK])|Hz)(?:Hz|sps|SPS)?(?=[_\-. ]|$)")
+_BITS = re.compile(r"(?:^|[_\-. ])(\d{1,2})b(?:it|its)?(?=[_\-. ]|$)")
+_NUMBERS = re.compile(r"[-+\d.eE,; \t]+\Z", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -79,10 +86,8 @@ def read_title(title: str) -> Title | None:
             if axis and quantity is Quantity.DISPLACEMENT:
                 return Title(axis[1], Quantity.MARKER, scale, axis[2].lower())
             return Title(name, quantity, scale)
-    quantity_of_word = PLAIN.get(text.lower())
-    if quantity_of_word is None:
-        return None
-    return Title(text, quantity_of_word, 1.0, "", quantity_of_word is not Quantity.COUNTS)
+    meant = PLAIN.get(text.lower())
+    return None if meant is None else Title(text, meant, 1.0, unit_is_known=meant is not Quantity.COUNTS)
 
 
 def _plain(title: str) -> str:
@@ -90,17 +95,11 @@ def _plain(title: str) -> str:
     return re.sub(r"[\s_]+", "_", re.sub(r"[()\[\]]", " ", text).strip()).replace("m/s2", "m_s2")
 
 
-CLOCK = "table"
-
-NAME_THEM = "name them with their units, as in time_s,force_cN,displacement_mm"
-
-
 def find_header(head: Sequence[str]) -> int | None:
     """Find the first line that names a time and something measured; None if there is none."""
     for at, line in enumerate(head):
         titles = cells(line, sniff_separator(line))
-        timed = sum(time_scale_s(title) is not None for title in titles)
-        if timed and any(read_title(title) for title in titles):
+        if any(map(time_scale_s, titles)) and any(map(read_title, titles)):
             return at
     return None
 
@@ -155,9 +154,10 @@ def _streams(named: dict[int, Title], t_s: FloatArray, table: FloatArray) -> lis
 def _marker(named: dict[int, Title], x: Title, t_s: FloatArray, table: FloatArray, at: int) -> Stream:
     columns = [table[:, at]]
     for axis in "yz":
-        same = [(i, t) for i, t in named.items() if (t.name, t.axis) == (x.name, axis)]
-        nothing = np.full(t_s.size, np.nan)
-        columns.append(table[:, same[0][0]] * (same[0][1].scale / x.scale) if same else nothing)
+        same = (
+            table[:, i] * (t.scale / x.scale) for i, t in named.items() if (t.name, t.axis) == (x.name, axis)
+        )
+        columns.append(next(same, np.full(t_s.size, np.nan)))
     return Stream(x.name, Quantity.MARKER, CLOCK, t_s, np.column_stack(columns), x.scale)
 
 
@@ -168,19 +168,6 @@ def _numbers(body: Sequence[str], separator: str, columns: int) -> FloatArray:
         rows = [[cell.replace(",", ".") for cell in row] for row in rows]
     whole = [row + [""] * (columns - len(row)) for row in rows]
     return np.array([[number(cell) for cell in row] for row in whole], dtype=np.float64).reshape(-1, columns)
-
-
-COUNTS_CLOCK = "converter"
-
-MOST_COLUMNS = 8
-
-MOST_BAD = 0.1
-
-_RATE = re.compile(r"(?:^|[_\-. ])(\d+(?:\.\d+)?)(k|K|)(?:(?<=[kK])|Hz)(?:Hz|sps|SPS)?(?=[_\-. ]|$)")
-
-_BITS = re.compile(r"(?:^|[_\-. ])(\d{1,2})b(?:it|its)?(?=[_\-. ]|$)")
-
-_NUMBERS = re.compile(r"[-+\d.eE,; \t]+\Z", re.ASCII)
 
 
 def is_counts(head: Sequence[str]) -> bool:
@@ -224,11 +211,10 @@ def read_counts(source: Path, lines: Sequence[str], rate_Hz: float | None) -> Re
     if bits and most >= 2**bits:
         warnings.append(f"the name tells of {bits} bits, but the numbers reach {most:.0f}")
     t_s = np.arange(values.shape[0]) / rate
-    columns = values.T
-    names = ["counts"] if len(columns) == 1 else [f"counts {i + 1}" for i in range(len(columns))]
+    several = values.shape[1] > 1
     streams = [
-        Stream(name, Quantity.COUNTS, COUNTS_CLOCK, t_s, _whole(column))
-        for name, column in zip(names, columns, strict=True)
+        Stream(f"counts {i}" if several else "counts", Quantity.COUNTS, COUNTS_CLOCK, t_s, _whole(column))
+        for i, column in enumerate(values.T, 1)
     ]
     return Reading("counts", streams, (), warnings)
 

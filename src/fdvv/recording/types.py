@@ -151,9 +151,7 @@ class Take:
             raise ModelError(f"the streams of a take need different names, got {names}")
         if self.number < 1:
             raise ModelError(f"takes are counted from 1, got {self.number}")
-        if self.velocity_mm_s is not None and not (
-            self.velocity_mm_s > 0 and np.isfinite(self.velocity_mm_s)
-        ):
+        if self.velocity_mm_s is not None and not 0 < self.velocity_mm_s < np.inf:
             raise ModelError(f"velocity_mm_s must be finite and above 0, got {self.velocity_mm_s}")
 
     def of(self, quantity: Quantity | str) -> tuple[Stream, ...]:
