@@ -48,11 +48,6 @@ class AveragedCurve:
     presses: int
     width_mm: float
 
-    @property
-    def error_cN(self) -> FloatArray:
-        """Return the standard error of the mean, (n,)."""
-        return np.asarray(self.spread_cN / np.sqrt(self.presses))
-
 
 @dataclass(frozen=True, eq=False)
 class Pooled:
@@ -97,21 +92,19 @@ def pool(tracks: Sequence[StrokeTrack], shape: CurveOfForce, end_mm: float, star
 def _smooth(basis: EvenBasis, x: FloatArray, rest_cN: FloatArray, who: IntArray) -> tuple[FloatArray, float]:
     rows, penalty = basis.rows(x), rough(basis.size)
     square, roughness = rows.T @ rows, penalty.T @ penalty
-    target = rows.T @ rest_cN
     inner = rest_cN - _by_press(x, rest_cN, who)
+    # scatter within presses alone: what presses differ by as a whole would ask for no smoothing at all
     inner_target = rows.T @ inner
-    best: tuple[float, float, float] | None = None
-    for weight in PENALTIES * x.size / basis.size:
-        normal = square + weight * roughness + 1e-9 * np.eye(basis.size)
-        free = float(np.trace(np.linalg.solve(normal, square)))
-        left = inner - rows @ np.linalg.solve(normal, inner_target)
-        score = x.size * float(left @ left) / max(x.size - 1.4 * free, 1.0) ** 2
-        if best is None or score < best[0]:
-            best = score, weight, free
-    assert best is not None
-    normal = square + best[1] * roughness + 1e-9 * np.eye(basis.size)
-    weights: FloatArray = np.linalg.solve(normal, target).astype(np.float64)
-    return weights, basis.step * basis.pieces / max(best[2], 1.0)
+    normals = [square + w * roughness + 1e-9 * np.eye(basis.size) for w in PENALTIES * x.size / basis.size]
+    free = [float(np.trace(np.linalg.solve(normal, square))) for normal in normals]
+    left = [inner - rows @ np.linalg.solve(normal, inner_target) for normal in normals]
+    scores = [
+        x.size * float(rest @ rest) / max(x.size - 1.4 * own, 1.0) ** 2
+        for rest, own in zip(left, free, strict=True)
+    ]
+    best = int(np.argmin(scores))
+    weights: FloatArray = np.linalg.solve(normals[best], rows.T @ rest_cN).astype(np.float64)
+    return weights, basis.step * basis.pieces / max(free[best], 1.0)
 
 
 def _by_press(x: FloatArray, rest_cN: FloatArray, who: IntArray) -> FloatArray:
@@ -139,12 +132,9 @@ def averaged(
     """Return the curve and its spread; the spread at a position is that of the presses seen there."""
     there = np.isfinite(pooled.apart_cN).sum(axis=0)
     square = np.nansum(pooled.apart_cN**2, axis=0) / np.maximum(there - 1, 1)
-    known = there >= 2
-    spread = (
-        np.sqrt(np.interp(pooled.grid_mm, pooled.grid_mm[known], square[known]))
-        if known.any()
-        else np.zeros_like(square)
-    )
+    known, spread = there >= 2, np.zeros_like(square)
+    if known.any():
+        spread = np.sqrt(np.interp(pooled.grid_mm, pooled.grid_mm[known], square[known]))
     return AveragedCurve(
         tracks[0].stroke,
         velocity_mm_s,

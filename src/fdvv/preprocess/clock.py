@@ -8,10 +8,12 @@ each is a pair of bounds, ``low <= offset + rate * edge <= high``, and what fits
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.preprocess.edges import Edges, match, seen_edges
@@ -71,11 +73,8 @@ def align_clocks(
     return _polygon(edge_s, low_s, high_s, int(kept.size - kept.sum()))
 
 
-def _fits(
-    edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray
-) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _fits(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray) -> npt.NDArray[np.bool_]:
     from scipy import sparse
-    from scipy.optimize import linprog
 
     n, middle = edge_s.size, float(edge_s.mean())
     ones, away = np.ones(n), edge_s - middle
@@ -86,50 +85,40 @@ def _fits(
     limits = np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
     bounds = [(None, None), (-PPM_LARGEST * 1e-6, PPM_LARGEST * 1e-6), *[(0, None)] * n]
     costs = np.concatenate([[0.0, 0.0], ones])
-    found = linprog(costs, sides, limits, bounds=bounds, method="highs")
+    return np.asarray(_least(costs, sides, limits, bounds)[2:] <= SLACK_s)
+
+
+def _least(costs: Any, sides: Any, limits: FloatArray, bounds: Sequence[Any]) -> FloatArray:
+    """Solve a linear program. Raises ModelError where nothing fits."""
+    from scipy.optimize import linprog
+
+    found: Any = linprog(costs, sides, limits, bounds=bounds, method="highs")
     if not found.success:
         raise ModelError(f"the two clocks cannot be joined by a line: {found.message}")
-    assert found.x is not None
-    return np.asarray(found.x[2:] <= SLACK_s)
+    return np.asarray(found.x)
 
 
 def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused: int) -> ClockFit:
     """Find the middle of what all bounds allow, and how wide that is at the first, middle and last edge."""
-    from scipy.optimize import linprog
-
     middle, span = float(edge_s.mean()), max(float(np.ptp(edge_s)), 1e-3)
     away = (edge_s - middle) / span
     base = float(np.median(0.5 * (low_s + high_s) - edge_s))
-    sides = np.concatenate(
-        [np.column_stack([-np.ones(away.size), -away]), np.column_stack([np.ones(away.size), away])]
-    )
+    line = np.column_stack([np.ones(away.size), away])
+    sides = np.concatenate([-line, line])
     # in microseconds: the solver takes what differs by 1e-7 for the same
     # the slack that a few good edges need (noise of brightness) widens all bounds alike
     widen = 1e6 * np.concatenate([-(low_s - edge_s - base), high_s - edge_s - base])
     most = PPM_LARGEST * span
-    least = linprog(
-        [0.0, 0.0, 1.0],
-        np.column_stack([sides, -np.ones(widen.size)]),
-        widen,
-        bounds=[(None, None), (-most, most), (0, None)],
-        method="highs",
-    )
-    assert least.x is not None
+    bounds = [(None, None), (-most, most)]
+    slack = np.column_stack([sides, -np.ones(widen.size)])
+    least = _least([0.0, 0.0, 1.0], slack, widen, [*bounds, (0, None)])
     # with the least slack a single line is left, which would seem certain: as much again is doubt
-    limits = widen + 2 * float(least.x[2]) + 1e-3
-    corners = []
-    for at in (away.min(), 0.0, away.max()):
-        for sign in (1.0, -1.0):
-            found = linprog(
-                [sign, sign * at], sides, limits, bounds=[(None, None), (-most, most)], method="highs"
-            )
-            assert found.x is not None
-            corners.append(found.x)
-    points = 1e-6 * np.array(corners)
-    offset, tilt = points.mean(axis=0)
-    widths = [
-        0.5 * abs(np.diff(points[2 * i : 2 * i + 2] @ [1.0, at])[0])
-        for i, at in enumerate((away.min(), 0.0, away.max()))
-    ]
+    limits = widen + 2 * float(least[2]) + 1e-3
+    places = (away.min(), 0.0, away.max())
+    # (place, sign, offset and tilt)
+    ends = [[_least([s, s * at], sides, limits, bounds) for s in (1.0, -1.0)] for at in places]
+    corners = 1e-6 * np.array(ends)
+    offset, tilt = corners.reshape(-1, 2).mean(axis=0)
+    widths = [0.5 * abs(np.diff(pair @ [1.0, at])[0]) for pair, at in zip(corners, places, strict=True)]
     rate = 1 + tilt / span
     return ClockFit(base + offset - (rate - 1) * middle, rate, float(max(widths)), int(edge_s.size), refused)

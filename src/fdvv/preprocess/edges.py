@@ -127,9 +127,11 @@ def match(board: Edges, seen: SeenEdges, rate_error: float) -> npt.NDArray[np.in
     groups = np.split(np.arange(board.t_s.size), np.flatnonzero(np.diff(board.t_s) > GROUP_GAP_s) + 1)
     best: list[tuple[int, int]] = []
     enough = 0.9 * min(board.t_s.size, seen.t_s.size)
-    for first in _outward(len(groups)):
+    # from the middle outwards: there the clocks have parted least from either end
+    for first in dict.fromkeys(int(part * (len(groups) - 1)) for part in (0.5, 0.25, 0.75, 0.0, 1.0)):
+        later, earlier = groups[first:], groups[:first][::-1]
         for lead_s in _likely(board, seen, groups[first]):
-            found = _both_ways(board, seen, groups, first, lead_s, rate_error)
+            found = [p for way in (later, earlier) for p in _follow(board, seen, way, lead_s, rate_error)]
             best = max(best, found, key=len)
             if len(best) >= enough:
                 return _again(board, seen, best)
@@ -145,14 +147,17 @@ def _again(board: Edges, seen: SeenEdges, pairs: Sequence[tuple[int, int]]) -> n
     middle = own.mean()
     rate = np.polyfit(own - middle, theirs, 1)
     at_s = np.asarray(np.polyval(rate, board.t_s - middle), dtype=np.float64)
-    near = _nearest(seen.t_s, at_s)
-    hit = (at_s >= seen.low_s[near] - CLOSE_s) & (at_s <= seen.high_s[near] + CLOSE_s)
-    hit &= seen.on[near] == board.on
+    near, hit = _seen_at(seen, at_s, board.on, CLOSE_s)
     return np.column_stack([np.flatnonzero(hit), near[hit]])
 
 
-def _outward(count: int) -> list[int]:
-    return list(dict.fromkeys(int(part * (count - 1)) for part in (0.5, 0.25, 0.75, 0.0, 1.0)))
+def _seen_at(
+    seen: SeenEdges, at_s: FloatArray, on: npt.NDArray[np.bool_], slack_s: float
+) -> tuple[IntArray, npt.NDArray[np.bool_]]:
+    """Return the seen edge nearest to each time, and whether it was then and of that direction."""
+    near = _nearest(seen.t_s, at_s)
+    hit = (at_s >= seen.low_s[near] - slack_s) & (at_s <= seen.high_s[near] + slack_s)
+    return near, hit & (seen.on[near] == on)
 
 
 def _likely(board: Edges, seen: SeenEdges, group: IntArray) -> list[float]:
@@ -160,24 +165,13 @@ def _likely(board: Edges, seen: SeenEdges, group: IntArray) -> list[float]:
     hits = np.array([_best_lead(board, seen, group, leads[i : i + 1])[0] for i in range(leads.size)])
     good = leads[hits >= max(min(LEAST_HITS, group.size), 0.6 * group.size)]
     # leads closer together than the tolerance are one
-    return [
-        float(part.mean())
-        for part in np.split(good, np.flatnonzero(np.diff(good) > TOLERANCE_s) + 1)
-        if part.size
-    ]
-
-
-def _both_ways(
-    board: Edges, seen: SeenEdges, groups: Sequence[IntArray], first: int, lead_s: float, rate_error: float
-) -> list[tuple[int, int]]:
-    later = _follow(board, seen, groups[first:], lead_s, rate_error)
-    return later + _follow(board, seen, groups[:first][::-1], lead_s, rate_error)
+    parts = np.split(good, np.flatnonzero(np.diff(good) > TOLERANCE_s) + 1)
+    return [float(part.mean()) for part in parts if part.size]
 
 
 def _leads(board: Edges, seen: SeenEdges, group: IntArray) -> FloatArray:
-    return np.unique(
-        np.concatenate([seen.t_s[seen.on == board.on[i]] - board.t_s[i] for i in group[:LEAST_HITS]])
-    )
+    leads = [seen.t_s[seen.on == board.on[i]] - board.t_s[i] for i in group[:LEAST_HITS]]
+    return np.unique(np.concatenate(leads))
 
 
 def _best_lead(board: Edges, seen: SeenEdges, group: IntArray, leads: FloatArray) -> tuple[int, float]:
@@ -195,10 +189,7 @@ def _hits(
     board: Edges, seen: SeenEdges, group: IntArray, lead_s: float, slack_s: float = TOLERANCE_s
 ) -> tuple[IntArray, IntArray]:
     """Return which edges of a group were seen at a lead, and as which."""
-    near = _nearest(seen.t_s, board.t_s[group] + lead_s)
-    at_s = board.t_s[group] + lead_s
-    hit = (at_s >= seen.low_s[near] - slack_s) & (at_s <= seen.high_s[near] + slack_s)
-    hit &= seen.on[near] == board.on[group]
+    near, hit = _seen_at(seen, board.t_s[group] + lead_s, board.on[group], slack_s)
     return group[hit], near[hit]
 
 

@@ -20,17 +20,19 @@ from fdvv.errors import ModelError
 from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm
 
 
+@dataclass(frozen=True)
 class EvenBasis:
     """Cubic B-splines on even knots over start, start + step, ...; pieces + 3 of them.
 
-    Parameters
+    Attributes
     ----------
     start, step : first knot and spacing, in the unit of what is passed to rows.
     pieces : number of spans.
     """
 
-    def __init__(self, start: float, step: float, pieces: int) -> None:
-        self.start, self.step, self.pieces = start, step, pieces
+    start: float
+    step: float
+    pieces: int
 
     @property
     def size(self) -> int:
@@ -47,19 +49,12 @@ class EvenBasis:
         return matrix
 
 
-def _values(u: FloatArray) -> tuple[FloatArray, ...]:
-    return (1 - u) ** 3 / 6, (3 * u**3 - 6 * u**2 + 4) / 6, (3 * (u + u**2 - u**3) + 1) / 6, u**3 / 6
-
-
-def _slopes(u: FloatArray) -> tuple[FloatArray, ...]:
-    return -((1 - u) ** 2) / 2, (3 * u**2 - 4 * u) / 2, (1 + 2 * u - 3 * u**2) / 2, u**2 / 2
-
-
-def _bends(u: FloatArray) -> tuple[FloatArray, ...]:
-    return 1 - u, 3 * u - 2, 1 - 3 * u, u
-
-
-_WEIGHTS = (_values, _slopes, _bends)
+_WEIGHTS: tuple[Callable[[FloatArray], tuple[FloatArray, ...]], ...] = (
+    lambda u: ((1 - u) ** 3 / 6, (3 * u**3 - 6 * u**2 + 4) / 6, (3 * (u + u**2 - u**3) + 1) / 6, u**3 / 6),
+    lambda u: (-((1 - u) ** 2) / 2, (3 * u**2 - 4 * u) / 2, (1 + 2 * u - 3 * u**2) / 2, u**2 / 2),
+    lambda u: (1 - u, 3 * u - 2, 1 - 3 * u, u),
+)
+"""The four splines that are not 0 on a span, over its part u of 0 to 1; their slopes; their bends."""
 
 
 def rough(size: int) -> FloatArray:
@@ -224,19 +219,11 @@ def _improve(
         moved_N = moving_kg * (one.accelerations_m_s2 @ one.path)
         # a cap at its upper stop obeys the stop, which no curve shows
         weight_1_N = sure_1_N * np.where(x < settings.seat_mm, SEATED, 1.0)
-        miss = np.concatenate(
-            [
-                weight_1_N * (moved_N - one.force_N + button_N),
-                (one.frames @ one.path - one.frame_mm) / settings.frame_noise_mm,
-            ]
-        )
-        by_path = np.vstack(
-            [
-                weight_1_N[:, None]
-                * (moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places),
-                one.frames / settings.frame_noise_mm,
-            ]
-        )
+        equation = weight_1_N * (moved_N - one.force_N + button_N)
+        off = (one.frames @ one.path - one.frame_mm) / settings.frame_noise_mm
+        miss = np.concatenate([equation, off])
+        by_place = moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places
+        by_path = np.vstack([weight_1_N[:, None] * by_place, one.frames / settings.frame_noise_mm])
         by_shared = np.vstack([weight_1_N[:, None] * rows, np.zeros((one.frame_mm.size, basis.size))])
         normal = by_path.T @ by_path + 1e-7 * np.eye(by_path.shape[1])
         answer = np.linalg.solve(normal, by_path.T @ np.column_stack([by_shared, miss]))

@@ -99,10 +99,8 @@ def paper_average(
     grid: FloatArray = GRID_mm * np.arange(math.floor(end_mm / GRID_mm) + 1.0)
     forces_cN = np.array([register(x_mm, force_cN, grid) for x_mm, force_cN in strokes])
     step_s = float(np.diff(used[0].press.t_s[:2])[0])
-    way_mm = [
-        speed_mm_s * recipe.streams.in_time_s(step_s, speed_mm_s),
-        recipe.curve.in_way_mm(GRID_mm, speed_mm_s),
-    ]
+    stream_mm = speed_mm_s * recipe.streams.in_time_s(step_s, speed_mm_s)
+    curve_mm = recipe.curve.in_way_mm(GRID_mm, speed_mm_s)
     several = len(used) > 1
     return AveragedCurve(
         stroke,
@@ -110,10 +108,10 @@ def paper_average(
         speed_mm_s,
         float(np.std(speeds, ddof=1)) if several else 0.0,
         grid,
-        filtered(forces_cN.mean(axis=0), way_mm[1] / GRID_mm),
+        filtered(forces_cN.mean(axis=0), curve_mm / GRID_mm),
         np.std(forces_cN, axis=0, ddof=1) if several else np.zeros(grid.size),
         len(used),
-        EVEN_WIDTH * math.hypot(*way_mm),
+        EVEN_WIDTH * math.hypot(stream_mm, curve_mm),
     )
 
 

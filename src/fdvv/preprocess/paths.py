@@ -1,9 +1,7 @@
 """The paths of strokes: cut out of presses, found between frames, extended beside the stop.
 
-The parts of a stroke that no frame shows: between a stop, or rest, and the nearest frame.
-
-The path found between frames goes on by the equation that held there, as far as the force was sampled before
-the stop took over. At 200 mm/s that is up to 0.8 mm of the stroke.
+Between a stop, or rest, and the nearest frame the path goes on by the equation that held between frames, as
+far as the force was sampled before the stop took over. At 200 mm/s that is up to 0.8 mm of the stroke.
 """
 
 from __future__ import annotations
@@ -75,17 +73,9 @@ def extend(
         return seen
     added = slice(here + 1, i + 1) if forward else slice(i, here)
     guess = np.array(places if forward else places[::-1])
-    return Seen(
-        _join(seen.t_s, t_s[added], forward),
-        _join(seen.force_cN, force_cN[added], forward),
-        seen.frame_s,
-        seen.frame_mm,
-        _join(path.displacement_mm, guess, forward),
-    )
-
-
-def _join(old: FloatArray, new: FloatArray, after: bool) -> FloatArray:
-    return np.concatenate([old, new] if after else [new, old])
+    columns = (seen.t_s, t_s[added]), (seen.force_cN, force_cN[added]), (path.displacement_mm, guess)
+    times, forces, guesses = (np.concatenate(pair[:: 1 if forward else -1]) for pair in columns)
+    return replace(seen, t_s=times, force_cN=forces, guess_mm=guesses)
 
 
 UNKNOWN_PIECES, UNKNOWN_N = 25, 1e3
@@ -153,33 +143,24 @@ class Paths:
         presses show the stroke, else those that do, their tracks and the force. First between frames, then
         once more with what lies between the stop and a frame.
         """
-        seen = [self._seen(one, stroke) for one in used]
-        whole = [(one, s) for one, s in zip(used, seen, strict=True) if s is not None]
+        whole = [(one, seen) for one in used if (seen := self._seen(one, stroke)) is not None]
         if len(whole) < FEWEST:
             return None
         moving_g = self.cap_g + self.tip_g
-        noise_mm = _frame_noise_mm([one for one, _ in whole])
-        fusion = Fusion(moving_g, noise_mm)
+        fusion = Fusion(moving_g, _frame_noise_mm([one for one, _ in whole]))
         if known is None:
             fusion = replace(fusion, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
         known = known or unknown_curve
         paths, shape = fuse([seen for _, seen in whole], known, fusion)
-        longer = [
-            self._longer(one, stroke, seen, path, shape, moving_g)
-            for (one, seen), path in zip(whole, paths, strict=True)
-        ]
+        longer = []
+        for (one, short), path in zip(whole, paths, strict=True):
+            felt = one.press.t_s, one.press.force_cN
+            ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
+            longer.append(extend(short, path, stroke is Stroke.PRESS, felt, shape, moving_g, ends_mm))
         paths, shape = fuse(longer, known, fusion)
-        ends = zip(whole, longer, paths, strict=True)
-        tracks = [self._track(one, stroke, seen, path) for (one, _), seen, path in ends]
-        return [one for one, _ in whole], tracks, shape
-
-    def _longer(
-        self, one: Judged, stroke: Stroke, seen: Seen, path: Path, shape: CurveOfForce, moving_g: float
-    ) -> Seen:
-        """Add what no frame shows, between the stop and the nearest frame."""
-        felt = one.press.t_s, one.press.force_cN
-        ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
-        return extend(seen, path, stroke is Stroke.PRESS, felt, shape, moving_g, ends_mm)
+        used = [one for one, _ in whole]
+        found = zip(used, longer, paths, strict=True)
+        return used, [self._track(one, stroke, seen, path) for one, seen, path in found], shape
 
     def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
         """Return a stroke with the force between finger and cap, without the inertia of the tip."""
@@ -201,11 +182,8 @@ class Paths:
 
 def _frame_noise_mm(used: Sequence[Judged]) -> float:
     """Estimate the noise of a frame from successive frames while the cap rested."""
-    steps = []
-    for one in used:
-        rest = one.press.frame_mm[one.press.frame_s < one.spans.rested_s]
-        steps.append(np.diff(rest))
-    joined = np.concatenate(steps) if steps else np.zeros(0)
+    rests = [one.press.frame_mm[one.press.frame_s < one.spans.rested_s] for one in used]
+    joined = np.concatenate([np.zeros(0), *map(np.diff, rests)])
     if joined.size < LEAST_STEPS:
         return USUAL_NOISE_mm
     return max(1.4826 * float(np.median(np.abs(joined))) / float(np.sqrt(2)), LEAST_NOISE_mm)

@@ -79,8 +79,7 @@ class StrokeTrack:
 
     Attributes
     ----------
-    take, part : of which press.
-    stroke : press or release.
+    take, part, stroke : of which press, and which stroke of it.
     t_s, displacement_mm, velocity_mm_s, acceleration_m_s2 : (n,) of the cap; velocity signed, down positive.
     force_cN : (n,) between finger and cap: what the tip's own mass took is given back.
     """
@@ -112,15 +111,13 @@ def excursions(depth_mm: FloatArray) -> list[tuple[int, int]]:
     """Find presses in a record of depth whose rest is 0: (first, last) index of each, rest left out."""
     found = []
     begun: int | None = None
-    for i, down in enumerate(depth_mm > MOVED_mm):
-        if down and begun is None:
+    for i, depth in enumerate(depth_mm):
+        if begun is None and depth > MOVED_mm:
             begun = i
-        elif begun is not None and depth_mm[i] < 0.5 * MOVED_mm:
+        elif begun is not None and depth < 0.5 * MOVED_mm:
             found.append((begun, i))
             begun = None
-    if begun is not None:
-        found.append((begun, depth_mm.size - 1))
-    return found
+    return found if begun is None else [*found, (begun, depth_mm.size - 1)]
 
 
 def whole_press(press: RawPress) -> tuple[int, int]:
@@ -174,9 +171,8 @@ def achieved_mm_s(press: RawPress, spans: Spans) -> float:
     above = np.flatnonzero(deepest > SPEED_START_mm)
     if not above.size or spans.bottom_mm <= SPEED_START_mm + NEAR_mm:
         return float("nan")
-    start_s = _when(
-        press.frame_s, press.frame_mm, int(np.flatnonzero(down)[0]) + int(above[0]) - 1, SPEED_START_mm
-    )
+    last_above = int(np.flatnonzero(down)[0]) + int(above[0]) - 1
+    start_s = _when(press.frame_s, press.frame_mm, last_above, SPEED_START_mm)
     end_mm = spans.bottom_mm - NEAR_mm
     return (end_mm - SPEED_START_mm) / max(spans.bottom_s - start_s, 1e-6)
 

@@ -78,10 +78,9 @@ def probe_of(recording: Recording, zero_cN: float) -> Probe | None:
     size = min(way.press_cN.size for way in ways)
     press = np.array([way.press_cN[:size] for way in ways])
     release = np.array([way.release_cN[:size] for way in ways])
-    several = len(ways) > 1
-    spread: FloatArray = np.array(
-        [np.std(c, axis=0, ddof=1) if several else np.zeros(size) for c in (press, release)]
-    )
+    spread: FloatArray = np.zeros((2, size))
+    if len(ways) > 1:
+        spread = np.std([press, release], axis=1, ddof=1)
     return Probe(
         takes[0].velocity_mm_s,
         STEP_mm * np.arange(float(size)),
@@ -109,14 +108,12 @@ def _way(take: Take, play_cN: float, zero_cN: float) -> _Way:
     size = _stop(x_mm[down], force_cN[down])
     grid = STEP_mm * np.arange(float(size))
     back = slice(lowest, None)
-    switched = {name: take.times_s(name) for name in ("closed", "open")}
     closed, opened = (
-        float(np.interp(times[pick], t_s, x_mm)) if times.size else None
-        for times, pick in ((switched["closed"], 0), (switched["open"], -1))
+        float(np.interp(times[pick], t_s, x_mm)) if (times := take.times_s(name)).size else None
+        for name, pick in (("closed", 0), ("open", -1))
     )
-    return _Way(
-        _binned(grid, x_mm[down], force_cN[down]), _binned(grid, x_mm[back], force_cN[back]), closed, opened
-    )
+    press_cN, release_cN = (_binned(grid, x_mm[part], force_cN[part]) for part in (down, back))
+    return _Way(press_cN, release_cN, closed, opened)
 
 
 def _touch_mm(x_mm: FloatArray, force_cN: FloatArray) -> float:

@@ -208,7 +208,9 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
         raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(found.lost[:3])}")
     probe = probe_of(recording, found.zero_cN)
     spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in found.presses]
-    judged = _assigned(judge(found.presses, spans, settings.limits), settings.paces_mm_s)
+    judged = judge(found.presses, spans, settings.limits)
+    if settings.paces_mm_s:
+        judged = [_assigned(one, settings.paces_mm_s) for one in judged]
     zero_mm = resting_mm(judged, probe)
     paths = Paths(settings.cap_g, recording.bench.tip_mass_g, zero_mm)
     work = Curves(judged, probe, paths, settings.limits.unlike)
@@ -236,14 +238,10 @@ def _feature(values: Sequence[float]) -> Feature:
     return Feature(float(np.median(finite)), spread, int(finite.size))
 
 
-def _assigned(judged: Sequence[Judged], paces_mm_s: Sequence[float]) -> list[Judged]:
-    """Assign presses without a velocity to the nearest one, in ratio; leave out those near none."""
-    return [
-        _nearest(one, paces_mm_s) if paces_mm_s and one.press.velocity_mm_s is None else one for one in judged
-    ]
-
-
-def _nearest(one: Judged, paces_mm_s: Sequence[float]) -> Judged:
+def _assigned(one: Judged, paces_mm_s: Sequence[float]) -> Judged:
+    """Assign a press without a velocity to the nearest one, in ratio; leave it out if it is near none."""
+    if one.press.velocity_mm_s is not None:
+        return one
     if not np.isfinite(one.achieved_mm_s):
         return replace(one, reason=one.reason or Reason.OFF_PACE)
     apart = np.abs(np.log(np.array(paces_mm_s) / one.achieved_mm_s))

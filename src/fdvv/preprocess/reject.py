@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from fdvv.preprocess.average import Pooled
 from fdvv.preprocess.press import NEAR_mm, RawPress, Spans, achieved_mm_s, common_bottom_mm
+from fdvv.units import FloatArray
 
 
 class Reason(StrEnum):
@@ -71,12 +72,10 @@ def judge(presses: Sequence[RawPress], spans: Sequence[Spans], limits: Limits) -
     if not presses:
         return []
     bottom_mm = common_bottom_mm([span.bottom_mm for span in spans])
-    parts = np.array([press.part for press in presses])
-    takes = np.array([press.take for press in presses])
+    several = {press.take for press in presses if press.part > 1}
     found = []
     for press, span in zip(presses, spans, strict=True):
-        asked = press.velocity_mm_s is not None
-        two = asked and bool(np.any(parts[takes == press.take] > 1))
+        two = press.velocity_mm_s is not None and press.take in several
         reason = _reason(press, span, bottom_mm, two, limits)
         found.append(Judged(press, span, achieved_mm_s(press, span), reason))
     return _off_pace(found, limits)
@@ -112,16 +111,14 @@ def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
     The longest time within a twentieth of the travel is compared with the time of the stroke.
     """
     t, x = press.frame_s, press.frame_mm
-    down = (
-        (t >= span.start_s) & (t <= span.bottom_s) & (x > 0.1 * span.bottom_mm) & (x < 0.8 * span.bottom_mm)
-    )
+    down = (t >= span.start_s) & (t <= span.bottom_s)
+    down &= (x > 0.1 * span.bottom_mm) & (x < 0.8 * span.bottom_mm)
     t, x = t[down], x[down]
     if t.size < 4:
         return False
     longest = max(float(t[np.abs(x - x[i]) < 0.025 * span.bottom_mm].max() - t[i]) for i in range(t.size))
-    return longest > stop_ratio * (span.bottom_s - span.start_s) and longest > 2.5 * float(
-        np.median(np.diff(press.frame_s))
-    )
+    frame_s = float(np.median(np.diff(press.frame_s)))
+    return longest > stop_ratio * (span.bottom_s - span.start_s) and longest > 2.5 * frame_s
 
 
 def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
@@ -130,15 +127,15 @@ def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
         if one.press.velocity_mm_s is not None and one.reason is None:
             speeds.setdefault(one.press.velocity_mm_s, []).append(one.achieved_mm_s)
     usual = {asked_mm_s: float(np.nanmedian(achieved)) for asked_mm_s, achieved in speeds.items()}
-    return [replace(one, reason=Reason.OFF_PACE) if _off(one, usual, limits) else one for one in found]
-
-
-def _off(one: Judged, usual_mm_s: Mapping[float, float], limits: Limits) -> bool:
-    if one.press.velocity_mm_s is None or one.reason is not None:
-        return False
-    ratio = one.achieved_mm_s / usual_mm_s[one.press.velocity_mm_s]
-    # an unknown speed is off, too
-    return not limits.slowest_ratio <= ratio <= limits.fastest_ratio
+    judged = []
+    for one in found:
+        if one.press.velocity_mm_s is not None and one.reason is None:
+            ratio = one.achieved_mm_s / usual[one.press.velocity_mm_s]
+            # an unknown speed is off, too
+            if not limits.slowest_ratio <= ratio <= limits.fastest_ratio:
+                one = replace(one, reason=Reason.OFF_PACE)
+        judged.append(one)
+    return judged
 
 
 GAIN_OFF = 0.1
@@ -157,9 +154,13 @@ def unlike(pooled: Pooled, limit: float) -> list[int]:
     if slipped:
         return slipped
     apart = np.sqrt(np.nanmean(pooled.apart_cN**2, axis=1))
-    usual = float(np.median(apart))
-    far = np.flatnonzero(apart > limit * max(usual, LEAST_USUAL_cN))
-    return [int(i) for i in far if apart[i] >= 0.5 * apart.max()] if apart.size > FEWEST else []
+    return _worst(apart, limit * max(float(np.median(apart)), LEAST_USUAL_cN))
+
+
+def _worst(off: FloatArray, limit: float) -> list[int]:
+    """Find what is off by more than a limit and half of the worst; the others are judged again without it."""
+    far = np.flatnonzero((off > limit) & (off >= 0.5 * off.max()))
+    return far.tolist() if off.size > FEWEST else []
 
 
 def _slipped(pooled: Pooled) -> list[int]:
@@ -170,5 +171,4 @@ def _slipped(pooled: Pooled) -> list[int]:
         mean = pooled.force_cN[seen]
         gains.append(1 + float(apart[seen] @ mean) / max(float(mean @ mean), 1e-9))
     off = np.abs(np.array(gains) - np.median(gains))
-    far = np.flatnonzero(off > max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))
-    return [int(i) for i in far if off[i] >= 0.5 * off.max()] if len(gains) > FEWEST else []
+    return _worst(off, max(GAIN_OFF, 4 * 1.4826 * float(np.median(off))))

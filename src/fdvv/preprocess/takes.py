@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -40,9 +40,8 @@ def press_axis(takes: Sequence[Take]) -> FloatArray | None:
     """
     moved, felt = [], []
     for take in takes:
-        markers = [stream for stream in take.of(Quantity.MARKER) if stream.raw.ndim == 2]
-        for marker in markers:
-            if not np.isfinite(marker.values).any():
+        for marker in take.of(Quantity.MARKER):
+            if marker.raw.ndim != 2 or not np.isfinite(marker.values).any():
                 continue
             place = marker.values - np.nanmedian(marker.values, axis=0)
             seen = np.isfinite(place).all(axis=1)
@@ -79,18 +78,14 @@ def depth_of(take: Take, axis: FloatArray | None) -> Depth | None:
     """
     sensors = take.of(Quantity.DISPLACEMENT)
     if sensors:
-        seen = np.isfinite(sensors[0].values)
-        values = sensors[0].values[seen]
-        return Depth(sensors[0].t_s[seen], values, np.full(values.size, np.nan))
+        return _one(sensors[0].t_s, sensors[0].values)
     markers = take.of(Quantity.MARKER)
     if not markers:
         return None
     if len(markers) > 2:
         raise ModelError(f"take {take.number} has {len(markers)} markers; name the one or two on the cap")
     times, columns = _together([_along(marker, axis) for marker in markers])
-    if len(columns) == 1:
-        return _one(times, columns[0])
-    return _two(times, columns[0], columns[1])
+    return _one(times, columns[0]) if len(columns) == 1 else _two(times, *columns)
 
 
 def _along(marker: Stream, axis: FloatArray | None) -> tuple[FloatArray, FloatArray]:
@@ -153,7 +148,7 @@ class Presses:
     presses: tuple[RawPress, ...]
     clock: ClockFit
     zero_cN: float
-    lost: tuple[str, ...] = field(default_factory=tuple)
+    lost: tuple[str, ...] = ()
 
 
 def presses_of(recording: Recording) -> Presses:
@@ -168,14 +163,9 @@ def presses_of(recording: Recording) -> Presses:
     clock = join_clocks(recording)
     axis = press_axis(takes)
     zero_cN = idle_cN(recording)
-    found: list[RawPress] = []
-    lost: list[str] = []
-    for take in takes:
-        here = _of_take(take, recording.bench, clock, axis, zero_cN)
-        found += here
-        if not here:
-            lost.append(f"take {take.number}: no press was seen")
-    return Presses(tuple(found), clock, zero_cN, tuple(lost))
+    found = {take.number: _of_take(take, recording.bench, clock, axis, zero_cN) for take in takes}
+    lost = tuple(f"take {number}: no press was seen" for number, presses in found.items() if not presses)
+    return Presses(tuple(press for presses in found.values() for press in presses), clock, zero_cN, lost)
 
 
 def join_clocks(recording: Recording) -> ClockFit:
@@ -199,12 +189,11 @@ def switched_light(recording: Recording, board: str, camera: str) -> tuple[Edges
     lights = [s for take in recording.takes for s in take.of(Quantity.LIGHT) if s.clock == camera]
     if not lights:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no stream shows the light")
-    edges = Edges.of(
-        _marked(recording.takes, "light on", board), _marked(recording.takes, "light off", board)
-    )
+    edges = Edges.of(*(_marked(recording.takes, f"light {way}", board) for way in ("on", "off")))
     if not edges.t_s.size:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no mark tells of the light")
-    return edges, *_in_order(lights)
+    times, first = np.unique(np.concatenate([s.t_s for s in lights]), return_index=True)
+    return edges, times, np.concatenate([s.values for s in lights])[first]
 
 
 def _clocks(take: Take) -> tuple[str, str] | None:
@@ -215,13 +204,6 @@ def _clocks(take: Take) -> tuple[str, str] | None:
 
 def _marked(takes: Sequence[Take], name: str, clock: str) -> FloatArray:
     return np.unique([m.t_s for take in takes for m in take.marks if m.name == name and m.clock == clock])
-
-
-def _in_order(streams: Sequence[Stream]) -> tuple[FloatArray, FloatArray]:
-    times = np.concatenate([s.t_s for s in streams])
-    values = np.concatenate([s.values for s in streams])
-    times, first = np.unique(times, return_index=True)
-    return times, values[first]
 
 
 def idle_cN(recording: Recording) -> float:
