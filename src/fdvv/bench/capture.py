@@ -131,7 +131,7 @@ class Progress:
         step = Step(take.stage, take.velocity_mm_s)
         check = quick_look(take, replace(self.plan, travel_mm=self.travel_mm))
         outcomes = settle(self.outcomes, step, check.ok, self.plan.repeats)
-        return Progress(self.plan, outcomes, (*self.judged, (step, check)))
+        return replace(self, outcomes=outcomes, judged=(*self.judged, (step, check)))
 
     @property
     def next(self) -> Outcome | None:
@@ -154,16 +154,16 @@ class Progress:
 
     def by_velocity(self) -> tuple[VelocityProgress, ...]:
         """Return the progress at every velocity of the plan."""
-        return tuple(self._at_velocity(Step(Stage.PRESS, v)) for v in self.plan.paces_mm_s)
+        return tuple(self._at_velocity(velocity_mm_s) for velocity_mm_s in self.plan.paces_mm_s)
 
-    def _at_velocity(self, step: Step) -> VelocityProgress:
-        assert step.velocity_mm_s is not None
+    def _at_velocity(self, velocity_mm_s: float) -> VelocityProgress:
+        step = Step(Stage.PRESS, velocity_mm_s)
         found = [check for other, check in self.judged if other == step]
         good = [check.achieved_mm_s for check in found if check.ok]
         known = tuple(speed for speed in good if np.isfinite(speed))
         settled = sum(o.settled for o in self.outcomes if o.step == step)
         missed = max(settled - len(good), 0)
-        return VelocityProgress(step.velocity_mm_s, len(good), self.plan.presses, len(found), missed, known)
+        return VelocityProgress(velocity_mm_s, len(good), self.plan.presses, len(found), missed, known)
 
 
 def capture_session(
@@ -187,9 +187,8 @@ def capture_session(
         state = Progress(plan, tuple(Outcome(step) for step in plan.steps()))
         for take in log.recording.takes:
             state = state.after(take)
-        for text in (*(f"warning: {warning}" for warning in log.warnings), _resume_notice(state, log)):
-            if text:
-                guide.notice(text)
+        for text in (*(f"warning: {warning}" for warning in log.warnings), *_resume_notice(state, log)):
+            guide.notice(text)
         try:
             state = _recorded(device, state, guide, log)
         except KeyboardInterrupt:
@@ -205,7 +204,7 @@ def _recorded(device: CaptureDevice, state: Progress, guide: CaptureGuide, log: 
         travel_mm = state.travel_mm or TRAVEL_mm
         again = state.judged[-1][1].reason if wanted.tries else ""
         show = guide.cue(TakeRequest(step, state.settled + 1, total, travel_mm, again))
-        length_s = cue_length_s(step.stage, step.velocity_mm_s, travel_mm)
+        length_s = cue_length_s(step.velocity_mm_s, travel_mm)
         cue = Cue(length_s, cue_events(step.velocity_mm_s, travel_mm), show)
         take = device.take(log.next_number, step.stage, step.velocity_mm_s, cue)
         with defer_interrupt():
@@ -217,12 +216,11 @@ def _recorded(device: CaptureDevice, state: Progress, guide: CaptureGuide, log: 
     return state
 
 
-def _resume_notice(state: Progress, log: RecordingLog) -> str:
-    """Describe a recording that is resumed or already finished; empty for a new one."""
-    if not log.recording.takes:
-        return ""
+def _resume_notice(state: Progress, log: RecordingLog) -> list[str]:
+    """Describe a recording that is resumed or already finished; nothing for a new one."""
     rest = "goes on" if state.next else "is finished; name another file for a new one"
-    return f"{log.path}, with {state.settled} of {len(state.outcomes)} steps, {rest}"
+    text = f"{log.path}, with {state.settled} of {len(state.outcomes)} steps, {rest}"
+    return [text] if log.recording.takes else []
 
 
 def _how_to_resume(log: RecordingLog) -> str:

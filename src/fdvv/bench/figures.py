@@ -26,7 +26,10 @@ STROKE = {Stroke.PRESS: style.PALETTE[0], Stroke.RELEASE: style.PALETTE[1]}
 """Colours of strokes where colour means nothing else."""
 
 FRAMES: Any = {"linestyle": "", "marker": "o", "markersize": 4.5, "markerfacecolor": "white"}
-
+BESIDE: Any = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
+"""Where a legend hides no curve."""
+SAMPLES: Any = {"linestyle": "", "marker": ".", "markersize": 3.0, "alpha": 0.6, "color": style.QUIET}
+PROBE: Any = {"color": style.INK, "linestyle": ":", "linewidth": 1.3}
 MARKS = {"light": "#e69f00", "closed": "#009e73", "open": "#cc79a7"}
 
 FAR_ms = 8.0
@@ -51,7 +54,8 @@ def plot_take(recording: Recording, number: int, simulated: bool = False) -> Fig
     panels = fig.subplots(len(take.streams), 1, squeeze=False)[:, 0]
     for ax, stream in zip(panels, take.streams, strict=True):
         _draw_stream(ax, stream)
-        _draw_marks(ax, take, stream.clock)
+        for mark in (mark for mark in take.marks if mark.clock == stream.clock):
+            ax.axvline(mark.t_s, color=_mark_colour(mark.name), linewidth=0.7, alpha=0.8, zorder=1)
     style.set_titles(panels[0], f"take {number}, raw", simulated or recording.simulated)
     _name_marks(fig, take)
     return fig
@@ -78,12 +82,6 @@ def _draw_stream(ax: Axes, stream: Stream) -> None:
     ax.set_ylabel(f"{stream.name}\n({unit})" if unit != "1" else f"{stream.name}\n(no unit)")
     ax.set_xlabel(f"time on the clock of the {stream.clock} (s), {stream.rate_Hz:.0f} samples a second")
     ax.xaxis.label.set_fontsize(8.0)
-
-
-def _draw_marks(ax: Axes, take: Take, clock: str) -> None:
-    for mark in take.marks:
-        if mark.clock == clock:
-            ax.axvline(mark.t_s, color=_mark_colour(mark.name), linewidth=0.7, alpha=0.8, zorder=1)
 
 
 def _mark_colour(name: str) -> str:
@@ -122,13 +120,10 @@ def plot_clocks(recording: Recording, processed: Processed, simulated: bool = Fa
 
 def _draw_bars(ax: Axes, bounds: EdgeBounds) -> None:
     agrees = (bounds.low_s <= SLACK_s) & (bounds.high_s >= -SLACK_s)
-    for which, colour, label in (
-        (agrees, style.PALETTE[0], "agrees"),
-        (~agrees, style.PALETTE[1], "contradicts the line"),
-    ):
+    for which, colour, label in ((agrees, 0, "agrees"), (~agrees, 1, "contradicts the line")):
         if which.any():
-            low_ms, high_ms = (1e3 * column[which] for column in (bounds.low_s, bounds.high_s))
-            look: Any = {"color": colour, "linewidth": 0.9, "alpha": 0.7, "label": label}
+            low_ms, high_ms = 1e3 * bounds.low_s[which], 1e3 * bounds.high_s[which]
+            look: Any = {"color": style.PALETTE[colour], "linewidth": 0.9, "alpha": 0.7, "label": label}
             ax.vlines(bounds.board_s[which], low_ms, high_ms, **look)
     ax.axhline(0.0, color=style.INK, linewidth=1.0)
     ax.set_ylim(style.limits_around(np.clip(1e3 * np.r_[bounds.low_s, bounds.high_s], -FAR_ms, FAR_ms)))
@@ -141,17 +136,15 @@ def _draw_ends(ax: Axes, bounds: EdgeBounds, doubt_s: float) -> None:
     some = min(TIGHTEST, latest.size) - 1
     reach_us = 1.1e6 * max(float(latest[some]), float(earliest[some]), 2 * doubt_s, 1e-9)
     look: Any = {"linestyle": "", "markersize": 5.0}
-    ax.plot(
-        bounds.board_s, 1e6 * bounds.high_s, marker="v", color=style.PALETTE[0], **look, label="not later"
-    )
-    ax.plot(
-        bounds.board_s, 1e6 * bounds.low_s, marker="^", color=style.PALETTE[1], **look, label="not before"
-    )
-    label = f"line, doubt ± {1e6 * doubt_s:.2g} µs"
-    ax.axhline(0.0, color=style.INK, linewidth=1.0, label=label)
+    for end_s, marker, colour, label in (
+        (bounds.high_s, "v", style.PALETTE[0], "not later"),
+        (bounds.low_s, "^", style.PALETTE[1], "not before"),
+    ):
+        ax.plot(bounds.board_s, 1e6 * end_s, marker=marker, color=colour, **look, label=label)
+    ax.axhline(0.0, color=style.INK, linewidth=1.0, label=f"line, doubt ± {1e6 * doubt_s:.2g} µs")
     ax.axhspan(-1e6 * doubt_s, 1e6 * doubt_s, color=style.QUIET, alpha=style.BAND)
     ax.set_ylim(-reach_us, reach_us)
-    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    ax.legend(**BESIDE)
 
 
 @style.in_house_style
@@ -202,30 +195,23 @@ def plot_displacement(processed: Processed, number: int, simulated: bool = False
     near = (press.frame_s >= spans.start_s - 0.03) & (press.frame_s <= spans.end_s + 0.03)
     frames_mm = press.frame_mm[near] + processed.zero_mm
     ax.plot(press.frame_s[near], frames_mm, color=style.QUIET, **FRAMES, label="frames", zorder=3)
-    for track in _tracks(processed, one):
+    which = (press.take, press.part)
+    for track in (t for group in processed.tracks for t in group if (t.take, t.part) == which):
         look: Any = {"color": STROKE[track.stroke], "marker": ".", "markersize": 3.0, "linewidth": 1.2}
-        ax.plot(
-            track.t_s, track.displacement_mm, **look, label=f"{track.stroke}, path at the force's samples"
-        )
+        label = f"{track.stroke}, path at the force's samples"
+        ax.plot(track.t_s, track.displacement_mm, **look, label=label)
     for moment_s in (spans.start_s, spans.bottom_s, spans.leave_s, spans.end_s):
         ax.axvline(moment_s, color=style.QUIET, linewidth=0.8, linestyle=":", zorder=1)
     for switched_s, name in ((press.closed_s, "closed"), (press.open_s, "open")):
         if switched_s is not None:
             ax.axvline(switched_s, color=MARKS[name], linewidth=1.0, label=f"circuit {name}")
     ax.set(xlabel="time on the clock of the board (s)", ylabel=style.DISPLACEMENT)
-    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    ax.legend(**BESIDE)
     said = f", left out: {one.reason}" if one.reason else ""
     title = f"path of {press.name}, {style.velocity_text(press.velocity_mm_s)}{said}"
     style.set_titles(ax, title, simulated)
     return fig
 
-
-def _tracks(processed: Processed, one: Judged) -> list[StrokeTrack]:
-    name = (one.press.take, one.press.part)
-    return [track for group in processed.tracks for track in group if (track.take, track.part) == name]
-
-
-SAMPLES: Any = {"linestyle": "", "marker": ".", "markersize": 3.0, "alpha": 0.6, "color": style.QUIET}
 
 LEFT_OUT = ("x", "+", "1", "2", "3", "4", "*", "d")
 """One marker for each reason, so that it shows without colour too."""
@@ -253,7 +239,7 @@ def plot_velocities(processed: Processed, simulated: bool = False) -> Figure:
             ax.plot(order[which], made[which], LEFT_OUT[i], **look, label=style.wrapped(label))
     ax.set(xlabel="press (count, in the order made)", ylabel="mean speed of the press (mm/s)")
     ax.set_ylim(0.0, 1.06 * float(np.nanmax(np.concatenate([made, asked, [1.0]]))))
-    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    ax.legend(**BESIDE)
     style.set_titles(ax, "speeds asked and achieved", simulated)
     return fig
 
@@ -276,9 +262,8 @@ def plot_registration(
     theirs = paper_average(processed.judged, stroke, velocity_mm_s, recipe, processed.zero_mm)
     fig = style.new_figure(8.0, 4.6)
     ax = fig.add_subplot()
-    x_mm, force_cN = (
-        np.concatenate([getattr(t, n) for t in tracks]) for n in ("displacement_mm", "force_cN")
-    )
+    x_mm = np.concatenate([track.displacement_mm for track in tracks])
+    force_cN = np.concatenate([track.force_cN for track in tracks])
     ax.plot(x_mm, force_cN, **SAMPLES, label=f"{x_mm.size} samples of {len(tracks)} presses")
     style.draw_band(ax, curve.displacement_mm, curve.force_cN, curve.spread_cN, style.PALETTE[0])
     ax.plot(curve.displacement_mm, curve.force_cN, color=style.PALETTE[0], label="mean")
@@ -302,7 +287,7 @@ def _found(
     processed: Processed, stroke: Stroke, velocity_mm_s: float | None
 ) -> tuple[AveragedCurve, tuple[StrokeTrack, ...]]:
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
-        if curve.stroke is stroke and curve.velocity_mm_s == velocity_mm_s:
+        if (curve.stroke, curve.velocity_mm_s) == (stroke, velocity_mm_s):
             return curve, tracks
     raise ModelError(f"no {stroke} at {style.velocity_text(velocity_mm_s)} was averaged")
 
@@ -330,9 +315,6 @@ def plot_averages(processed: Processed, simulated: bool = False) -> Figure:
     handles += style.band_handles(c.presses for c in processed.curves)
     fig.legend(handles, [str(h.get_label()) for h in handles], loc="outside lower center", ncols=4)
     return fig
-
-
-PROBE: Any = {"color": style.INK, "linestyle": ":", "linewidth": 1.3}
 
 
 def _draw_probe(ax: Axes, processed: Processed, stroke: Stroke) -> None:

@@ -14,7 +14,7 @@ from fdvv.bench.figures import (
     plot_take,
     plot_velocities,
 )
-from fdvv.bench.model import RecordedModel, capture_report, used_and_left_out
+from fdvv.bench.model import RecordedModel, used_and_left_out
 from fdvv.button.compare import vibration_spread
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import landmark_errors, landmarks
@@ -58,22 +58,15 @@ def _example(recorded: RecordedModel, fastest: bool) -> Judged:
 
 
 def _streams(recorded: RecordedModel) -> Section:
-    take = next(
-        t for t in recorded.recording.takes if t.number == _example(recorded, fastest=True).press.take
-    )
+    number = _example(recorded, fastest=True).press.take
+    (take,) = (take for take in recorded.recording.takes if take.number == number)
+    holds = {q: f"{q} ({unit})" if unit != "1" else str(q) for q, unit in UNITS.items()}
     rows = tuple(
-        (
-            s.name,
-            f"{s.quantity} ({UNITS[s.quantity]})" if UNITS[s.quantity] != "1" else str(s.quantity),
-            s.clock,
-            f"{s.rate_Hz:.1f}",
-            str(s.t_s.size),
-        )
-        for s in take.streams
+        (s.name, holds[s.quantity], s.clock, f"{s.rate_Hz:.1f}", str(s.t_s.size)) for s in take.streams
     )
     columns = ("stream", "holds", "clock", "rate (Hz)", "samples")
-    table = Table(columns, rows, f"Streams of take {take.number}.")
-    figure = figure_svg(plot_take(recorded.recording, take.number), f"Raw streams of take {take.number}")
+    table = Table(columns, rows, f"Streams of take {number}.")
+    figure = figure_svg(plot_take(recorded.recording, number), f"Raw streams of take {number}")
     text = "What the instruments wrote down, each stream on the clock of its own instrument; nothing changed."
     return Section("Raw streams", (text,), (figure,), (table,))
 
@@ -82,29 +75,25 @@ def _clocks(recorded: RecordedModel) -> Section | None:
     clock = recorded.processed.clock
     if not clock.edges:
         return None
-    figure = figure_svg(
-        plot_clocks(recorded.recording, recorded.processed), "Bounds of the light's edges about the line"
-    )
+    plot = plot_clocks(recorded.recording, recorded.processed)
     ppm = 1e6 * (clock.rate - 1)
     text = (
         f"Two frames bound when the light was switched. One line goes through the bounds of {clock.edges} "
         f"edges, {clock.refused} are refused. The camera's clock runs {ppm:+.1f} ppm fast; the bounds leave "
         f"± {1e6 * clock.doubt_s:.2g} µs of doubt."
     )
-    return Section("Clocks", (text,), (figure,))
+    return Section("Clocks", (text,), (figure_svg(plot, "Bounds of the light's edges about the line"),))
 
 
 def _force(recorded: RecordedModel) -> Section:
     bench = recorded.recording.bench
     number = _example(recorded, fastest=True).press.take
-    figure = figure_svg(
-        plot_force(recorded.recording, recorded.processed, number), f"Force of take {number} before and after"
-    )
+    plot = plot_force(recorded.recording, recorded.processed, number)
     text = (
         f"The filter before the converter ({bench.force_filter_ms:g} ms) and the sensor's play "
         f"({bench.force_play_cN:g} cN) are undone; what is 0 had nothing to undo."
     )
-    return Section("Force", (text,), (figure,))
+    return Section("Force", (text,), (figure_svg(plot, f"Force of take {number} before and after"),))
 
 
 def _paths(recorded: RecordedModel) -> Section:
@@ -122,26 +111,26 @@ def _paths(recorded: RecordedModel) -> Section:
 
 
 def _presses(recorded: RecordedModel) -> Section:
-    report = capture_report(recorded)
-    left = [press for press in report["presses"] if press["reason"]]
     rows = tuple(
         (
-            f"take {p['take']}" + (f", press {p['part']}" if p["part"] > 1 else ""),
-            "–" if p["velocity_mm_s"] is None else f"{p['velocity_mm_s']:g}",
-            f"{p['achieved_mm_s']:.1f}",
-            f"{p['bottom_mm']:.3f}",
-            p["reason"],
+            one.press.name,
+            _speed(one.press.velocity_mm_s),
+            f"{one.achieved_mm_s:.1f}",
+            f"{one.spans.bottom_mm:.3f}",
+            str(one.reason),
         )
-        for p in left
+        for one in recorded.processed.judged
+        if one.reason
     )
     columns = ("press", "asked (mm/s)", "achieved (mm/s)", "deepest (mm)", "why it is left out")
-    table = Table(columns, rows, "Presses that were left out.")
-    figure = figure_svg(
-        plot_velocities(recorded.processed, recorded.recording.simulated), "Speeds of all presses"
-    )
-    return Section(
-        "Presses", (used_and_left_out(recorded.processed) + ".",), (figure,), (table,) if rows else ()
-    )
+    tables = (Table(columns, rows, "Presses that were left out."),) if rows else ()
+    plot = plot_velocities(recorded.processed, recorded.recording.simulated)
+    text = used_and_left_out(recorded.processed) + "."
+    return Section("Presses", (text,), (figure_svg(plot, "Speeds of all presses"),), tables)
+
+
+def _speed(velocity_mm_s: float | None) -> str:
+    return "–" if velocity_mm_s is None else f"{velocity_mm_s:g}"
 
 
 def _registration(recorded: RecordedModel) -> Section:
@@ -166,7 +155,7 @@ def _curves(recorded: RecordedModel) -> Section:
     rows = tuple(
         (
             f"{c.stroke}",
-            "–" if c.velocity_mm_s is None else f"{c.velocity_mm_s:g}",
+            _speed(c.velocity_mm_s),
             f"{c.achieved_mm_s:.1f} ± {c.achieved_spread_mm_s:.1f}",
             str(c.presses),
             f"{np.median(c.spread_cN):.2f}",
@@ -179,9 +168,8 @@ def _curves(recorded: RecordedModel) -> Section:
         "stroke", "asked (mm/s)", "achieved (mm/s)", "presses", "median SD (cN)", "largest SD (cN)",
         "smoothed over (mm)",
     )  # fmt: skip
-    figure = figure_svg(
-        plot_averages(recorded.processed, recorded.recording.simulated), "Averaged curves of all paces"
-    )
+    plot = plot_averages(recorded.processed, recorded.recording.simulated)
+    figure = figure_svg(plot, "Averaged curves of all paces")
     table = Table(columns, rows, "Averaged curves; SD is that between presses.")
     return Section("Averaged curves", (), (figure,), (table,))
 
@@ -190,14 +178,10 @@ def _vibration(recorded: RecordedModel) -> Section:
     rows = tuple(
         (
             str(v.stroke),
-            "–" if v.velocity_mm_s is None else f"{v.velocity_mm_s:g}",
+            _speed(v.velocity_mm_s),
             _with(spread["onset_mm"], spread["onset_spread_mm"], 3),
             _with(spread["frequency_Hz"], spread["frequency_spread_Hz"], 0),
-            _with(
-                1e3 * spread["duration_s"],
-                spread["duration_spread_s"] and 1e3 * spread["duration_spread_s"],
-                1,
-            ),
+            _with(spread["duration_s"], spread["duration_spread_s"], 1, 1e3),
             _with(spread["amplitude_m_s2"], spread["amplitude_spread_m_s2"], 2),
             "–" if spread["presses"] is None else str(spread["presses"]),
         )
@@ -208,17 +192,16 @@ def _vibration(recorded: RecordedModel) -> Section:
         "stroke", "asked (mm/s)", "onset (mm)", "frequency (Hz)", "duration (ms)", "amplitude (m/s²)",
         "presses",
     )  # fmt: skip
-    table = Table(
-        columns, rows, "Vibrations of the model by their principal mode; ± is that between presses."
-    )
-    figures = (plot_vibration(recorded.model),) if recorded.model.vibrations else ()
-    svgs = tuple(figure_svg(figure, "Vibrations of the model") for figure in figures)
     text = tuple(f"{warning[0].upper()}{warning[1:]}." for warning in recorded.vibration.warnings)
-    return Section("Vibration", text, svgs, (table,) if rows else ())
+    if not rows:
+        return Section("Vibration", text)
+    caption = "Vibrations of the model by their principal mode; ± is that between presses."
+    figure = figure_svg(plot_vibration(recorded.model), "Vibrations of the model")
+    return Section("Vibration", text, (figure,), (Table(columns, rows, caption),))
 
 
-def _with(value: float, spread: float | None, decimals: int) -> str:
-    return f"{value:.{decimals}f}" + ("" if spread is None else f" ± {spread:.{decimals}f}")
+def _with(value: float, spread: float | None, decimals: int, scale: float = 1.0) -> str:
+    return f"{scale * value:.{decimals}f}" + ("" if spread is None else f" ± {scale * spread:.{decimals}f}")
 
 
 def _model(recorded: RecordedModel) -> Section:
@@ -232,9 +215,8 @@ def _model(recorded: RecordedModel) -> Section:
         )
         for fit in recorded.fits
     )
-    tables = [
-        Table(("curve", "RMSE (cN)", "max (cN)", "bump kept"), fits, "Splines against averaged curves.")
-    ]
+    columns = ("curve", "RMSE (cN)", "max (cN)", "bump kept")
+    tables = [Table(columns, fits, "Splines against averaged curves.")]
     if model.of(Stroke.PRESS):
         tables.append(_landmarks(recorded))
     warnings = tuple(f"Warning: {warning}." for warning in recorded.warnings)
@@ -245,13 +227,8 @@ def _landmarks(recorded: RecordedModel) -> Table:
     rows = []
     for velocity in recorded.model.velocities_mm_s(Stroke.PRESS):
         marks = landmarks(recorded.model, velocity).to_dict()
-        errors = landmark_errors(recorded.model, velocity)
-        cells = [
-            "–"
-            if marks[n] is None
-            else f"{marks[n]:.2f}" + (f" ± {errors[n].error:.2f}" if n in errors else "")
-            for n in FORCES
-        ]
+        errors = {name: error.error for name, error in landmark_errors(recorded.model, velocity).items()}
+        cells = ["–" if (at := marks[name]) is None else _with(at, errors.get(name), 2) for name in FORCES]
         rows.append((f"{velocity:g}", *cells))
     columns = ("speed (mm/s)", *(name.replace("_cN", " (cN)").replace("_", " ") for name in FORCES))
     return Table(columns, tuple(rows), "Landmarks; ± is the standard error over presses.")

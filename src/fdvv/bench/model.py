@@ -77,16 +77,17 @@ def _takes(left: Sequence[Judged], reason: str) -> str:
 def assumptions_of(recording: Recording, settings: Settings) -> tuple[str, ...]:
     """List what no measurement of this recording supports."""
     bench = recording.bench
-    assumptions = [f"the cap, with stem, markers and a third of its spring, moves {settings.cap_g:g} g"]
     facts = [
         (bench.tip_mass_g, f"the force sensor's tip weighs {bench.tip_mass_g:g} g"),
         (bench.force_filter_ms, f"the filter before its converter has {bench.force_filter_ms:g} ms"),
         (bench.force_play_cN, f"it reads {bench.force_play_cN:g} cN more on the way back"),
         (bench.exposure_ms, f"the camera exposes for {bench.exposure_ms:g} ms"),
     ]
-    assumptions += [f"{sentence}, as the bench states" for value, sentence in facts if value]
-    assumptions.append("spreads are between presses of one recording; what all of them share is not in them")
-    return tuple(assumptions)
+    return (
+        f"the cap, with stem, markers and a third of its spring, moves {settings.cap_g:g} g",
+        *(f"{sentence}, as the bench states" for value, sentence in facts if value),
+        "spreads are between presses of one recording; what all of them share is not in them",
+    )
 
 
 def velocity_warnings(processed: Processed) -> list[str]:
@@ -192,10 +193,8 @@ def model_of_recording(
         actuation_spread=_point(actuation),
         reset_spread=_point(reset),
     )
-    measured = tuple(part for part, _ in parts)
-    return RecordedModel(
-        recording, model, processed, fits, measured, vibration, tuple(dict.fromkeys(warnings))
-    )
+    measured, warned = tuple(part for part, _ in parts), tuple(dict.fromkeys(warnings))
+    return RecordedModel(recording, model, processed, fits, measured, vibration, warned)
 
 
 def _averaged(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
@@ -219,14 +218,15 @@ def _probed(
         warnings.append(f"the speed of the slow probe is {reason}: it gives the zero, but no curve")
         return []
     x_mm = np.round(probe.displacement_mm, DECIMALS_mm)
-    forces_cN = zip(Stroke, (probe.press_cN, probe.release_cN), probe.spread_cN, strict=True)
-    return [
-        (
-            MeasuredCurve(x_mm, force_cN, stroke, probe.velocity_mm_s),
-            CurveSpread(x_mm, np.round(spread_cN, DECIMALS_cN), probe.probes) if probe.probes > 1 else None,
+    found: list[tuple[MeasuredCurve, CurveSpread | None]] = []
+    for stroke, force_cN, spread_cN in zip(
+        Stroke, (probe.press_cN, probe.release_cN), probe.spread_cN, strict=True
+    ):
+        spread = (
+            CurveSpread(x_mm, np.round(spread_cN, DECIMALS_cN), probe.probes) if probe.probes > 1 else None
         )
-        for stroke, force_cN, spread_cN in forces_cN
-    ]
+        found.append((MeasuredCurve(x_mm, force_cN, stroke, probe.velocity_mm_s), spread))
+    return found
 
 
 def _fit(part: MeasuredCurve, spread: CurveSpread | None, settings: FitSettings) -> CurveFit:
@@ -243,8 +243,8 @@ def _switched(
         spread_mm = float(np.std(positions_mm, ddof=1)) if len(positions_mm) > 1 else 0.0
         found = Feature(float(np.mean(positions_mm)), spread_mm, len(positions_mm)) if positions_mm else None
     if found is not None and not 0 <= found.value <= travel_mm:
-        reason = f"{what} at {found.value:.3f} mm lies outside the travel of {travel_mm:.3f} mm"
-        warnings.append(f"{reason}: left out")
+        outside = f"lies outside the travel of {travel_mm:.3f} mm"
+        warnings.append(f"{what} at {found.value:.3f} mm {outside}: left out")
         return None
     return found
 

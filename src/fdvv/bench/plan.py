@@ -13,6 +13,16 @@ from fdvv.recording.types import Stage
 
 BETWEEN_s = 1.2
 """Time for a person to read the result of a press and to be ready again."""
+COUNT_IN_s = 1.5
+"""Before every press and probe."""
+DWELL_s = 0.05
+"""At the bottom, between down and up."""
+REST_s = 1.0
+"""Length of a take of the untouched bench."""
+PROBE_mm_s = 0.5
+"""Of the slow probe: the speed of force testers."""
+CONTACT, BOTTOM = "cue contact", "cue bottom"
+"""The moments of the beeps."""
 
 
 @dataclass(frozen=True)
@@ -70,10 +80,8 @@ class CapturePlan:
 
     def duration_s(self, travel_mm: float, repeated: int = 0) -> float:
         """Estimate how long the capture takes, with ``repeated`` presses again at the slowest velocity."""
-        again = [Step(Stage.PRESS, min(self.paces_mm_s))] * repeated
-        return sum(
-            cue_length_s(s.stage, s.velocity_mm_s, travel_mm) + BETWEEN_s for s in (*self.steps(), *again)
-        )
+        steps = [*self.steps(), *[Step(Stage.PRESS, min(self.paces_mm_s))] * repeated]
+        return sum(cue_length_s(step.velocity_mm_s, travel_mm) + BETWEEN_s for step in steps)
 
 
 @dataclass(frozen=True)
@@ -88,47 +96,22 @@ class Outcome:
 def settle(outcomes: Sequence[Outcome], step: Step, ok: bool, repeats: int) -> tuple[Outcome, ...]:
     """Count a take for the first open step of its kind; a take beyond the plan changes nothing."""
     found = list(outcomes)
-    for i, outcome in enumerate(found):
-        if outcome.step == step and not outcome.settled:
-            tries = outcome.tries + 1
-            found[i] = Outcome(step, tries, ok or tries > repeats)
-            break
+    first = next((i for i, o in enumerate(found) if o.step == step and not o.settled), None)
+    if first is not None:
+        tries = found[first].tries + 1
+        found[first] = Outcome(step, tries, ok or tries > repeats)
     return tuple(found)
 
 
-COUNT_IN_s = 1.5
-"""Before every press and probe."""
-
-
-DWELL_s = 0.05
-"""At the bottom, between down and up."""
-
-
-REST_s = 1.0
-"""Length of a take of the untouched bench."""
-
-
-PROBE_mm_s = 0.5
-"""Of the slow probe: the speed of force testers."""
-
-
-def stroke_s(velocity_mm_s: float, travel_mm: float) -> float:
-    return travel_mm / velocity_mm_s
-
-
-def cue_length_s(stage: Stage, velocity_mm_s: float | None, travel_mm: float) -> float:
+def cue_length_s(velocity_mm_s: float | None, travel_mm: float) -> float:
     """Return the time from the start of a take's cue to its end."""
     if velocity_mm_s is None:
         return COUNT_IN_s + REST_s
-    return COUNT_IN_s + 2 * stroke_s(velocity_mm_s, travel_mm) + DWELL_s
+    return COUNT_IN_s + 2 * (travel_mm / velocity_mm_s) + DWELL_s
 
 
 def cue_events(velocity_mm_s: float | None, travel_mm: float) -> tuple[tuple[str, float], ...]:
     """Return the moments of the beeps, as fdvv.device.bench.Cue takes them."""
     if velocity_mm_s is None:
         return ()
-    return (CONTACT, COUNT_IN_s), (BOTTOM, COUNT_IN_s + stroke_s(velocity_mm_s, travel_mm))
-
-
-CONTACT, BOTTOM = "cue contact", "cue bottom"
-"""The moments of the beeps."""
+    return (CONTACT, COUNT_IN_s), (BOTTOM, COUNT_IN_s + travel_mm / velocity_mm_s)

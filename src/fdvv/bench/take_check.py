@@ -75,24 +75,24 @@ def _felt(take: Take, unseen: TakeCheck) -> TakeCheck:
         return unseen
     force_cN = take.of(Quantity.FORCE)[0].values
     pressed = force_cN > np.median(force_cN[: force_cN.size // REST_PART]) + FELT_cN
-    if not pressed.any():
-        return TakeCheck(False, reason="no press was felt; press when the bar goes down")
-    return TakeCheck(True)
+    reason = "" if pressed.any() else "no press was felt; press when the bar goes down"
+    return TakeCheck(not reason, reason=reason)
 
 
 def _rest(take: Take) -> TakeCheck:
     forces = [float(np.ptp(stream.values)) for stream in take.of(Quantity.FORCE)]
     found = _displacement(take)
     moved_mm = 0.0 if isinstance(found, TakeCheck) else float(np.ptp(found[1]))
-    if max(forces, default=0.0) > STILL_cN or moved_mm > STILL_mm:
-        return TakeCheck(False, reason="something touched the bench; take the finger off and wait")
-    return TakeCheck(True)
+    touched = max(forces, default=0.0) > STILL_cN or moved_mm > STILL_mm
+    reason = "something touched the bench; take the finger off and wait" if touched else ""
+    return TakeCheck(not touched, reason=reason)
 
 
 def _probe(take: Take, plan: CapturePlan) -> TakeCheck:
     displacements, forces = take.of(Quantity.DISPLACEMENT), take.of(Quantity.FORCE)
     if not displacements or not forces:
-        return _seen(_displacement(take), plan)
+        found = _displacement(take)
+        return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), plan)
     displacement, force = displacements[0], forces[0]
     turn = int(np.argmax(displacement.values))
     felt = np.interp(displacement.t_s, force.t_s, force.values)
@@ -102,19 +102,11 @@ def _probe(take: Take, plan: CapturePlan) -> TakeCheck:
     return _deep(float(displacement.values[turn] - displacement.values[loaded[0]]), plan)
 
 
-def _seen(found: tuple[FloatArray, FloatArray] | TakeCheck, plan: CapturePlan) -> TakeCheck:
-    return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), plan)
-
-
 def _deep(travel_mm: float, plan: CapturePlan) -> TakeCheck:
     wanted_mm = plan.travel_mm or FELT_mm
-    if travel_mm < wanted_mm - SHORT_mm:
-        return TakeCheck(False, travel_mm=travel_mm, reason=_short(travel_mm, wanted_mm))
-    return TakeCheck(True, travel_mm=travel_mm)
-
-
-def _short(depth_mm: float, wanted_mm: float) -> str:
-    return f"stopped at {depth_mm:.1f} of {wanted_mm:.1f} mm; press down to the stop"
+    short = f"stopped at {travel_mm:.1f} of {wanted_mm:.1f} mm; press down to the stop"
+    reason = short if travel_mm < wanted_mm - SHORT_mm else ""
+    return TakeCheck(not reason, travel_mm=travel_mm, reason=reason)
 
 
 def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
@@ -124,9 +116,8 @@ def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
     """
     displacements, markers = take.of(Quantity.DISPLACEMENT), take.of(Quantity.MARKER)
     if displacements:
-        t_s, values = displacements[0].t_s, displacements[0].values
-        known = np.isfinite(values)
-        t_s, down = t_s[known], values[known]
+        known = np.isfinite(displacements[0].values)
+        t_s, down = displacements[0].t_s[known], displacements[0].values[known]
     elif markers:
         positions = np.stack([np.reshape(m.values, (m.t_s.size, -1)) for m in markers])
         seen = np.isfinite(positions).all(axis=(0, 2))
@@ -172,9 +163,8 @@ def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan:
     done_s = _crossing_s(t_s, down_mm, end - 1, level_mm)
     achieved = (level_mm - START_mm) / max(done_s - begun_s, 1e-4)
     stroke = slice(max(start - 1, 0), end + 1)
-    reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved) or _off_velocity(
-        achieved, asked_mm_s, plan
-    )
+    reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved)
+    reason = reason or _off_velocity(achieved, asked_mm_s, plan)
     return TakeCheck(not reason, achieved, depth_mm, reason)
 
 

@@ -71,12 +71,10 @@ def stroke_scaling(
     amplitudes = [abs(v.modes[0].amplitude_m_s2) for _, _, v in pairs]
     if min(speeds) <= 0 or min(amplitudes) <= 0:
         return None
-    ratio = float(
-        np.median([speed / one.achieved_mm_s for speed, (one, _, _) in zip(speeds, pairs, strict=True)])
-    )
+    ratios = [speed / one.achieved_mm_s for speed, (one, _, _) in zip(speeds, pairs, strict=True)]
     energies = [found.energy.energy_mJ for _, found, _ in pairs]
     law = fit_scaling(speeds, amplitudes, energies if min(energies) > 0 else None)
-    return StrokeScaling(stroke, law, ratio)
+    return StrokeScaling(stroke, law, float(np.median(ratios)))
 
 
 def scaled_vibrations(
@@ -169,12 +167,11 @@ class StrokeVibration:
         found = self.found
         if isinstance(found, NotFound):
             return figures
+        figures |= {"presses": found.shown, "onset_mm": found.onset_mm.value}
         figures |= {
-            "presses": found.shown,
-            "onset_mm": found.onset_mm.value,
             "onset_spread_mm": found.onset_mm.sd,
+            "snap_velocity_mm_s": found.snap_velocity_mm_s.value,
         }
-        figures["snap_velocity_mm_s"] = found.snap_velocity_mm_s.value
         if isinstance(found.ring, Ring):
             figures |= {"duration_s": found.ring.duration_s, "duration_error_s": found.ring.duration_sd_s}
             figures["modes"] = [
@@ -200,18 +197,14 @@ def missing_words(missing: Sequence[tuple[StrokeVibration, str]]) -> list[str]:
 
 
 def _conditions(ones: Sequence[StrokeVibration]) -> str:
-    parts = {}
-    for stroke in Stroke:
-        velocities = [
-            "unknown" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}"
-            for one in ones
-            if one.stroke is stroke
-        ]
-        if velocities:
-            parts[str(stroke)] = f"at {', '.join(velocities)} mm/s"
+    velocities: dict[Stroke, list[str]] = {}
+    for one in sorted(ones, key=lambda one: one.stroke is Stroke.RELEASE):
+        speed = "unknown" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}"
+        velocities.setdefault(one.stroke, []).append(speed)
+    parts = {str(stroke): f"at {', '.join(of_stroke)} mm/s" for stroke, of_stroke in velocities.items()}
     if len(set(parts.values())) == 1:
         return f"{' and '.join(parts)} {next(iter(parts.values()))}"
-    return " and ".join(f"{stroke} {velocities}" for stroke, velocities in parts.items())
+    return " and ".join(f"{stroke} {where}" for stroke, where in parts.items())
 
 
 def shared_words(mode: SharedMode) -> str:
@@ -263,9 +256,8 @@ def recorded_vibrations(
         if streams:
             break
     else:
-        return RecordedVibrations(
-            (), (), ("no vibration: nothing listened, neither microphone nor accelerometer",)
-        )
+        deaf = "no vibration: nothing listened, neither microphone nor accelerometer"
+        return RecordedVibrations((), (), (deaf,))
     shaken = quantity is Quantity.ACCELERATION
     strokes, mode = _measured_strokes(recording, processed, streams, shaken)
     own, missing = _vibrations(strokes, None if shaken else recording.bench.sound_V_s_m or None)

@@ -79,7 +79,7 @@ def _asked(ask: TakeRequest) -> events.TakeAsked:
         velocity_mm_s=velocity,
         contact_s=moments.get("cue contact"),
         bottom_s=moments.get("cue bottom"),
-        length_s=cue_length_s(stage, velocity, ask.travel_mm),
+        length_s=cue_length_s(velocity, ask.travel_mm),
     )
 
 
