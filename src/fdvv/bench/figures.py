@@ -24,20 +24,16 @@ if TYPE_CHECKING:
 
 STROKE = {Stroke.PRESS: style.PALETTE[0], Stroke.RELEASE: style.PALETTE[1]}
 """Colours of strokes where colour means nothing else."""
-
 FRAMES: Any = {"linestyle": "", "marker": "o", "markersize": 4.5, "markerfacecolor": "white"}
 BESIDE: Any = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
 """Where a legend hides no curve."""
 SAMPLES: Any = {"linestyle": "", "marker": ".", "markersize": 3.0, "alpha": 0.6, "color": style.QUIET}
 PROBE: Any = {"color": style.INK, "linestyle": ":", "linewidth": 1.3}
 MARKS = {"light": "#e69f00", "closed": "#009e73", "open": "#cc79a7"}
-
 FAR_ms = 8.0
 """Beyond this from the line a bar is drawn to the rim: its edge was paired with nothing."""
-
 SLACK_s = 2e-4
 """An edge that misses the line by less is one with it, as in the fit."""
-
 TIGHTEST = 25
 """So many ends of bars on either side bound the line."""
 

@@ -28,7 +28,6 @@ from fdvv.recording.types import Recording
 
 OFF_VELOCITY_ratio = 0.15
 """A velocity whose presses are further off on the median is reported."""
-
 FEW_TAKES = 6
 """Takes that are named one by one; more are counted."""
 
@@ -103,7 +102,6 @@ def velocity_warnings(processed: Processed) -> list[str]:
 
 DECIMALS_cN = 4
 """Of a spread, which presses determine to some per cent; a file need not hold more digits."""
-
 FindVibrations = Callable[[Recording, Processed], RecordedVibrations]
 """Finds the vibrations of the presses of a processed recording."""
 

@@ -13,28 +13,20 @@ from fdvv.units import FloatArray
 
 START_mm = 0.1
 """Where a stroke's speed begins to count."""
-
 SHORT_mm = 0.15
 """A press that stays so far from the bottom is incomplete."""
-
 STILL_mm, STILL_cN = 0.5, 15.0
 """A bench at rest moves and pulls less."""
-
 KNOCKED_mm = 0.2
 """Markers that come back to rest by so much differently from each other were knocked."""
-
 GAP_s = 0.015
 """Longest time in a stroke without displacement."""
-
 FELT_mm = 0.5
 """Less is no press."""
-
 FELT_cN = 25.0
 """More than a finger that rests on the cap; a press goes beyond."""
-
 FEWEST, REST_PART = 16, 8
 """Fewest frames that show anything; the first part of a take shows the cap at rest."""
-
 HALT_s, HALT_mm = 0.03, 0.2
 """A stroke halts where this way takes so long, or six times what its mean speed needs."""
 

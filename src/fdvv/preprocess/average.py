@@ -16,10 +16,8 @@ from fdvv.preprocess.press import StrokeTrack
 from fdvv.units import FloatArray
 
 IntArray = np.ndarray[tuple[Any, ...], np.dtype[np.int64]]
-
 GRID_mm = 0.05
 """Force is registered on displacement every 50 um, as in the paper."""
-
 PENALTIES = np.logspace(-5, 4, 19)
 
 

@@ -21,7 +21,6 @@ from fdvv.units import FloatArray
 
 PPM_LARGEST = 2e4
 """Two clocks that part by more than 2 % are not clocks."""
-
 SLACK_s = 2e-4
 """An edge that misses its bounds by more than this contradicts the others."""
 

@@ -12,19 +12,14 @@ from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
 IntArray = npt.NDArray[np.int64]
-
 GROUP_GAP_s = 0.25
 """Edges further apart than this belong to two patterns."""
-
 LEAST_HITS = 3
 """Fewer edges in common are chance."""
-
 TOLERANCE_s, CLOSE_s = 4e-3, 1.5e-3
 """An edge lies within its bounds and this, at a lead known from one edge, and at the lead of its group."""
-
 SURE_sigmas = 5.0
 """A frame is dark or lit if nearer to that than so many times the noise; what is between, an edge cut."""
-
 LEAST_DOUBT, MOST_DOUBT = 0.02, 0.3
 """Bounds of that, in parts of the brightness."""
 

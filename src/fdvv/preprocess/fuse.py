@@ -64,16 +64,12 @@ def rough(size: int) -> FloatArray:
 
 CurveOfForce = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From displacements (mm) to force (cN) and stiffness (cN/mm)."""
-
 ROUNDS, SETTLED_N = 8, 2e-4
 """At most so many steps, fewer where the last one changed the button's force by less."""
-
 TABLE = 1001
 """Points of a tabulated force: 5 um apart on a key."""
-
 SEATED = 0.02
 """Weight of the equation while the cap is at its upper stop."""
-
 OUTSIDE_mm = 0.3
 """U is a spline from this far above rest to this far below the lowest place; beyond, it holds."""
 

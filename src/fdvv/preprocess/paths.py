@@ -19,13 +19,10 @@ from fdvv.units import FloatArray, N_from_cN, cN_from_N
 
 PARTS = 10
 """Steps of integration per sample of the force."""
-
 DOUBT_s = 2.5e-4
 """A cap that moves is near an end earlier: its place is known to what it covers in this time."""
-
 JUMP_cN = 10.0
 """Where the force changes within a sample by so much more than the button's could, the stop has been hit."""
-
 LONGEST = 12
 """Samples that are added at most: beyond three frames of the slowest camera something else is wrong."""
 
@@ -80,13 +77,10 @@ def extend(
 
 UNKNOWN_PIECES, UNKNOWN_N = 25, 1e3
 """Spans of the button's force, and what it may be, where nothing was known of it."""
-
 LEAST_NOISE_mm, USUAL_NOISE_mm, LEAST_STEPS = 0.002, 0.03, 30
 """A frame is never surer than the first; the second is used where there are fewer steps at rest."""
-
 FEWEST_FRAMES = 2
 """Frames that must show a stroke on its way: one leaves its speed to the equation alone."""
-
 FEWEST = 3
 """Presses of one kind: fewer give no spread."""
 

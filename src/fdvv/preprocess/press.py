@@ -96,13 +96,10 @@ class StrokeTrack:
 
 MOVED_mm = 0.3
 """The cap is being pressed when it is deeper than this, and was not when it is back within half of it."""
-
 LEFT_mm = 0.05
 """A stroke begins, or ends, this far from rest: the paper's bin."""
-
 NEAR_mm = 0.12
 """Closer than this to the lowest place is at the bottom; stops give way by less, frames are noisy by less."""
-
 SPEED_START_mm = 0.1
 """Mean speed counts from this depth to the bottom."""
 

@@ -16,10 +16,8 @@ from fdvv.units import FloatArray
 
 STEP_mm = 0.02
 """Samples of a probe are averaged over this: finer than the 50 um of presses, which rest on it."""
-
 TOUCH_cN, FIRM_cN = 1.2, 15.0
 """The probe touches the cap where its force was last below the first on the way to the second."""
-
 STOP_cN_mm = 400.0
 """Steeper than this over a bin, beyond half of the way, is the stop."""
 
@@ -141,10 +139,8 @@ def _binned(grid_mm: FloatArray, x_mm: FloatArray, force_cN: FloatArray) -> Floa
 
 FIRST_cN, FIRST_mm = 12.0, 0.4
 """The first give of the cap is read from so much force above the resting finger's, within this depth."""
-
 FEWEST_SAMPLES = 30
 """Fewer samples of it are not used."""
-
 SLOWEST_PART, FEWEST = 4, 3
 """Measured on the slowest quarter of the presses, or three."""
 

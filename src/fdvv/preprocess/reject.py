@@ -140,10 +140,8 @@ def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
 
 GAIN_OFF = 0.1
 """Presses at one velocity differ in force as a whole by less: that is its own spread."""
-
 LEAST_USUAL_cN = 1.0
 """What presses differ by is never taken as less."""
-
 FEWEST = 3
 """Among so few no outlier can be detected."""
 

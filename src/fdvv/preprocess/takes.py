@@ -128,7 +128,6 @@ def _two(times: FloatArray, left: FloatArray, right: FloatArray) -> Depth:
 
 LEAST_REST = 5
 """Fewer frames give no rest position."""
-
 TAIL_s = 0.06
 """Kept of a record before and after a press."""
 

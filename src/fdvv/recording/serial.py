@@ -22,7 +22,6 @@ from fdvv.units import FloatArray
 FORMAT, VERSION = "fdvv-capture", 1
 TURN_us = 2**32
 """The board counts microseconds in 32 bits; the counter begins anew every 71.6 minutes."""
-
 CLOCK = "board"
 REMEDY = "compare with docs/reference/capture-serial.md"
 

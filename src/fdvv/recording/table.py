@@ -30,7 +30,6 @@ UNITS = {
     "counts": (Quantity.COUNTS, 1.0),
 }
 """Units as they end a name, each with the factor to the unit of its quantity."""
-
 CLOCK, COUNTS_CLOCK = "table", "converter"
 NAME_THEM = "name them with their units, as in time_s,force_cN,displacement_mm"
 TIME_s = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
@@ -50,7 +49,6 @@ PLAIN = {
     "adc": Quantity.COUNTS,
 }
 """Names that are read without a unit; what they measure is then known only where it has none."""
-
 _TIME = re.compile(r"(?:time|t|timestamp)_(s|ms|us)\Z", re.IGNORECASE)
 _AXIS = re.compile(r"(.+)_([xyz])\Z", re.IGNORECASE)
 _RATE = re.compile(r"(?:^|[_\-. ])(\d+(?:\.\d+)?)(k|K|)(?:(?<=[kK])|Hz)(?:Hz|sps|SPS)?(?=[_\-. ]|$)")

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 CF = {"m/s2": "m s-2"}
 """Units as CF's conventions write them, where they differ from ours."""
-
 COLUMNS = ("take", "stage", "velocity_mm_s", "stream", "axis", "quantity", "unit", "clock", "t_s", "value")
 PRESS_UNITS = {"t_s": "s", "velocity_mm_s": "mm s-1", "displacement_mm": "mm", "force_cN": "cN"}
 RIG_UNITS = {"sensed_mm": "mm", "sensed_cN": "cN", "commanded_cN": "cN"}

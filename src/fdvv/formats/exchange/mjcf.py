@@ -45,15 +45,12 @@ def polyline(x: FloatArray, y: FloatArray, tolerance: float) -> np.ndarray[tuple
 
 TOLERANCE_cN = 0.25
 """Of the broken line against the curve it follows: below what fingers and the rig can resolve."""
-
 STEP_mm = 0.005
 CAP_g = 1.0
 """A keycap with its stem; no model knows it, and a joint of MuJoCo must have a mass."""
-
 FAR_m = 1.0
 UNKNOWN_mm_s = 10.0
 """Curves of unknown velocity come from slow benches; every speed gives the same there."""
-
 Follow = Literal["press", "both"]
 """What the line draws: the presses, which people feel first, or the middle of both strokes."""
 

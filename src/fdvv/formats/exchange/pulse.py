@@ -25,7 +25,6 @@ from fdvv.units import FloatArray
 
 SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
-
 TOLERANCE_ratio = 0.01
 EXACT, AUDIBLE_ratio = 1e-3, 1e-4
 PIECE = 16
@@ -36,7 +35,6 @@ LONGEST_s = 30.0
 """An event of Core Haptics may last this long; the other formats are held to the same."""
 LOST = ("phase, so the wave's own shape", "the place of the onset and the stroke")
 """What two curves of amplitude and frequency cannot hold."""
-
 _SCALE = re.compile(r"\b1 is (\d[\d.e+-]*) m/s2")
 
 
@@ -187,9 +185,7 @@ def clipped(vibration: Vibration) -> tuple[str, ...]:
 
 LARGEST_bytes = 4_000_000
 """A vibration of a button takes a few kB; hours of a film's take more, and are no button."""
-
 MOST_POINTS = 20_000
-
 Record = TypeVar("Record")
 
 

@@ -23,7 +23,6 @@ from fdvv.units import cN_from_gf
 LARGEST_CONTENT = 64 * 2**20
 MOST_CELLS = 3_000_000
 """The largest real sheet unpacks to 3.6 MB and holds 100,000 cells."""
-
 _X = re.compile(r"^(raw )?x \((microns|um|µm|μm)\)$", re.IGNORECASE)
 _FORCE = re.compile(r"^(raw )?force \(gf?\)$", re.IGNORECASE)
 _CLOSED = re.compile(r"^actuated ?\?$", re.IGNORECASE)

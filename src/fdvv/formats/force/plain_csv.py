@@ -20,7 +20,6 @@ FORMATS = {
     ("millis", "steps", "travel (mm)", "scale raw", "scale (grams)"): "buddyog",
 }
 """Published tables that are known by their exact column names."""
-
 _IGNORED = {"buddyog": {"Steps", "Scale raw"}}
 
 

@@ -113,7 +113,6 @@ def _curve(track: Track | None, stroke: Stroke, velocity: float | None, notes: N
 
 
 LARGEST_FILE = 64 * 2**20
-
 Lines = Sequence[str]
 
 READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines, Notes], Reading]], ...] = (

@@ -19,19 +19,16 @@ from fdvv.units import FloatArray
 
 FAR_mm, STRONG_cN = 1000.0, 100_000.0
 """No button travels a metre or takes a kilonewton."""
-
 SPIKE_cN = 20.0
 SPIKE_HALF = 5
 SPIKE_WIDTH_mm = 0.06
 """A spike stands 20 cN off the running median of 11 samples and is back within 60 um; the undershoot
 of a real snap stays below (15 cN in the loudest click bar measured)."""
-
 STUCK_DROP_cN = 15.0
 STUCK_RISE_cN_mm = 150.0
 STUCK_WIDTH_mm = 0.5
 """A probe that sticks climbs like a stop (450 to 520 cN/mm seen) and falls in one sample back to where
 it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
-
 JUMP_mm = 0.5
 PULL_cN = -5.0
 AIR_cN = 2.0

@@ -20,10 +20,8 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?\Z", re.ASCII)
 
 LARGEST = 1e12
 """No column of a bench holds more, in any unit; what is larger is a fault and would overflow."""
-
 LEAST_SAMPLES = 4
 """Fewer samples than coefficients of a cubic are not a curve."""
-
 REMEDY = "give a file of force and displacement"
 
 
@@ -169,7 +167,6 @@ WORDS = {
 
 NOT_MEASURED = {"velocity", "speed", "acceleration", "temperature", "judge", "number", "index", "raw"}
 """Columns that carry a unit or a word of force or travel but are neither."""
-
 UNITS = {Quantity.FORCE: FORCE_cN, Quantity.DISPLACEMENT: LENGTH_mm, Quantity.TIME: TIME_s}
 
 STROKES = {
