@@ -127,7 +127,6 @@ class Progress:
     judged: tuple[tuple[Step, TakeCheck], ...] = ()
 
     def after(self, take: Take) -> Progress:
-        """Return the progress with one more take, checked and counted."""
         step = Step(take.stage, take.velocity_mm_s)
         check = quick_look(take, replace(self.plan, travel_mm=self.travel_mm))
         outcomes = settle(self.outcomes, step, check.ok, self.plan.repeats)
@@ -153,7 +152,6 @@ class Progress:
         return probed[-1] if probed else float(np.median(pressed)) if pressed else None
 
     def by_velocity(self) -> tuple[VelocityProgress, ...]:
-        """Return the progress at every velocity of the plan."""
         return tuple(self._at_velocity(velocity_mm_s) for velocity_mm_s in self.plan.paces_mm_s)
 
     def _at_velocity(self, velocity_mm_s: float) -> VelocityProgress:

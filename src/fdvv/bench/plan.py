@@ -27,8 +27,6 @@ CONTACT, BOTTOM = "cue contact", "cue bottom"
 
 @dataclass(frozen=True)
 class Step:
-    """One take to be recorded."""
-
     stage: Stage
     velocity_mm_s: float | None = None
 
@@ -70,7 +68,6 @@ class CapturePlan:
             raise ModelError(f"travel_mm must be above 0, got {self.travel_mm}")
 
     def steps(self) -> tuple[Step, ...]:
-        """Return all steps in the order in which they are recorded."""
         first = [Step(Stage.REST), *([Step(Stage.PROBE, PROBE_mm_s)] if self.probe else [])]
         if not self.shuffled:
             return (*first, *(Step(Stage.PRESS, v) for v in self.paces_mm_s for _ in range(self.presses)))

@@ -98,9 +98,9 @@ class Fusion:
     seat_mm: float = 0.06
 
     def __post_init__(self) -> None:
-        for name in ("moving_g", "frame_noise_mm", "left_out_m_s2", "pieces", "roughness_N", "unknown_N"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
-                raise ModelError(f"{name} must be above 0, got {getattr(self, name)}")
+        for name, value in vars(self).items():
+            if name != "seat_mm" and not 0 < value < math.inf:
+                raise ModelError(f"{name} must be above 0, got {value}")
 
 
 @dataclass(frozen=True, eq=False)

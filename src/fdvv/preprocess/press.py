@@ -41,7 +41,6 @@ class RawPress:
 
     @property
     def name(self) -> str:
-        """Name the press for messages."""
         return f"take {self.take}" if self.part == 1 else f"take {self.take}, press {self.part}"
 
 
@@ -69,7 +68,6 @@ class Spans:
         return self.start_s - GUARD_s
 
     def of(self, stroke: Stroke) -> tuple[float, float]:
-        """Return start and end of one stroke."""
         return (self.start_s, self.bottom_s) if stroke is Stroke.PRESS else (self.leave_s, self.end_s)
 
 

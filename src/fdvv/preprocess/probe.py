@@ -46,7 +46,6 @@ class Probe:
     probes: int
 
     def curve(self, stroke: Stroke) -> CurveOfForce:
-        """Return force and stiffness of one stroke."""
         force = self.press_cN if stroke is Stroke.PRESS else self.release_cN
         return table_curve(self.displacement_mm, force)
 

@@ -19,8 +19,6 @@ from fdvv.recording.types import UNITS, Recording, Stage, Stream, Take
 
 @dataclass(frozen=True)
 class FileProblem:
-    """Something in a file that is not as it should be."""
-
     place: str
     reason: str
     remedy: str
@@ -67,7 +65,6 @@ class FileCheck:
 
 
 def unusable(path: Path, kind: str, error: InputError) -> FileCheck:
-    """Return the check of a file that cannot be read."""
     place = error.place if Path(error.source) == path else f"{error.source}, {error.place}"
     return FileCheck(path, kind, problems=(FileProblem(place, error.reason, error.remedy),), usable=False)
 
@@ -77,6 +74,9 @@ def facts_of(recording: Recording) -> dict[str, Any]:
     stages = Counter(take.stage for take in recording.takes)
     marks = Counter(mark.name for take in recording.takes for mark in take.marks)
     made = [take.made for take in recording.takes if take.made]
+    streams: dict[str, list[Stream]] = {}
+    for stream in (stream for take in recording.takes for stream in take.streams):
+        streams.setdefault(stream.name, []).append(stream)
     return {
         "name": recording.name,
         "simulated": recording.simulated,
@@ -89,17 +89,8 @@ def facts_of(recording: Recording) -> dict[str, Any]:
         "sources": [asdict(source) for source in recording.sources],
         "clocks": _clocks(recording),
         "marks": dict(marks),
-        "streams": [_stream(name, found) for name, found in streams_of(recording).items()],
+        "streams": [_stream(name, found) for name, found in streams.items()],
     }
-
-
-def streams_of(recording: Recording) -> dict[str, list[Stream]]:
-    """Return the streams of each name, take by take."""
-    found: dict[str, list[Stream]] = {}
-    for take in recording.takes:
-        for stream in take.streams:
-            found.setdefault(stream.name, []).append(stream)
-    return found
 
 
 def _clocks(recording: Recording) -> dict[str, dict[str, float]]:
@@ -117,8 +108,7 @@ def _stream(name: str, found: list[Stream]) -> dict[str, Any]:
     first = found[0]
     samples = sum(stream.t_s.size for stream in found)
     gaps = sum(int(missing(stream).sum()) for stream in found)
-    steps = [np.diff(stream.t_s) for stream in found if stream.t_s.size > 1]
-    joined = np.concatenate(steps) if steps else np.array([])
+    joined = np.concatenate([np.diff(stream.t_s) for stream in found])
     return {
         "name": name,
         "quantity": str(first.quantity),
@@ -137,7 +127,6 @@ def _stream(name: str, found: list[Stream]) -> dict[str, Any]:
 
 
 def missing(stream: Stream) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return which samples of a stream lack a value."""
     if stream.raw.dtype.kind != "f":
         return np.zeros(stream.t_s.size, dtype=np.bool_)
     lost: np.ndarray[Any, np.dtype[np.bool_]] = np.isnan(stream.raw).reshape(stream.t_s.size, -1).any(axis=1)

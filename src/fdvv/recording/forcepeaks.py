@@ -25,6 +25,7 @@ from fdvv.units import FloatArray
 CLOCK, LOOSE_CLOCK = "board", "samples"
 MARKS = {"S": "beat", "R": "tap"}
 STEP_s = 1.024e-3
+"""The board's millisecond counter advances once every 1024 µs."""
 WINDOW_s = 0.1
 FIRST_BEAT = 5
 

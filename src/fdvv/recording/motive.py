@@ -73,7 +73,6 @@ class MotiveHead:
 
 
 def is_motive(head: Sequence[str]) -> bool:
-    """Recognise an export of Motive by its first line."""
     return bool(re.match(r'"?Format Version"?,', head[0]))
 
 

@@ -20,8 +20,6 @@ LARGEST = 1e15
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """Everything a reader found in one file."""
-
     format: str
     streams: Sequence[Stream]
     marks: Sequence[Mark] = ()
@@ -32,7 +30,6 @@ class Reading:
 
 
 def refusal(source: object, place: str, reason: str, remedy: str = REMEDY) -> InputError:
-    """Return the error for a file that cannot be used."""
     return InputError(source, place, reason, remedy)
 
 

@@ -116,7 +116,6 @@ def schema() -> dict[str, Any]:
 
 
 def pack_head(recording: Recording) -> dict[str, Any]:
-    """Encode a recording without its takes."""
     return {
         "format": FORMAT,
         "version": VERSION,

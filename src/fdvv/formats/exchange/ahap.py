@@ -16,18 +16,13 @@ import numpy as np
 from fdvv.errors import InputError, ModelError
 from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.formats.exchange.pulse import (
-    LOST,
+    Curves,
     LONGEST_s,
     Pulse,
     check_points,
-    clipped,
-    describe_scale,
     frequency_Hz,
-    pulse_of,
     read_json,
     read_scale,
-    scale_of,
-    sharpness,
 )
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
@@ -88,29 +83,27 @@ def ahap(vibration: Vibration, name: str = "vibration") -> Exported:
 
     Raises ModelError if the vibration is silent or longer than an event may be.
     """
-    pulse = pulse_of(vibration)
-    scale = scale_of(pulse)
-    if pulse.t_s[-1] > LONGEST_s:
-        raise ModelError(f"an event of AHAP lasts {LONGEST_s:g} s at most, got {pulse.t_s[-1]:g} s")
-    pitch = sharpness(pulse.frequency_Hz)
-    base = float(pitch[0])
+    drawn = Curves.of(vibration)
+    if drawn.t_s[-1] > LONGEST_s:
+        raise ModelError(f"an event of AHAP lasts {LONGEST_s:g} s at most, got {drawn.t_s[-1]:g} s")
+    base = float(drawn.sharpness[0])
     event = {
         "Time": 0.0,
         "EventType": "HapticContinuous",
-        "EventDuration": float(pulse.t_s[-1]),
+        "EventDuration": float(drawn.t_s[-1]),
         "EventParameters": [
             {"ParameterID": "HapticIntensity", "ParameterValue": 1.0},
             {"ParameterID": "HapticSharpness", "ParameterValue": base},
         ],
     }
     pattern: list[dict[str, Any]] = [{"Event": event}]
-    pattern += _curves("HapticIntensityControl", pulse.t_s, pulse.amplitude_m_s2 / scale)
-    if np.ptp(pitch) > 1e-6:
-        pattern += _curves("HapticSharpnessControl", pulse.t_s, pitch - base)
-    about = {"Project": name, "Description": describe_scale(scale)}
+    pattern += _curves("HapticIntensityControl", drawn.t_s, drawn.intensity)
+    if np.ptp(drawn.sharpness) > 1e-6:
+        pattern += _curves("HapticSharpnessControl", drawn.t_s, drawn.sharpness - base)
+    about = {"Project": name, "Description": drawn.description}
     data = json_bytes({"Version": 1.0, "Metadata": about, "Pattern": pattern})
     kept = ("amplitude over time", "frequency over time, as sharpness")
-    return Exported("ahap", data, kept, (*LOST, *clipped(vibration)), {"full_scale_m_s2": scale})
+    return Exported("ahap", data, kept, drawn.lost, {"full_scale_m_s2": drawn.scale_m_s2})
 
 
 def _curves(name: str, t_s: FloatArray, values: FloatArray) -> list[dict[str, Any]]:

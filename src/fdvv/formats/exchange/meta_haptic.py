@@ -15,18 +15,13 @@ import numpy as np
 from fdvv.errors import InputError, ModelError
 from fdvv.formats.exchange.exported import Exported, json_bytes
 from fdvv.formats.exchange.pulse import (
-    LOST,
+    Curves,
     LONGEST_s,
     Pulse,
     check_points,
-    clipped,
-    describe_scale,
     frequency_Hz,
-    pulse_of,
     read_json,
     read_scale,
-    scale_of,
-    sharpness,
 )
 from fdvv.model.vibration import Vibration
 
@@ -84,29 +79,21 @@ class Haptic(msgspec.Struct):
 
 def meta_haptic(vibration: Vibration, name: str = "vibration") -> Exported:
     """Write a vibration as the two envelopes. Raises ModelError if it is silent."""
-    pulse = pulse_of(vibration)
-    scale = scale_of(pulse)
-    times = pulse.t_s.tolist()
-    loud, pitch = (pulse.amplitude_m_s2 / scale).tolist(), sharpness(pulse.frequency_Hz).tolist()
+    drawn = Curves.of(vibration)
+    columns = (column.tolist() for column in (drawn.t_s, drawn.intensity, drawn.sharpness))
+    points = list(zip(*columns, strict=True))
     envelopes = {
-        "amplitude": [{"time": t, "amplitude": a} for t, a in zip(times, loud, strict=True)],
-        "frequency": [{"time": t, "frequency": f} for t, f in zip(times, pitch, strict=True)],
+        "amplitude": [{"time": t, "amplitude": intensity} for t, intensity, _ in points],
+        "frequency": [{"time": t, "frequency": pitch} for t, _, pitch in points],
     }
-    about = {
-        "editor": "fdvv",
-        "source": "",
-        "project": name,
-        "tags": [],
-        "description": describe_scale(scale),
-    }
+    about = {"editor": "fdvv", "source": "", "project": name, "tags": [], "description": drawn.description}
     record = {
         "version": {"major": 1, "minor": 0, "patch": 0},
         "metadata": about,
         "signals": {"continuous": {"envelopes": envelopes}},
     }
     kept = ("amplitude over time", "frequency over time, as 0 to 1")
-    lost = (*LOST, *clipped(vibration))
-    return Exported("haptic", json_bytes(record), kept, lost, {"full_scale_m_s2": scale})
+    return Exported("haptic", json_bytes(record), kept, drawn.lost, {"full_scale_m_s2": drawn.scale_m_s2})
 
 
 def read_meta_haptic(source: Path | str | bytes, scale_m_s2: float | None = None) -> Pulse:

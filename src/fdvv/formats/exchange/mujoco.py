@@ -88,7 +88,6 @@ class MujocoButton:
             self._switch(model, data)
 
     def _ask(self, model: Any, data: Any) -> tuple[int, float]:
-        """Return the joint's degree of freedom and the force on it."""
         joint = model.joint(self.joint)
         dof = int(joint.dofadr[0])
         x_mm = 1000.0 * float(data.qpos[joint.qposadr[0]])

@@ -152,18 +152,41 @@ def frequency_Hz(of_sharpness: FloatArray) -> FloatArray:
     return np.asarray(low + (high - low) * np.clip(of_sharpness, 0.0, 1.0))
 
 
-def scale_of(pulse: Pulse) -> float:
-    """Return the amplitude that 1 in the file means: the pulse's largest."""
-    largest = float(pulse.amplitude_m_s2.max())
-    if not largest > 0:
-        raise ModelError("the vibration is silent, there is nothing to write")
-    return largest
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """A vibration as haptic files hold it.
 
+    Attributes
+    ----------
+    t_s, intensity, sharpness : (n,) the two curves, 0 to 1.
+    scale_m_s2 : the amplitude that intensity 1 means, the vibration's largest.
+    lost : what the curves do not hold.
+    """
 
-def describe_scale(scale_m_s2: float) -> str:
-    """Describe the amplitude scale of a file."""
-    low, high = SHARPNESS_Hz
-    return f"1 is {scale_m_s2!r} m/s2 of the cap; 0 to 1 of sharpness is {low:g} to {high:g} Hz"
+    t_s: FloatArray
+    intensity: FloatArray
+    sharpness: FloatArray
+    scale_m_s2: float
+    lost: tuple[str, ...]
+
+    @classmethod
+    def of(cls, vibration: Vibration) -> Curves:
+        """Draw the two curves of a vibration. Raises ModelError if it is silent."""
+        pulse = pulse_of(vibration)
+        largest = float(pulse.amplitude_m_s2.max())
+        if not largest > 0:
+            raise ModelError("the vibration is silent, there is nothing to write")
+        low, high = SHARPNESS_Hz
+        outside = [m.frequency_Hz for m in vibration.modes if not low <= m.frequency_Hz <= high]
+        clipped = [f"{f:.0f} Hz lies outside {low:g} to {high:g} Hz and is held at its end" for f in outside]
+        pitch = sharpness(pulse.frequency_Hz)
+        return cls(pulse.t_s, pulse.amplitude_m_s2 / largest, pitch, largest, (*LOST, *clipped))
+
+    @property
+    def description(self) -> str:
+        """State the scales, so that the file can be read back."""
+        low, high = SHARPNESS_Hz
+        return f"1 is {self.scale_m_s2!r} m/s2 of the cap; 0 to 1 of sharpness is {low:g} to {high:g} Hz"
 
 
 def read_scale(description: object, name: str, place: str) -> float:
@@ -174,13 +197,6 @@ def read_scale(description: object, name: str, place: str) -> float:
         if np.isfinite(value) and value > 0:
             return value
     raise InputError(name, place, "the file does not say what 1 stands for", "give the full scale in m/s2")
-
-
-def clipped(vibration: Vibration) -> tuple[str, ...]:
-    """Warn of modes whose frequency is outside the range of sharpness."""
-    low, high = SHARPNESS_Hz
-    outside = [m.frequency_Hz for m in vibration.modes if not low <= m.frequency_Hz <= high]
-    return tuple(f"{f:.0f} Hz lies outside {low:g} to {high:g} Hz and is held at its end" for f in outside)
 
 
 LARGEST_bytes = 4_000_000
@@ -207,6 +223,5 @@ def read_json(source: Path | str | bytes, record: type[Record], name: str, remed
 
 
 def check_points(name: str, place: str, count: int, remedy: str) -> None:
-    """Refuse a list that is too long for a button's vibration."""
     if count > MOST_POINTS:
         raise InputError(name, place, f"{count} points, at most {MOST_POINTS} are read", remedy)

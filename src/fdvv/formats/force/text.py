@@ -34,7 +34,6 @@ def decode(source: Path, content: bytes, notes: Notes) -> list[str]:
 
 
 def refusal(source: object, place: str, reason: str, remedy: str = "") -> InputError:
-    """Return the error for a file that cannot be used."""
     return InputError(source, place, reason, remedy or REMEDY)
 
 

@@ -118,8 +118,6 @@ def _belong_together(a: RawCycle, b: RawCycle) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """Everything a reader found in one file."""
-
     format: str
     name: str
     cycles: Sequence[RawCycle]
