@@ -285,9 +285,9 @@ def _vibrations(
             vibration = one.found.vibration(scale_V_s_m)
         except ModelError as error:
             missing.append((one, str(error)))
-            continue
-        spread = _spread(one.found, vibration)
-        found.append(replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=spread))
+        else:
+            spread = _spread(one.found, vibration)
+            found.append(replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=spread))
     return found, missing
 
 
@@ -329,9 +329,9 @@ def press_record(press: RawPress, track: StrokeTrack, sound: Stream, delay_s: fl
 
 
 def _energy(curve: AveragedCurve) -> SnapEnergy | None:
-    inside = curve.displacement_mm >= CONTACT_mm
-    inside &= curve.displacement_mm <= curve.displacement_mm[-1] - STOP_mm
-    return snap_energy(curve.displacement_mm[inside], curve.force_cN[inside])
+    x_mm = curve.displacement_mm
+    inside = (x_mm >= CONTACT_mm) & (x_mm <= x_mm[-1] - STOP_mm)
+    return snap_energy(x_mm[inside], curve.force_cN[inside])
 
 
 def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:

@@ -160,15 +160,14 @@ def resting_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
 
 def _first_give_mm_cN(used: Sequence[Judged], rest_cN: float) -> float:
     """Return the initial compliance, by the slope of position on force, which is known far better."""
-    places, forces = [], []
+    parts = [np.zeros((2, 0))]
     for one in used:
         press = one.press
         place = np.interp(press.t_s, press.frame_s, press.frame_mm)
         first = (press.t_s > one.spans.start_s - 0.1) & (press.t_s < one.spans.bottom_s) & (place < FIRST_mm)
         first &= (press.force_cN > rest_cN - 1) & (press.force_cN < rest_cN + FIRST_cN)
-        places.append(place[first])
-        forces.append(press.force_cN[first])
-    place, force = np.concatenate([*places, np.zeros(0)]), np.concatenate([*forces, np.zeros(0)])
+        parts.append(np.stack([place[first], press.force_cN[first]]))
+    place, force = np.concatenate(parts, axis=1)
     if place.size < FEWEST_SAMPLES or np.ptp(force) < 0.5 * FIRST_cN:
         return 0.0
     return max(float(np.polyfit(force, place, 1)[0]), 0.0)

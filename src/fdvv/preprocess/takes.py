@@ -97,12 +97,10 @@ def _along(marker: Stream, axis: FloatArray | None) -> tuple[FloatArray, FloatAr
 
 def _together(columns: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, list[FloatArray]]:
     times = np.unique(np.concatenate([t for t, _ in columns]))
-    joined = []
-    for t, values in columns:
-        column = np.full(times.size, np.nan)
-        column[np.searchsorted(times, t)] = values
-        joined.append(column)
-    return times, joined
+    joined = np.full((len(columns), times.size), np.nan)
+    for row, (t, values) in zip(joined, columns, strict=True):
+        row[np.searchsorted(times, t)] = values
+    return times, list(joined)
 
 
 def _one(times: FloatArray, values: FloatArray) -> Depth:
@@ -155,8 +153,8 @@ def presses_of(recording: Recording) -> Presses:
 
     Raises ModelError if there is no force, nothing that shows displacement, or no way to join two clocks.
     """
-    takes = [t for t in recording.takes if t.stage in (Stage.PRESS, Stage.UNKNOWN)]
-    takes = [t for t in takes if t.of(Quantity.FORCE)]
+    pressed = [take for take in recording.takes if take.stage in (Stage.PRESS, Stage.UNKNOWN)]
+    takes = [take for take in pressed if take.of(Quantity.FORCE)]
     if not takes:
         raise ModelError(f"recording {recording.name!r} has no take with presses and a force stream")
     clock = join_clocks(recording)
@@ -196,8 +194,7 @@ def switched_light(recording: Recording, board: str, camera: str) -> tuple[Edges
 
 
 def _clocks(take: Take) -> tuple[str, str] | None:
-    forces = take.of(Quantity.FORCE)
-    places = (*take.of(Quantity.DISPLACEMENT), *take.of(Quantity.MARKER))
+    forces, places = take.of(Quantity.FORCE), (*take.of(Quantity.DISPLACEMENT), *take.of(Quantity.MARKER))
     return (forces[0].clock, places[0].clock) if forces and places else None
 
 

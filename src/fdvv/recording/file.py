@@ -144,7 +144,9 @@ def _read(path: Path) -> tuple[Recording | None, int]:
             if key == "head":
                 recording = unpack_head(_known(path, found))
             elif key == "take":
-                takes.append(_next(found, len(takes) + 1))
+                takes.append(take := unpack_take(found))
+                if take.number != len(takes):
+                    raise ModelError(f"take {len(takes)} bears the number {take.number}")
             elif recording is not None:
                 mend = msgspec.convert(found, MendRecord)
                 correction = Correction(mend.values, mend.take, mend.stream, mend.why)
@@ -167,10 +169,3 @@ def _known(path: Path, found: Any) -> Any:
         reason = f"file version {head.get('version')!r:.40}, this fdvv reads version {VERSION}"
         raise InputError(path, "line 1, $.version", reason, "install the fdvv that wrote it, or a newer one")
     return found
-
-
-def _next(found: Any, number: int) -> Take:
-    take = unpack_take(found)
-    if take.number != number:
-        raise ModelError(f"take {number} bears the number {take.number}")
-    return take

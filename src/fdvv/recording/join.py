@@ -70,11 +70,8 @@ def _apart(recordings: Sequence[Recording]) -> list[Recording]:
 
 
 def _renamed(take: Take, names: dict[str, str]) -> Take:
-    return replace(
-        take,
-        streams=tuple(replace(stream, clock=names[stream.clock]) for stream in take.streams),
-        marks=tuple(replace(mark, clock=names[mark.clock]) for mark in take.marks),
-    )
+    streams = tuple(replace(stream, clock=names[stream.clock]) for stream in take.streams)
+    return replace(take, streams=streams, marks=tuple(replace(m, clock=names[m.clock]) for m in take.marks))
 
 
 def _side_by_side(takes: Sequence[Take]) -> Take:

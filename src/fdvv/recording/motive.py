@@ -43,8 +43,7 @@ class Triple:
     @property
     def title(self) -> str:
         """Return the stream's name; one that Motive computed from a body says so."""
-        seen = self.kind.lower() in SEEN
-        return self.name if seen else f"{self.name} ({self.kind.lower()})"
+        return self.name if self.kind.lower() in SEEN else f"{self.name} ({self.kind.lower()})"
 
 
 @dataclass(frozen=True)

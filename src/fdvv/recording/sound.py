@@ -66,16 +66,16 @@ def read_sound(source: Path, content: bytes, full_scale_V: float | None) -> Read
         likeness = "the same" if alike == 1 else f"alike to {alike:.5f}"
         warnings.append(f"both channels are {likeness}; the left one is read")
     t_s = np.arange(found.raw.shape[0]) / found.rate_Hz
-    names = ["sound"] if len(channels) == 1 else [f"sound {i + 1}" for i in range(len(channels))]
     if full_scale_V is None:
         of = "parts of full scale" if found.full == 1 else "counts of a converter"
         warnings.append(f"the samples are {of}, no volts; give full_scale_V where it is known")
         quantity, scale = Quantity.COUNTS, 1.0
     else:
         quantity, scale = Quantity.SOUND, full_scale_V / found.full
+    several = len(channels) > 1
     streams = [
-        Stream(name, quantity, CLOCK, t_s, np.ascontiguousarray(channel), scale, found.zero)
-        for name, channel in zip(names, channels, strict=True)
+        Stream(f"sound {i}" if several else "sound", quantity, CLOCK, t_s, raw, scale, found.zero)
+        for i, raw in enumerate(map(np.ascontiguousarray, channels), 1)
     ]
     return Reading(kind, streams, (), warnings)
 

@@ -122,9 +122,8 @@ def _take(take: Take) -> xr.Dataset:
     attributes: dict[str, Any] = {"number": take.number, "stage": str(take.stage), "remark": take.remark}
     attributes |= {"made": take.made, "velocity_units": "mm s-1"}
     attributes["velocity"] = np.nan if take.velocity_mm_s is None else take.velocity_mm_s
-    for mark in sorted({(mark.name, mark.clock) for mark in take.marks}):
-        times = [m.t_s for m in take.marks if (m.name, m.clock) == mark]
-        attributes[f"mark_{mark[0]} ({mark[1]}, s)"] = sorted(times)
+    for mark in sorted(take.marks, key=lambda mark: (mark.name, mark.clock, mark.t_s)):
+        attributes.setdefault(f"mark_{mark.name} ({mark.clock}, s)", []).append(mark.t_s)
     return xr.Dataset(variables, coordinates, attributes)
 
 

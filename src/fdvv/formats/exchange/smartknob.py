@@ -144,8 +144,8 @@ def _bump(model: FDVVModel, curve: ForceCurve | None) -> Bump | None:
 def _figures(model: FDVVModel, velocity_mm_s: float | None, detents: KnobDetents) -> dict[str, float | None]:
     way = np.linspace(0.0, 1.0, 800)
     places = detents.snaps_at_ratio
-    out = places[0] if places else np.inf
-    knob = np.where(way > out, detents.pull(way, True), detents.pull(way, False))
+    pressed = way > (places[0] if places else np.inf)
+    knob = np.where(pressed, detents.pull(way, True), detents.pull(way, False))
     force = _press(model, velocity_mm_s).force_cN(way * model.travel_mm)
     columns = np.stack([knob, np.ones(way.size)], axis=1)
     left = force - columns @ np.linalg.lstsq(columns, force, rcond=None)[0]

@@ -74,15 +74,14 @@ def _possible(track: Track, notes: Notes) -> Track | None:
 
 
 def _long_enough(track: Track, notes: Notes) -> bool:
+    short = ""
     if track.x_mm.size < LEAST_SAMPLES:
-        notes.say(f"{track.where}: only {track.x_mm.size} usable samples; it was left out")
-        return False
-    if np.ptp(track.x_mm) < LEAST_TRAVEL_mm:
-        notes.say(
-            f"{track.where}: the displacement stays within {np.ptp(track.x_mm):.3g} mm; it was left out"
-        )
-        return False
-    return True
+        short = f"only {track.x_mm.size} usable samples"
+    elif np.ptp(track.x_mm) < LEAST_TRAVEL_mm:
+        short = f"the displacement stays within {np.ptp(track.x_mm):.3g} mm"
+    if short:
+        notes.say(f"{track.where}: {short}; it was left out")
+    return not short
 
 
 def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
@@ -183,12 +182,9 @@ def _half(path: Path, lines: Lines, stroke: Stroke | None, notes: Notes) -> Read
     if not goat.is_stroke(lines):
         return read_plain_csv(path, lines, stroke, notes)
     if stroke is None:
-        raise refusal(
-            path,
-            "line 1",
-            "two columns without a header, and the file's name tells no stroke",
-            "name the columns with their units, or the file NAME.downstroke.csv",
-        )
+        reason = "two columns without a header, and the file's name tells no stroke"
+        remedy = "name the columns with their units, or the file NAME.downstroke.csv"
+        raise refusal(path, "line 1", reason, remedy)
     track = goat.read_stroke(path, lines, stroke.value, notes)
     cycle = RawCycle("", press=track) if stroke is Stroke.PRESS else RawCycle("", release=track)
     return Reading("stroke-pair", base_name(path), [cycle])

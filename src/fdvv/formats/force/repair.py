@@ -42,15 +42,8 @@ def _where_x(track: Track, first: int, last: int) -> str:
 
 def drop_impossible(track: Track, notes: Notes) -> Track:
     """Leave out samples beyond a metre or a kilonewton."""
-    good = (np.abs(track.x_mm) <= FAR_mm) & (np.abs(track.force_cN) <= STRONG_cN)
-    if good.all():
-        return track
-    first = int(np.argmin(good))
-    notes.say(
-        f"{track.where}, sample {first + 1}: {track.x_mm[first]:.3g} mm, {track.force_cN[first]:.3g} cN "
-        f"cannot be; {_samples(int((~good).sum()))} left out"
-    )
-    return track.take(good)
+    bad = (np.abs(track.x_mm) > FAR_mm) | (np.abs(track.force_cN) > STRONG_cN)
+    return _drop(track, bad, notes, "{x_mm:.3g} mm, {force_cN:.3g} cN cannot be")
 
 
 def drop_stray_positions(track: Track, notes: Notes) -> Track:
@@ -60,14 +53,17 @@ def drop_stray_positions(track: Track, notes: Notes) -> Track:
     stray = np.zeros(x.size, dtype=bool)
     stray[1:-1] = (np.minimum(np.abs(step[:-1]), np.abs(step[1:])) > JUMP_mm) & (step[:-1] * step[1:] < 0)
     stray[1:-1] &= np.abs(x[2:] - x[:-2]) < 0.2 * JUMP_mm
-    if not stray.any():
+    return _drop(track, stray, notes, "displacement jumps to {x_mm:.3f} mm and back")
+
+
+def _drop(track: Track, bad: npt.NDArray[np.bool_], notes: Notes, fault: str) -> Track:
+    """Leave samples out; fault describes the first, whose x_mm and force_cN it may name."""
+    if not bad.any():
         return track
-    first = int(np.argmax(stray))
-    notes.say(
-        f"{track.where}, sample {first + 1}: displacement jumps to {x[first]:.3f} mm and back; "
-        f"{_samples(int(stray.sum()))} left out"
-    )
-    return track.take(~stray)
+    first = int(np.argmax(bad))
+    said = fault.format(x_mm=track.x_mm[first], force_cN=track.force_cN[first])
+    notes.say(f"{track.where}, sample {first + 1}: {said}; {_samples(int(bad.sum()))} left out")
+    return track.take(~bad)
 
 
 def drop_spikes(track: Track, notes: Notes) -> Track:
