@@ -141,6 +141,7 @@ def _along(position_mm: FloatArray) -> FloatArray:
 
 
 def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan) -> TakeCheck:
+    # one frame that shows too much must not make a press
     smooth = np.median(np.stack([down_mm[:-2], down_mm[1:-1], down_mm[2:]]), axis=0)
     depth_mm = float(smooth.max())
     if depth_mm < FELT_mm:

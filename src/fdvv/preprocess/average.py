@@ -97,6 +97,7 @@ def _smooth(basis: EvenBasis, x: FloatArray, rest_cN: FloatArray, who: IntArray)
     normals = [square + w * roughness + 1e-9 * np.eye(basis.size) for w in PENALTIES * x.size / basis.size]
     free = [float(np.trace(np.linalg.solve(normal, square))) for normal in normals]
     left = [inner - rows @ np.linalg.solve(normal, inner_target) for normal in normals]
+    # 1.4 and not 1 a degree of freedom: plain cross-validation now and then hardly smooths (Kim and Gu 2004)
     scores = [
         x.size * float(rest @ rest) / max(x.size - 1.4 * own, 1.0) ** 2
         for rest, own in zip(left, free, strict=True)

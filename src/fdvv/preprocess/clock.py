@@ -111,7 +111,8 @@ def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused:
     bounds = [(None, None), (-most, most)]
     slack = np.column_stack([sides, -np.ones(widen.size)])
     least = _least([0.0, 0.0, 1.0], slack, widen, [*bounds, (0, None)])
-    # with the least slack a single line is left, which would seem certain: as much again is doubt
+    # with the least slack a single line is left, which would seem certain: as much again is doubt,
+    # and a nanosecond for the solver's rounding
     limits = widen + 2 * float(least[2]) + 1e-3
     places = (away.min(), 0.0, away.max())
     # (place, sign, offset and tilt)

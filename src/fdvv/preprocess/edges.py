@@ -94,6 +94,7 @@ def _scaled(light: FloatArray) -> tuple[FloatArray, float]:
     middle = 0.5 * (float(light.min()) + float(light.max()))
     dark, lit = float(np.median(light[light < middle])), float(np.median(light[light >= middle]))
     part = (light - dark) / (lit - dark)
+    # a standard deviation from the median one, which half-lit frames do not move
     noise = 1.4826 * float(np.median(np.abs(part[light < middle])))
     return part, min(max(SURE_sigmas * noise, LEAST_DOUBT), MOST_DOUBT)
 

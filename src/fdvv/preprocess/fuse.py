@@ -221,6 +221,7 @@ def _improve(
         by_place = moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places
         by_path = np.vstack([weight_1_N[:, None] * by_place, one.frames / settings.frame_noise_mm])
         by_shared = np.vstack([weight_1_N[:, None] * rows, np.zeros((one.frame_mm.size, basis.size))])
+        # a trace of the identity keeps this solvable where neither frame nor equation holds a spline
         normal = by_path.T @ by_path + 1e-7 * np.eye(by_path.shape[1])
         answer = np.linalg.solve(normal, by_path.T @ np.column_stack([by_shared, miss]))
         left = by_shared - by_path @ answer[:, :-1]

@@ -180,4 +180,5 @@ def _frame_noise_mm(used: Sequence[Judged]) -> float:
     joined = np.concatenate([np.zeros(0), *map(np.diff, rests)])
     if joined.size < LEAST_STEPS:
         return USUAL_NOISE_mm
+    # 1.4826 makes a standard deviation of a median one; a step has the noise of two frames
     return max(1.4826 * float(np.median(np.abs(joined))) / float(np.sqrt(2)), LEAST_NOISE_mm)

@@ -208,6 +208,7 @@ class SerialCapture:
                 why = f"is called {title!r:.30}, which names no unit" if title else "is not in the head"
                 self._say(f"channel {channel} {why}; its numbers are kept as counts")
             parsed, scale, zero = Title(title or channel, Quantity.COUNTS, 1.0), 1.0, 0.0
+        # what a file would hold in eight bytes mostly fits in four
         small = raw.astype(np.int32) if np.abs(raw).max(initial=0) < 2**31 else raw
         name = f"{parsed.name}_{parsed.axis}" if parsed.axis else parsed.name
         quantity = Quantity.DISPLACEMENT if parsed.axis else parsed.quantity

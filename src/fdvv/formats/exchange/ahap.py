@@ -165,6 +165,7 @@ def _joined(events: list[Event], curves: list[Curve], scale: float) -> Pulse:
     intensity, shift = (_control(curves, n, t + start, d) for n, d in CONTROLS)
     for event in events:
         at = t + start - event.time
+        # the last corner is start + duration, which rounding may put behind the event's end
         inside = (at >= 0) & (at <= _duration_s(event) * (1 + 1e-12))
         own = np.where(inside, _value(event, "HapticIntensity", DEFAULT) * intensity, 0.0)
         if event.event_type == "HapticTransient":

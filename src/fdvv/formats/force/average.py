@@ -166,6 +166,7 @@ def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:
     shapes = [shape_of(cycle) for cycle, _ in named]
     reasons = [[how_differs(a, b) for b in shapes] for a in shapes]
     agreeing = [[i for i, reason in enumerate(row) if not reason] for row in reasons]
+    # of equally large populations that of the earliest cycle
     centre = max(range(len(named)), key=lambda i: (len(agreeing[i]), -i))
     keep = agreeing[centre]
     warnings: tuple[str, ...] = ()

@@ -64,11 +64,11 @@ class Table:
             if not any(texts):
                 continue
             numbers = [self._number(text) for text in texts]
-            wrong = [i for i, number in enumerate(numbers) if number is None]
-            if wrong:
+            wrong = np.flatnonzero(np.isnan(numbers))
+            if wrong.size:
                 bad.append((self.first_line + offset, picks[wrong[0]] + 1, texts[wrong[0]]))
             else:
-                kept.append([number for number in numbers if number is not None])
+                kept.append(numbers)
         array = np.array(kept, dtype=np.float64).reshape(len(kept), len(picks))
         if bad:
             line, column, text = bad[0]
@@ -77,12 +77,10 @@ class Table:
             notes.say(f"{message}; {rest} left out")
         return self._enough(list(array.T), len(kept) + len(bad), what)
 
-    def _number(self, text: str) -> float | None:
+    def _number(self, text: str) -> float:
         text = text.replace(",", ".") if self.decimal_comma else text
-        if not _NUMBER.match(text):
-            return None
-        number = float(text)
-        return number if abs(number) <= LARGEST else None
+        number = float(text) if _NUMBER.match(text) else np.nan
+        return number if abs(number) <= LARGEST else np.nan
 
     def _enough(self, columns: list[FloatArray], of: int, what: str) -> list[FloatArray]:
         count = columns[0].size
