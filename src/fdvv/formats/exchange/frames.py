@@ -66,7 +66,7 @@ def recording_to_pandas(recording: Recording) -> pd.DataFrame:
 
 
 def _series(recording: Recording) -> Iterator[tuple[tuple[Any, ...], Stream, FloatArray]]:
-    """Give the first eight COLUMNS, stream and values of every stream, of a marker for each axis."""
+    """Return the first eight COLUMNS, stream and values of every stream, of a marker for each axis."""
     for take in recording.takes:
         velocity_mm_s = np.nan if take.velocity_mm_s is None else float(take.velocity_mm_s)
         for stream in take.streams:
