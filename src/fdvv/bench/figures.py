@@ -296,7 +296,8 @@ def plot_averages(processed: Processed, simulated: bool = False) -> Figure:
     panels = fig.subplots(1, len(strokes), sharex=True, sharey=True, squeeze=False)[0]
     colours = style.velocity_colours(c.velocity_mm_s for c in processed.curves)
     for ax, stroke in zip(panels, strokes, strict=True):
-        _draw_probe(ax, processed, stroke)
+        if processed.probe:
+            ax.plot(processed.probe.displacement_mm, processed.probe.force_cN(stroke), **PROBE)
         for curve in processed.curves:
             if curve.stroke is stroke:
                 colour = colours[curve.velocity_mm_s]
@@ -311,10 +312,3 @@ def plot_averages(processed: Processed, simulated: bool = False) -> Figure:
     handles += style.band_handles(c.presses for c in processed.curves)
     fig.legend(handles, [str(h.get_label()) for h in handles], loc="outside lower center", ncols=4)
     return fig
-
-
-def _draw_probe(ax: Axes, processed: Processed, stroke: Stroke) -> None:
-    probe = processed.probe
-    if probe is not None:
-        force_cN = probe.press_cN if stroke is Stroke.PRESS else probe.release_cN
-        ax.plot(probe.displacement_mm, force_cN, **PROBE)

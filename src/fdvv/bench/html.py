@@ -30,21 +30,11 @@ FORCES = ("peak_cN", "valley_cN", "bottom_out_cN", "release_peak_cN", "release_v
 def capture_html(recorded: RecordedModel) -> str:
     """Write the report as HTML. Needs matplotlib (BuildError without it)."""
     model = recorded.model
-    sections = [
-        _streams(recorded),
-        _clocks(recorded),
-        _force(recorded),
-        _paths(recorded),
-        _presses(recorded),
-        _registration(recorded),
-        _curves(recorded),
-        _vibration(recorded),
-        _model(recorded),
-    ]
+    parts = (_streams, _clocks, _force, _paths, _presses, _registration, _curves, _vibration, _model)
+    present = [section for part in parts if (section := part(recorded)) is not None]
     simulated = "the takes come from the twin; no hardware was used" if model.provenance.simulated else None
     footer = f"fdvv {__version__}; {'; '.join(model.provenance.assumptions)}."
     summary = f"{model.provenance.source}: {used_and_left_out(recorded.processed)}."
-    present = [section for section in sections if section is not None]
     return render_html(f"{model.name}: from recording to model", summary, present, footer, simulated)
 
 

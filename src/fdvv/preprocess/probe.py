@@ -45,9 +45,11 @@ class Probe:
     open_mm: tuple[float, ...]
     probes: int
 
+    def force_cN(self, stroke: Stroke) -> FloatArray:
+        return self.press_cN if stroke is Stroke.PRESS else self.release_cN
+
     def curve(self, stroke: Stroke) -> CurveOfForce:
-        force = self.press_cN if stroke is Stroke.PRESS else self.release_cN
-        return table_curve(self.displacement_mm, force)
+        return table_curve(self.displacement_mm, self.force_cN(stroke))
 
     def rest_mm(self, force_cN: float) -> float:
         """Return how deep the cap sinks under a resting finger of a given force."""

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.io.text import cells
-from fdvv.recording.reading import Reading, counted, number, refusal, rising, unlike
+from fdvv.recording.reading import Reading, counted, number, refusal, rising, told, unlike
 from fdvv.recording.types import Quantity, Stream
 from fdvv.units import FloatArray
 
@@ -27,6 +27,7 @@ LABELS = ("type", "name", "id", "parent")
 EXPORT = "export it again from Motive, with header information and the markers"
 ROUNDED_s = 0.00055
 """Times are printed to a millisecond at some rates, to a microsecond at others."""
+_AXES = re.compile(r"\s*frame\s*,\s*time", re.IGNORECASE)
 _BEFORE_NOON = {"am", "a.m.", "de."}
 _AFTER_NOON = {"pm", "p.m.", "du."}
 """Halves of the day as English and Hungarian Windows write them."""
@@ -80,7 +81,7 @@ def read_head(source: object, lines: Sequence[str]) -> MotiveHead:
     first = cells(lines[0], ",")
     pairs = {key.strip(): value.strip() for key, value in zip(first[::2], first[1::2], strict=False)}
     _check(source, pairs)
-    at = next((i for i, line in enumerate(lines[1:30], 1) if _is_axes(line)), None)
+    at = next((i for i, line in enumerate(lines[1:30], 1) if _AXES.match(line)), None)
     if at is None:
         raise refusal(source, "line 1 to 30", "no line begins with Frame,Time", EXPORT)
     axes = [cell.strip().upper() for cell in cells(lines[at], ",")]
@@ -108,11 +109,6 @@ def _check(source: object, pairs: Mapping[str, str]) -> None:
         raise refusal(source, "line 1", reason, EXPORT)
 
 
-def _is_axes(line: str) -> bool:
-    found = [cell.strip().lower() for cell in line.split(",", 2)]
-    return found[0] == "frame" and len(found) > 1 and found[1].startswith("time")
-
-
 def _rows(rows: list[list[str]], width: int) -> tuple[list[str], list[str], list[str]]:
     """Return kinds, names and components per column; version 1.21 does not say which row is which."""
     rows = [row + [""] * (width - len(row)) for row in rows]
@@ -120,9 +116,8 @@ def _rows(rows: list[list[str]], width: int) -> tuple[list[str], list[str], list
     blank = [""] * width
     bare = [row for row in rows if row[1].strip().lower() not in LABELS]
     components = bare.pop() if bare else blank
-    kinds = labelled["type"] if "type" in labelled else (bare[0] if bare else blank)
-    names = labelled["name"] if "name" in labelled else (bare[1] if len(bare) > 1 else blank)
-    return kinds, names, components
+    kinds, names, *_ = [*bare, blank, blank]
+    return labelled.get("type", kinds), labelled.get("name", names), components
 
 
 def _triples(kinds: list[str], names: list[str], components: list[str], axes: list[str]) -> list[Triple]:
@@ -173,8 +168,7 @@ def read_motive(source: Path, lines: Sequence[str]) -> Reading:
         raise refusal(source, f"line {head.first_row + 1}", "it holds no frame", EXPORT)
     t_s, notes = _times(head, table[:, 0], table[:, 1])
     keep = rising(t_s)
-    dropped = int(keep.size - keep.sum())
-    warnings += notes + ([f"{counted(dropped, 'frame')} left out: the times do not rise"] if dropped else [])
+    warnings += notes + told(int((~keep).sum()), "frame", "left out: the times do not rise")
     warnings += _frames(head, table[:, 0])
     start = head.pairs.get("Capture Start Time", "")
     begun = made(start)
@@ -215,11 +209,11 @@ def _table(head: MotiveHead, lines: Sequence[str]) -> tuple[FloatArray, list[str
         if len(found) == head.columns and not np.isnan(values[:2]).any():
             rows.append(values)
     table = np.array(rows, dtype=np.float64).reshape(len(rows), head.columns)
-    warnings = [f"{counted(bad, 'cell')} of no usable number read as gaps"] if bad else []
-    warnings += [f"{counted(short, 'row')} cut short left out"] if short else []
+    warnings = told(bad, "cell", "of no usable number read as gaps") + told(
+        short, "row", "cut short left out"
+    )
     lost = len(body) - short - len(rows)
-    warnings += [f"{counted(lost, 'row')} without a frame number and a time left out"] if lost else []
-    return table, warnings
+    return table, warnings + told(lost, "row", "without a frame number and a time left out")
 
 
 def _fast(body: Sequence[str], columns: int, timecode: bool) -> FloatArray | None:
@@ -255,8 +249,7 @@ def _times(head: MotiveHead, frame: FloatArray, printed_s: FloatArray) -> tuple[
 
 
 def _frames(head: MotiveHead, frame: FloatArray) -> list[str]:
-    missing = int(np.sum(np.maximum(np.diff(frame) - 1, 0)))
-    warnings = [f"{counted(missing, 'frame')} missing in between"] if missing else []
+    warnings = told(int(np.sum(np.maximum(np.diff(frame) - 1, 0))), "frame", "missing in between")
     stated = head.pairs.get("Total Exported Frames", "")
     if stated.isdigit() and int(stated) != frame.size:
         warnings.append(f"the head tells of {counted(int(stated), 'frame')}, {frame.size} are there")

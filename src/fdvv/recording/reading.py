@@ -71,3 +71,8 @@ def unlike(streams: Iterable[Stream]) -> tuple[Stream, ...]:
 def counted(number: int, noun: str) -> str:
     """Write a number of things: 1 line, 2 lines."""
     return f"{number} {noun if number == 1 else noun + 's'}"
+
+
+def told(number: int, noun: str, fault: str) -> list[str]:
+    """Return a warning of so many things; none if there are none."""
+    return [f"{counted(number, noun)} {fault}"] if number else []
