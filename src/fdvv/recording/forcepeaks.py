@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.recording.reading import Reading, refusal, told
+from fdvv.recording.reading import Reading, counted_warning, refusal
 from fdvv.recording.types import Mark, Quantity, Stream
 from fdvv.units import FloatArray
 
@@ -49,7 +49,7 @@ def read_forcepeaks(source: Path, lines: Sequence[str]) -> Reading:
     for match in found:
         if match:
             rows[match[1]].append((int(match[2]), int(match[3])))
-    warnings = told(found.count(None), "line", "garbled and left out")
+    warnings = counted_warning(found.count(None), "line", "garbled and left out")
     if not rows["S"]:
         raise refusal(source, "whole file", "it holds no beat")
     marks = [Mark(name, CLOCK, ms / 1000) for letter, name in MARKS.items() for _, ms in rows[letter]]

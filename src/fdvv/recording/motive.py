@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.io.text import cells
-from fdvv.recording.reading import Reading, counted, number, refusal, rising, told, unlike
+from fdvv.recording.reading import Reading, counted, counted_warning, number, refusal, rising, unlike
 from fdvv.recording.types import Quantity, Stream
 from fdvv.units import FloatArray
 
@@ -168,7 +168,7 @@ def read_motive(source: Path, lines: Sequence[str]) -> Reading:
         raise refusal(source, f"line {head.first_row + 1}", "it holds no frame", EXPORT)
     t_s, notes = _times(head, table[:, 0], table[:, 1])
     keep = rising(t_s)
-    warnings += notes + told(int((~keep).sum()), "frame", "left out: the times do not rise")
+    warnings += notes + counted_warning(int((~keep).sum()), "frame", "left out: the times do not rise")
     warnings += _frames(head, table[:, 0])
     start = head.pairs.get("Capture Start Time", "")
     begun = made(start)
@@ -209,11 +209,10 @@ def _table(head: MotiveHead, lines: Sequence[str]) -> tuple[FloatArray, list[str
         if len(found) == head.columns and not np.isnan(values[:2]).any():
             rows.append(values)
     table = np.array(rows, dtype=np.float64).reshape(len(rows), head.columns)
-    warnings = told(bad, "cell", "of no usable number read as gaps") + told(
-        short, "row", "cut short left out"
-    )
+    warnings = counted_warning(bad, "cell", "of no usable number read as gaps")
+    warnings += counted_warning(short, "row", "cut short left out")
     lost = len(body) - short - len(rows)
-    return table, warnings + told(lost, "row", "without a frame number and a time left out")
+    return table, warnings + counted_warning(lost, "row", "without a frame number and a time left out")
 
 
 def _fast(body: Sequence[str], columns: int, timecode: bool) -> FloatArray | None:
@@ -249,7 +248,7 @@ def _times(head: MotiveHead, frame: FloatArray, printed_s: FloatArray) -> tuple[
 
 
 def _frames(head: MotiveHead, frame: FloatArray) -> list[str]:
-    warnings = told(int(np.sum(np.maximum(np.diff(frame) - 1, 0))), "frame", "missing in between")
+    warnings = counted_warning(int(np.sum(np.maximum(np.diff(frame) - 1, 0))), "frame", "missing in between")
     stated = head.pairs.get("Total Exported Frames", "")
     if stated.isdigit() and int(stated) != frame.size:
         warnings.append(f"the head tells of {counted(int(stated), 'frame')}, {frame.size} are there")

@@ -73,6 +73,6 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun if number == 1 else noun + 's'}"
 
 
-def told(number: int, noun: str, fault: str) -> list[str]:
+def counted_warning(number: int, noun: str, fault: str) -> list[str]:
     """Return a warning of so many things; none if there are none."""
     return [f"{counted(number, noun)} {fault}"] if number else []

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.io.text import cells, sniff_separator
-from fdvv.recording.reading import Reading, counted, number, refusal, rising, told, unlike
+from fdvv.recording.reading import Reading, counted, counted_warning, number, refusal, rising, unlike
 from fdvv.recording.types import Quantity, Stream
 from fdvv.units import FloatArray, GRAM_FORCE_cN
 
@@ -118,7 +118,7 @@ def read_table(source: Path, lines: Sequence[str]) -> Reading:
     keep = rising(t_s)
     if keep.sum() < 2:
         raise refusal(source, f"line {at + 2}", "it holds no two rows with rising times", NAME_THEM)
-    warnings = told(int((~keep).sum()), "row", "left out: no time, or one that does not rise")
+    warnings = counted_warning(int((~keep).sum()), "row", "left out: no time, or one that does not rise")
     found = {i: read_title(title) for i, title in enumerate(titles) if i != clock}
     unread = [repr(titles[i][:30]) for i, title in found.items() if title is None and titles[i].strip()]
     if unread:
@@ -201,7 +201,7 @@ def read_counts(source: Path, lines: Sequence[str], rate_Hz: float | None) -> Re
     warnings = ["the numbers are counts of a converter whose scale nobody stated"]
     if rate_Hz is None:
         warnings.append(f"the rate of {rate:g} Hz is that of the file's name")
-    warnings += told(int(np.isnan(values).any(axis=1).sum()), "line", "of no number read as gaps")
+    warnings += counted_warning(int(np.isnan(values).any(axis=1).sum()), "line", "of no number read as gaps")
     most = np.nanmax(np.abs(values))
     if bits and most >= 2**bits:
         warnings.append(f"the name tells of {bits} bits, but the numbers reach {most:.0f}")
