@@ -10,7 +10,7 @@ This is the only place that converts, in both directions.
 
 from __future__ import annotations
 
-from typing import overload
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -18,59 +18,38 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 """Numbers of double precision; (n,) where no other shape is stated."""
 
+Value = TypeVar("Value", float, FloatArray)
+"""One number or an array of them: what is converted stays what it was."""
+
 GRAM_FORCE_cN = 0.980665
 """One gram-force in centinewtons, exact by the definition of standard gravity (9.80665 m/s²)."""
 
 
-@overload
-def cN_from_gf(force_gf: float) -> float: ...
-@overload
-def cN_from_gf(force_gf: FloatArray) -> FloatArray: ...
-def cN_from_gf(force_gf: float | FloatArray) -> float | FloatArray:
+def cN_from_gf(force_gf: Value) -> Value:
     """Convert gram-force to centinewtons."""
     return force_gf * GRAM_FORCE_cN
 
 
-@overload
-def gf_from_cN(force_cN: float) -> float: ...
-@overload
-def gf_from_cN(force_cN: FloatArray) -> FloatArray: ...
-def gf_from_cN(force_cN: float | FloatArray) -> float | FloatArray:
+def gf_from_cN(force_cN: Value) -> Value:
     """Convert centinewtons to gram-force."""
     return force_cN / GRAM_FORCE_cN
 
 
-@overload
-def N_from_cN(force_cN: float) -> float: ...
-@overload
-def N_from_cN(force_cN: FloatArray) -> FloatArray: ...
-def N_from_cN(force_cN: float | FloatArray) -> float | FloatArray:
+def N_from_cN(force_cN: Value) -> Value:
     """Convert centinewtons to newtons."""
     return force_cN * 0.01
 
 
-@overload
-def cN_from_N(force_N: float) -> float: ...
-@overload
-def cN_from_N(force_N: FloatArray) -> FloatArray: ...
-def cN_from_N(force_N: float | FloatArray) -> float | FloatArray:
+def cN_from_N(force_N: Value) -> Value:
     """Convert newtons to centinewtons."""
     return force_N * 100.0
 
 
-@overload
-def m_from_mm(length_mm: float) -> float: ...
-@overload
-def m_from_mm(length_mm: FloatArray) -> FloatArray: ...
-def m_from_mm(length_mm: float | FloatArray) -> float | FloatArray:
+def m_from_mm(length_mm: Value) -> Value:
     """Convert millimetres (or mm/s, mm/s²) to metres (m/s, m/s²)."""
     return length_mm * 0.001
 
 
-@overload
-def mm_from_m(length_m: float) -> float: ...
-@overload
-def mm_from_m(length_m: FloatArray) -> FloatArray: ...
-def mm_from_m(length_m: float | FloatArray) -> float | FloatArray:
+def mm_from_m(length_m: Value) -> Value:
     """Convert metres (or m/s, m/s²) to millimetres (mm/s, mm/s²)."""
     return length_m * 1000.0
