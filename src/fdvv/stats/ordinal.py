@@ -112,7 +112,9 @@ def ordinal_model(
     if chosen < FEWEST_NODES:
         raise ModelError(f"the quadrature needs at least {FEWEST_NODES} nodes, got {chosen}")
     fit = fitted(data, chosen)
-    effects = _effects(names, fit)
+    effects = tuple(
+        _effect(*row) for row in zip(names, fit.point.effects.tolist(), _errors(fit), strict=True)
+    )
     sd, correlation = _spread(fit.point.factor)
     return OrdinalModel(
         people=people,
@@ -141,12 +143,11 @@ def _check(columns: FloatArray, names: Sequence[str], slope: str | None) -> None
         raise ModelError(f"there is no predictor {slope!r} among {', '.join(names)}")
 
 
-def _effects(names: Sequence[str], fit: OrdinalFit) -> tuple[OrdinalEffect, ...]:
-    first = len(fit.point.thresholds)
-    variances = np.diag(fit.covariance)[first : first + len(names)]
-    errors = np.sqrt(np.where(variances > 0, variances, np.nan))
-    rows = zip(names, fit.point.effects.tolist(), errors.tolist(), strict=True)
-    return tuple(_effect(*row) for row in rows)
+def _errors(fit: OrdinalFit) -> list[float]:
+    """Return the standard errors of the effects, nan where the likelihood does not bend."""
+    first, count = len(fit.point.thresholds), len(fit.point.effects)
+    variances = np.diag(fit.covariance)[first : first + count]
+    return np.sqrt(np.where(variances > 0, variances, np.nan)).tolist()
 
 
 def _spread(factor: FloatArray) -> tuple[tuple[float, ...], float | None]:

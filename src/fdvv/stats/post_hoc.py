@@ -51,18 +51,17 @@ def post_hoc(
     found = complete_scores(scores, ("person", "condition"))
     if len(names) != found.shape[1] or len(set(names)) != len(names):
         raise ModelError(f"{found.shape[1]} conditions need as many different names, got {list(names)}")
-    pairs = _pairs(names, against)
-    tested = [_paired(found[:, names.index(a)] - found[:, names.index(b)], f"{a} and {b}") for a, b in pairs]
-    p = [t_and_p[1] for _, *t_and_p in tested]
-    corrected = zip(bonferroni(p), holm(p), strict=True)
-    rows = zip(pairs, tested, corrected, strict=True)
+    column = dict(zip(names, found.T, strict=True))
+    pairs = pairs_of(names, against)
+    tests = [_paired(column[a] - column[b], f"{a} and {b}") for a, b in pairs]
+    p = [test[2] for test in tests]
+    rows = zip(pairs, tests, bonferroni(p), holm(p), strict=True)
     return tuple(
         PairedTest(
-            a, b, difference, t, found.shape[0] - 1, p, *both,
-            cohen_dz(found[:, names.index(a)] - found[:, names.index(b)], seed),
-            reduction(found[:, names.index(a)], found[:, names.index(b)], seed),
+            a, b, difference, t, len(found) - 1, p, bonferroni_p, holm_p,
+            cohen_dz(column[a] - column[b], seed), reduction(column[a], column[b], seed),
         )
-        for (a, b), (difference, t, p), both in rows
+        for (a, b), (difference, t, p), bonferroni_p, holm_p in rows
     )  # fmt: skip
 
 
@@ -75,14 +74,13 @@ def holm(p: Sequence[float]) -> tuple[float, ...]:
     """Correct p step by step from the smallest (Holm 1979): never larger than Bonferroni's, as safe."""
     order = np.argsort(p, kind="stable")
     corrected = np.empty(len(p))
-    highest = 0.0
-    for rank, place in enumerate(order):
-        highest = max(highest, min(1.0, (len(p) - rank) * p[place]))
-        corrected[place] = highest
+    steps = np.arange(len(p), 0, -1) * np.asarray(p, dtype=np.float64)[order]
+    corrected[order] = np.maximum.accumulate(np.minimum(1.0, steps))
     return tuple(corrected.tolist())
 
 
-def _pairs(names: Sequence[str], against: str | None) -> list[tuple[str, str]]:
+def pairs_of(names: Sequence[str], against: str | None) -> list[tuple[str, str]]:
+    """List all pairs, or those of one condition, as the first. Raises ModelError on an unknown one."""
     if against is None:
         return list(combinations(names, 2))
     if against not in names:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.stats.effect_size import CONFIDENCE, complete_scores
-from fdvv.stats.post_hoc import holm
+from fdvv.stats.post_hoc import holm, pairs_of
 from fdvv.units import FloatArray
 
 CHUNK_BYTES = 64_000_000
@@ -139,23 +139,17 @@ def signed_rank(differences: npt.ArrayLike, zeros: Zeros = "wilcoxon") -> Signed
         raise ModelError(
             "a signed-rank test needs at least one person with a difference, none of it infinite"
         )
-    many = signed_ranks(there[np.newaxis], zeros)
+    tests = {name: float(column[0]) for name, column in vars(signed_ranks(there[np.newaxis], zeros)).items()}
     shift, low, high = _shift(there)
     return SignedRank(
         n=there.size,
         zeros=int(np.sum(_snapped(there) == 0)),
         missing=found.size - there.size,
-        w_plus=float(many.w_plus[0]),
-        w_minus=float(many.w_minus[0]),
-        statistic=float(min(many.w_plus[0], many.w_minus[0])),
-        z=float(many.z[0]),
-        p_asymptotic=float(many.p_asymptotic[0]),
-        p_corrected=float(many.p_corrected[0]),
-        p_exact=float(many.p_exact[0]),
-        effect=float(many.effect[0]),
+        statistic=min(tests["w_plus"], tests["w_minus"]),
         shift=shift,
         low=low,
         high=high,
+        **tests,
     )
 
 
@@ -280,14 +274,8 @@ def ranked_pairs(
     found = np.asarray(scores, dtype=np.float64)
     if found.ndim != 2 or len(names) != found.shape[1] or len(set(names)) != len(names):
         raise ModelError(f"scores of shape {found.shape} need as many different names, got {list(names)}")
-    if against is not None and against not in names:
-        raise ModelError(f"there is no condition {against!r} among {', '.join(names)}")
-    firsts = names if against is None else [against]
-    places = [(names.index(a), j) for a in firsts for j in range(len(names)) if names[j] != a]
-    places = [(i, j) for i, j in places if against is not None or i < j]
-    tests = [signed_rank(found[:, i] - found[:, j], zeros) for i, j in places]
+    column = dict(zip(names, found.T, strict=True))
+    pairs = pairs_of(names, against)
+    tests = [signed_rank(column[first] - column[second], zeros) for first, second in pairs]
     corrected = holm([test.p_exact for test in tests])
-    return tuple(
-        RankPair(names[i], names[j], test, p)
-        for (i, j), test, p in zip(places, tests, corrected, strict=True)
-    )
+    return tuple(RankPair(*pair, test, p) for pair, test, p in zip(pairs, tests, corrected, strict=True))

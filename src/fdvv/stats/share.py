@@ -118,27 +118,6 @@ def _counts(successes: npt.ArrayLike, n: npt.ArrayLike) -> tuple[FloatArray, Flo
     return k, n
 
 
-@dataclass(frozen=True, eq=False)
-class _Counts:
-    """How many people had more than 0, 1, ... successes, failures and answers."""
-
-    successes: FloatArray
-    failures: FloatArray
-    answers: FloatArray
-
-    def log_likelihood(self, mean: float, alike: float) -> float:
-        """Return it without the binomial coefficients; alike : 1 / (1 + a + b) of the beta distribution."""
-        steps = np.arange(self.answers.size) * alike
-        rest = 1.0 - alike
-        with np.errstate(divide="ignore", invalid="ignore"):
-            parts = (
-                _times(self.successes, np.log(mean * rest + steps))
-                + _times(self.failures, np.log((1 - mean) * rest + steps))
-                - _times(self.answers, np.log(rest + steps))
-            )
-        return float(parts)
-
-
 def beta_binomial_interval(successes: FloatArray, n: FloatArray) -> tuple[float, float]:
     """Return the bounds of the mean share by profile likelihood; 0 or 1 where nothing bounds it."""
     from scipy.optimize import brentq
@@ -172,31 +151,35 @@ def beta_binomial_fit(successes: FloatArray, n: FloatArray) -> tuple[float, floa
     return mean, _best_alike(counts, mean)
 
 
-def _profile(counts: _Counts, mean: float) -> float:
-    return counts.log_likelihood(mean, _best_alike(counts, mean))
+def _profile(counts: FloatArray, mean: float) -> float:
+    return _log_likelihood(counts, mean, _best_alike(counts, mean))
 
 
-def _best_alike(counts: _Counts, mean: float) -> float:
+def _best_alike(counts: FloatArray, mean: float) -> float:
     from scipy.optimize import minimize_scalar
 
-    found = minimize_scalar(
-        lambda alike: -counts.log_likelihood(mean, alike),
-        bounds=(0.0, MOST_ALIKE),
-        method="bounded",
-        options={"xatol": 1e-10},
-    )
-    ends = (0.0, MOST_ALIKE, float(found.x))
-    return max(ends, key=lambda alike: counts.log_likelihood(mean, alike))
+    def falling(alike: float) -> float:
+        return -_log_likelihood(counts, mean, alike)
+
+    found = minimize_scalar(falling, bounds=(0.0, MOST_ALIKE), method="bounded", options={"xatol": 1e-10})
+    # a bounded search never tries its ends, where all answers are independent, or one person's all alike
+    return min((0.0, MOST_ALIKE, float(found.x)), key=falling)
 
 
-def _counts_above(successes: FloatArray, n: FloatArray) -> _Counts:
+def _counts_above(successes: FloatArray, n: FloatArray) -> FloatArray:
+    """Count the people who had more than 0, 1, ... successes, failures and answers, (3, most answers)."""
     places = np.arange(int(np.max(n)))
-    more = [np.sum(column[:, np.newaxis] > places, axis=0) for column in (successes, n - successes, n)]
-    return _Counts(*(np.asarray(one, dtype=np.float64) for one in more))
+    return np.array([np.sum(c[:, np.newaxis] > places, axis=0) for c in (successes, n - successes, n)], float)
 
 
-def _times(count: FloatArray, log: FloatArray) -> float:
-    return float(np.sum(count * np.where(count > 0, log, 0.0)))
+def _log_likelihood(counts: FloatArray, mean: float, alike: float) -> float:
+    """Return it without the binomial coefficients; alike : 1 / (1 + a + b) of the beta distribution."""
+    steps, rest = np.arange(counts.shape[1]) * alike, 1.0 - alike
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = np.log([mean * rest + steps, (1 - mean) * rest + steps, rest + steps])
+    # a step that nobody reached counts nothing, though its log may be infinite
+    successes, failures, answers = np.sum(counts * np.where(counts > 0, logs, 0.0), axis=1)
+    return float(successes + failures - answers)
 
 
 def clustered_share(
@@ -255,10 +238,13 @@ def _interval(k: FloatArray, n: FloatArray, method: ClusteredMethod, seed: int) 
     if method == "beta-binomial":
         return beta_binomial_interval(k, n)
     if method == "bootstrap":
-        found = bca(_ratio, (k, n), seed)
-        # people too few or too alike to resample: the other method always has bounds
-        return (found.low, found.high) if found.low is not None and found.high is not None else _counted(k, n)
-    return _counted(k, n)
+        found = bca(lambda k, n, axis: np.sum(k, axis=axis) / np.sum(n, axis=axis), (k, n), seed)
+        if found.low is not None and found.high is not None:
+            return found.low, found.high
+        # people too few or too alike to resample: the default method always has bounds
+    counted = effective_answers(k, n)
+    low, high = clopper_pearson(k.sum() / n.sum() * counted, counted)
+    return float(low), float(high)
 
 
 def effective_answers(successes: FloatArray, n: FloatArray) -> float:
@@ -278,13 +264,3 @@ def effective_answers(successes: FloatArray, n: FloatArray) -> float:
     tail = 0.5 + CONFIDENCE / 2
     fewer = float(student.ppf(tail, total - 1) / student.ppf(tail, people - 1)) ** 2
     return min(total, found * (1 - found) / variance * fewer)
-
-
-def _counted(k: FloatArray, n: FloatArray) -> tuple[float, float]:
-    counted = effective_answers(k, n)
-    low, high = clopper_pearson(k.sum() / n.sum() * counted, counted)
-    return float(low), float(high)
-
-
-def _ratio(successes: FloatArray, n: FloatArray, axis: int) -> FloatArray:
-    return np.asarray(np.sum(successes, axis=axis) / np.sum(n, axis=axis))

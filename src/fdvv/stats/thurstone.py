@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from fdvv.stats.share import Share, binomial_p, clopper_pearson
+from fdvv.stats.share import Share, binomial_p, share
 
 AbxRule = Literal["differencing", "independent"]
 """differencing: X is said to be whichever of A and B it is nearer to. independent: each of A, B and X is held
@@ -77,25 +77,23 @@ def share_2afc(d: float) -> float:
 
 def share_duo_trio(d: float) -> float:
     """Return the share of correct answers of duo-trio and of ABX by differencing."""
-    a, b = d / math.sqrt(2), d / math.sqrt(6)
-    return _phi(a) * _phi(b) + _phi(-a) * _phi(-b)
+    return _both_or_neither(d / math.sqrt(2), d / math.sqrt(6))
 
 
 def share_abx_independent(d: float) -> float:
     """Return the share of correct answers of ABX where A, B and X are judged each for itself."""
-    a, b = d / math.sqrt(2), d / 2
-    return _phi(a) * _phi(b) + _phi(-a) * _phi(-b)
+    return _both_or_neither(d / math.sqrt(2), d / 2)
 
 
-def d_prime_of_share(share: float, function: Callable[[float], float], signed: bool = False) -> float:
+def d_prime_of_share(correct: float, function: Callable[[float], float], signed: bool = False) -> float:
     """Turn a share of correct answers into d'; infinite at 1, and 0 below one half where it has no sign."""
     from scipy.optimize import brentq
 
-    if share < 0.5:
-        return -d_prime_of_share(1.0 - share, function) if signed else 0.0
-    if share >= function(FARTHEST):
+    if correct < 0.5:
+        return -d_prime_of_share(1.0 - correct, function) if signed else 0.0
+    if correct >= function(FARTHEST):
         return math.inf
-    return float(brentq(lambda d: function(d) - share, 0.0, FARTHEST, xtol=1e-12))
+    return float(brentq(lambda d: function(d) - correct, 0.0, FARTHEST, xtol=1e-12))
 
 
 def d_prime_of_people(found: Share, protocol: Literal["2afc", "abx", "duo-trio"]) -> DPrime:
@@ -113,16 +111,18 @@ def d_prime_of_people(found: Share, protocol: Literal["2afc", "abx", "duo-trio"]
 
 
 def _transformed(correct: int, n: int, function: Callable[[float], float], name: str, signed: bool) -> DPrime:
-    low, high = (float(one) for one in clopper_pearson(correct, n))
-    d = [d_prime_of_share(one, function, signed) for one in (correct / n, low, high)]
-    p = float(binomial_p(correct, n)) if signed else _better_than_guessing(correct, n)
-    return DPrime(d[0], d[1], d[2], p, int(correct), int(n), f"{name}, Clopper-Pearson")
-
-
-def _better_than_guessing(correct: int, n: int) -> float:
     from scipy.stats import binom
 
-    return float(binom.sf(correct - 1, n, 0.5))
+    found = share(correct, n, "clopper-pearson")
+    d, low, high = (d_prime_of_share(one, function, signed) for one in (found.share, found.low, found.high))
+    # without a sign fewer correct answers than by guessing speak for no difference
+    p = float(binomial_p(correct, n) if signed else binom.sf(correct - 1, n, 0.5))
+    return DPrime(d, low, high, p, int(correct), int(n), f"{name}, Clopper-Pearson")
+
+
+def _both_or_neither(a: float, b: float) -> float:
+    """Return the chance that two judgements are both right, or both wrong: then the answer is right too."""
+    return _phi(a) * _phi(b) + _phi(-a) * _phi(-b)
 
 
 def _phi(x: float) -> float:

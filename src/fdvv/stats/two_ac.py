@@ -78,11 +78,9 @@ def _profile_bounds(counts: tuple[float, float, float], d: float) -> tuple[float
         return -math.inf, math.inf
     limit = float(chi2.ppf(CONFIDENCE, 1))
 
-    def beyond(at: float) -> float:
-        return _deviance(counts, at) - limit
-
     start = min(max(d, -WIDEST), WIDEST)
-    return _bound(beyond, start, -1), _bound(beyond, start, 1)
+    low, high = (_bound(lambda at: _deviance(counts, at) - limit, start, direction) for direction in (-1, 1))
+    return low, high
 
 
 def _bound(beyond: Callable[[float], float], start: float, direction: int) -> float:
@@ -118,15 +116,10 @@ def _deviance(counts: tuple[float, float, float], d: float) -> float:
 def _log_likelihood(counts: tuple[float, float, float], d: float, tau: float) -> float:
     from scipy.special import log_ndtr
 
-    first, equal, second = counts
-    total = 0.0
-    if first:
-        total += first * float(log_ndtr((-tau - d) / ROOT_2))
-    if equal:
-        total += equal * math.log(max(shares_2ac(d, tau)[1], 1e-300))
-    if second:
-        total += second * float(log_ndtr((d - tau) / ROOT_2))
-    return total
+    first, second = (float(log_ndtr(at / ROOT_2)) for at in (-tau - d, d - tau))
+    logs = first, math.log(max(shares_2ac(d, tau)[1], 1e-300)), second
+    # an answer that nobody gave counts nothing, though its log may be infinite
+    return sum(count * log for count, log in zip(counts, logs, strict=True) if count)
 
 
 def _tail(x: float) -> float:
@@ -170,8 +163,7 @@ def _mixed(counts: FloatArray, p: float) -> tuple[DPrime, float] | None:
     """Fit the mixed model; None where it has no maximum that bends."""
     from scipy.special import ndtri
 
-    people = np.repeat(np.arange(len(counts)), counts.sum(axis=1).astype(int))
-    answers = np.concatenate([np.repeat([0, 1, 2], row.astype(int)) for row in counts])
+    people, answers = (np.repeat(at.ravel(), counts.ravel().astype(int)) for at in np.indices(counts.shape))
     fit = fitted(gathered(answers, people, np.empty((len(answers), 0))), NODES)
     lower, upper = fit.point.thresholds
     variance = float(fit.covariance[:2, :2].sum()) / 2
