@@ -27,6 +27,10 @@ class TrialState(StrEnum):
     ABANDONED = "abandoned"
 
 
+OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
+"""States of a trial that is under way."""
+
+
 @dataclass(frozen=True)
 class Score:
     """The value of one objective.
@@ -94,6 +98,11 @@ class Objective:
 
     name: str
     larger_is_better: bool = False
+
+    @property
+    def sign(self) -> float:
+        """What makes smaller better: -1 where larger is."""
+        return -1.0 if self.larger_is_better else 1.0
 
 
 @dataclass(frozen=True)

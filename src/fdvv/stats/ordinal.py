@@ -147,7 +147,7 @@ def _errors(fit: OrdinalFit) -> list[float]:
     """Return the standard errors of the effects, nan where the likelihood does not bend."""
     first, count = len(fit.point.thresholds), len(fit.point.effects)
     variances = np.diag(fit.covariance)[first : first + count]
-    return np.sqrt(np.where(variances > 0, variances, np.nan)).tolist()
+    return list(np.sqrt(np.where(variances > 0, variances, np.nan)).tolist())
 
 
 def _spread(factor: FloatArray) -> tuple[tuple[float, ...], float | None]:

@@ -12,14 +12,13 @@ from fdvv.optimize.engines.gp import log_success
 from fdvv.optimize.engines.gp_model import best_of, finished
 from fdvv.optimize.engines.search import (
     LOCAL,
-    OPEN,
     even_net,
     generator,
     most_wanted,
     sobol_places,
     tried_places,
 )
-from fdvv.optimize.problem import Problem, Trial
+from fdvv.optimize.problem import OPEN, Problem, Trial
 from fdvv.units import FloatArray
 from fdvv_botorch.models import objective_model, tensor, torch_seeded, worth_of
 

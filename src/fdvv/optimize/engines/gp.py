@@ -9,7 +9,6 @@ the best score seen as the answer.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -24,26 +23,25 @@ from fdvv.optimize.engines.gp_model import (
     believed_best,
     best_of,
     finished,
+    fitted_process,
     observed,
     prior_basis,
 )
 from fdvv.optimize.engines.multi_objective import scalar_problem
 from fdvv.optimize.engines.search import (
-    OPEN,
+    SAME,
     even_net,
     generator,
     log_expected_improvement,
-    missing,
     most_wanted,
     random_places,
     sobol_places,
     tried_places,
 )
-from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Problem, Trial, TrialState
 from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
 
-SAME = 1e-6
 REUSED = 0.5
 """Part of the candidates whose dear parameters are those of a design that was built before."""
 
@@ -197,9 +195,7 @@ class GPEngine:
 
     def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
         done = best_of(problem, trials)
-        belief = self._believed(problem, done, len(trials))
-        means, _ = belief.predict(problem.space.to_unit([trial.design for trial in done]))
-        return dict(done[int(np.argmin(means))].design)
+        return self._believed(problem, done, len(trials)).best_of(done)
 
     def _believed(self, problem: Problem, done: Sequence[Trial], now: int) -> Belief:
         scores = observed(problem.space, problem.objectives[0], done)
@@ -272,19 +268,9 @@ class GPExpectedImprovement:
 
 
 def _fitted(X: FloatArray, y: FloatArray, ard: bool) -> Any:
-    try:
-        from sklearn.gaussian_process import GaussianProcessRegressor
-        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-    except ImportError as error:
-        raise missing("gp-ei", "optimize", error) from error
-    length = np.full(X.shape[1] if ard else 1, 0.5)
-    kernel = ConstantKernel(1.0, (1e-3, 1e3)) * Matern(length, (1e-2, 1e2), nu=2.5)
-    kernel += WhiteKernel(0.1, (1e-6, 1e1))
-    model = GaussianProcessRegressor(kernel, n_restarts_optimizer=4, random_state=0)
-    with warnings.catch_warnings():
-        # a length at its bound is a parameter that does not matter, which is no fault
-        warnings.simplefilter("ignore")
-        model.fit(X, y)
+    lengths = np.full(X.shape[1] if ard else 1, 0.5)
+    numbers = (1.0, (1e-3, 1e3)), (lengths, (1e-2, 1e2)), (0.1, (1e-6, 1e1))
+    model = fitted_process("gp-ei", X, y, *numbers, n_restarts_optimizer=4, random_state=0)
     # what is improved upon is the function, not the next noisy score
     model.kernel_.k2.noise_level = 1e-12
     return model

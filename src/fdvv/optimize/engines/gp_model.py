@@ -127,20 +127,22 @@ class Belief:
 
     def predict(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean and SD of f, (n,) each, in the scores' unit; noise is not in it."""
-        mean, root = self._moments(places)
-        prior = self.kernel.diag(places)
-        variance = prior - (root[0] ** 2).sum(axis=0) + (root[1] @ self._solved["cov"] * root[1]).sum(axis=1)
-        return mean, self.scale * np.sqrt(np.maximum(variance, 1e-12))
-
-    def _moments(self, places: FloatArray) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
         from scipy.linalg import solve_triangular
 
-        cross = self.kernel(self.observed.places, places)
+        solved, cross = self._solved, self.kernel(self.observed.places, places)
         now = None if self.observed.trend is None else np.zeros(len(places))
         H = _functions(self.basis, places, now, self.scale)
-        mean = self.centre + self.scale * (H @ self.weights + cross.T @ self._solved["a"])
-        root = solve_triangular(self._solved["L"], cross, lower=True)
-        return mean, (root, H - cross.T @ self._solved["KH"])
+        mean = self.centre + self.scale * (H @ self.weights + cross.T @ solved["a"])
+        root = solve_triangular(solved["L"], cross, lower=True)
+        # what the basis leaves to the weights, whose own doubt comes on top
+        rest = H - cross.T @ solved["KH"]
+        prior = self.kernel.diag(places)
+        variance = prior - (root**2).sum(axis=0) + (rest @ solved["cov"] * rest).sum(axis=1)
+        return mean, self.scale * np.sqrt(np.maximum(variance, 1e-12))
+
+    def best_of(self, done: Sequence[Trial]) -> dict[str, float]:
+        """Return the design of best mean among the trials whose scores were learned from."""
+        return dict(done[int(np.argmin(self.predict(self.observed.places)[0]))].design)
 
     def with_fantasy(self, place: FloatArray) -> Belief:
         """Believe that a trial under way comes out as expected: its mean stays, its spread goes."""
@@ -202,23 +204,38 @@ def _fitted(
     X: FloatArray, y: FloatArray, fixed: FloatArray, priors: tuple[Prior, Prior], starts: int
 ) -> tuple[Any, float]:
     """Fit lengths, signal and what is left as noise; return the kernel without the noise, and the noise."""
-    try:
-        from sklearn.gaussian_process import GaussianProcessRegressor
-        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-    except ImportError as error:
-        raise missing("gp", "optimize", error) from error
     d = X.shape[1]
     signal, noise = priors
     mean = np.array([signal[0], *[np.log(LENGTH[0] * np.sqrt(d))] * d, noise[0]])
     spread = np.array([signal[1], *[LENGTH[1]] * d, noise[1]])
-    kernel = ConstantKernel(1.0, BOUNDS) * Matern(np.exp(mean[1:-1]), BOUNDS, nu=2.5)
-    kernel += WhiteKernel(np.exp(noise[0]), NOISE_BOUNDS)
-    regressor = GaussianProcessRegressor(kernel, alpha=fixed + 1e-8, optimizer=_search(mean, spread, starts))
+    numbers = (1.0, BOUNDS), (np.exp(mean[1:-1]), BOUNDS), (np.exp(noise[0]), NOISE_BOUNDS)
+    search = _search(mean, spread, starts)
+    kernel = fitted_process("gp", X, y, *numbers, alpha=fixed + 1e-8, optimizer=search).kernel_
+    return kernel.k1, float(kernel.k2.noise_level)
+
+
+Bounded = tuple[Any, tuple[float, float]]
+"""Where a search begins, and its bounds."""
+
+
+def fitted_process(
+    part: str, X: FloatArray, y: FloatArray, signal: Bounded, length: Bounded, noise: Bounded, **options: Any
+) -> Any:
+    """Fit scikit-learn's regressor with a Matern-5/2 kernel and white noise; BuildError names part without it.
+
+    options : of the regressor.
+    """
+    try:
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+    except ImportError as error:
+        raise missing(part, "optimize", error) from error
+    kernel = ConstantKernel(*signal) * Matern(*length, nu=2.5) + WhiteKernel(*noise)
+    regressor = GaussianProcessRegressor(kernel, **options)
     with warnings.catch_warnings():
         # a length at its bound is a parameter that does not matter, which is no fault
         warnings.simplefilter("ignore")
-        regressor.fit(X, y)
-    return regressor.kernel_.k1, float(regressor.kernel_.k2.noise_level)
+        return regressor.fit(X, y)
 
 
 def _search(mean: FloatArray, spread: FloatArray, starts: int) -> Callable[..., tuple[FloatArray, float]]:
@@ -234,18 +251,13 @@ def _search(mean: FloatArray, spread: FloatArray, starts: int) -> Callable[..., 
 
         shifts = np.random.default_rng(0).normal(0.0, 1.0, (starts - 1, mean.size))
         begins: Sequence[FloatArray] = [mean, *(mean + spread * shifts)]
-        limits = Bounds(bounds[:, 0], bounds[:, 1])
-        ends = [
-            minimize(
-                cost,
-                np.clip(begin, bounds[:, 0], bounds[:, 1]),
-                jac=True,
-                method="L-BFGS-B",
-                bounds=limits,
-                options={"maxiter": ITERATIONS},
-            )
-            for begin in begins
-        ]
+        how: dict[str, Any] = {
+            "jac": True,
+            "method": "L-BFGS-B",
+            "bounds": Bounds(*bounds.T),
+            "options": {"maxiter": ITERATIONS},
+        }
+        ends = [minimize(cost, np.clip(begin, *bounds.T), **how) for begin in begins]
         best = min(ends, key=lambda end: float(end.fun))
         return best.x, float(best.fun)
 
@@ -258,24 +270,25 @@ def finished(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
     return [t for t in trials if t.state is TrialState.DONE and all(name in t.scores for name in names)]
 
 
+def score_table(objectives: Sequence[Objective], done: Sequence[Trial]) -> tuple[FloatArray, FloatArray]:
+    """Return scores, turned so that smaller is better, and their errors, (n, m) each; nan where unknown."""
+    scores = [trial.scores[one.name] for trial in done for one in objectives]
+    # NumPy makes nan of an error that is None
+    columns = np.array([(score.value, score.error) for score in scores], dtype=np.float64)
+    values, errors = columns.reshape(len(done), len(objectives), 2).transpose(2, 0, 1)
+    return values * [one.sign for one in objectives], errors
+
+
 def observed(space: DesignSpace, objective: Objective, done: Sequence[Trial]) -> Observed:
     """Gather the scores of finished trials, turned so that smaller is better."""
-    sign = -1.0 if objective.larger_is_better else 1.0
-    scores = [trial.scores[objective.name] for trial in done]
-    return Observed(
-        space.to_unit([trial.design for trial in done]),
-        np.array([sign * score.value for score in scores]),
-        np.array([np.nan if score.error is None else score.error for score in scores]),
-    )
+    values, errors = score_table([objective], done)
+    return Observed(space.to_unit([trial.design for trial in done]), values[:, 0], errors[:, 0].copy())
 
 
 def believed_best(problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
     """Recommend the tried design whose posterior mean is best. Raises ModelError."""
     done = best_of(problem, trials)
-    means, _ = believe(observed(problem.space, problem.objectives[0], done)).predict(
-        problem.space.to_unit([trial.design for trial in done])
-    )
-    return dict(done[int(np.argmin(means))].design)
+    return believe(observed(problem.space, problem.objectives[0], done)).best_of(done)
 
 
 class RecommendsBelievedBest:
@@ -306,22 +319,17 @@ def prior_basis(problem: Problem) -> Basis | None:
     done = finished(problem, problem.prior)
     if len(done) < 3:
         return None
-    belief = _learned(*_rows(problem, done))
+    few = [done[i] for i in _spread(len(done), MOST)]
+    scores = observed(problem.space, problem.objectives[0], few)
+    # as bytes, by which what was learned of them is kept
+    rows = (column.tobytes() for column in (scores.places, scores.values, scores.errors))
+    belief = _learned(*rows, len(problem.space.names))
     centre = float(np.mean(belief.predict(belief.observed.places)[0]))
 
     def of(places: FloatArray) -> FloatArray:
         return np.asarray(belief.predict(places)[0] - centre)[:, None]
 
     return Basis(of, np.array([WEIGHT]), np.array([SPREAD]))
-
-
-def _rows(problem: Problem, done: Sequence[Trial]) -> tuple[bytes, bytes, bytes, int]:
-    """Write the trials as bytes, by which what was learned of them is kept."""
-    few = [done[i] for i in _spread(len(done), MOST)]
-    scores = observed(problem.space, problem.objectives[0], few)
-    rows = (np.ascontiguousarray(a).tobytes() for a in (scores.places, scores.values, scores.errors))
-    places, values, errors = rows
-    return places, values, errors, len(problem.space.names)
 
 
 @lru_cache(maxsize=64)

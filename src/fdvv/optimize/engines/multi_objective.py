@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.optimize.engines.gp_model import finished
+from fdvv.optimize.engines.gp_model import finished, score_table
 from fdvv.optimize.engines.search import generator
 from fdvv.optimize.problem import Objective, Problem, Score, Trial
 from fdvv.units import FloatArray
@@ -30,7 +30,7 @@ def scalar_problem(problem: Problem, trials: Sequence[Trial]) -> tuple[Problem, 
     both = [*done, *others]
     if not both:
         return replace(problem, objectives=(SCALAR,), prior=()), []
-    values, errors = _table(problem, both)
+    values, errors = score_table(problem.objectives, both)
     low, span = values.min(axis=0), np.ptp(values, axis=0)
     span = np.where(span > 0, span, 1.0)
     one = [
@@ -38,15 +38,6 @@ def scalar_problem(problem: Problem, trials: Sequence[Trial]) -> tuple[Problem, 
         for trial, score in zip(both, _joined((values - low) / span, errors / span, weights), strict=True)
     ]
     return replace(problem, objectives=(SCALAR,), prior=tuple(one[len(done) :])), one[: len(done)]
-
-
-def _table(problem: Problem, done: Sequence[Trial]) -> tuple[FloatArray, FloatArray]:
-    """Return scores, turned so that smaller is better, and their errors, (n, m) each; nan where unknown."""
-    signs = np.array([-1.0 if one.larger_is_better else 1.0 for one in problem.objectives])
-    scores = [[trial.scores[one.name] for one in problem.objectives] for trial in done]
-    values = np.array([[score.value for score in row] for row in scores]) * signs
-    errors = [[np.nan if score.error is None else score.error for score in row] for row in scores]
-    return values, np.array(errors)
 
 
 def _joined(values: FloatArray, errors: FloatArray, weights: FloatArray) -> list[Score]:
@@ -73,9 +64,7 @@ class ParetoFront:
 
     def values(self) -> FloatArray:
         """Return the scores, (n, m), in the order of the problem's objectives."""
-        names = [one.name for one in self.problem.objectives]
-        rows = [[trial.scores[name].value for name in names] for trial in self.trials]
-        return np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
+        return self._turned() * [one.sign for one in self.problem.objectives]
 
     def knee(self) -> Trial:
         """Choose where giving up a little of one objective gains least of the others.
@@ -101,16 +90,12 @@ class ParetoFront:
         limits : the worst value allowed of an objective. InputError if no trial of the front is within.
         """
         self._known(limits)
-        names = [one.name for one in self.problem.objectives]
-        signs = self._signs()
-        values = self.values() * signs
-        inside = np.ones(len(values), dtype=np.bool_)
-        for name, limit in limits.items():
-            i = names.index(name)
-            inside &= values[:, i] <= limit * signs[i]
+        objectives, values = self.problem.objectives, self._turned()
+        bounds = [limits[one.name] * one.sign if one.name in limits else np.inf for one in objectives]
+        inside = np.all(values <= bounds, axis=1)
         if not inside.any():
             raise InputError("limits", "all", "no trial of the front is within", "loosen one of them")
-        free = next((i for i, name in enumerate(names) if name not in limits), 0)
+        free = next((i for i, one in enumerate(objectives) if one.name not in limits), 0)
         return self.trials[int(np.argmin(np.where(inside, values[:, free], np.inf)))]
 
     def _known(self, named: Mapping[str, float]) -> None:
@@ -119,12 +104,12 @@ class ParetoFront:
             if name not in names:
                 raise InputError("objective", name, "is none of this run", f"use {', '.join(names)}")
 
-    def _signs(self) -> FloatArray:
-        return np.array([-1.0 if one.larger_is_better else 1.0 for one in self.problem.objectives])
+    def _turned(self) -> FloatArray:
+        return score_table(self.problem.objectives, self.trials)[0]
 
     def _normal(self) -> FloatArray:
         """Return scores from 0, best of the front, to 1, worst of it."""
-        values = self.values() * self._signs()
+        values = self._turned()
         span = np.ptp(values, axis=0)
         return np.asarray((values - values.min(axis=0)) / np.where(span > 0, span, 1.0))
 
@@ -135,10 +120,8 @@ def pareto_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
     Equal ones all stay. Noise makes a front look better than it is: measure a chosen design again.
     """
     done = finished(problem, trials)
-    signs = np.array([-1.0 if one.larger_is_better else 1.0 for one in problem.objectives])
-    rows = [[trial.scores[one.name].value for one in problem.objectives] for trial in done]
-    values = np.array(rows, dtype=np.float64).reshape(len(done), len(signs)) * signs
+    values, _ = score_table(problem.objectives, done)
     beaten = [bool(np.any(np.all(values <= row, axis=1) & np.any(values < row, axis=1))) for row in values]
-    kept = [(tuple(row), trial) for row, trial, out in zip(values, done, beaten, strict=True) if not out]
-    kept.sort(key=lambda pair: (pair[0], pair[1].number))
-    return ParetoFront(problem, tuple(trial for _, trial in kept))
+    rows = zip(values.tolist(), done, beaten, strict=True)
+    kept = sorted(((row, t.number, t) for row, t, out in rows if not out), key=lambda one: one[:2])
+    return ParetoFront(problem, tuple(trial for *_, trial in kept))

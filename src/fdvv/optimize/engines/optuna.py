@@ -14,7 +14,6 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.optimize.engines.gp_model import RecommendsBelievedBest, believed_best, finished
 from fdvv.optimize.engines.search import (
-    OPEN,
     draw_feasible,
     fresh,
     generator,
@@ -23,7 +22,7 @@ from fdvv.optimize.engines.search import (
     sobol_places,
     tried_places,
 )
-from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Problem, Trial, TrialState
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ class TPEEngine(RecommendsBelievedBest):
         with _quiet():
             import optuna
 
-            seed = _seed(problem, trials)
+            seed = int(generator(problem, trials, 2).integers(2**31))
             study = _study(problem, optuna.samplers.TPESampler(seed=seed, n_startup_trials=0))
             for trial in (*prior, *trials):
                 _tell(study, problem, trial)
@@ -155,17 +154,11 @@ def _quiet(*parts: str) -> Iterator[None]:
         optuna.logging.set_verbosity(before)
 
 
-def _seed(problem: Problem, trials: Sequence[Trial]) -> int:
-    return int(generator(problem, trials, 2).integers(2**31))
-
-
 def _study(problem: Problem, sampler: BaseSampler) -> Study:
     import optuna
 
-    direction = optuna.study.StudyDirection
-    directions = [
-        direction.MAXIMIZE if one.larger_is_better else direction.MINIMIZE for one in problem.objectives
-    ]
+    minimize, maximize = optuna.study.StudyDirection.MINIMIZE, optuna.study.StudyDirection.MAXIMIZE
+    directions = [maximize if one.larger_is_better else minimize for one in problem.objectives]
     return optuna.create_study(directions=directions, sampler=sampler)
 
 
@@ -199,7 +192,7 @@ def _tell(study: Study, problem: Problem, trial: Trial) -> None:
 def _infeasible(problem: Problem, common: dict[str, Any], missed: float = 1.0) -> FrozenTrial:
     import optuna
 
-    worst = [-1e9 if one.larger_is_better else 1e9 for one in problem.objectives]
+    worst = [1e9 * one.sign for one in problem.objectives]
     return optuna.trial.create_trial(values=worst, constraints={BROKEN: min(missed, 1e9) or 1.0}, **common)
 
 

@@ -1,6 +1,4 @@
-"""Find what a person likes best from comparisons of two designs.
-
-What comparisons say of designs: a Gaussian process of worth, seen through answers that may err.
+"""What a person likes best, from comparisons: a Gaussian process of worth, seen through answers that may err.
 
 Chu and Ghahramani, Preference learning with Gaussian processes (2005): an answer is the sign of a
 difference of worths plus noise; Laplace's approximation about the most probable worths. Worth has a variance

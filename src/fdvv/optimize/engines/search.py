@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from itertools import islice
 
 import numpy as np
 
 from fdvv.errors import BuildError, InputError
-from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
 
 SAME = 1e-6
 """Two places nearer than this in every parameter, in parts of its range, are one design."""
 ROUNDS, WALKERS = 60, 64
-OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
 Draw = Callable[[int], FloatArray]
 """Draws n more places, (n, d)."""
 
@@ -34,29 +34,15 @@ def holds(space: DesignSpace, places: FloatArray) -> np.ndarray[tuple[int], np.d
 
 def fresh(places: FloatArray, tried: FloatArray) -> FloatArray:
     """Leave out places that were tried or come twice; the order stays."""
-    places = places[_apart(places, np.reshape(tried, (-1, places.shape[1])))]
+    for one in np.reshape(tried, (-1, places.shape[1])):
+        places = places[np.abs(places - one).max(axis=1) >= SAME]
+    # only a place whose first parameter is another's too can come twice: not all pairs need a look
+    order = np.argsort(places[:, 0], kind="stable")
+    near = np.flatnonzero(np.diff(places[order, 0]) < SAME)
     twice = np.zeros(len(places), dtype=np.bool_)
-    for i in np.flatnonzero(~_apart_from_others(places)):
+    for i in np.unique(order[[*near, *near + 1]]):
         twice[i] = np.any(np.abs(places[:i][~twice[:i]] - places[i]).max(axis=1, initial=0.0) < SAME)
     return np.asarray(places[~twice])
-
-
-def _apart(places: FloatArray, tried: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Tell, (n,), which places are none of those tried."""
-    apart = np.ones(len(places), dtype=np.bool_)
-    for one in tried:
-        apart &= np.abs(places - one).max(axis=1) >= SAME
-    return apart
-
-
-def _apart_from_others(places: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Tell, (n,), which places surely come once: their first parameter is nobody else's."""
-    order = np.argsort(places[:, 0], kind="stable")
-    near = np.diff(places[order, 0]) < SAME
-    lonely = np.ones(len(places), dtype=np.bool_)
-    lonely[order[1:]] &= ~near
-    lonely[order[:-1]] &= ~near
-    return lonely
 
 
 def tried_places(space: DesignSpace, trials: Sequence[Trial]) -> FloatArray:
@@ -135,7 +121,7 @@ Acquisition = Callable[[FloatArray], FloatArray]
 
 def even_net(problem: Problem, seed: int) -> FloatArray:
     """Return an even net of places, (n, d), whether they hold the constraints or not."""
-    return SobolDraw(len(problem.space.names), seed)(EVEN)
+    return sobol_draw(len(problem.space.names), seed)(EVEN)
 
 
 def most_wanted(
@@ -178,12 +164,8 @@ def _best(space: DesignSpace, places: FloatArray, worth: Acquisition) -> tuple[F
     if not len(places):
         return places, np.empty(0)
     value = worth(places)
-    found: list[int] = []
-    for i in np.argsort(-value).tolist():
-        if holds(space, places[i : i + 1])[0]:
-            found.append(i)
-        if len(found) == FEW:
-            break
+    holding = (i for i in np.argsort(-value).tolist() if holds(space, places[i : i + 1])[0])
+    found = list(islice(holding, FEW))
     return places[found], value[found]
 
 
@@ -214,24 +196,23 @@ def random_places(problem: Problem, trials: Sequence[Trial], count: int) -> Floa
 
 def sobol_places(problem: Problem, tried: FloatArray, count: int) -> FloatArray:
     """Return the next places (count, d) of the problem's sequence: the first that were not tried."""
-    draw = SobolDraw(len(problem.space.names), problem.seed)
+    draw = sobol_draw(len(problem.space.names), problem.seed)
     # those already tried stand at its beginning and are passed over
     draw_ahead = len(tried) + count
     return draw_feasible(problem, lambda n: draw(max(n, draw_ahead)), tried, count)
 
 
-class SobolDraw:
-    """A scrambled Sobol sequence in d dimensions that is drawn on from call to call."""
+def sobol_draw(dimensions: int, seed: int) -> Draw:
+    """Return a scrambled Sobol sequence that is drawn on from call to call."""
+    from scipy.stats import qmc
 
-    def __init__(self, dimensions: int, seed: int) -> None:
-        from scipy.stats import qmc
+    # a stream of its own: other engines seed their generators with the bare number
+    sequence = qmc.Sobol(dimensions, rng=np.random.default_rng([seed & 0xFFFFFFFF, 1]))
 
-        # a stream of its own: other engines seed their generators with the bare number
-        self._sequence = qmc.Sobol(dimensions, rng=np.random.default_rng([seed & 0xFFFFFFFF, 1]))
-
-    def __call__(self, count: int) -> FloatArray:
-        """Draw the next count places, (count, d)."""
+    def draw(count: int) -> FloatArray:
         with warnings.catch_warnings():
             # its balance asks for powers of two; here points come one by one
             warnings.simplefilter("ignore", UserWarning)
-            return np.asarray(self._sequence.random(count), dtype=np.float64)
+            return np.asarray(sequence.random(count), dtype=np.float64)
+
+    return draw

@@ -10,7 +10,7 @@ from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
 from fdvv.optimize.engines.registry import engine_of, pair_engine_of
-from fdvv.optimize.problem import Answer, Comparison, Engine, Score, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Score, Trial, TrialState
 from fdvv.optimize.run.ledger import Known, Ledger, steps_before
 from fdvv.optimize.run.setup import (
     SETUP_FILE,
@@ -26,7 +26,6 @@ from fdvv.rendering.rig_catalog import RigCatalog
 
 LEDGER_FILE = "trials.jsonl"
 START, PERSON = "start", "person"
-OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
 
 
 class Optimization:
