@@ -115,9 +115,9 @@ def test_every_suggestion_is_found_with_what_was_known_then(tmp_path: Path) -> N
     path = tmp_path / "trials.jsonl"
     filled(path).close()
     found = list(steps_before(path))
-    assert [one.number for _, one in found] == [0, 1, 2, 3, 0, 1]
-    assert [len(known.trials) for known, _ in found] == [0, 1, 2, 3, 4, 4]
-    assert isinstance(found[0][1], Trial)
-    assert found[0][1].design == A
-    assert found[1][0].trials[0].state is TrialState.DONE
-    assert found[5][0].comparisons[0].answer is Answer.EQUAL
+    assert [one.number for *_, one in found] == [0, 1, 2, 3, 0, 1]
+    assert [len(trials) for trials, _, _ in found] == [0, 1, 2, 3, 4, 4]
+    assert isinstance(found[0][2], Trial)
+    assert found[0][2].design == A
+    assert found[1][0][0].state is TrialState.DONE
+    assert found[5][1][0].answer is Answer.EQUAL

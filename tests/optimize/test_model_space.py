@@ -34,7 +34,7 @@ def neutral(names: list[str]) -> dict[str, float]:
 def test_neutral_values_leave_the_button_as_it_is(names: list[str]) -> None:
     space = model_space(CLEAR, names)
     assert neutral_design(space, CLEAR) == neutral(list(space.names))
-    same = model_of(space, CLEAR, neutral_design(space, CLEAR))
+    same = model_of(CLEAR, neutral_design(space, CLEAR))
     for stroke in Stroke:
         for v in (50.0, 125.0, 200.0):
             np.testing.assert_allclose(
@@ -51,28 +51,24 @@ def test_full_fdvv_has_a_scale_for_every_velocity_and_fdv_has_none() -> None:
 
 
 def test_a_velocity_scale_changes_its_own_curves_alone() -> None:
-    space = model_space(CLEAR, ["force_at_100_mm_s_ratio"])
-    made = model_of(space, CLEAR, {"force_at_100_mm_s_ratio": 1.5})
+    made = model_of(CLEAR, {"force_at_100_mm_s_ratio": 1.5})
     for stroke in Stroke:
         np.testing.assert_allclose(made.force_cN(X, 100.0, stroke), 1.5 * CLEAR.force_cN(X, 100.0, stroke))
         np.testing.assert_array_equal(made.force_cN(X, 50.0, stroke), CLEAR.force_cN(X, 50.0, stroke))
 
 
 def test_force_stiffness_and_contrast_are_exact_on_the_curve() -> None:
-    space = model_space(CLEAR, ["force_ratio", "stiffness_cN_mm", "bump_ratio"])
-    made = model_of(space, CLEAR, {"force_ratio": 2.0, "stiffness_cN_mm": 5.0, "bump_ratio": 1.0})
+    made = model_of(CLEAR, {"force_ratio": 2.0, "stiffness_cN_mm": 5.0, "bump_ratio": 1.0})
     np.testing.assert_allclose(made.force_cN(X, 50.0), 2.0 * CLEAR.force_cN(X, 50.0) + 5.0 * X)
-    plain = model_of(space, CLEAR, {"force_ratio": 1.0, "stiffness_cN_mm": 0.0, "bump_ratio": 0.0})
+    plain = model_of(CLEAR, {"force_ratio": 1.0, "stiffness_cN_mm": 0.0, "bump_ratio": 0.0})
     bend = np.diff(plain.force_cN(np.linspace(0.5, 3.5, 9), 50.0), 2)
     np.testing.assert_allclose(bend, 0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("snap_mm", [0.2, 0.8])
 def test_an_added_bump_is_where_and_as_high_as_asked(snap_mm: float) -> None:
-    names = ["bump_cN", "bump_mm", "snap_mm", "bump_ratio"]
-    space = model_space(RED, names)
     design = {"bump_cN": 30.0, "bump_mm": 1.8, "snap_mm": snap_mm, "bump_ratio": 0.0}
-    made, plain = (model_of(space, RED, {**design, "bump_cN": c}) for c in (30.0, 0.0))
+    made, plain = (model_of(RED, {**design, "bump_cN": c}) for c in (30.0, 0.0))
     added = made.force_cN(X, 50.0) - plain.force_cN(X, 50.0)
     assert added.max() == pytest.approx(30.0, abs=0.5)
     assert X[int(added.argmax())] == pytest.approx(1.8, abs=0.07)
@@ -83,34 +79,30 @@ def test_an_added_bump_is_where_and_as_high_as_asked(snap_mm: float) -> None:
 
 
 def test_travel_stretches_everything_along_it() -> None:
-    space = model_space(CLEAR, ["travel_mm"])
-    made = model_of(space, CLEAR, {"travel_mm": 3.0})
+    made = model_of(CLEAR, {"travel_mm": 3.0})
     np.testing.assert_allclose(made.force_cN(0.75 * X, 50.0), CLEAR.force_cN(X, 50.0), rtol=1e-9)
     assert (made.travel_mm, made.actuation_mm) == (3.0, 1.5)
     assert made.vibrations[0].onset_mm == pytest.approx(0.75 * 2.3)
 
 
 def test_a_reset_that_is_not_named_follows_the_actuation() -> None:
-    space = model_space(CLEAR, ["actuation_mm"])
-    early = model_of(space, CLEAR, {"actuation_mm": 1.0})
+    early = model_of(CLEAR, {"actuation_mm": 1.0})
     assert (early.actuation_mm, early.reset_mm) == (1.0, 1.0)
-    late = model_of(space, CLEAR, {"actuation_mm": 3.0})
+    late = model_of(CLEAR, {"actuation_mm": 3.0})
     assert (late.actuation_mm, late.reset_mm) == (3.0, 2.0)
 
 
 def test_vibration_takes_gain_frequency_and_onset() -> None:
-    names = ["vibration_gain_ratio", "vibration_Hz", "vibration_mm"]
-    space = model_space(CLEAR, names)
     design = {"vibration_gain_ratio": 0.5, "vibration_Hz": 120.0, "vibration_mm": 1.5}
-    (mode,) = model_of(space, CLEAR, design).vibrations[0].modes
+    (mode,) = model_of(CLEAR, design).vibrations[0].modes
     assert (mode.amplitude_m_s2, mode.frequency_Hz) == pytest.approx((2.3, 120.0))
-    assert model_of(space, CLEAR, design).vibrations[1].onset_mm == 1.5
+    assert model_of(CLEAR, design).vibrations[1].onset_mm == 1.5
 
 
 def test_a_single_control_point_is_a_parameter_too() -> None:
     space = model_space(CLEAR, ["press_50_point3_cN"])
     (low, high) = space.parameters[0].low, space.parameters[0].high
-    made = model_of(space, CLEAR, {"press_50_point3_cN": high})
+    made = model_of(CLEAR, {"press_50_point3_cN": high})
     (curve,) = (c for c in made.of("press") if c.velocity_mm_s == 50.0)
     assert curve.control_points_cN[3] == high
     assert high - low == pytest.approx(60.0)
@@ -145,8 +137,7 @@ def test_slack_goes_to_zero_where_a_constraint_begins_to_break() -> None:
 
 
 def test_a_faster_press_may_be_asked_not_to_be_softer() -> None:
-    space = model_space(DOME, ["force_at_200_mm_s_ratio"])
-    monotone = monotone_constraint(space, DOME)
+    monotone = monotone_constraint(DOME)
     assert monotone.slack({"force_at_200_mm_s_ratio": 2.0}) >= 0
     assert monotone.slack({"force_at_200_mm_s_ratio": 0.5}) < 0
 
@@ -156,7 +147,7 @@ def test_designs_of_the_whole_space_are_buttons_that_a_file_holds() -> None:
     space = model_space(CLEAR, ["FDVV", "travel_mm", "reset_mm"])
     designs = engine_of("sobol").suggest(Problem(space, (Objective("asynchrony_ms"),), 1), [], 12)
     for design in designs:
-        model = model_of(space, CLEAR, design, "made")
+        model = model_of(CLEAR, design, "made")
         assert model_from_json(model_to_json(model)) == model
         assert model.provenance.licence == CLEAR.provenance.licence
         assert "mx-clear with" in model.provenance.method

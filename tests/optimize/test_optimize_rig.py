@@ -33,7 +33,7 @@ def rig(project: Path) -> AvailableRig:
 
 
 def held(rig: AvailableRig) -> DesignSpace:
-    limits = rig_constraints(rig, lambda design: model_of(HARD, CLEAR, design))
+    limits = rig_constraints(rig, lambda design: model_of(CLEAR, design))
     return DesignSpace("held", HARD.parameters, limits)
 
 
@@ -46,7 +46,7 @@ def test_a_rig_bears_the_button_and_not_one_with_far_too_much_force(rig: Availab
 
 def test_slacks_are_those_of_a_report(rig: AvailableRig) -> None:
     design = {"force_ratio": 1.5, "snap_mm": 0.3}
-    report = feasibility(model_of(HARD, CLEAR, design), rig.known, rig.settings, [100.0], info=rig.info)
+    report = feasibility(model_of(CLEAR, design), rig.known, rig.settings, [100.0], info=rig.info)
     ratios = [c.reached.missed_cN / np.abs(c.reached.intended_cN).mean() for c in report.curves]
     force, stability = held(rig).constraints
     kept = min(c.reached.kept_ratio or 1.0 for c in report.curves)

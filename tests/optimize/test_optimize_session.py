@@ -8,9 +8,9 @@ import pytest
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Score, TrialState
+from fdvv.optimize.problem import Objective, Score, TrialState
 from fdvv.optimize.run.session import Optimization, replay_differences
-from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup
+from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Design
 
 MIDDLE = paper_space().of_unit([0.5] * 8)[0]
@@ -116,7 +116,7 @@ def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
 
 
 def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
-    objectives = (ObjectiveSetup("asynchrony_ms"), ObjectiveSetup("effort_N_s"))
+    objectives = (Objective("asynchrony_ms"), Objective("effort_N_s"))
     with Optimization.create(tmp_path / "run", OptimizeSetup(objectives=objectives)) as session:
         (trial,) = session.ask()
         with pytest.raises(InputError, match="effort_N_s"):
@@ -184,7 +184,7 @@ def test_a_run_whose_seed_was_changed_is_seen_by_its_replay(tmp_path: Path) -> N
 
 
 def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
-    objectives = (ObjectiveSetup("asynchrony_ms"), ObjectiveSetup("effort_N_s"))
+    objectives = (Objective("asynchrony_ms"), Objective("effort_N_s"))
     setup = OptimizeSetup(engine="gp", objectives=objectives, budget=8)
     with Optimization.create(tmp_path / "run", setup) as session:
         for _ in range(8):

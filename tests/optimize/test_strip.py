@@ -15,9 +15,9 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
-from fdvv.optimize.problem import TrialState
+from fdvv.optimize.problem import Objective, TrialState
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup
+from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.strip import (
     play_on_strip,
     played_presser,
@@ -113,7 +113,7 @@ def test_a_round_that_was_not_shown_as_it_should_does_not_count(
 
 
 def session_in(folder: Path) -> Optimization:
-    setup = OptimizeSetup(engine="sobol", budget=3, objectives=(ObjectiveSetup("asynchrony_ms"),))
+    setup = OptimizeSetup(engine="sobol", budget=3, objectives=(Objective("asynchrony_ms"),))
     return Optimization.create(folder / "run", setup)
 
 

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from fdvv.errors import InputError
+from fdvv.io.files import read_limited
 
 Read = TypeVar("Read")
 NEWLINE = b"\n"
@@ -83,6 +84,12 @@ def read_document(
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
         place = _place(data, str(error))
         raise InputError(source, place, f"not valid JSON ({error})", kind.remedy) from error
+
+
+def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) -> Read:
+    """Read a file of one msgspec struct, which no words restrict. Raises InputError."""
+    text = read_limited(path, largest_bytes, kind.remedy)
+    return read_document(text, path, kind, msgspec.json.Decoder(record).decode, lambda _place: None)
 
 
 def _place(data: bytes, reason: str) -> str:

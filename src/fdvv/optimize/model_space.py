@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from fdvv.errors import InputError
 from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Vibration
 from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 from fdvv.units import FloatArray
 
@@ -51,7 +52,7 @@ def _shape(base: FDVVModel) -> list[Handle]:
     default_mm = base.actuation_mm if base.actuation_mm is not None else 0.5 * base.travel_mm
     peak_mm = float(np.clip(bump or default_mm, 0.3 * base.travel_mm, 0.7 * base.travel_mm))
     return [
-        Handle(Parameter("force_ratio", 0.5, 2.0), 1.0, lambda m, v: _scaled(m, v)),
+        Handle(Parameter("force_ratio", 0.5, 2.0), 1.0, _scaled),
         Handle(Parameter("stiffness_cN_mm", -10.0, 30.0), 0.0, _sloped),
         Handle(Parameter("bump_ratio", 0.0, 2.0), 1.0, _contrasted),
         Handle(Parameter("bump_cN", 0.0, 60.0), 0.0, lambda m, v: m),
@@ -187,17 +188,18 @@ def _vibration(base: FDVVModel) -> list[Handle]:
     first = base.vibrations[0]
     frequency_Hz, edge_mm = first.modes[0].frequency_Hz, base.travel_mm - EDGE_mm
 
-    def each(model: FDVVModel, **changes: float) -> FDVVModel:
-        gain, tune = changes.get("gain", 1.0), changes.get("tune", 1.0)
-        found = []
-        for one in model.vibrations:
+    def each(
+        model: FDVVModel, gain: float = 1.0, tune: float = 1.0, onset_mm: float | None = None
+    ) -> FDVVModel:
+        def changed(one: Vibration) -> Vibration:
             modes = tuple(
                 replace(k, amplitude_m_s2=k.amplitude_m_s2 * gain, frequency_Hz=k.frequency_Hz * tune)
                 for k in one.modes
             )
-            onset_mm = changes.get("onset_mm", one.onset_mm)
-            found.append(replace(one, modes=modes, onset_mm=onset_mm, spread=None))
-        return replace(model, vibrations=tuple(found))
+            onset = one.onset_mm if onset_mm is None else onset_mm
+            return replace(one, modes=modes, onset_mm=onset, spread=None)
+
+        return replace(model, vibrations=tuple(map(changed, model.vibrations)))
 
     return [
         Handle(Parameter("vibration_gain_ratio", 0.0, 2.0), 1.0, lambda m, v: each(m, gain=v)),
@@ -218,7 +220,8 @@ def bumped(model: FDVVModel, bump_cN: float, bump_mm: float, snap_mm: float) -> 
         return model
 
     def change(curve: ForceCurve) -> ForceCurve:
-        x = np.linspace(curve.start_mm, curve.end_mm, 1 + max(8, round(_span(curve) / GRID_mm)))
+        steps = max(8, round((curve.end_mm - curve.start_mm) / GRID_mm))
+        x = np.linspace(curve.start_mm, curve.end_mm, 1 + steps)
         up = np.clip((x - bump_mm + RISE_mm) / RISE_mm, 0.0, 1.0)
         down = np.clip((x - bump_mm) / snap_mm, 0.0, 1.0)
         hump = up**2 * (3 - 2 * up) - down**2 * (3 - 2 * down)
@@ -226,10 +229,6 @@ def bumped(model: FDVVModel, bump_cN: float, bump_mm: float, snap_mm: float) -> 
         return ForceCurve(curve.stroke, curve.velocity_mm_s, 3, spline.t, spline.c)
 
     return replace(model, curves=tuple(change(curve) for curve in model.curves))
-
-
-def _span(curve: ForceCurve) -> float:
-    return curve.end_mm - curve.start_mm
 
 
 CONTROL_POINT = re.compile(r"(press|release)_\w+_point\d+_cN")
@@ -277,15 +276,14 @@ def model_space(
     Raises InputError on a name that the button does not have.
     """
     known = handles(base)
-    chosen = _expanded(base, names)
-    for name in (*chosen, *(bounds or {})):
-        if name not in known or (name not in chosen):
-            raise unknown(name, known)
-    own = [known[name].parameter for name in known if name in chosen]
+    chosen = _expanded(base, names, known)
     limits = bounds or {}
+    for name in (*chosen, *limits):
+        if name not in known or name not in chosen:
+            raise unknown(name, known)
+    own = [handle.parameter for name, handle in known.items() if name in chosen]
     parameters = tuple(Parameter(p.name, *limits[p.name]) if p.name in limits else p for p in own)
-    space = DesignSpace(f"variations of {base.name}", parameters)
-    return replace(space, constraints=(*_held(space, base), *constraints))
+    return DesignSpace(f"variations of {base.name}", parameters, (*_held(chosen, base, known), *constraints))
 
 
 def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:
@@ -294,14 +292,13 @@ def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:
     return {one.name: float(np.clip(known[one.name].neutral, one.low, one.high)) for one in space.parameters}
 
 
-def model_of(space: DesignSpace, base: FDVVModel, design: Design, name: str = "design") -> FDVVModel:
-    """Make the button of a design of a model space; what the design does not name stays the base's."""
-    known = handles(base)
-    model = base
-    bump = {one: design.get(one, known[one].neutral) for one in BUMP}
+def model_of(base: FDVVModel, design: Design, name: str = "design") -> FDVVModel:
+    """Make the variation of a button that a design names; what it does not name stays the base's."""
+    known, model = handles(base), base
     for one, handle in known.items():
+        # three numbers make one bump, which is added in the place of the first
         if one == BUMP[0]:
-            model = bumped(model, bump["bump_cN"], bump["bump_mm"], bump["snap_mm"])
+            model = bumped(model, *(design.get(part, known[part].neutral) for part in BUMP))
         elif one in design:
             model = handle.apply(model, design[one])
     changed = ", ".join(f"{one} {value:.4g}" for one, value in design.items())
@@ -310,9 +307,8 @@ def model_of(space: DesignSpace, base: FDVVModel, design: Design, name: str = "d
     return replace(model, name=name, provenance=replace(provenance, method=method))
 
 
-def _expanded(base: FDVVModel, names: Sequence[str]) -> tuple[str, ...]:
+def _expanded(base: FDVVModel, names: Sequence[str], known: Collection[str]) -> tuple[str, ...]:
     """Put what they stand for in the place of FDV and FDVV."""
-    known = handles(base)
     vibration = tuple(one for one in known if one.startswith("vibration_"))
     speeds = tuple(one for one in known if one.startswith("force_at_"))
     words = {"FDV": (*FDV, *vibration), "FDVV": (*FDV, *vibration, *speeds)}
@@ -322,31 +318,27 @@ def _expanded(base: FDVVModel, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(one for name in names for one in words.get(name, (name,))))
 
 
-def _held(space: DesignSpace, base: FDVVModel) -> tuple[Constraint, ...]:
+def _held(chosen: Collection[str], base: FDVVModel, known: Mapping[str, Handle]) -> Iterator[Constraint]:
     """Return what a button must hold, with slacks in mm and cN; points first, for they cost nothing."""
-    known = handles(base)
 
     def value(design: Design, name: str) -> float:
-        return design[name] if name in design else known[name].neutral
+        return design.get(name, known[name].neutral)
 
     def travel(design: Design) -> float:
-        points = [name for name in POINTS if name in design]
-        return value(design, "travel_mm") - EDGE_mm - max((design[p] for p in points), default=0.0)
+        deepest_mm = max((design[point] for point in POINTS if point in design), default=0.0)
+        return value(design, "travel_mm") - EDGE_mm - deepest_mm
 
-    found = [
-        Constraint("travel", f"points lie {EDGE_mm:g} mm or more ahead of the stop", travel),
-    ]
-    if "reset_mm" in space.names:
+    yield Constraint("travel", f"points lie {EDGE_mm:g} mm or more ahead of the stop", travel)
+    if "reset_mm" in chosen:
         order = "the contact opens no deeper than it closes"
-        found.append(Constraint("order", order, lambda d: value(d, "actuation_mm") - value(d, "reset_mm")))
+        yield Constraint("order", order, lambda d: value(d, "actuation_mm") - value(d, "reset_mm"))
     text = f"force stays between {LEAST_cN:g} and {LARGEST_cN:g} cN past the first part of the travel"
-    found.append(Constraint("force", text, lambda d: _force_slack(_curves_of(space, base, d))))
-    return tuple(found)
+    yield Constraint("force", text, lambda d: _force_slack(_curves_of(base, d)))
 
 
-def _curves_of(space: DesignSpace, base: FDVVModel, design: Design) -> FDVVModel:
+def _curves_of(base: FDVVModel, design: Design) -> FDVVModel:
     """Make a design's curves, whatever its points: those out of order make no model at all."""
-    return model_of(space, base, {name: value for name, value in design.items() if name not in POINTS})
+    return model_of(base, {name: value for name, value in design.items() if name not in POINTS})
 
 
 def _force_slack(model: FDVVModel) -> float:
@@ -356,14 +348,13 @@ def _force_slack(model: FDVVModel) -> float:
     return float(min(force.min() - LEAST_cN, LARGEST_cN - force.max()))
 
 
-def monotone_constraint(space: DesignSpace, base: FDVVModel) -> Constraint:
+def monotone_constraint(base: FDVVModel) -> Constraint:
     """Ask that a faster press is nowhere softer than a slower one, as dampers make it; slack in cN."""
     x = np.linspace(0.1, 0.9, 17)
 
     def slack(design: Design) -> float:
-        model = _curves_of(space, base, design)
-        curves = model.of(Stroke.PRESS)
-        rows = np.array([curve.force_cN(x * model.travel_mm).mean() for curve in curves])
-        return float(np.diff(rows).min(initial=0.0)) if len(rows) > 1 else 0.0
+        model = _curves_of(base, design)
+        means = [curve.force_cN(x * model.travel_mm).mean() for curve in model.of(Stroke.PRESS)]
+        return float(np.diff(means).min(initial=0.0))
 
     return Constraint("monotone", "on average a faster press is not softer than a slower one", slack)

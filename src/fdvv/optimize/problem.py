@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Protocol
 
+from msgspec import Struct
+
 from fdvv.errors import ModelError
 from fdvv.optimize.space import DesignSpace
 
@@ -87,8 +89,7 @@ class Comparison:
     answer: Answer | None = None
 
 
-@dataclass(frozen=True)
-class Objective:
+class Objective(Struct, frozen=True, forbid_unknown_fields=True):
     """One quantity to be made small (or large).
 
     Attributes

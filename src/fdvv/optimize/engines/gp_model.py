@@ -221,9 +221,9 @@ Bounded = tuple[Any, tuple[float, float]]
 def fitted_process(
     part: str, X: FloatArray, y: FloatArray, signal: Bounded, length: Bounded, noise: Bounded, **options: Any
 ) -> Any:
-    """Fit scikit-learn's regressor with a Matern-5/2 kernel and white noise; BuildError names part without it.
+    """Fit scikit-learn's regressor with a Matern-5/2 kernel and white noise.
 
-    options : of the regressor.
+    options : of the regressor. Without scikit-learn, BuildError names the part that needs it.
     """
     try:
         from sklearn.gaussian_process import GaussianProcessRegressor

@@ -107,11 +107,13 @@ def _shared(
 ) -> list[Result]:
     """Return the result of every item, in their order."""
     found: dict[Item, Result] = {}
-
-    def store(chunk: tuple[Item, ...], results: list[Result]) -> None:
-        found.update(zip(chunk, results, strict=True))
-
-    run_campaign(executor, EachItem(work), items, store, progress=progress)
+    run_campaign(
+        executor,
+        EachItem(work),
+        items,
+        lambda *rows: found.update(zip(*rows, strict=True)),
+        progress=progress,
+    )
     return [found[item] for item in items]
 
 
@@ -159,10 +161,6 @@ class ExperimentVerdict:
         """The pairs of the optimised button."""
         return tuple(one for one in self.pairs if one.first == OPTIMAL)
 
-    def mean_of(self, button: str, level: str) -> ButtonMean:
-        """Return the mean of a button at a level. Raises StopIteration if there is none."""
-        return next(one for one in self.means if (one.button, one.level) == (button, level))
-
     def to_dict(self) -> dict[str, Any]:
         """Return every figure by name."""
         return {
@@ -179,18 +177,16 @@ def judge_experiment(result: ExperimentResult) -> ExperimentVerdict:
     """Test an experiment's scores. Raises ModelError where a cell is missing or nothing can be tested."""
     scores, setup = result.scores_ms(), result.setup
     averaged = averaged_rounds(scores)
-    tables = {
-        level: post_hoc(averaged[:, :, i], setup.buttons, OPTIMAL, setup.seed)
-        for i, level in enumerate(LEVELS)
-    }
-    rounds = setup.rounds > 1
     return ExperimentVerdict(
         tuple(_mean(result, scores, button, level) for level in LEVELS for button in setup.buttons),
         repeated_measures_anova(averaged, FACTORS),
         repeated_measures_anova(averaged[:, [b != RANDOM for b in setup.buttons]], FACTORS),
-        repeated_measures_anova(rounds_as_people(scores), FACTORS) if rounds else None,
+        repeated_measures_anova(rounds_as_people(scores), FACTORS) if setup.rounds > 1 else None,
         post_hoc(averaged.mean(axis=2), setup.buttons, seed=setup.seed),
-        tables,
+        {
+            level: post_hoc(averaged[:, :, i], setup.buttons, OPTIMAL, setup.seed)
+            for i, level in enumerate(LEVELS)
+        },
     )
 
 
@@ -200,18 +196,11 @@ def _mean(result: ExperimentResult, scores: FloatArray, button: str, level: str)
     lost = [o.lost_ratio for o in result.observations if (o.button, o.level) == (button, level)]
     if not lost:
         raise ModelError(f"nobody met {button} at the level {level}")
-    people_sd = float(np.std(found.mean(axis=1), ddof=1))
-    spread = float(np.std(found, ddof=1))
-    return ButtonMean(button, level, float(found.mean()), people_sd, spread, float(np.mean(lost)))
+    figures = found.mean(), np.std(found.mean(axis=1), ddof=1), np.std(found, ddof=1), np.mean(lost)
+    return ButtonMean(button, level, *map(float, figures))
 
 
 def _anova_dict(anova: Anova) -> dict[str, Any]:
-    effects = [
-        {
-            **asdict(effect),
-            "corrected_effect_df": effect.corrected_df[0],
-            "corrected_error_df": effect.corrected_df[1],
-        }
-        for effect in anova.effects
-    ]
+    names = "corrected_effect_df", "corrected_error_df"
+    effects = [{**asdict(one), **dict(zip(names, one.corrected_df, strict=True))} for one in anova.effects]
     return {"counted": anova.people, "effects": effects}

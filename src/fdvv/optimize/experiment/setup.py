@@ -12,9 +12,9 @@ import numpy as np
 from msgspec import Meta, Struct
 
 from fdvv.errors import InputError, ModelError
-from fdvv.io.documents import Kind, read_document
-from fdvv.io.files import read_limited, write_atomic
-from fdvv.optimize.people.user import SimulatedUser, draw_user
+from fdvv.io.documents import Kind, read_record
+from fdvv.io.files import write_atomic
+from fdvv.optimize.people.user import SimulatedUser
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.setup import LARGEST_bytes, setup_text
 from fdvv.optimize.space import DesignSpace
@@ -107,11 +107,7 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
 
 def read_experiment_setup(folder: Path) -> ExperimentSetup:
     """Read the setup of an experiment's folder. Raises InputError."""
-    path = folder / EXPERIMENT_FILE
-    text = read_limited(path, LARGEST_bytes, KIND.remedy)
-    return read_document(
-        text, path, KIND, lambda data: msgspec.json.decode(data, type=ExperimentSetup), lambda _: None
-    )
+    return read_record(folder / EXPERIMENT_FILE, KIND, ExperimentSetup, LARGEST_bytes)
 
 
 def _check_same(path: Path, there: ExperimentSetup, asked: ExperimentSetup) -> None:
@@ -143,11 +139,6 @@ class Block:
     round: int
     buttons: tuple[str, ...]
     first: int
-
-
-def person_of(setup: ExperimentSetup, number: int) -> SimulatedUser:
-    """Draw a person of the experiment; each is the same however many there are."""
-    return draw_user(number, setup.seed)
 
 
 def level_order(person: int) -> tuple[str, ...]:

@@ -17,12 +17,11 @@ from fdvv.optimize.experiment.setup import (
     a_week_later,
     blocks_of,
     level_order,
-    person_of,
     random_design,
 )
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import score_design
-from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.people.user import SimulatedUser, draw_user
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import SimulatedPlayer, about_player, play_seed
 from fdvv.optimize.run.session import Optimization
@@ -106,7 +105,7 @@ class Train:
         before = level_order(person).index(level) * setup.trials * setup.presses
         seed = play_seed(setup.seed, TRAINING, person, LEVELS.index(level), 1)
         task = TemporalPointing(level, setup.presses)
-        return SimulatedPlayer(person_of(setup, person), task, setup.rig, seed, before)
+        return SimulatedPlayer(draw_user(person, setup.seed), task, setup.rig, seed, before)
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ class Validate:
         """Return the person's scores in the order they were made. Raises InputError on an unknown button."""
         setup = self.setup
         practised = len(LEVELS) * setup.trials * setup.presses
-        user = a_week_later(person_of(setup, person), setup.gap, practised, setup.seed)
+        user = a_week_later(draw_user(person, setup.seed), setup.gap, practised, setup.seed)
         return tuple(
             self._observed(user, block, place)
             for block in blocks_of(setup, person)
@@ -154,6 +153,4 @@ class Validate:
         return _rival(button)
 
 
-@cache
-def _rival(button: str) -> FDVVModel:
-    return load_builtin(button)
+_rival = cache(load_builtin)

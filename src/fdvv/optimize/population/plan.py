@@ -13,8 +13,7 @@ import numpy as np
 from msgspec import Meta, Struct
 
 from fdvv.errors import InputError
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited
+from fdvv.io.documents import Kind, pretty, read_record
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_of
@@ -103,10 +102,7 @@ def seed_of(*numbers: int) -> int:
 
 def read_plan(path: Path) -> PopulationPlan:
     """Read a plan. Raises InputError."""
-    text = read_limited(path, LARGEST_bytes, KIND.remedy)
-    return read_document(
-        text, path, KIND, lambda data: msgspec.json.decode(data, type=PopulationPlan), lambda _: None
-    )
+    return read_record(path, KIND, PopulationPlan, LARGEST_bytes)
 
 
 def plan_text(plan: PopulationPlan) -> str:

@@ -58,9 +58,16 @@ class PopulationResult:
         joined = {name: np.concatenate([chunks[n][name] for n in range(plan.chunks)]) for name in names}
         return cls(plan, joined)
 
+    @property
+    def about(self) -> str:
+        """What a grid is, in a few words."""
+        plan = self.plan
+        return f"{plan.designs} designs scored by {plan.people} simulated people, {plan.level}"
+
     def table(self) -> tuple[FloatArray, FloatArray]:
         """Return scores and errors of a grid, (designs, people) each."""
-        self._must_be("grid")
+        if self.plan.kind != "grid":
+            raise ModelError(f"a run of kind 'grid' is needed, this one is {self.plan.kind!r}")
         shape = self.plan.designs, self.plan.people
         return self.columns["values"].reshape(shape), self.columns["errors"].reshape(shape)
 
@@ -105,10 +112,6 @@ class PopulationResult:
             "gain_percent": spread_of(100 * (1 - judged / against)),
             "better_ratio": float(np.mean(judged < against)),
         }
-
-    def _must_be(self, kind: str) -> None:
-        if self.plan.kind != kind:
-            raise ModelError(f"a run of kind {kind!r} is needed, this one is {self.plan.kind!r}")
 
 
 def spread_of(values: FloatArray) -> dict[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +18,7 @@ from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, r
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import POINTING, about_player, task_named
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
 
 OPTION = "--prior"
@@ -28,63 +28,21 @@ FOLDER = "others"
 """Of a project: every folder in it that holds a finished grid can be begun from."""
 
 
-@dataclass(frozen=True)
-class PriorDataEntry:
-    """A finished grid of a project.
-
-    Attributes
-    ----------
-    name : of its folder. level : that was played. people, designs : how many; each design has their mean.
-    """
-
-    name: str
-    level: str
-    people: int
-    designs: int
-
-    @property
-    def about(self) -> str:
-        """What it is, in a few words."""
-        return f"{self.designs} designs scored by {self.people} simulated people, {self.level}"
+def offered_grids(project: Path) -> dict[str, PopulationResult]:
+    """Return the finished grids in a project's folder, by name; what is unfinished or broken is left out."""
+    found, folder = {}, project / FOLDER
+    for path in sorted(folder.iterdir()) if folder.is_dir() else []:
+        with suppress(InputError, OSError):
+            found[path.name] = read_grid(path)
+    return found
 
 
-class PriorDataStore:
-    """The finished grids of a project, in ``<project>/others``; what is unfinished or broken is not offered.
-
-    Parameters
-    ----------
-    project : its folder.
-    """
-
-    def __init__(self, project: Path) -> None:
-        self._folder = project / FOLDER
-
-    def entries(self) -> tuple[PriorDataEntry, ...]:
-        """List what a run may begin from, by name."""
-        found = ((folder, _offered(folder)) for folder in self._folders())
-        return tuple(_entry(folder, grid) for folder, grid in found if grid)
-
-    def prior(self, name: str) -> tuple[PriorDataEntry, tuple[Trial, ...]]:
-        """Return the trials of a grid that is offered, and what it is. Raises InputError."""
-        for folder in self._folders():
-            if folder.name == name and (grid := _offered(folder)):
-                return _entry(folder, grid), grid.prior()
-        reason = f"is no finished grid in the project's folder {FOLDER}"
-        raise InputError("optimise", name, reason, "choose one that is offered, or finish it")
-
-    def _folders(self) -> list[Path]:
-        return sorted(self._folder.iterdir()) if self._folder.is_dir() else []
-
-
-def _offered(folder: Path) -> PopulationResult | None:
-    try:
-        return read_grid(folder)
-    except (InputError, OSError):
-        return None
-
-
-def _entry(folder: Path, grid: PopulationResult) -> PriorDataEntry:
-    return PriorDataEntry(folder.name, grid.plan.level, grid.plan.people, grid.plan.designs)
+def offered_grid(project: Path, name: str) -> PopulationResult:
+    """Return a grid that is offered. Raises InputError on any other."""
+    if grid := offered_grids(project).get(name):
+        return grid
+    reason = f"is no finished grid in the project's folder {FOLDER}"
+    raise InputError("optimise", name, reason, "choose one that is offered, or finish it")
 
 
 def read_grid(folder: Path) -> PopulationResult:
@@ -156,14 +114,13 @@ def begin_run(folder: Path, asked: RunAsked) -> Optimization:
     with _shelf_of(asked.within) as (project, rig_id):
         space, start = _space(asked, rig_id)
         task = task_named(asked.task, asked.level, asked.presses)
-        first = task.objectives[0]
         setup = OptimizeSetup(
             space=space,
             engine=asked.engine,
             options=asked.options,
             task=asked.task,
             level=asked.level if asked.task == POINTING else None,
-            objectives=(ObjectiveSetup(first.name, first.larger_is_better),),
+            objectives=task.objectives[:1],
             seed=asked.seed,
             budget=asked.budget,
             start=start,

@@ -8,7 +8,7 @@ compared and ``{"answer": …}`` of which was preferred.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -51,6 +51,7 @@ class Answered(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     answer: Answer
 
 
+Record = Trial | Edited | TrialOutcome | Comparison | Answered
 KIND = JournalKind(
     {"trial": Trial, "edit": Edited, "state": TrialOutcome, "pair": Comparison, "answer": Answered}, REMEDY
 )
@@ -123,44 +124,40 @@ class Ledger:
         return self._comparisons[number]
 
     def _keep(self, key: str, body: Any) -> None:
-        changed = self._changed(key, body)
+        changed = self._changed(body)
         if self._journal:
             self._journal.write({key: msgspec.to_builtins(body)})
         self._put(changed)
 
-    def _resume(self, key: str, body: Any) -> None:
+    def _resume(self, _key: str, body: Record) -> None:
         try:
-            self._replay(key, body)
+            self._put(self._changed(body))
         except InputError as error:  # the journal adds the line and what to do about a damaged file
             raise ValueError(f"{error.place}: {error.reason}") from error
 
-    def _replay(self, key: str, body: Any) -> None:
-        self._put(self._changed(key, body))
-
     def _put(self, changed: Trial | Comparison) -> None:
-        rows: list[Any] = self._trials if isinstance(changed, Trial) else self._comparisons
+        rows = self._rows(changed)
         rows[changed.number : changed.number + 1] = [changed]
 
-    def _changed(self, key: str, body: Any) -> Trial | Comparison:
+    def _rows(self, body: Trial | Comparison) -> list[Any]:
+        return self._trials if isinstance(body, Trial) else self._comparisons
+
+    def _changed(self, body: Record) -> Trial | Comparison:
         """Return the trial or comparison as a record leaves it. Raises InputError where it cannot follow."""
-        if key in ("trial", "pair"):
-            rows: list[Any] = self._trials if key == "trial" else self._comparisons
-            if body.number != len(rows):
-                raise self._refusal(body.number, f"the next number is {len(rows)}")
-            return body  # type: ignore[no-any-return]
-        if key == "answer":
+        if isinstance(body, Trial | Comparison):
+            if body.number != (count := len(self._rows(body))):
+                raise self._refusal(body.number, f"the next number is {count}")
+            return body
+        if isinstance(body, Answered):
             pair = self._at(self._comparisons, body.number)
             if pair.answer is not None:
                 raise self._refusal(body.number, f"was answered: {pair.answer}")
             return replace(pair, answer=body.answer)
-        return self._changed_trial(self._at(self._trials, body.number), body)
-
-    def _changed_trial(self, trial: Trial, body: Edited | TrialOutcome) -> Trial:
+        trial = self._at(self._trials, body.number)
         if isinstance(body, Edited):
             if trial.state is not TrialState.SUGGESTED:
                 raise self._refusal(trial.number, f"is {trial.state} and can no longer be edited")
-            first = trial.suggested or trial.design
-            return replace(trial, design=body.design, suggested=first)
+            return replace(trial, design=body.design, suggested=trial.suggested or trial.design)
         if body.state not in NEXT.get(trial.state, frozenset()):
             raise self._refusal(trial.number, f"is {trial.state} and cannot become {body.state}")
         return replace(trial, state=body.state, scores=body.scores, reason=body.reason)
@@ -179,18 +176,14 @@ class Ledger:
             self._journal = None
 
 
-@dataclass(frozen=True)
-class Known:
-    """What a ledger held at a moment."""
-
-    trials: tuple[Trial, ...]
-    comparisons: tuple[Comparison, ...]
+Step = tuple[tuple[Trial, ...], tuple[Comparison, ...], Trial | Comparison]
+"""Trials and comparisons that were known, and what was suggested next."""
 
 
-def steps_before(path: Path) -> Iterator[tuple[Known, Trial | Comparison]]:
+def steps_before(path: Path) -> Iterator[Step]:
     """Return every suggestion with what was known before it, for replay. Raises InputError, OSError."""
     ledger = Ledger()
-    for key, body, _ in read_bodies(path, KIND):
-        if key in ("trial", "pair"):
-            yield Known(ledger.trials, ledger.comparisons), body
-        ledger._replay(key, body)
+    for _, body, _ in read_bodies(path, KIND):
+        if isinstance(body, Trial | Comparison):
+            yield ledger.trials, ledger.comparisons, body
+        ledger._put(ledger._changed(body))

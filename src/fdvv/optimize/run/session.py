@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 
 from fdvv.errors import InputError
 from fdvv.io.files import require_new_folder, write_atomic
@@ -11,7 +10,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
 from fdvv.optimize.engines.registry import engine_of, pair_engine_of
 from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Score, Trial, TrialState
-from fdvv.optimize.run.ledger import Known, Ledger, steps_before
+from fdvv.optimize.run.ledger import Ledger, Step, steps_before
 from fdvv.optimize.run.setup import (
     SETUP_FILE,
     OptimizeSetup,
@@ -193,9 +192,7 @@ class Optimization:
     def __enter__(self) -> Optimization:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 
@@ -204,16 +201,17 @@ def replay_differences(folder: Path) -> tuple[Trial | Comparison, ...]:
 
     None on the machine and the versions that a run was made with. InputError, OSError.
     """
-    path = Path(folder) / LEDGER_FILE
-    replayed = Optimization(Path(folder), read_setup(Path(folder) / SETUP_FILE), Ledger())
-    return tuple(found for known, found in steps_before(path) if not _agrees(replayed, known, found))
+    folder = Path(folder)
+    replayed = Optimization(folder, read_setup(folder / SETUP_FILE), Ledger())
+    return tuple(step[-1] for step in steps_before(folder / LEDGER_FILE) if not _agrees(replayed, step))
 
 
-def _agrees(run: Optimization, known: Known, found: Trial | Comparison) -> bool:
+def _agrees(run: Optimization, step: Step) -> bool:
     """Return whether an engine would suggest the same again; what a person brought in always agrees."""
+    trials, comparisons, found = step
     if isinstance(found, Comparison):
-        pair = run.pair_engine and run.pair_engine.pair(run.problem, known.comparisons)
+        pair = run.pair_engine and run.pair_engine.pair(run.problem, comparisons)
         return pair == (found.first, found.second)
     if run.engine is None or found.origin != run.engine.name:
         return True
-    return run.engine.suggest(run.problem, known.trials) == [found.design]
+    return run.engine.suggest(run.problem, trials) == [found.design]

@@ -14,15 +14,14 @@ import numpy as np
 from msgspec import Meta, Struct
 
 from fdvv.errors import InputError, ModelError
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited
+from fdvv.io.documents import Kind, pretty, read_record
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Objective, Problem, Trial
 from fdvv.optimize.space import Constraint, Design, DesignSpace
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.optimize.tasks import ASYNCHRONY, TemporalPointing
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
 from fdvv.rendering.session import now, versions
@@ -65,14 +64,12 @@ def rig_constraints(
         margin = min(curve.stable.margin for curve in report.curves)
         return felt - beyond, min(margin - MARGIN, MOST_MARGIN)
 
-    def slacks(design: Design) -> tuple[float, float]:
-        return judged(tuple(design.items()))
-
     name = rig.entry.rig_id
     force = f"{name} gives the force and the bump, as its limits and lag let it"
+    stability = f"{name} does not buzz under a finger"
     return (
-        Constraint("rig force", force, lambda design: slacks(design)[0]),
-        Constraint("rig stability", f"{name} does not buzz under a finger", lambda design: slacks(design)[1]),
+        Constraint("rig force", force, lambda design: judged(tuple(design.items()))[0]),
+        Constraint("rig stability", stability, lambda design: judged(tuple(design.items()))[1]),
     )
 
 
@@ -87,13 +84,6 @@ def _felt(curve: CurveFeasibility) -> float:
 SETUP_FILE = "optimize.json"
 KIND = Kind("fdvv-optimize", 1, "an optimisation", "name the folder of an optimisation, or one that is new")
 LARGEST_bytes = 16_000_000
-
-
-class ObjectiveSetup(Struct, frozen=True, forbid_unknown_fields=True):
-    """One quantity to be made small, or large."""
-
-    name: str
-    larger_is_better: bool = False
 
 
 class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
@@ -135,7 +125,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     options: dict[str, Any] = {}
     task: str = "temporal-pointing"
     level: str | None = None
-    objectives: Annotated[tuple[ObjectiveSetup, ...], Meta(min_length=1)] = (ObjectiveSetup("asynchrony_ms"),)
+    objectives: Annotated[tuple[Objective, ...], Meta(min_length=1)] = (ASYNCHRONY,)
     seed: Annotated[int, Meta(ge=0)] = 0
     budget: Annotated[int, Meta(ge=1, le=100_000)] = 30
     start: dict[str, float] | None = None
@@ -159,10 +149,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
 def read_setup(path: Path) -> OptimizeSetup:
     """Read a setup. Raises InputError."""
-    text = read_limited(path, LARGEST_bytes, KIND.remedy)
-    return read_document(
-        text, path, KIND, lambda data: msgspec.json.decode(data, type=OptimizeSetup), lambda _: None
-    )
+    return read_record(path, KIND, OptimizeSetup, LARGEST_bytes)
 
 
 def setup_text(setup: Struct) -> str:
@@ -176,17 +163,12 @@ def setup_text(setup: Struct) -> str:
 
 def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
     """Return the space of a setup with its constraints. Raises InputError."""
-    free = _free_space(setup)
+    paper = setup.kind == "paper"
+    free = paper_space() if paper else model_space(_base(setup), setup.names, setup.bounds)
     if setup.rig is None:
         return free
     limits = rig_constraints(rigs.rig(setup.rig), designer_of(setup), setup.velocities_mm_s)
     return replace(free, constraints=(*free.constraints, *limits))
-
-
-def _free_space(setup: SpaceSetup) -> DesignSpace:
-    if setup.kind == "paper":
-        return paper_space()
-    return model_space(_base(setup), setup.names, setup.bounds)
 
 
 def _base(setup: SpaceSetup) -> FDVVModel:
@@ -199,8 +181,8 @@ def designer_of(setup: SpaceSetup) -> Callable[[Design], FDVVModel]:
     """Return what turns a design of the space into a button."""
     if setup.kind == "paper":
         return paper_model
-    base, space = _base(setup), _free_space(setup)
-    return lambda design: model_of(space, base, design)
+    base = _base(setup)
+    return lambda design: model_of(base, design)
 
 
 def model_space_setup(
@@ -220,5 +202,4 @@ def problem_of(setup: OptimizeSetup, space: DesignSpace) -> Problem:
         space.checked(trial.design, "prior")
     if setup.start is not None:
         space.checked(setup.start, "start")
-    objectives = tuple(Objective(one.name, one.larger_is_better) for one in setup.objectives)
-    return Problem(space, objectives, setup.seed, setup.prior)
+    return Problem(space, setup.objectives, setup.seed, setup.prior)

@@ -13,7 +13,7 @@ from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError, InputError
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.problem import Trial, TrialState
-from fdvv.optimize.run.player import play_seed, player_of
+from fdvv.optimize.run.player import POINTING, play_seed, player_of
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.tasks import TaskPress, TemporalPointing
 from fdvv.program.button import compile_button
@@ -60,28 +60,15 @@ def play_on_strip(
         round's number. presser : presses in a person's place. meanwhile : called some times a second while a
         round goes on. DeviceError if the strip fails, or does not show the bullet in time.
     """
-    order = order or strip_round(task)
-    return tuple(
-        _round(strip, order.drawn(seed, number), number, presser, meanwhile, heard)
-        for number in range(task.rounds)
-    )
-
-
-def _round(
-    strip: LedPointingTask,
-    order: StripRound,
-    number: int,
-    presser: Presser | None,
-    meanwhile: Callable[[], None] | None,
-    heard: Heard | None,
-) -> TaskPress:
-    start = strip.begin(order)
-    if presser:
-        presser(number, start)
-    press = press_of(strip, strip.wait(start, meanwhile))
-    if heard:
-        heard(number, press)
-    return press
+    order, presses = order or strip_round(task), list[TaskPress]()
+    for number in range(task.rounds):
+        start = strip.begin(order.drawn(seed, number))
+        if presser:
+            presser(number, start)
+        presses.append(press_of(strip, strip.wait(start, meanwhile)))
+        if heard:
+            heard(number, presses[-1])
+    return tuple(presses)
 
 
 def press_of(strip: LedPointingTask, result: StripResult) -> TaskPress:
@@ -116,10 +103,7 @@ def try_on_strip(
     device: Remote,
     strip: LedPointingTask,
     task: TemporalPointing,
-    *,
-    order: StripRound | None = None,
     presser: Presser | None = None,
-    heard: Heard | None = None,
 ) -> Trial:
     """Render a trial's design on a device, run its rounds on a strip and return the trial as recorded.
 
@@ -136,9 +120,7 @@ def try_on_strip(
         session.show(trial.number)
     try:
         with rendering(device) as feed:
-            presses = play_on_strip(
-                strip, task, seed, order=order, presser=presser, meanwhile=feed, heard=heard
-            )
+            presses = play_on_strip(strip, task, seed, presser=presser, meanwhile=feed)
     except DeviceError as error:
         session.abandon(trial.number, str(error))
         raise
@@ -180,19 +162,14 @@ def light_strip(
     strip.stop()
 
 
-TASK = "temporal-pointing"
-
-
 def run_on_strip(
     session: Optimization,
     device: Remote,
     strip: LedPointingTask,
     *,
     rounds: int = TemporalPointing.rounds,
-    order: StripRound | None = None,
     ready: Callable[[Trial], None] | None = None,
     presser: Presser | None = None,
-    heard: Heard | None = None,
 ) -> Iterator[Trial]:
     """Play trial after trial on rig and strip until the budget is spent; return each as it then stands.
 
@@ -205,7 +182,7 @@ def run_on_strip(
         (trial,) = asked
         if ready:
             ready(trial)
-        yield try_on_strip(session, trial, device, strip, task, order=order, presser=presser, heard=heard)
+        yield try_on_strip(session, trial, device, strip, task, presser)
 
 
 def run_on_any_strip(
@@ -234,9 +211,9 @@ def run_on_any_strip(
 
 def _task(session: Optimization, rounds: int) -> TemporalPointing:
     setup = session.setup
-    if setup.task != TASK or setup.level is None:
+    if setup.task != POINTING or setup.level is None:
         reason = f"{setup.task}, level {setup.level} is not for a strip"
-        raise InputError(session.folder, "task", reason, f"begin one of {TASK} with a level")
+        raise InputError(session.folder, "task", reason, f"begin one of {POINTING} with a level")
     return TemporalPointing(setup.level, rounds, quantised=False)
 
 
@@ -279,8 +256,7 @@ def check_strip(
     """Light a strip's ends and middle, then play rounds at a level.
 
     spec : of the strip (fdvv.device.strip_library.STRIPS). led : "each" or "together". meanwhile : called
-        some times a
-        second. Raises InputError, DeviceError.
+        some times a second. Raises InputError, DeviceError.
     """
     task, port = TemporalPointing(level, rounds, quantised=False), strip_port(spec)
     order = strip_round(task, StripLed[led.upper()], brightness)
@@ -293,6 +269,7 @@ def check_strip(
             strip, task, seed, order=order, presser=presser, meanwhile=meanwhile, heard=heard
         )
         after = strip.status()
+        pressed = [press for press in presses if press.activations_s]
         return StripCheck(
             port.name,
             presser is not None,
@@ -301,10 +278,5 @@ def check_strip(
             after.edges - before.edges,
             after.bad_frames - before.bad_frames,
             presses,
-            _mean_ms(task, presses),
+            task.scores(pressed)["asynchrony_ms"].value if pressed else None,
         )
-
-
-def _mean_ms(task: TemporalPointing, presses: tuple[TaskPress, ...]) -> float | None:
-    pressed = [press for press in presses if press.activations_s]
-    return task.scores(pressed)["asynchrony_ms"].value if pressed else None

@@ -11,9 +11,9 @@ from fdvv.live.press_subject import button_choices
 from fdvv.optimize.engines.registry import engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_design_like
-from fdvv.optimize.problem import Trial
-from fdvv.optimize.run.begin import PriorDataStore
-from fdvv.optimize.run.setup import ObjectiveSetup, OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.problem import Objective, Trial
+from fdvv.optimize.run.begin import offered_grid, offered_grids
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
@@ -107,7 +107,7 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
         [Offer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
         [Offer(name, about) for name, about in MORE_TOLD.items()],
         [Offer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
-        [Offer(entry.name, entry.about) for entry in PriorDataStore(studio.project).entries()],
+        [Offer(name, grid.about) for name, grid in offered_grids(studio.project).items()],
     )
 
 
@@ -126,7 +126,7 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
         task="preference" if ask.preference else TASK,
         level=ask.level,
         simulated=ask.simulated,
-        objectives=tuple(ObjectiveSetup(name) for name in ("asynchrony_ms", *ask.also)),
+        objectives=tuple(Objective(name) for name in ("asynchrony_ms", *ask.also)),
         seed=ask.seed,
         budget=ask.budget,
         start=start,
@@ -167,5 +167,5 @@ def _others(studio: Studio, ask: OptimizeCreate) -> tuple[str, tuple[Trial, ...]
     if ask.preference or ask.space != PAPER:
         reason = f"others scored designs of the space {PAPER}"
         raise InputError("optimise", ask.others, reason, "begin from nothing, or choose that space")
-    entry, prior = PriorDataStore(studio.project).prior(ask.others)
-    return entry.about, prior
+    grid = offered_grid(studio.project, ask.others)
+    return grid.about, grid.prior()
