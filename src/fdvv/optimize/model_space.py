@@ -288,8 +288,7 @@ def model_space(
 
 def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:
     """Return the design that leaves a button as it is, as near as the bounds of the space allow."""
-    known = handles(base)
-    return {one.name: float(np.clip(known[one.name].neutral, one.low, one.high)) for one in space.parameters}
+    return space.nearest({name: handle.neutral for name, handle in handles(base).items()})
 
 
 def model_of(base: FDVVModel, design: Design, name: str = "design") -> FDVVModel:

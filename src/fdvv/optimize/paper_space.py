@@ -101,7 +101,7 @@ def paper_design_like(model: FDVVModel) -> dict[str, float]:
     design = dict(zip(names, best.T.ravel().tolist(), strict=True))
     actuation_mm = model.actuation_mm if model.actuation_mm is not None else model.travel_mm / 2
     onset_mm = model.vibrations[0].onset_mm if model.vibrations else actuation_mm
-    return _within(space, {**design, "actuation_mm": actuation_mm, "vibration_mm": onset_mm})
+    return space.nearest({**design, "actuation_mm": actuation_mm, "vibration_mm": onset_mm})
 
 
 def _places(space: DesignSpace, travel_mm: float) -> list[FloatArray]:
@@ -117,9 +117,4 @@ def _points(space: DesignSpace, places: tuple[float, ...], x: FloatArray, wanted
 
 
 def _miss(points: FloatArray, x: FloatArray, wanted: FloatArray) -> float:
-    return float(np.mean((np.interp(x, points[:, 0], points[:, 1]) - wanted) ** 2))
-
-
-def _within(space: DesignSpace, design: dict[str, float]) -> dict[str, float]:
-    found = {one.name: float(np.clip(design[one.name], one.low, one.high)) for one in space.parameters}
-    return space.checked(found)
+    return float(np.mean((np.interp(x, *points.T) - wanted) ** 2))

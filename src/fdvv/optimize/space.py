@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,19 +82,23 @@ class DesignSpace:
 
     def checked(self, design: Design, source: object = "design") -> dict[str, float]:
         """Return a design in the order of parameters. InputError if a value is missing, alien or outside."""
-        for name in design:
-            if name not in self.names:
-                raise InputError(
-                    source, name, "is no parameter of this space", f"use {', '.join(self.names)}"
-                )
-        return {one.name: self._value(one, design, source) for one in self.parameters}
+        self.check_names(design, source)
+        for one in self.parameters:
+            value = design.get(one.name)
+            if value is None or not one.low <= value <= one.high:
+                raise InputError(source, one.name, f"is {value}", f"give {one.low:g} to {one.high:g}")
+        return {name: float(design[name]) for name in self.names}
 
-    @staticmethod
-    def _value(one: Parameter, design: Design, source: object) -> float:
-        value = design.get(one.name)
-        if value is None or not one.low <= value <= one.high:
-            raise InputError(source, one.name, f"is {value}", f"give {one.low:g} to {one.high:g}")
-        return float(value)
+    def check_names(self, named: Iterable[str], source: object) -> None:
+        """Raise InputError where a name is no parameter's."""
+        for name in named:
+            if name not in self.names:
+                remedy = f"use {', '.join(self.names)}"
+                raise InputError(source, name, "is no parameter of this space", remedy)
+
+    def nearest(self, design: Design) -> dict[str, float]:
+        """Return a design with every parameter brought to its bounds."""
+        return {one.name: float(np.clip(design[one.name], one.low, one.high)) for one in self.parameters}
 
     def broken(self, design: Design) -> tuple[Constraint, ...]:
         """List the constraints that a design does not hold."""
@@ -103,15 +107,15 @@ class DesignSpace:
     def to_unit(self, designs: Sequence[Design]) -> FloatArray:
         """Map designs to the unit cube, (n, d)."""
         rows = [[design[name] for name in self.names] for design in designs]
-        low, high = self._bounds()
-        return (np.array(rows, dtype=np.float64).reshape(-1, low.size) - low) / (high - low)
+        low, high = self._bounds
+        return np.asarray((np.array(rows, dtype=np.float64).reshape(-1, low.size) - low) / (high - low))
 
     def of_unit(self, places: npt.ArrayLike) -> list[dict[str, float]]:
         """Map places (n, d) of the unit cube to designs; what lies outside is brought to a bound."""
-        low, high = self._bounds()
+        low, high = self._bounds
         rows = np.clip(low + np.atleast_2d(np.asarray(places)) * (high - low), low, high)
         return [dict(zip(self.names, row.tolist(), strict=True)) for row in rows]
 
-    def _bounds(self) -> tuple[FloatArray, FloatArray]:
-        rows = np.array([(one.low, one.high) for one in self.parameters])
-        return rows[:, 0], rows[:, 1]
+    @property
+    def _bounds(self) -> FloatArray:
+        return np.array([(one.low, one.high) for one in self.parameters]).T

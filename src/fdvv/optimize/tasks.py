@@ -66,11 +66,14 @@ LOST_ms = 400.0
 """What a lost round counts, and how far from the target a press may be: the penalty for an early release in
 the first author's own toy of this task (bayes_temp_point); CHI 2020 states none."""
 ASYNCHRONY = Objective("asynchrony_ms")
-MORE = {
-    "lost_ratio": Objective("lost_ratio"),
-    "effort_N_s": Objective("effort_N_s"),
-}
+MORE = ("lost_ratio", "effort_N_s")
 """What else may be scored."""
+
+
+def check_also(also: Sequence[str], known: Sequence[str]) -> None:
+    """Raise ModelError where further objectives are unknown."""
+    if unknown := [name for name in also if name not in known]:
+        raise ModelError(f"also must be of {', '.join(known)}, got {unknown}")
 
 
 @dataclass(frozen=True)
@@ -106,9 +109,7 @@ class TemporalPointing:
             raise ModelError(f"the level must be one of {', '.join(LEVELS_px_s)}, got {self.level!r}")
         if self.rounds < 1 or not 0 < self.zone_px < self.target_px <= self.strip_px:
             raise ModelError(f"temporal pointing needs a round and a zone on its strip, got {self}")
-        unknown = [name for name in self.also if name not in MORE]
-        if unknown:
-            raise ModelError(f"also must be of {', '.join(MORE)}, got {unknown}")
+        check_also(self.also, MORE)
 
     @property
     def name(self) -> str:
@@ -141,7 +142,7 @@ class TemporalPointing:
 
     @property
     def objectives(self) -> tuple[Objective, ...]:
-        return (ASYNCHRONY, *(MORE[name] for name in self.also))
+        return (ASYNCHRONY, *map(Objective, self.also))
 
     def target_s(self, number: int) -> float:
         """Return when the bullet of a round, from 0, is at the target."""
@@ -159,19 +160,16 @@ class TemporalPointing:
             late_ms = frame_ms * round(late_ms / frame_ms)
         return late_ms if abs(late_ms) < LOST_ms else None
 
-    def counted_ms(self, presses: Sequence[TaskPress]) -> FloatArray:
-        """Return what each round counts, (n,)."""
-        found = [self.asynchrony_ms(press) for press in presses]
-        return np.array([LOST_ms if late is None else abs(late) for late in found])
-
     def scores(self, presses: Sequence[TaskPress]) -> dict[str, Score]:
         """Score the rounds, with standard errors of the means. ModelError if there is nothing to score."""
-        columns = {"asynchrony_ms": self.counted_ms(presses)}
-        if "lost_ratio" in self.also:
-            columns["lost_ratio"] = np.array([self.asynchrony_ms(press) is None for press in presses], float)
-        if "effort_N_s" in self.also:
-            columns["effort_N_s"] = np.array([p.effort_N_s for p in presses if p.effort_N_s is not None])
-        return {name: mean_score(column) for name, column in columns.items()}
+        late_ms = [self.asynchrony_ms(press) for press in presses]
+        columns = {
+            ASYNCHRONY.name: [LOST_ms if late is None else abs(late) for late in late_ms],
+            "lost_ratio": [float(late is None) for late in late_ms],
+            "effort_N_s": [press.effort_N_s for press in presses if press.effort_N_s is not None],
+        }
+        asked = (ASYNCHRONY.name, *self.also)
+        return {name: mean_score(np.array(column)) for name, column in columns.items() if name in asked}
 
 
 RATE, UNEVEN = Objective("rate_Hz", larger_is_better=True), Objective("interval_spread_ratio")
@@ -220,7 +218,7 @@ class RapidTapping:
 
 
 ERRORS = Objective("errors_ratio")
-PARTS = {"false_ratio": Objective("false_ratio"), "missed_ratio": Objective("missed_ratio")}
+PARTS = ("false_ratio", "missed_ratio")
 
 
 @dataclass(frozen=True)
@@ -244,9 +242,7 @@ class Accuracy:
     def __post_init__(self) -> None:
         if not (0 < self.go_ratio < 1 and 1 <= round(self.go_ratio * self.rounds) < self.rounds):
             raise ModelError(f"accuracy needs rounds of go and of no-go, got {self}")
-        unknown = [name for name in self.also if name not in PARTS]
-        if unknown:
-            raise ModelError(f"also must be of {', '.join(PARTS)}, got {unknown}")
+        check_also(self.also, PARTS)
 
     @property
     def name(self) -> str:
@@ -254,7 +250,7 @@ class Accuracy:
 
     @property
     def objectives(self) -> tuple[Objective, ...]:
-        return (ERRORS, *(PARTS[name] for name in self.also))
+        return (ERRORS, *map(Objective, self.also))
 
     def goes(self) -> tuple[bool, ...]:
         """Return for each round whether it asks for a press."""

@@ -66,11 +66,7 @@ class ChangeCost:
 
     def dear(self, space: DesignSpace) -> list[int]:
         """List the parameters that cost something to build. InputError on one the space does not have."""
-        for name in self.build_s:
-            if name not in space.names:
-                raise InputError(
-                    "cost", name, "is no parameter of this space", f"use {', '.join(space.names)}"
-                )
+        space.check_names(self.build_s, "cost")
         return [i for i, name in enumerate(space.names) if self.build_s.get(name, 0.0) > 0]
 
     def seconds(self, space: DesignSpace, places: FloatArray, built: FloatArray) -> FloatArray:

@@ -61,7 +61,7 @@ def experiment_html(
     """Write the report as HTML. Needs matplotlib (BuildError without it)."""
     setup = result.setup
     sections = [
-        _method(result),
+        Section("Method", method_paragraphs(setup)),
         _training(result),
         _results(result, verdict),
         _pairs(verdict),
@@ -78,10 +78,6 @@ def experiment_html(
     return render_html(
         "Optimised buttons in temporal pointing", summary, sections, footer, simulated=simulated
     )
-
-
-def _method(result: ExperimentResult) -> Section:
-    return Section("Method", method_paragraphs(result.setup))
 
 
 def _training(result: ExperimentResult) -> Section:

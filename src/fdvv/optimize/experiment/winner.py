@@ -24,7 +24,7 @@ from fdvv.rendering.probe import ProbeResult, probe
 from fdvv.report.records import RenderedBand, RenderedCurve
 from fdvv.twin.files import load_rig
 from fdvv.twin.finger import Finger, PressVariability
-from fdvv.units import FloatArray, N_from_cN
+from fdvv.units import N_from_cN
 
 WINNER_RIG = "paper"
 """Shipped rig that renders the winner."""
@@ -193,14 +193,13 @@ def recording_of(presses: list[Press], name: str) -> Recording:
             raise DeviceError("the device tells neither displacement nor force of its presses")
         rows = np.arange(press.t_s.size) if press.tick is None else np.flatnonzero(press.tick)
         columns = {Quantity.DISPLACEMENT: press.sensed_mm, Quantity.FORCE: press.sensed_cN}
-        streams = tuple(_stream(q, press.t_s[rows], column[rows]) for q, column in columns.items())
+        streams = tuple(
+            Stream(str(quantity), quantity, "device", press.t_s[rows], column[rows])
+            for quantity, column in columns.items()
+        )
         takes.append(Take(number, streams, (), Stage.PRESS, press.velocity_mm_s))
     simulated = any(press.simulated for press in presses)
     return Recording(name, tuple(takes), simulated=simulated)
-
-
-def _stream(quantity: Quantity, t_s: FloatArray, values: FloatArray) -> Stream:
-    return Stream(str(quantity), quantity, "device", t_s, values)
 
 
 def _difference_cN(captured: FDVVModel, designed: FDVVModel) -> dict[str, float]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -99,8 +100,12 @@ BAATH = TimingFit(0.06245, 0.2544, -14.06, -0.0288, 18.07, 0.5463, 0.1554)
 
 def person_spreads_ms(taps: Taps) -> FloatArray:
     """Return the spread by person and period, (people, periods); NaN where there are too few taps."""
+    return _by_person(taps, lambda late_ms: np.std(late_ms, ddof=1))
+
+
+def _by_person(taps: Taps, statistic: Callable[[FloatArray], Any]) -> FloatArray:
     cells = [[taps.of([one], period).late_ms for period in taps.periods_ms] for one in taps.people]
-    return np.array([[_spread(cell) for cell in row] for row in cells])
+    return np.array([[statistic(cell) if cell.size >= FEWEST else np.nan for cell in row] for row in cells])
 
 
 def fit_timing(taps: Taps) -> TimingFit:
@@ -110,7 +115,7 @@ def fit_timing(taps: Taps) -> TimingFit:
     if np.isnan(ratios).all() or len(taps.people) < 2:
         raise FitError(f"timing needs two people of {FEWEST} taps, got {len(taps.people)}")
     own = np.nanmean(ratios, axis=1)
-    biases = np.array([[_mean(taps.of([one], p).late_ms) for p in taps.periods_ms] for one in taps.people])
+    biases = _by_person(taps, np.mean)
     slope, start = _line(periods, np.nanmean(biases, axis=0))
     gains = np.array([1 - _carried(taps.of([one], taps.periods_ms[0])) for one in taps.people])
     return TimingFit(
@@ -135,9 +140,7 @@ def timing_log_likelihood(fit: TimingFit, taps: Taps) -> float:
 
 def pooled_log_likelihood(known: Taps, taps: Taps) -> float:
     """Return the same of one normal for all periods, fitted on known people: the simple guess."""
-    return _log_likelihood(
-        taps.late_ms, np.full(1, known.late_ms.mean()), np.full(1, known.late_ms.var(ddof=1))
-    )
+    return _log_likelihood(taps.late_ms, known.late_ms.mean(), known.late_ms.var(ddof=1))
 
 
 def spread_error_ratio(guess_ms: FloatArray, taps: Taps) -> float:
@@ -146,16 +149,8 @@ def spread_error_ratio(guess_ms: FloatArray, taps: Taps) -> float:
     return float(np.sqrt(np.nanmean(miss**2)))
 
 
-def _log_likelihood(values: FloatArray, mean: FloatArray, variance: FloatArray) -> float:
+def _log_likelihood(values: FloatArray, mean: Any, variance: Any) -> float:
     return float(np.mean(-0.5 * (np.log(2 * np.pi * variance) + (values - mean) ** 2 / variance)))
-
-
-def _spread(values: FloatArray) -> float:
-    return float(np.std(values, ddof=1)) if values.size >= FEWEST else np.nan
-
-
-def _mean(values: FloatArray) -> float:
-    return float(np.mean(values)) if values.size >= FEWEST else np.nan
 
 
 def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
@@ -188,15 +183,10 @@ def tap_peaks(path: Path) -> FloatArray:
 
     A tap whose every sample is 0 was never heard by the sensor and is left out. InputError.
     """
-    found = [
-        stream
-        for take in read_log(path).takes
-        for stream in take.of(Quantity.COUNTS)
-        if stream.clock == "board"
-    ]
-    if not found:
+    streams = (stream for take in read_log(path).takes for stream in take.of(Quantity.COUNTS))
+    stream = next((stream for stream in streams if stream.clock == "board"), None)
+    if stream is None:
         return np.zeros(0)
-    stream = found[0]
     cuts = np.flatnonzero(np.diff(stream.t_s) > APART_s) + 1
     peaks = np.array([piece.max() for piece in np.split(stream.raw.astype(np.float64), cuts)])
     return peaks[peaks > 0]

@@ -13,7 +13,6 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.press_simulator import PressTrace
 from fdvv.optimize.people.user import SimulatedUser
 from fdvv.protocol.tables import NONE
-from fdvv.units import FloatArray
 
 FAINTEST = 0.05
 """Salience that no press falls below: a finger knows about its movement without any event."""
@@ -89,7 +88,9 @@ def _snap(press: PressTrace, model: FDVVModel) -> TactileEvent | None:
     tick_s = float(t[1] - t[0])
     x = ticks.displacement_mm[: bottom_at(press, model.travel_mm - EDGE_mm)]
     start = int(np.argmax(x > EDGE_mm)) if (x > EDGE_mm).any() else x.size
-    force = _smooth(ticks.force_cN[start : x.size], max(1, round(SMOOTH_s / tick_s)))
+    force, count = ticks.force_cN[start : x.size], max(1, round(SMOOTH_s / tick_s))
+    if force.size >= count:
+        force = np.convolve(force, np.full(count, 1 / count), mode="valid")
     span = min(round(SNAP_s / tick_s), force.size - 1)
     if span < 1:
         return None
@@ -100,16 +101,11 @@ def _snap(press: PressTrace, model: FDVVModel) -> TactileEvent | None:
     return TactileEvent(Cue.SNAP, float(t[start + at + span // 2]), float(fall[at]))
 
 
-def _smooth(force_cN: FloatArray, count: int) -> FloatArray:
-    if force_cN.size < count:
-        return force_cN
-    return np.convolve(force_cN, np.full(count, 1 / count), mode="valid")
-
-
 def _impact(press: PressTrace, model: FDVVModel) -> TactileEvent | None:
     at = bottom_at(press, model.travel_mm)
     if at is None:
         return None
+    # the tick before: at the stop the cap has lost its speed
     return TactileEvent(Cue.IMPACT, float(press.t_s[at]), float(press.ticks.velocity_mm_s[max(0, at - 1)]))
 
 

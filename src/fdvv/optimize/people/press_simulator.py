@@ -105,9 +105,9 @@ def finger_of(user: SimulatedUser) -> Finger:
     return Finger(
         Impedance(user.mass_kg, user.stiffness_N_m, user.damping_N_s_m),
         habit=PressVariability(
-            lift_m=float(m_from_mm(user.lift_mm)),
-            rest_N=max(0.0, float(N_from_cN(user.rest_cN))),
-            push_N=float(N_from_cN(user.push_cN)),
+            lift_m=m_from_mm(user.lift_mm),
+            rest_N=max(0.0, N_from_cN(user.rest_cN)),
+            push_N=N_from_cN(user.push_cN),
         ),
     )
 
@@ -162,36 +162,33 @@ class PressSimulator:
         user = self.user
         rest, push, pace, stiff = np.clip(random.standard_normal(4), -3, 3).tolist()
         stiffness = user.stiffness_N_m * max(0.1, 1 + user.stiffness_spread_ratio * stiff)
-        usual = depth_m(self.finger, float(N_from_cN(user.push_cN)), stiffness)
+        usual_m = depth_m(self.finger, N_from_cN(user.push_cN), stiffness)
         pushed_cN = user.push_cN * push_ratio * max(0.1, 1 + user.push_spread_ratio * push)
-        travel_m = float(m_from_mm(self.compiled.model.travel_mm))
-        end_m = travel_m + depth_m(self.finger, float(N_from_cN(pushed_cN)), stiffness)
+        travel_m = m_from_mm(self.compiled.model.travel_mm)
+        end_m = travel_m + depth_m(self.finger, N_from_cN(pushed_cN), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
-        press_s = max(SHORTEST_s, (KEY_mm + float(mm_from_m(usual))) / pace_mm_s)
+        press_s = max(SHORTEST_s, (KEY_mm + mm_from_m(usual_m)) / pace_mm_s)
         return self._gesture(user.rest_cN + user.rest_spread_cN * rest, end_m, press_s, stiffness)
 
     def resting(self, rest_cN: float, more_cN: float, grown_s: float) -> Gesture:
         """Return a finger whose force on the cap grows within grown_s, were the cap to hold still."""
         stiffness = self.user.stiffness_N_m
-        end_m = depth_m(self.finger, float(N_from_cN(more_cN)), stiffness)
+        end_m = depth_m(self.finger, N_from_cN(more_cN), stiffness)
         return self._gesture(rest_cN, end_m, grown_s, stiffness)
 
     def _gesture(self, rest_cN: float, end_m: float, press_s: float, stiffness: float) -> Gesture:
-        start_m = -float(m_from_mm(self.user.lift_mm))
+        start_m = -m_from_mm(self.user.lift_mm)
         if not self.user.lift_mm:
-            start_m = depth_m(self.finger, max(0.0, float(N_from_cN(rest_cN))), stiffness)
+            start_m = depth_m(self.finger, max(0.0, N_from_cN(rest_cN)), stiffness)
         return Gesture(start_m, end_m, BEFORE_s, press_s, HELD_s, press_s, stiffness, self.user.damping_N_s_m)
 
     def _until_stop(self, rig: InteractiveRig, count: int, first: int) -> InteractiveTicks:
         """Advance by count ticks, or fewer once the cap was at the stop and the key is down."""
-        parts, done = [rig.advance(first)], first
-        while done < count and not self._over(parts[-1]):
+        parts, done, travel_mm = [rig.advance(first)], first, self.compiled.model.travel_mm
+        while done < count and not (parts[-1].displacement_mm.max() >= travel_mm and parts[-1].key[-1]):
             parts.append(rig.advance(min(self.ticks_in(PIECE_s), count - done)))
             done += parts[-1].t_s.size
         return InteractiveTicks.joined(parts)
-
-    def _over(self, ticks: InteractiveTicks) -> bool:
-        return bool(ticks.displacement_mm.max() >= self.compiled.model.travel_mm and ticks.key[-1])
 
     def _settle(self) -> InteractiveRig:
         compiled = self.compiled

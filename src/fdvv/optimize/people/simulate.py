@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +15,6 @@ from fdvv.optimize.people.press_simulator import PressSimulator, PressTrace, kno
 from fdvv.optimize.people.user import SimulatedUser, aim_s, spread_factor, timing_spread_s, tiredness
 from fdvv.optimize.problem import Score
 from fdvv.optimize.tasks import Accuracy, RapidTapping, Task, TaskPress, TemporalPointing
-from fdvv.twin.gesture import Gesture
 
 TRIES, HARDER, HARDEST = 4, 1.5, 6.0
 """Presses on a new button that do not count, at most; by how much harder each is after one that did not reach
@@ -105,23 +106,26 @@ def unplayed(task: TemporalPointing | RapidTapping | Accuracy) -> tuple[TaskPres
 
 def tap(
     task: RapidTapping, bench: PressSimulator, random: np.random.Generator, before: int
-) -> tuple[TaskPress, ...]:
+) -> Iterator[TaskPress]:
     """Tap on one rig without a break, as shallowly as the key lets one.
 
     A cap that has not come up is pressed from where it is. A shorter stroke is made at the same speed, so
     that it takes less time.
     """
     user, push = bench.user, Hand(bench, random).push_ratio
-    rig, found, start_s, reach = bench.settled(random, 1), [], 0.0, 1.0
+    rig, start_s, reach = bench.settled(random, 1), 0.0, 1.0
     for number in range(task.rounds):
         strength = max(0.1, 1.0 - tiredness(user, before + number))
-        gesture = _shortened(bench.draw(random, push * strength, strength), reach)
-        cycle_s = 2 * gesture.press_s + DWELL_s + PAUSE_s
+        whole = bench.draw(random, push * strength, strength)
+        press_s, end_m = reach * whole.press_s, whole.start_m + reach * (whole.end_m - whole.start_m)
+        cycle_s = 2 * press_s + DWELL_s + PAUSE_s
         clock, motor = random.standard_normal(2).tolist()
         late_s = user.clock_ratio * cycle_s * clock + 1e-3 * user.motor_ms * motor
         onset_s = max(0.0, PAUSE_s + late_s)
-        gesture = replace(gesture, onset_s=onset_s, dwell_s=DWELL_s, release_s=gesture.press_s)
-        count = bench.ticks_in(onset_s + 2 * gesture.press_s + DWELL_s)
+        gesture = replace(
+            whole, end_m=end_m, onset_s=onset_s, press_s=press_s, dwell_s=DWELL_s, release_s=press_s
+        )
+        count = bench.ticks_in(onset_s + 2 * press_s + DWELL_s)
         rig = rig.copy(bench.noise(random, count))
         rig.press(gesture)
         ticks = rig.advance(count)
@@ -129,31 +133,24 @@ def tap(
         keys = tuple((start_s + bench.tick_s * down).tolist())
         start_s += count * bench.tick_s
         reach = min(1.0, max(LEAST, reach * (EASED if keys else REACHED)))
-        found.append(TaskPress(None, keys, float(np.sum(ticks.force_cN)) * 0.01 * bench.tick_s))
-    return tuple(found)
-
-
-def _shortened(gesture: Gesture, reach: float) -> Gesture:
-    way = reach * (gesture.end_m - gesture.start_m)
-    return replace(gesture, end_m=gesture.start_m + way, press_s=reach * gesture.press_s)
+        yield TaskPress(None, keys, float(np.sum(ticks.force_cN)) * 0.01 * bench.tick_s)
 
 
 def go_or_hold(
     task: Accuracy, bench: PressSimulator, random: np.random.Generator, before: int
-) -> tuple[TaskPress, ...]:
+) -> Iterator[TaskPress]:
     """Press on go; on no-go a press that is held back still twitches."""
-    hand, found = Hand(bench, random), []
+    hand = Hand(bench, random)
     for number, go in enumerate(task.goes()):
         start_s = number * ROUND_s
         onset_s = start_s + CUE_s + REACTION_s + REACTION_SPREAD_s * float(random.standard_normal())
         if not go:
-            found.append(TaskPress(None, tuple(start_s + CUE_s + key for key in _twitch(bench, random))))
+            yield TaskPress(None, tuple(start_s + CUE_s + key for key in _twitch(bench, random)))
             continue
         press = hand.press(max(0.1, 1.0 - tiredness(bench.user, before + number)))
         keys = () if press is None else tuple(onset_s + key for key in press.keys_s)
         early = (start_s,) if press and press.early else ()
-        found.append(TaskPress(start_s + CUE_s, (*early, *keys), press.effort_N_s if press else None))
-    return tuple(found)
+        yield TaskPress(start_s + CUE_s, (*early, *keys), press.effort_N_s if press else None)
 
 
 def _twitch(bench: PressSimulator, random: np.random.Generator) -> tuple[float, ...]:
@@ -194,12 +191,8 @@ def simulate_task(
         bench = PressSimulator(model, user, rig)
     except (InputError, ModelError):
         return unplayed(task)
-    random = np.random.default_rng([seed, user.number])
-    if isinstance(task, TemporalPointing):
-        return _point(task, bench, random, presses_before)
-    if isinstance(task, RapidTapping):
-        return tap(task, bench, random, presses_before)
-    return go_or_hold(task, bench, random, presses_before)
+    play: Any = {TemporalPointing: point, RapidTapping: tap, Accuracy: go_or_hold}[type(task)]
+    return tuple(play(task, bench, np.random.default_rng([seed, user.number]), presses_before))
 
 
 def score_design(
@@ -211,15 +204,15 @@ def score_design(
     rig: str = "ideal",
     presses_before: int = 0,
 ) -> dict[str, Score]:
-    """Score a design as play() plays it."""
+    """Score a design as simulate_task plays it."""
     return task.scores(simulate_task(task, model, user, seed, rig=rig, presses_before=presses_before))
 
 
-def _point(
+def point(
     task: TemporalPointing, bench: PressSimulator, random: np.random.Generator, before: int
-) -> tuple[TaskPress, ...]:
+) -> Iterator[TaskPress]:
     """Press at each bullet; the felt error of a press moves the plan of the next."""
-    user, found, hand = bench.user, [], Hand(bench, random)
+    user, hand = bench.user, Hand(bench, random)
     spread_s = timing_spread_s(user, task.cue_s, task.period_s)
     aim, anticipated_s = aim_s(user, task.zone_s), 1e-3 * user.anticipated_ms
     for number in range(task.rounds):
@@ -229,12 +222,11 @@ def _point(
         onset_s = target_s + aim - anticipated_s + scatter_s
         press = hand.press(max(0.1, 1.0 - tiredness(user, before + number)))
         if press is None:
-            found.append(TaskPress(target_s, ()))
+            yield TaskPress(target_s, ())
             continue
         felt_s = onset_s + press.percept.time_s + press.percept.spread_s * touch
         anticipated_s += user.adaptation_ratio * (felt_s - target_s - aim)
         keys = tuple(onset_s + 1e-3 * user.bias_ms + key_s for key_s in press.keys_s)
         # a key that is down under the resting finger went down as the bullet started
         early = (target_s - task.cue_s,) if press.early else ()
-        found.append(TaskPress(target_s, (*early, *keys), press.effort_N_s))
-    return tuple(found)
+        yield TaskPress(target_s, (*early, *keys), press.effort_N_s)

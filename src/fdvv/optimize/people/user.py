@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -71,20 +71,13 @@ class SimulatedUser:
     fatigue_ratio: float = 0.0
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            if one.name != "number":
-                self._check(one.name, getattr(self, one.name))
-
-    def _check(self, name: str, value: float) -> None:
-        fine = math.isfinite(value)
-        if name in RATIOS:
-            fine = fine and 0 <= value <= 1
-        elif name in AT_LEAST_0:
-            fine = fine and value >= 0
-        elif name not in FREE:
-            fine = fine and value > 0
-        if not fine:
-            raise ModelError(f"a simulated person cannot have {name} = {value}")
+        for name, value in vars(self).items():
+            low = -math.inf if name in FREE else 0
+            high = 1 if name in RATIOS else math.inf
+            # all but those listed must also be above 0
+            some = value != 0 or name in (*RATIOS, *AT_LEAST_0, *FREE, "number")
+            if not (math.isfinite(value) and low <= value <= high and some):
+                raise ModelError(f"a simulated person cannot have {name} = {value}")
 
 
 SPREADS: Mapping[str, float] = MappingProxyType(

@@ -177,8 +177,9 @@ class PopulationWork:
             number, person = divmod(cell, plan.people)
             seed = seed_of(plan.seed, person, GRID, number)
             found.append(self._scores(paper_model(designs[number]), plan.user(person), seed)[name])
-        errors = [np.nan if score.error is None else score.error for score in found]
-        return {"values": np.array([score.value for score in found]), "errors": np.array(errors)}
+        # NumPy makes nan of an error that is None
+        values, errors = np.array([(score.value, score.error) for score in found], dtype=np.float64).T
+        return {"values": values, "errors": errors}
 
     def _scores(self, model: FDVVModel, user: SimulatedUser, seed: int) -> dict[str, Score]:
         return score_design(self.task, model, user, seed, rig=self.plan.rig)

@@ -49,15 +49,6 @@ class PopulationResult:
     plan: PopulationPlan
     columns: Mapping[str, FloatArray]
 
-    @classmethod
-    def of(cls, plan: PopulationPlan, chunks: Mapping[int, Mapping[str, FloatArray]]) -> PopulationResult:
-        """Join chunks by number. Raises ModelError unless all are there."""
-        if sorted(chunks) != list(range(plan.chunks)):
-            raise ModelError(f"{len(chunks)} of {plan.chunks} chunks are done")
-        names = chunks[0].keys()
-        joined = {name: np.concatenate([chunks[n][name] for n in range(plan.chunks)]) for name in names}
-        return cls(plan, joined)
-
     @property
     def about(self) -> str:
         """What a grid is, in a few words."""
@@ -96,17 +87,14 @@ class PopulationResult:
     def summary(self) -> dict[str, Any]:
         """Return figures for people and for programs; everything is simulated."""
         head = {"simulated": True, "plan": msgspec.to_builtins(self.plan)}
-        return {**head, **(self._of_grid() if self.plan.kind == "grid" else self._of_people())}
-
-    def _of_grid(self) -> dict[str, Any]:
-        means = self.table()[0].mean(axis=1)
-        best = int(np.argmin(means))
-        found = {"parameters": self.designs[best], "mean_ms": float(means[best])}
-        return {"mean_ms": spread_of(means), "best": found}
-
-    def _of_people(self) -> dict[str, Any]:
+        if self.plan.kind == "grid":
+            means = self.table()[0].mean(axis=1)
+            best = int(np.argmin(means))
+            found = {"parameters": self.designs[best], "mean_ms": float(means[best])}
+            return {**head, "mean_ms": spread_of(means), "best": found}
         judged, against = self.columns["judged"], self.columns["against"]
         return {
+            **head,
             "judged_ms": spread_of(judged),
             "against_ms": spread_of(against),
             "gain_percent": spread_of(100 * (1 - judged / against)),
@@ -120,8 +108,7 @@ def spread_of(values: FloatArray) -> dict[str, float]:
     return {"median": float(middle), "low": float(low), "high": float(high)}
 
 
-def write_result(folder: Path, result: PopulationResult) -> None:
-    """Write columns and summary, each whole or not at all."""
+def _write(folder: Path, result: PopulationResult) -> None:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **result.columns)
     write_atomic(folder / RESULT_FILE, buffer.getvalue())
@@ -189,8 +176,9 @@ def run_population(
     with Journal.resume(folder / CHUNKS_FILE, KIND, busy, replay) as journal:
         done = set(chunks).__contains__
         run_campaign(executor, work, range(plan.chunks), store, done=done, progress=progress)
-    result = PopulationResult.of(plan, chunks)
-    write_result(folder, result)
+    joined = {name: np.concatenate([chunks[n][name] for n in range(plan.chunks)]) for name in chunks[0]}
+    result = PopulationResult(plan, joined)
+    _write(folder, result)
     return result
 
 

@@ -199,14 +199,11 @@ def _trials(session: Optimization) -> Section:
     rows = []
     for trial in session.trials:
         report = trial_report(trial)
-        values = (_value_text(name, trial.design[name]) for name in session.space.names)
+        digits = {name: 0 if name.endswith("_cN") else 2 for name in session.space.names}
+        values = (f"{trial.design[name]:.{places}f}" for name, places in digits.items())
         scored = ("–" if report[key] is None else f"{report[key]:.1f}" for key in ("score", "error"))
         rows.append((str(trial.number), report["state"], *scored, *values))
     failed = tuple(
         f"Trial {t.number} failed: {t.reason}." for t in session.trials if t.state is TrialState.FAILED
     )
     return Section("Trials", failed, (), (Table(columns, tuple(rows)),))
-
-
-def _value_text(name: str, value: float) -> str:
-    return f"{value:.0f}" if name.endswith("_cN") else f"{value:.2f}"
