@@ -137,7 +137,6 @@ class Engine(Protocol):
     @property
     def name(self) -> str:
         """Its name, as `--engine` knows it."""
-        ...
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
         """Suggest count designs that hold the constraints, given all trials so far (every state).
@@ -145,14 +144,12 @@ class Engine(Protocol):
         Trials that are suggested or shown are under way; failed ones tell that their neighbourhood may fail;
         abandoned ones tell nothing. InputError if no design of the space holds the constraints.
         """
-        ...
 
     def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
         """Recommend a design of those done: by what the engine believes, not by the luckiest score.
 
         Only with one objective; ModelError if nothing is done yet.
         """
-        ...
 
 
 class PairEngine(Protocol):
@@ -161,14 +158,11 @@ class PairEngine(Protocol):
     @property
     def name(self) -> str:
         """Its name, as `--engine` knows it."""
-        ...
 
     def pair(
         self, problem: Problem, comparisons: Sequence[Comparison]
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Suggest the next two designs."""
-        ...
 
     def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
         """Recommend a design; ModelError if nothing was answered yet."""
-        ...

@@ -77,7 +77,6 @@ class DesignSpace:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the parameters, in order."""
         return tuple(one.name for one in self.parameters)
 
     def checked(self, design: Design, source: object = "design") -> dict[str, float]:

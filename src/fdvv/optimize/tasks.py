@@ -35,21 +35,17 @@ class Task(Protocol):
     @property
     def name(self) -> str:
         """Its name, as `--task` knows it."""
-        ...
 
     @property
     def rounds(self) -> int:
         """How many rounds make a score."""
-        ...
 
     @property
     def objectives(self) -> tuple[Objective, ...]:
         """What it scores, the first one foremost."""
-        ...
 
     def scores(self, presses: Sequence[TaskPress]) -> dict[str, Score]:
         """Score the rounds, by objective, with standard errors. ModelError if there is nothing to score."""
-        ...
 
 
 def mean_score(values: FloatArray) -> Score:
@@ -117,7 +113,6 @@ class TemporalPointing:
 
     @property
     def speed_px_s(self) -> float:
-        """The speed of the bullet."""
         return LEVELS_px_s[self.level]
 
     @property
@@ -137,7 +132,6 @@ class TemporalPointing:
 
     @property
     def period_s(self) -> float:
-        """The time from bullet to bullet."""
         return self.strip_px / self.speed_px_s
 
     @property

@@ -43,12 +43,10 @@ class OrdinalData:
 
     @property
     def people(self) -> int:
-        """How many there are."""
         return len(self.starts)
 
     @property
     def owner(self) -> np.ndarray:
-        """Each row's person, (n,)."""
         return np.repeat(np.arange(self.people), np.diff(np.append(self.starts, len(self.category))))
 
     def by_person(self, values: FloatArray) -> FloatArray:

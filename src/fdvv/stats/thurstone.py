@@ -71,7 +71,6 @@ def d_prime_duo_trio(correct: int, n: int) -> DPrime:
 
 
 def share_2afc(d: float) -> float:
-    """Return the share of correct answers of 2-AFC."""
     return _phi(d / math.sqrt(2))
 
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -103,9 +103,9 @@ class Belief:
     centre: float
     scale: float
     basis: Basis | None = None
-    _solved: dict[str, FloatArray] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def _solved(self) -> dict[str, FloatArray]:
         from scipy.linalg import cho_factor, cho_solve
 
         y = (self.observed.values - self.centre) / self.scale
@@ -117,8 +117,7 @@ class Belief:
         KH = cho_solve(factor, H)
         cov = np.linalg.inv(H.T @ KH + precision)
         w = w0 + cov @ (KH.T @ (y - H @ w0))
-        solved = {"L": factor[0], "KH": KH, "cov": cov, "w": w, "a": cho_solve(factor, y - H @ w)}
-        object.__setattr__(self, "_solved", solved)
+        return {"L": factor[0], "KH": KH, "cov": cov, "w": w, "a": cho_solve(factor, y - H @ w)}
 
     @property
     def weights(self) -> FloatArray:

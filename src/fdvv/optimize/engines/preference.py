@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -40,9 +41,9 @@ class PreferenceBelief:
     pairs: np.ndarray[tuple[int, int], np.dtype[np.intp]]
     counts: FloatArray
     _kernel: Any = field(repr=False)
-    _solved: dict[str, FloatArray] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def _solved(self) -> dict[str, FloatArray]:
         K = self._kernel(self.places) + 1e-8 * np.eye(len(self.places))
         worth = np.zeros(len(K))
         for _ in range(STEPS):
@@ -54,7 +55,7 @@ class PreferenceBelief:
         slope, W = self._bend(worth)
         # (K + W^-1)^-1 without inverting W, which is singular: only differences are seen
         inner = np.linalg.solve(np.eye(len(K)) + W @ K, W)
-        object.__setattr__(self, "_solved", {"a": slope, "B": 0.5 * (inner + inner.T), "worth": worth})
+        return {"a": slope, "B": 0.5 * (inner + inner.T), "worth": worth}
 
     def _bend(self, worth: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the gradient (n,) and negative Hessian (n, n) of the log likelihood at worths (n,)."""
@@ -76,8 +77,11 @@ class PreferenceBelief:
         return cross @ self._solved["a"], np.asarray(cov)
 
     def mean(self, places: FloatArray) -> FloatArray:
-        """Return the mean worth of places, (n,)."""
         return np.asarray(self._kernel(places, self.places) @ self._solved["a"])
+
+    def most_liked(self, places: FloatArray) -> FloatArray:
+        """Return the one of places (n, d) whose mean worth is largest."""
+        return np.asarray(places[int(np.argmax(self.mean(places)))])
 
 
 def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> PreferenceBelief | None:
@@ -130,8 +134,7 @@ class PreferenceEngine:
         count = 2 if belief is None else self.drawn
         net = draw_feasible(problem, lambda n: rng.random((n, d)), tried, count)
         if belief is not None:
-            favourite = belief.places[int(np.argmax(belief.mean(belief.places)))]
-            net = np.vstack([favourite, net[int(np.argmax(belief.mean(net)))]])
+            net = np.vstack([belief.most_liked(belief.places), belief.most_liked(net)])
         first, second = problem.space.of_unit(net)
         # neither place of the two is always the favourite's
         return (first, second) if rng.random() < 0.5 else (second, first)
@@ -141,7 +144,7 @@ class PreferenceEngine:
         belief = believe_answers(problem.space, comparisons)
         if belief is None:
             raise ModelError("no comparison is answered yet, so there is no favourite")
-        return problem.space.of_unit(belief.places[int(np.argmax(belief.mean(belief.places)))])[0]
+        return problem.space.of_unit(belief.most_liked(belief.places))[0]
 
 
 def compared_places(problem: Problem, comparisons: Sequence[Comparison]) -> FloatArray:

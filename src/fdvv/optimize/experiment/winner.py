@@ -56,7 +56,6 @@ class Winner:
 
     @property
     def model(self) -> FDVVModel:
-        """The button that was designed."""
         return paper_model(self.design, f"optimal of person {self.person + 1}, {self.level}")
 
     @property

@@ -33,12 +33,10 @@ class Taps:
 
     @property
     def people(self) -> tuple[int, ...]:
-        """The numbers of all people, rising."""
         return tuple(int(one) for one in np.unique(self.person))
 
     @property
     def periods_ms(self) -> tuple[float, ...]:
-        """The periods there are, rising."""
         return tuple(np.unique(self.period_ms).tolist())
 
     def of(self, people: Collection[int], period_ms: float | None = None) -> Taps:

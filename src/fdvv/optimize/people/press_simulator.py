@@ -38,21 +38,6 @@ POOL_TICKS = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
-class CompiledDesign:
-    """What presses of a design on a rig share.
-
-    Attributes
-    ----------
-    rig, settings, image : what runs. model : what is rendered.
-    """
-
-    rig: Rig
-    settings: Settings
-    image: bytes
-    model: FDVVModel
-
-
-@dataclass(frozen=True, eq=False)
 class PressTrace:
     """One press of a task, its clock at 0 where the movement began.
 
@@ -66,12 +51,10 @@ class PressTrace:
 
 
 @lru_cache(maxsize=512)
-def compile_design(model: FDVVModel, rig_name: str = "ideal") -> CompiledDesign:
-    """Compile a design for a shipped rig. Raises InputError if it cannot be held or there is no such rig."""
-    rig, settings = known_rig(rig_name)
+def _compiled(model: FDVVModel, rig_name: str) -> bytes:
     if not model.of(Stroke.PRESS):
         raise InputError(model.name, "curves", "it has no press to feel", "merge one into it")
-    return CompiledDesign(rig, settings, compile_button(model, limits=rig_limits(rig)).image, model)
+    return compile_button(model, limits=rig_limits(known_rig(rig_name)[0])).image
 
 
 def refusal_of(model: FDVVModel, rig_name: str = "ideal") -> str:
@@ -100,8 +83,7 @@ def _pool(rig_name: str) -> Noise:
     return draw_ticks(rig, Finger(), POOL_TICKS, np.random.default_rng(0))
 
 
-def finger_of(user: SimulatedUser) -> Finger:
-    """Return a person's finger."""
+def _finger(user: SimulatedUser) -> Finger:
     return Finger(
         Impedance(user.mass_kg, user.stiffness_N_m, user.damping_N_s_m),
         habit=PressVariability(
@@ -117,15 +99,17 @@ class PressSimulator:
 
     Attributes
     ----------
-    compiled, user, finger : what is pressed, by whom. tick_s : of the controller.
+    model, rig, user, finger : what is pressed, on what, by whom. tick_s : of the controller.
+
+    Raises InputError if the rig's firmware cannot hold the design or there is no such rig.
     """
 
     def __init__(self, model: FDVVModel, user: SimulatedUser, rig_name: str = "ideal") -> None:
-        self.compiled = compile_design(model, rig_name)
-        self.user, self.finger = user, finger_of(user)
-        self.tick_s = self.compiled.rig.controller.tick_s
+        self.model, self.user, self.finger = model, user, _finger(user)
+        self.rig, settings = known_rig(rig_name)
+        self.tick_s = self.rig.controller.tick_s
         self._pool = _pool(rig_name)
-        self._settled = self._settle()
+        self._settled = self._settle(_compiled(model, rig_name), settings)
 
     def press(
         self, random: np.random.Generator, push_ratio: float = 1.0, pace_ratio: float = 1.0
@@ -164,7 +148,7 @@ class PressSimulator:
         stiffness = user.stiffness_N_m * max(0.1, 1 + user.stiffness_spread_ratio * stiff)
         usual_m = depth_m(self.finger, N_from_cN(user.push_cN), stiffness)
         pushed_cN = user.push_cN * push_ratio * max(0.1, 1 + user.push_spread_ratio * push)
-        travel_m = m_from_mm(self.compiled.model.travel_mm)
+        travel_m = m_from_mm(self.model.travel_mm)
         end_m = travel_m + depth_m(self.finger, N_from_cN(pushed_cN), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
         press_s = max(SHORTEST_s, (KEY_mm + mm_from_m(usual_m)) / pace_mm_s)
@@ -184,15 +168,14 @@ class PressSimulator:
 
     def _until_stop(self, rig: InteractiveRig, count: int, first: int) -> InteractiveTicks:
         """Advance by count ticks, or fewer once the cap was at the stop and the key is down."""
-        parts, done, travel_mm = [rig.advance(first)], first, self.compiled.model.travel_mm
+        parts, done, travel_mm = [rig.advance(first)], first, self.model.travel_mm
         while done < count and not (parts[-1].displacement_mm.max() >= travel_mm and parts[-1].key[-1]):
             parts.append(rig.advance(min(self.ticks_in(PIECE_s), count - done)))
             done += parts[-1].t_s.size
         return InteractiveTicks.joined(parts)
 
-    def _settle(self) -> InteractiveRig:
-        compiled = self.compiled
-        rig = InteractiveRig(compiled.image, compiled.rig, self.finger, compiled.settings, seed=None)
+    def _settle(self, image: bytes, settings: Settings) -> InteractiveRig:
+        rig = InteractiveRig(image, self.rig, self.finger, settings, seed=None)
         rig.announce(self.user.pace_mm_s)
         rest = self.resting(self.user.rest_cN, self.user.rest_cN, 1.0)
         rig.press(replace(rest, end_m=rest.start_m))

@@ -68,18 +68,18 @@ class Hand:
 
     def _learn(self, press: PressTrace) -> bool:
         """Push harder from now on if the press did not reach the stop; return whether so."""
-        weak = bottom_at(press, self._bench.compiled.model.travel_mm) is None
+        weak = bottom_at(press, self._bench.model.travel_mm) is None
         if weak:
             self.push_ratio = min(HARDEST, HARDER * self.push_ratio)
         return weak
 
     def _felt(self, press: PressTrace) -> Percept:
-        compiled = self._bench.compiled
-        events = tactile_events(press, compiled.model, compiled.rig.exciter.latency_s)
-        return percept_of(self._bench.user, events, float(press.t_s[-1]))
+        bench = self._bench
+        events = tactile_events(press, bench.model, bench.rig.exciter.latency_s)
+        return percept_of(bench.user, events, float(press.t_s[-1]))
 
     def _effort_N_s(self, press: PressTrace, start: int) -> float:
-        end = bottom_at(press, self._bench.compiled.model.travel_mm)
+        end = bottom_at(press, self._bench.model.travel_mm)
         tick_s = float(press.t_s[1] - press.t_s[0])
         return float(np.sum(press.ticks.force_cN[start:end])) * 0.01 * tick_s
 

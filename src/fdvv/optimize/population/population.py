@@ -81,7 +81,6 @@ class PopulationResult:
 
     @property
     def designs(self) -> tuple[dict[str, float], ...]:
-        """The designs of a grid."""
         return grid_designs(paper_space(), self.plan.designs)
 
     def summary(self) -> dict[str, Any]:

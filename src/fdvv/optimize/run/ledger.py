@@ -86,16 +86,13 @@ class Ledger:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """All trials, by number."""
         return tuple(self._trials)
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        """All comparisons, by number."""
         return tuple(self._comparisons)
 
     def suggest(self, design: Design, origin: str) -> Trial:
-        """Write down a trial; only then may it be shown."""
         trial = Trial(len(self._trials), dict(design), origin=origin)
         self._keep("trial", trial)
         return trial
@@ -113,7 +110,6 @@ class Ledger:
         return self._trials[number]
 
     def pair(self, first: Design, second: Design) -> Comparison:
-        """Write down two designs to be compared."""
         comparison = Comparison(len(self._comparisons), dict(first), dict(second))
         self._keep("pair", comparison)
         return comparison

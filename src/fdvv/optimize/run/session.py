@@ -78,12 +78,10 @@ class Optimization:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """All trials, by number."""
         return self._ledger.trials
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        """All comparisons, by number."""
         return self._ledger.comparisons
 
     @property
@@ -182,11 +180,9 @@ class Optimization:
         return self._ledger.answer(number, answer)
 
     def model(self, design: Design, name: str = "design") -> FDVVModel:
-        """Make the button of a design."""
         return self._designer(design).renamed(name)
 
     def close(self) -> None:
-        """Close the ledger; closing twice is harmless."""
         self._ledger.close()
 
     def __enter__(self) -> Optimization:
