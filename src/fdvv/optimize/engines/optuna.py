@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
     from optuna.samplers import BaseSampler
     from optuna.study import Study
-    from optuna.trial import FrozenTrial
 
 STARTUP = 10
 """Designs of an even net before a sampler may learn."""
@@ -123,7 +122,7 @@ def _replayed(problem: Problem, trials: Sequence[Trial], sampler: BaseSampler) -
         study.enqueue_trial(_params(problem, trial))
         asked = study.ask(_ranges(problem))
         if finished(problem, [trial]):
-            study.tell(asked, [trial.scores[one.name].value for one in problem.objectives])
+            study.tell(asked, _values(problem, trial))
         elif trial.state not in OPEN:
             study.tell(asked, state=optuna.trial.TrialState.FAIL)
     return study
@@ -177,23 +176,29 @@ def _tell(study: Study, problem: Problem, trial: Trial) -> None:
     """Add a trial to a study: done, under way, or failed as one that no constraint allows."""
     import optuna
 
-    common: dict[str, Any] = {"params": _params(problem, trial), "distributions": _ranges(problem)}
-    state = optuna.trial.TrialState
-    if trial.state is TrialState.DONE and finished(problem, [trial]):
-        values = [trial.scores[one.name].value for one in problem.objectives]
-        feasible = {BROKEN: 0.0}
-        study.add_trial(optuna.trial.create_trial(values=values, constraints=feasible, **common))
+    params = _params(problem, trial)
+    if finished(problem, [trial]):
+        _add(study, problem, params, values=_values(problem, trial), constraints={BROKEN: 0.0})
     elif trial.state in OPEN:
-        study.add_trial(optuna.trial.create_trial(state=state.RUNNING, **common))
+        _add(study, problem, params, state=optuna.trial.TrialState.RUNNING)
     elif trial.state is TrialState.FAILED:
-        study.add_trial(_infeasible(problem, common))
+        _add_infeasible(study, problem, params, 1.0)
 
 
-def _infeasible(problem: Problem, common: dict[str, Any], missed: float = 1.0) -> FrozenTrial:
+def _add(study: Study, problem: Problem, params: dict[str, Any], **told: Any) -> None:
     import optuna
 
+    study.add_trial(optuna.trial.create_trial(params=params, distributions=_ranges(problem), **told))
+
+
+def _add_infeasible(study: Study, problem: Problem, params: dict[str, Any], missed: float) -> None:
     worst = [1e9 * one.sign for one in problem.objectives]
-    return optuna.trial.create_trial(values=worst, constraints={BROKEN: min(missed, 1e9) or 1.0}, **common)
+    # what missed by 0 was tried before: to be avoided as well
+    _add(study, problem, params, values=worst, constraints={BROKEN: min(missed, 1e9) or 1.0})
+
+
+def _values(problem: Problem, trial: Trial) -> list[float]:
+    return [trial.scores[one.name].value for one in problem.objectives]
 
 
 def _asked(study: Study, problem: Problem, trials: Sequence[Trial], count: int) -> list[dict[str, float]]:
@@ -214,12 +219,11 @@ def _one(study: Study, problem: Problem, tried: FloatArray) -> FloatArray | None
     """Ask for one place; None where it breaks a constraint or was tried, which the study then knows."""
     import optuna
 
-    ranges = _ranges(problem)
-    trial = study.ask(ranges)
+    trial = study.ask(_ranges(problem))
     place = np.array([trial.params[name] for name in problem.space.names])
     missed = float(missed_by(problem.space, place[None])[0])
     if missed <= 0 and len(fresh(place[None], tried)):
         return place
     study.tell(trial, state=optuna.trial.TrialState.FAIL)
-    study.add_trial(_infeasible(problem, {"params": dict(trial.params), "distributions": ranges}, missed))
+    _add_infeasible(study, problem, dict(trial.params), missed)
     return None

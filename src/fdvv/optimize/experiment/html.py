@@ -10,23 +10,26 @@ from fdvv import __version__
 from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic
 from fdvv.optimize.experiment.experiment import ExperimentResult, ExperimentVerdict
-from fdvv.optimize.experiment.prose import (
-    anova_sentences,
-    level_title,
-    means_sentence,
-    method_paragraphs,
-    pairs_sentence,
-    reductions_sentence,
-    winner_paragraphs,
-)
-from fdvv.optimize.experiment.setup import LEVELS
-from fdvv.optimize.experiment.winner import RenderedWinner, Winner, rendered_curves
+from fdvv.optimize.experiment.setup import LEVELS, RANDOM, ExperimentSetup
+from fdvv.optimize.experiment.winner import RenderedWinner, rendered_curves
+from fdvv.optimize.paper_space import paper_model
 from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
+from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.rendering.figures import plot_rendering
-from fdvv.report.prose import PAIR_COLUMNS, button_text, effect_text, pair_cells, stars
+from fdvv.report.prose import (
+    ALPHA,
+    PAIR_COLUMNS,
+    button_text,
+    effect_text,
+    listed,
+    pair_cells,
+    sphericity_text,
+    stars,
+)
 from fdvv.report.report import Section, Table, render_html, write_report
 from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
 from fdvv.report.svg import figure_svg
+from fdvv.stats.anova import Anova
 
 EXAMPLES = 3
 """People whose designs are drawn."""
@@ -61,7 +64,7 @@ def experiment_html(
     """Write the report as HTML. Needs matplotlib (BuildError without it)."""
     setup = result.setup
     sections = [
-        Section("Method", method_paragraphs(setup)),
+        Section("Method", (_training_text(setup), _validation_text(setup), _week_text(setup))),
         _training(result),
         _results(result, verdict),
         _pairs(verdict),
@@ -69,7 +72,7 @@ def experiment_html(
     ]
     if rendered:
         sections.append(_winner(rendered))
-    summary = f"{reductions_sentence(verdict)} {pairs_sentence(verdict)}"
+    summary = f"{_reductions_sentence(verdict)} {_pairs_sentence(verdict)}"
     simulated = (
         f"{setup.people} simulated people press the twin on the rig {setup.rig}; no human took part, and no "
         "figure here is a human result"
@@ -81,7 +84,7 @@ def experiment_html(
 
 
 def _training(result: ExperimentResult) -> Section:
-    panels = [TrainingScores(level_title(level), result.training_ms(level)) for level in LEVELS]
+    panels = [TrainingScores(_level_title(level), result.training_ms(level)) for level in LEVELS]
     svg = figure_svg(plot_training(panels, SCORE, simulated=True), "Scores of the designs tried in training")
     failed = sum(not t.scores for one in result.trainings for t in one.trials)
     text = (
@@ -99,7 +102,7 @@ def _results(result: ExperimentResult, verdict: ExperimentVerdict) -> Section:
         marks = ("", *(stars(one.holm_p) for one in verdict.by_level[level]))
         names = tuple(button_text(name) for name in result.setup.buttons)
         spread = scores[:, :, i].std(axis=0, ddof=1)
-        panels.append(ScoreBars(level_title(level), names, scores[:, :, i], spread, marks))
+        panels.append(ScoreBars(_level_title(level), names, scores[:, :, i], spread, marks))
     svg = figure_svg(plot_score_bars(panels, SCORE, simulated=True), "Mean asynchrony by button and level")
     rounds = verdict.rounds_anova
     note = (
@@ -121,11 +124,11 @@ def _results(result: ExperimentResult, verdict: ExperimentVerdict) -> Section:
         f"effect of button is {effect_text(switches)}."
     )
     sentences = (
-        *(means_sentence(verdict, level) for level in LEVELS),
+        *(_means_sentence(verdict, level) for level in LEVELS),
         f"A two-way repeated measures ANOVA was conducted over {verdict.anova.people} people, rounds "
-        f"averaged first. {anova_sentences(verdict.anova)[0]}",
-        *filter(None, anova_sentences(verdict.anova)[1:]),
-        f"{pairs_sentence(verdict)} {reductions_sentence(verdict)}",
+        f"averaged first. {_anova_sentences(verdict.anova)[0]}",
+        *filter(None, _anova_sentences(verdict.anova)[1:]),
+        f"{_pairs_sentence(verdict)} {_reductions_sentence(verdict)}",
         aside,
         *readings,
         note,
@@ -191,8 +194,8 @@ def _designs(result: ExperimentResult) -> Section:
     for person in range(min(EXAMPLES, result.setup.people)):
         for level in LEVELS:
             design = result.training_of(person, level).best
-            model = Winner(person, level, design, 0.0).model
-            panels.append(DesignPanel(f"person {person + 1}, {level}", model, control_points(design)))
+            title = f"person {person + 1}, {level}"
+            panels.append(DesignPanel(title, paper_model(design), control_points(design)))
     svg = figure_svg(plot_designs(panels, len(LEVELS), simulated=True), "Designs found for three people")
     text = ("What the engine recommends after training, for the first people as examples.",)
     return Section("Designs found", text, (svg,))
@@ -201,4 +204,110 @@ def _designs(result: ExperimentResult) -> Section:
 def _winner(rendered: RenderedWinner) -> Section:
     figure = plot_rendering(rendered_curves(rendered))
     svg = figure_svg(figure, "The design, fresh presses of it, and the model captured of it")
-    return Section("The winner on the device", winner_paragraphs(rendered), (svg,))
+    return Section("The winner on the device", _winner_paragraphs(rendered), (svg,))
+
+
+def _anova_sentences(anova: Anova) -> tuple[str, ...]:
+    """Report every effect, significant or not, and sphericity."""
+    sentences = []
+    for effect in anova.effects:
+        what = "interaction" if "×" in effect.name else "main effect"
+        verdict = "is significant" if effect.corrected_p < ALPHA else "is not significant"
+        sentences.append(f"The {what} of {effect.name} on mean asynchrony {verdict}, {effect_text(effect)}.")
+    return (" ".join(sentences), " ".join(filter(None, map(sphericity_text, anova.effects))))
+
+
+def _pairs_sentence(verdict: ExperimentVerdict) -> str:
+    """Name the buttons that the optimised one outperforms, and those that it does not."""
+    better = [one for one in verdict.against if one.bonferroni_p < ALPHA and one.difference.value < 0]
+    worse = [one for one in verdict.against if one.bonferroni_p < ALPHA and one.difference.value > 0]
+    alike = [one for one in verdict.against if one.bonferroni_p >= ALPHA]
+    tests = f"Post-hoc tests with Bonferroni correction over {len(verdict.pairs)} pairs"
+    parts = [
+        (better, "confirm that the optimised button outperforms"),
+        (worse, "find the optimised button worse than"),
+        (alike, "find no significant difference to"),
+    ]
+    findings = [f"{words} {listed([one.second for one in group])}" for group, words in parts if group]
+    return f"{tests} {'; they '.join(findings)}."
+
+
+def _reductions_sentence(verdict: ExperimentVerdict) -> str:
+    """Report the fall of asynchrony by level, against the switches and the random design."""
+    levels = []
+    for level, pairs in verdict.by_level.items():
+        switches = [100 * one.reduction_ratio.value for one in pairs if one.second != RANDOM]
+        random = next((100 * one.reduction_ratio.value for one in pairs if one.second == RANDOM), None)
+        text = f"{level}: {min(switches):.0f} to {max(switches):.0f} % below the switches"
+        levels.append(text if random is None else f"{text}, {random:.0f} % below random")
+    return f"Mean asynchrony with the optimised button, {'; '.join(levels)}."
+
+
+def _means_sentence(verdict: ExperimentVerdict, level: str) -> str:
+    """List means and standard deviations of a level as the paper does."""
+    means = [one for one in verdict.means if one.level == level]
+    values = ", ".join(f"{one.mean_ms:.1f} ms (SD {one.people_sd_ms:.1f})" for one in means)
+    return (
+        f"For the level {level}, mean asynchronies are {values} for {listed([one.button for one in means])}, "
+        "respectively; SD is between people."
+    )
+
+
+def _level_title(level: str) -> str:
+    """Name a level with its speed."""
+    return f"{level} ({LEVELS_px_s[level]:.0f} px/s)"
+
+
+def _training_text(setup: ExperimentSetup) -> str:
+    levels = " and ".join(_level_title(level) for level in LEVELS)
+    others = " and ".join(f"{len(trials)} designs ({level})" for level, trials in setup.prior.items())
+    prior = f" Every training begins from the mean scores that other simulated people gave {others}."
+    return (
+        f"{setup.people} simulated people play temporal pointing without visual feedback of the press at two "
+        f"levels, {levels}. In training, each has {setup.trials} trials of {setup.presses} presses per "
+        f"level; the engine {setup.engine} suggests the next design from the mean asynchronies so far. Every "
+        f"second person begins with the hard level.{prior if others else ''}"
+    )
+
+
+def _validation_text(setup: ExperimentSetup) -> str:
+    blocks = setup.people * setup.rounds * len(LEVELS)
+    return (
+        "A week later they press the design that the engine recommends for them and the level, "
+        f"{len(setup.rivals)} switches ({', '.join(setup.rivals)}) and a random design, {setup.rounds} times "
+        "per level, in Williams' orders: over the experiment every button is in every place, and follows "
+        f"every other, as equally often as {blocks} blocks allow. That gives {setup.observations} "
+        f"observations of mean asynchrony, each over {setup.presses} presses."
+    )
+
+
+def _week_text(setup: ExperimentSetup) -> str:
+    gap = setup.gap
+    return (
+        f"The week is a stated change of the person (assumed): {100 * gap.kept_ratio:.0f} % of the practice "
+        f"is kept, adaptation begins anew, bias shifts by {gap.bias_ms:g} ms and anticipation by "
+        f"{gap.anticipated_ms:g} ms (standard deviations), timing noise by {100 * gap.clock_ratio:.0f} % and "
+        f"pace by {100 * gap.pace_ratio:.0f} %."
+    )
+
+
+def _winner_paragraphs(rendered: RenderedWinner) -> tuple[str, ...]:
+    """Describe the design that was rendered, its errors, and the model captured from it."""
+    winner, figures = rendered.winner, rendered.to_dict()
+    return (
+        *(f"Did better but could not be rendered: {reason}." for reason in rendered.refused),
+        f"The design of person {winner.person + 1} at the level {winner.level} did best in validation, "
+        f"{100 * winner.reduction_ratio:.0f} % below that person's switches. As the best of many noisy "
+        "scores it shows a design, not how good it is.",
+        "Its parameters: " + ", ".join(f"{name} {value:.2f}" for name, value in winner.design.items()) + ".",
+        f"Its actuation was learned on the {figures['device']} with the rig {figures['rig']} (simulated) and "
+        f"measured on fresh presses: mean error {_errors(figures['probed_mean_error_cN'])}, in true "
+        "displacement.",
+        "Further presses, as the device's own sensors saw them, went through the capturing process back into "
+        f"a model: travel {figures['captured_travel_mm']:.2f} mm, mean difference to the design "
+        f"{_errors(rendered.difference_cN)}. Its curves begin where the cap was first felt.",
+    )
+
+
+def _errors(by_stroke: dict[str, float]) -> str:
+    return ", ".join(f"{stroke} {error:.2f} cN" for stroke, error in by_stroke.items())
