@@ -161,6 +161,7 @@ def believe(
     """
     values, basis = observed.values, basis and basis.about(observed.places)
     centre = float(np.mean(values))
+    # one score, or all alike, tell no scale
     scale = float(np.std(values)) or max(abs(centre), 1.0)
     ratio = pooled(observed.errors) / scale
     known = np.isfinite(ratio)
@@ -209,6 +210,7 @@ def _fitted(
     spread = np.array([signal[1], *[LENGTH[1]] * d, noise[1]])
     numbers = (1.0, BOUNDS), (np.exp(mean[1:-1]), BOUNDS), (np.exp(noise[0]), NOISE_BOUNDS)
     search = _search(mean, spread, starts)
+    # two places nearly the same would leave the matrix singular
     kernel = fitted_process("gp", X, y, *numbers, alpha=fixed + 1e-8, optimizer=search).kernel_
     return kernel.k1, float(kernel.k2.noise_level)
 

@@ -22,6 +22,7 @@ Draw = Callable[[int], FloatArray]
 
 def generator(problem: Problem, trials: Sequence[object], purpose: int = 0) -> np.random.Generator:
     """Return the random numbers of the next suggestion: of the seed and of how many trials there are."""
+    # NumPy takes no seed below 0
     return np.random.default_rng([problem.seed & 0xFFFFFFFF, len(trials), purpose])
 
 

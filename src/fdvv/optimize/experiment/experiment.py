@@ -57,10 +57,6 @@ class ExperimentResult:
         ]
         return np.array(rows, dtype=np.float64)
 
-    def training_of(self, person: int, level: str) -> Training:
-        """Return the training of a person and level. Raises StopIteration if there is none."""
-        return next(t for t in self.trainings if (t.person, t.level) == (person, level))
-
     def to_dict(self) -> dict[str, Any]:
         """Return the observations and designs found, for a file."""
         return {

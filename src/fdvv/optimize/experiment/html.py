@@ -190,12 +190,11 @@ def _pairs(verdict: ExperimentVerdict) -> Section:
 
 
 def _designs(result: ExperimentResult) -> Section:
-    panels = []
-    for person in range(min(EXAMPLES, result.setup.people)):
-        for level in LEVELS:
-            design = result.training_of(person, level).best
-            title = f"person {person + 1}, {level}"
-            panels.append(DesignPanel(title, paper_model(design), control_points(design)))
+    panels = [
+        DesignPanel(f"person {one.person + 1}, {one.level}", paper_model(one.best), control_points(one.best))
+        for one in result.trainings
+        if one.person < EXAMPLES
+    ]
     svg = figure_svg(plot_designs(panels, len(LEVELS), simulated=True), "Designs found for three people")
     text = ("What the engine recommends after training, for the first people as examples.",)
     return Section("Designs found", text, (svg,))

@@ -96,18 +96,13 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
     """
     path = folder / EXPERIMENT_FILE
     if path.exists():
-        there = read_experiment_setup(folder)
+        there = read_record(path, KIND, ExperimentSetup, LARGEST_bytes)
         _check_same(path, there, setup)
         return there
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "folder", "is not empty and holds no experiment", "name a new one")
     write_atomic(path, setup_text(setup))
     return setup
-
-
-def read_experiment_setup(folder: Path) -> ExperimentSetup:
-    """Read the setup of an experiment's folder. Raises InputError."""
-    return read_record(folder / EXPERIMENT_FILE, KIND, ExperimentSetup, LARGEST_bytes)
 
 
 def _check_same(path: Path, there: ExperimentSetup, asked: ExperimentSetup) -> None:

@@ -151,6 +151,7 @@ class PressSimulator:
         travel_m = m_from_mm(self.model.travel_mm)
         end_m = travel_m + depth_m(self.finger, N_from_cN(pushed_cN), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
+        # of the person's usual push: who pushes harder goes deeper in the same time
         press_s = max(SHORTEST_s, (KEY_mm + mm_from_m(usual_m)) / pace_mm_s)
         return self._gesture(user.rest_cN + user.rest_spread_cN * rest, end_m, press_s, stiffness)
 

@@ -8,12 +8,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import msgspec
 import numpy as np
 from msgspec import Meta, Struct
 
 from fdvv.errors import InputError
-from fdvv.io.documents import Kind, pretty, read_record
+from fdvv.io.documents import Kind, read_record
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_of
@@ -103,11 +102,6 @@ def seed_of(*numbers: int) -> int:
 def read_plan(path: Path) -> PopulationPlan:
     """Read a plan. Raises InputError."""
     return read_record(path, KIND, PopulationPlan, LARGEST_bytes)
-
-
-def plan_text(plan: PopulationPlan) -> str:
-    """Write a plan."""
-    return pretty(msgspec.to_builtins(plan)) + "\n"
 
 
 Evaluate = Callable[[Design, int], Mapping[str, Score]]

@@ -22,7 +22,6 @@ from fdvv.optimize.population.plan import (
     PopulationPlan,
     PopulationWork,
     grid_designs,
-    plan_text,
     read_plan,
 )
 from fdvv.optimize.problem import Score, Trial, TrialState
@@ -187,7 +186,7 @@ def _begin(folder: Path, plan: PopulationPlan, prior: tuple[Trial, ...]) -> None
     if not path.exists():
         require_new_folder(folder, "name a new one, or that of the same run")
         write_atomic(folder / PRIOR_FILE, trials)
-        write_atomic(path, plan_text(plan))
+        write_atomic(path, pretty(msgspec.to_builtins(plan)) + "\n")
         return
     other = read_plan(path).differs(plan)
     if other:

@@ -133,6 +133,7 @@ class Ledger:
 
     def _put(self, changed: Trial | Comparison) -> None:
         rows = self._rows(changed)
+        # in the place of its number, or at the end
         rows[changed.number : changed.number + 1] = [changed]
 
     def _rows(self, body: Trial | Comparison) -> list[Any]:

@@ -17,10 +17,8 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.tasks import Accuracy, LEVELS_px_s, RapidTapping, Task, TemporalPointing
 
-POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
-"""Names of the tasks."""
-SIMULATED_TASKS = (POINTING, TAPPING, ACCURACY)
-"""Tasks that simulated people can play."""
+SIMULATED_TASKS = POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
+"""Names of the tasks that simulated people can play."""
 TrialDone = Callable[[Trial], None]
 """Called with every trial when it is done or has failed."""
 

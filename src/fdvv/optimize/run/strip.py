@@ -200,13 +200,12 @@ def run_on_any_strip(
     task, presses = _task(session, player.task.rounds), list[TaskPress]()
 
     def sit_down(trial: Trial) -> None:
+        # the presser reads the list at each round: it finds there the presses of the trial that goes on
         seed = play_seed(player.seed, trial.number)
         presses[:] = simulate_task(task, session.model(trial.design), player.user, seed)
 
-    def press(number: int, start: StripStart) -> None:
-        played_presser(port, presses)(number, start)
-
-    yield from run_on_strip(session, device, strip, rounds=task.rounds, ready=sit_down, presser=press)
+    presser = played_presser(port, presses)
+    yield from run_on_strip(session, device, strip, rounds=task.rounds, ready=sit_down, presser=presser)
 
 
 def _task(session: Optimization, rounds: int) -> TemporalPointing:
