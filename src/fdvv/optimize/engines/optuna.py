@@ -185,10 +185,10 @@ def _tell(study: Study, problem: Problem, trial: Trial) -> None:
         _add_infeasible(study, problem, params, 1.0)
 
 
-def _add(study: Study, problem: Problem, params: dict[str, Any], **told: Any) -> None:
+def _add(study: Study, problem: Problem, params: dict[str, Any], **fields: Any) -> None:
     import optuna
 
-    study.add_trial(optuna.trial.create_trial(params=params, distributions=_ranges(problem), **told))
+    study.add_trial(optuna.trial.create_trial(params=params, distributions=_ranges(problem), **fields))
 
 
 def _add_infeasible(study: Study, problem: Problem, params: dict[str, Any], missed: float) -> None:
