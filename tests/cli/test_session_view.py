@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from rich.live import Live
 
-from fdvv.cli.session import LineView, TableView, press_line
+from fdvv.cli.rendering.session import LineView, TableView, press_line
 from fdvv.compensation.method import CurveOutcome
 from fdvv.model.curve import Stroke
 from fdvv.rendering.session_run import PressDone, PressRequest, VelocityProgress

@@ -42,7 +42,7 @@ def person(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         return told
 
     monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Rig())
-    monkeypatch.setattr("fdvv.cli.tune.click.prompt", prompt)
+    monkeypatch.setattr("fdvv.cli.rendering.tune.click.prompt", prompt)
     return answers
 
 

@@ -190,7 +190,7 @@ def _show_receipt(button: str, as_json: bool) -> bool:
     path = Path(button)
     if not button or not (path.is_dir() or button.endswith(".actuation.json") or own_kind(path) == ACTUATION):
         return False
-    from fdvv.cli.session import print_receipt
+    from fdvv.cli.rendering.session import print_receipt
     from fdvv.rendering.actuation_file import open_run_summary
 
     receipt = open_run_summary(path)

@@ -11,7 +11,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import exciter_option, opened_exciter
-from fdvv.cli.session import beside, open_session, session_options
+from fdvv.cli.rendering.session import beside, open_session, session_options
 
 if TYPE_CHECKING:
     from fdvv.rendering.session_run import Guide, PressRequest

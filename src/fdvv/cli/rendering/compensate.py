@@ -9,7 +9,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import law_of, method_options
-from fdvv.cli.session import beside, guided, open_session, session_options
+from fdvv.cli.rendering.session import beside, guided, open_session, session_options
 
 
 @click.command()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.session import beside, guided, open_session, session_options
+from fdvv.cli.rendering.session import beside, guided, open_session, session_options
 
 if TYPE_CHECKING:
     from fdvv.device.contract import Device

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.capture_view import COLUMNS, capture_view, cells
+from fdvv.cli.bench.capture_view import COLUMNS, capture_view, cells
 from fdvv.cli.options import Paces
 
 if TYPE_CHECKING:

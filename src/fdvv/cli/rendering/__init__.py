@@ -1,0 +1,1 @@
+"""``fdvv compensate``, ``probe``, ``feasible`` and ``tune``: a model rendered on a rig."""
