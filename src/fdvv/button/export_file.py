@@ -122,23 +122,18 @@ def export_button(
     if is_recording(spec):
         form = export_format(to, output, "recording")
         if form.of != "recording":
-            raise InputError(
-                spec, "whole file", f"is a recording, {form.name} is of a {form.of}", "process it first"
-            )
+            reason = f"is a recording, {form.name} is of a {form.of}"
+            raise InputError(spec, "whole file", reason, "process it first")
         return recording_csv(load_recording(spec))
     form = export_format(to, output)
     if form.of == "recording":
         raise InputError(spec, "argument", f"{form.name} is of a recording", "name a *.recording.jsonl")
     model = open_button(spec)
     if form.of == "button":
-        _needs(spec, model, form.name)
+        if form.name in ("mjcf", "smartknob") and not model.of(Stroke.PRESS):
+            raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
         return _BUTTONS[form.name](model, chosen)
     return export_vibration(_vibration(spec, model, chosen), form.name, model.name)
-
-
-def _needs(spec: str, model: FDVVModel, form: str) -> None:
-    if form in ("mjcf", "smartknob") and not model.of(Stroke.PRESS):
-        raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
 
 
 def _vibration(spec: str, model: FDVVModel, settings: ExportSettings) -> Vibration:
@@ -164,9 +159,14 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
         written = hjif(vibration, date or datetime.now(UTC).date().isoformat(), name)
     else:
         written = (ahap if form == "ahap" else meta_haptic)(vibration, name)
-    return replace(
-        written, figures={**written.figures, **_likeness(read_back(vibration, written), vibration)}
-    )
+    a, b = vibration_samples(read_back(vibration, written)), vibration_samples(vibration)
+    likeness = {
+        "correlation": correlation(a, b),
+        "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
+        "st_sim": st_sim(a, b, LISTEN_Hz),
+        "spqi": spqi(a, b, LISTEN_Hz),
+    }
+    return replace(written, figures={**written.figures, **likeness})
 
 
 def read_back(vibration: Vibration, written: Exported) -> Vibration:
@@ -176,13 +176,3 @@ def read_back(vibration: Vibration, written: Exported) -> Vibration:
         return replace(vibration, modes=modes, duration_s=duration_s, spread=None)
     pulse = (read_ahap if written.format == "ahap" else read_meta_haptic)(written.data)
     return replace(vibration, modes=(mode_of(pulse),), duration_s=float(pulse.t_s[-1]), spread=None)
-
-
-def _likeness(found: Vibration, target: Vibration) -> dict[str, float]:
-    a, b = vibration_samples(found), vibration_samples(target)
-    return {
-        "correlation": correlation(a, b),
-        "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
-        "st_sim": st_sim(a, b, LISTEN_Hz),
-        "spqi": spqi(a, b, LISTEN_Hz),
-    }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -203,9 +203,8 @@ def _point(
     if point is None:
         return None
     if not 0 <= point - zero <= travel:
-        warnings.append(
-            f"{what} at {point - zero:.3f} mm lies outside the travel of {travel:.3f} mm: left out"
-        )
+        place = f"{what} at {point - zero:.3f} mm"
+        warnings.append(f"{place} lies outside the travel of {travel:.3f} mm: left out")
         return None
     return round(point - zero, DECIMALS_mm)
 
@@ -226,17 +225,9 @@ def measured_files(folder: Path) -> list[Path]:
     """
     files = [path for path in find_force_files(folder) if not own_kind(path)]
     if not files:
-        raise InputError(
-            folder, "folder", "no .csv, .ods, .json or .txt file of measurements in it", "name another folder"
-        )
+        reason = "no .csv, .ods, .json or .txt file of measurements in it"
+        raise InputError(folder, "folder", reason, "name another folder")
     return files
-
-
-def fit_folder(
-    folder: Path, settings: FitSettings | None = None, workers: int | None = None
-) -> Iterator[FolderFit]:
-    """Fit the measured_files of a folder, as fit_files does. Raises InputError if there is none."""
-    yield from fit_files(measured_files(folder), settings, workers)
 
 
 def fit_files(
@@ -257,57 +248,27 @@ def fit_files(
         yield from pool.map(one, files)
 
 
-@dataclass(frozen=True)
-class FolderSummary:
-    """The spread of a folder's fits, per stroke.
+def summarise(results: Sequence[FolderFit]) -> dict[str, Any]:
+    """Return the summary of ``fdvv fit FOLDER --json``.
 
-    Attributes
-    ----------
-    rmse_cN, rows_rmse_cN, time_s : (median, 90th percentile) by stroke.
-    bumps, bumps_kept : strokes with a bump, and those of which at least 95 % was kept.
+    Of each stroke the median and 90th percentile of its fits; of all strokes how many have a bump, and how
+    many of those kept at least 95 % of it.
     """
-
-    files: int
-    refused: int
-    rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
-    rows_rmse_cN: dict[str, tuple[float, float]] = field(default_factory=dict)
-    time_s: dict[str, tuple[float, float]] = field(default_factory=dict)
-    bumps: int = 0
-    bumps_kept: int = 0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the summary of ``fdvv fit FOLDER --json``."""
-        strokes = {
-            stroke: {
-                "rmse_cN": {"median": self.rmse_cN[stroke][0], "p90": self.rmse_cN[stroke][1]},
-                "rows_rmse_cN": {"median": self.rows_rmse_cN[stroke][0], "p90": self.rows_rmse_cN[stroke][1]},
-                "time_s": {"median": self.time_s[stroke][0], "p90": self.time_s[stroke][1]},
-            }
-            for stroke in self.rmse_cN
-        }
-        counts = {"files": self.files, "refused": self.refused}
-        return {**counts, "bumps": self.bumps, "bumps_kept": self.bumps_kept, "strokes": strokes}
-
-
-def summarise(results: Sequence[FolderFit]) -> FolderSummary:
-    """Summarise a folder: medians and 90th percentiles per stroke, bumps kept."""
     fits = [f for r in results if r.fit for f in r.fit.fits]
     kept = [f.bump_kept_ratio for f in fits if f.bump_kept_ratio is not None]
+    strokes = {str(stroke): [f for f in fits if f.curve.stroke is stroke] for stroke in Stroke}
+    return {
+        "files": len(results),
+        "refused": sum(r.fit is None for r in results),
+        "bumps": len(kept),
+        "bumps_kept": sum(ratio >= BUMP_KEPT_ratio for ratio in kept),
+        "strokes": {stroke: _spread(of_it) for stroke, of_it in strokes.items() if of_it},
+    }
 
-    def spread(attribute: str) -> dict[str, tuple[float, float]]:
-        found: dict[str, tuple[float, float]] = {}
-        for stroke in Stroke:
-            values = [getattr(f, attribute) for f in fits if f.curve.stroke is stroke]
-            if values:
-                found[str(stroke)] = (float(np.median(values)), float(np.percentile(values, 90)))
-        return found
 
-    return FolderSummary(
-        files=len(results),
-        refused=sum(r.fit is None for r in results),
-        rmse_cN=spread("rmse_cN"),
-        rows_rmse_cN=spread("rows_rmse_cN"),
-        time_s=spread("time_s"),
-        bumps=len(kept),
-        bumps_kept=sum(ratio >= BUMP_KEPT_ratio for ratio in kept),
-    )
+def _spread(fits: Sequence[CurveFit]) -> dict[str, dict[str, float]]:
+    columns = {name: [getattr(f, name) for f in fits] for name in ("rmse_cN", "rows_rmse_cN", "time_s")}
+    return {
+        name: {"median": float(np.median(values)), "p90": float(np.percentile(values, 90))}
+        for name, values in columns.items()
+    }

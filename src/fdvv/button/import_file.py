@@ -233,15 +233,7 @@ def _given(
         notes = (*notes, f"no file tells where it starts: put at {where}, {onset:.3f} mm")
     try:
         vibration = Vibration(settings.stroke, settings.velocity_mm_s, onset, duration_s, modes)
-        others = [
-            v
-            for v in model.vibrations
-            if v.stroke is not vibration.stroke
-            or (
-                v.velocity_mm_s != vibration.velocity_mm_s
-                and None not in (v.velocity_mm_s, vibration.velocity_mm_s)
-            )
-        ]
+        others = tuple(v for v in model.vibrations if not _same_place(v, vibration))
         made = replace(
             model,
             name=model.name if settings.name is None else _name(settings.name),
@@ -253,6 +245,12 @@ def _given(
     if len(others) < len(model.vibrations):
         notes = (*notes, f"{len(model.vibrations) - len(others)} vibrations of the button were replaced")
     return Imported(made, form, notes)
+
+
+def _same_place(a: Vibration, b: Vibration) -> bool:
+    """Return whether both are of one stroke and speed; None is every speed."""
+    speeds = {a.velocity_mm_s, b.velocity_mm_s}
+    return a.stroke is b.stroke and (len(speeds) == 1 or None in speeds)
 
 
 def _onset(model: FDVVModel, settings: ImportSettings) -> tuple[float, str]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from fdvv.errors import InputError
 from fdvv.io.documents import MODEL, own_kind
@@ -31,21 +31,17 @@ def open_button(spec: str, settings: FitSettings | None = None) -> FDVVModel:
     if path.name.endswith(MODEL_SUFFIX) or own_kind(path) == MODEL:
         return load_model(path)
     if not spec or not path.is_file():
-        known = ", ".join(builtin_names())
-        reason = (
-            "is a folder, one button is needed"
-            if spec and path.is_dir()
-            else "no such file or built-in button"
-        )
-        raise InputError(spec or "''", "argument", reason, f"name a file or one of {known}")
+        is_folder = spec and path.is_dir()
+        reason = "is a folder, one button is needed" if is_folder else "no such file or built-in button"
+        remedy = f"name a file or one of {', '.join(builtin_names())}"
+        raise InputError(spec or "''", "argument", reason, remedy)
     # reading foreign files takes a dozen modules that a built-in does not need
     from fdvv.button.fit import fit_file
 
     return fit_file(path, settings).model
 
 
-@dataclass(frozen=True, eq=False)
-class FolderButton:
+class FolderButton(NamedTuple):
     """What became of one file of a folder: a button, or the reason why not."""
 
     file: Path
@@ -113,15 +109,13 @@ def open_part(spec: str) -> FDVVModel:
         return open_button(spec)
     found = PART.fullmatch(spec)
     if found is None:
-        raise InputError(
-            spec or "''", "argument", "is not FILE[:press|:release][@VELOCITY]", "write it that way"
-        )
+        reason = "is not FILE[:press|:release][@VELOCITY]"
+        raise InputError(spec or "''", "argument", reason, "write it that way")
     model = open_button(found["file"])
     curves = model.of(found["stroke"]) if found["stroke"] else model.curves
     if not curves:
-        raise InputError(
-            spec, "argument", f"the button has no {found['stroke']} curve", "name the other stroke"
-        )
+        reason = f"the button has no {found['stroke']} curve"
+        raise InputError(spec, "argument", reason, "name the other stroke")
     if found["velocity"]:
         curves = _declared(curves, _velocity(spec, found["velocity"]), spec)
     strokes = {curve.stroke for curve in curves}
@@ -145,12 +139,12 @@ def _declared(curves: tuple[ForceCurve, ...], velocity_mm_s: float, spec: str) -
         if count > 1:
             reason = f"the button has {count} {stroke} curves, one velocity cannot serve them"
             raise InputError(spec, "velocity", reason, "leave out the velocity or name a button of one curve")
-    return tuple(_at(c, velocity_mm_s) for c in curves)
-
-
-def _at(curve: ForceCurve, velocity_mm_s: float) -> ForceCurve:
-    measured = curve.velocity_mm_s in (None, velocity_mm_s)
-    return replace(curve, velocity_mm_s=velocity_mm_s, spread=curve.spread if measured else None)
+    # a spread between presses at another speed says nothing about this one
+    measured = (None, velocity_mm_s)
+    return tuple(
+        replace(c, velocity_mm_s=velocity_mm_s, spread=c.spread if c.velocity_mm_s in measured else None)
+        for c in curves
+    )
 
 
 def merge_parts(
@@ -187,10 +181,6 @@ def one_curve(spec: str) -> ForceCurve:
     curves = open_part(spec).curves
     if len(curves) != 1:
         listed = ", ".join(f"{c.stroke} at {c.velocity_mm_s or 'unknown'} mm/s" for c in curves)
-        raise InputError(
-            spec,
-            "argument",
-            f"holds {len(curves)} curves ({listed}), one is needed",
-            "add :press or :release",
-        )
+        reason = f"holds {len(curves)} curves ({listed}), one is needed"
+        raise InputError(spec, "argument", reason, "add :press or :release")
     return curves[0]

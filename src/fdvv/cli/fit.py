@@ -70,8 +70,7 @@ def fit(
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
         reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"
-        click.echo(f"fdvv: {ui.one_line(where)}: {reason}", err=True)
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{ui.one_line(where)}: {reason}")
 
 
 def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
@@ -88,8 +87,7 @@ def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool)
         ui.print_json(found.to_dict())
     else:
         _print_fit(found)
-        if output:
-            click.echo(f"written to {output}")
+        ui.print_written(output)
     worst = max(found.fits, key=lambda f: f.rmse_cN)
     return worst.rmse_cN, f"{path}, {worst.curve.stroke}"
 
@@ -102,9 +100,9 @@ def _print_fit(found: ModelFit) -> None:
             [
                 f"{f.curve.stroke}" + (f" {f.curve.velocity_mm_s:g} mm/s" if f.curve.velocity_mm_s else ""),
                 ui.number(f.rmse_cN, 3),
-                ui.number(f.max_cN),
-                str(f.curve.control_points_cN.size),
-                "no bump" if f.bump_kept_ratio is None else f"{100 * f.bump_kept_ratio:.1f} %",
+                f.max_cN,
+                f.curve.control_points_cN.size,
+                ui.bump_kept(f.bump_kept_ratio),
                 ui.number(f.time_s * 1e3, 1),
             ]
             for f in found.fits
@@ -130,23 +128,16 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
                 save_model(result.fit.model, output / relative.with_name(relative.name + MODEL_SUFFIX))
     summary = summarise(results)
     if as_json:
-        ui.print_json(_document(results, summary.to_dict()))
+        fitted = [{"file": str(r.file), **r.fit.to_dict()} for r in results if r.fit]
+        refused = [{"file": str(r.file), "reason": r.reason} for r in results if not r.fit]
+        ui.print_json({"results": fitted, "refused": refused, "summary": summary})
     else:
-        _print_folder(results, summary.to_dict())
+        _print_folder(results, summary)
         if output:
-            click.echo(f"{ui.counted(len(files) - summary.refused, 'model')} written below {output}")
-    if summary.refused == len(files):
-        click.echo(f"fdvv: {path}: no file of it could be fitted; the reasons are above", err=True)
-        raise click.exceptions.Exit(2)
+            click.echo(f"{ui.counted(len(files) - summary['refused'], 'model')} written below {output}")
+    if summary["refused"] == len(files):
+        raise ui.failed(f"{path}: no file of it could be fitted; the reasons are above", 2)
     return max((f.rmse_cN, str(r.file)) for r in results if r.fit for f in r.fit.fits)
-
-
-def _document(results: list[FolderFit], summary: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "results": [{"file": str(r.file), **r.fit.to_dict()} for r in results if r.fit],
-        "refused": [{"file": str(r.file), "reason": r.reason} for r in results if not r.fit],
-        "summary": summary,
-    }
 
 
 def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
