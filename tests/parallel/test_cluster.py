@@ -17,7 +17,7 @@ import pytest
 
 from fdvv.errors import InputError
 from fdvv.library.build import BUTTONS, build_library
-from fdvv.parallel.open import open_executor
+from fdvv.parallel.open import DaskExecutor, open_executor
 from fdvv.sweep.plan import SweepPlan
 from fdvv.sweep.sweep import RESULTS, run_sweep
 from tests.support.catalog_rows import write_folder
@@ -64,7 +64,8 @@ def ready(address: str, workers: int) -> None:
     while True:
         try:
             with open_executor(cluster=address) as executor:
-                if executor.processes >= workers:
+                assert isinstance(executor, DaskExecutor)
+                if len(executor.client.nthreads()) >= workers:
                     return
         except InputError:
             pass

@@ -16,7 +16,7 @@ import pytest
 
 from fdvv.errors import InputError, WorkerError
 from fdvv.parallel.executor import Executor, chunks_of
-from fdvv.parallel.open import open_executor, started_workers
+from fdvv.parallel.open import DaskExecutor, open_executor, started_workers
 from tests.support.chunk_work import SeededSum, refuse_three
 
 SEEDS = range(12)
@@ -134,7 +134,8 @@ def test_workers_are_reached_from_this_machine_only() -> None:
 
 def test_a_cluster_that_runs_already_is_found_by_its_address(tmp_path: Path) -> None:
     with started_workers(1) as local, open_executor(cluster=local.scheduler_address) as executor:
-        assert executor.processes == 1
+        assert isinstance(executor, DaskExecutor)
+        assert len(executor.client.nthreads()) == 1
         assert dict(executor.run(SeededSum(tmp_path), [4])) == {0: SeededSum(tmp_path)(4)}
 
 

@@ -22,8 +22,8 @@ from fdvv.io.part_store import PartStore, need_parquet
 from fdvv.library.catalog import ButtonFile, source_files
 from fdvv.library.figures import UNREADABLE, read_file, refusal, row_of_file
 from fdvv.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sampled, table_of
-from fdvv.parallel.campaign import DEADLY, run_campaign
-from fdvv.parallel.executor import Executor
+from fdvv.parallel.campaign import run_campaign
+from fdvv.parallel.executor import DEADLY, Executor
 
 BLOCK_bytes = 1 << 20
 

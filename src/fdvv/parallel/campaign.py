@@ -15,7 +15,6 @@ from fdvv.parallel.executor import ChunkLost, Executor, LEAST_s, chunks_of
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-DEADLY = "every process that took it ended before it was done; look for a lack of memory"
 Progress = Callable[[int, int], None]
 """Called with the number of items done and of all items, at the start and after every chunk."""
 

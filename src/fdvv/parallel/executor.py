@@ -23,17 +23,13 @@ Chunk = TypeVar("Chunk")
 Found = TypeVar("Found")
 TRIES = 3
 """A chunk whose process ended so often is given up: it is the chunk that ends them."""
+DEADLY = "every process that took it ended before it was done; look for a lack of memory"
 LEAST_s = 0.05
 """What a chunk should take at least: handing one out costs up to 2 ms on a cluster."""
 
 
 class Executor(Protocol):
     """Works on chunks in some processes."""
-
-    @property
-    def processes(self) -> int:
-        """How many work at once."""
-        ...
 
     def run(
         self, work: Callable[[Chunk], Found], chunks: Sequence[Chunk]
@@ -78,9 +74,7 @@ class ChunkLost(WorkerError):  # noqa: N818 - what became of the chunk
 
     def __init__(self, number: int) -> None:
         self.number = number
-        super().__init__(
-            f"chunk {number}: every process that took it ended before it was done; look for a lack of memory"
-        )
+        super().__init__(f"chunk {number}: {DEADLY}")
 
 
 def chunks_of(items: Sequence[Chunk], each_s: float, least_s: float = LEAST_s) -> list[tuple[Chunk, ...]]:
@@ -90,15 +84,10 @@ def chunks_of(items: Sequence[Chunk], each_s: float, least_s: float = LEAST_s) -
 
 
 class ProcessExecutor:
-    """Works on chunks in a number of processes; see Executor."""
+    """Works on chunks in a number of processes of this machine; see Executor."""
 
     def __init__(self, processes: int) -> None:
         self._processes = processes
-
-    @property
-    def processes(self) -> int:
-        """How many work at once."""
-        return self._processes
 
     def run(
         self, work: Callable[[Chunk], Found], chunks: Sequence[Chunk]

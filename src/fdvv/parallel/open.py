@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING
 
 from fdvv import __version__
 from fdvv.errors import BuildError, InputError
-from fdvv.parallel.executor import TRIES, Chunk, ChunkLost, Executor, Found, answered, found_or_raised
+from fdvv.parallel.executor import (
+    TRIES,
+    Chunk,
+    ChunkLost,
+    Executor,
+    Found,
+    ProcessExecutor,
+    answered,
+    found_or_raised,
+)
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
@@ -35,11 +44,7 @@ class DaskExecutor:
     """Works on chunks on the workers of a dask cluster; see Executor."""
 
     def __init__(self, client: Client) -> None:
-        self._client = client
-
-    @property
-    def processes(self) -> int:
-        return sum(self._client.nthreads().values())
+        self.client = client
 
     def run(
         self, work: Callable[[Chunk], Found], chunks: Sequence[Chunk]
@@ -48,7 +53,7 @@ class DaskExecutor:
 
         run = uuid.uuid4().hex  # keys of their own: a result is never one of an earlier run
         places = {
-            self._client.submit(answered, work, chunk, key=f"{run}-{number}", priority=-number): number
+            self.client.submit(answered, work, chunk, key=f"{run}-{number}", priority=-number): number
             for number, chunk in enumerate(chunks)
         }
         try:
@@ -61,23 +66,7 @@ class DaskExecutor:
                 yield number, found_or_raised(number, found)
                 future.release()
         finally:
-            self._client.cancel(list(places), force=True)
-
-
-@contextmanager
-def open_dask(workers: int | None, cluster: str | None) -> Iterator[DaskExecutor]:
-    """Start workers, or find a cluster by its address; see open_executor."""
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise BuildError("dask workers need an extra: pip install 'fdvv[sweep]'") from error
-    if cluster is not None:
-        with _found(cluster) as client:
-            _check_workers(client, cluster)
-            yield DaskExecutor(client)
-        return
-    with started_workers(workers) as local, Client(local) as client:
-        yield DaskExecutor(client)
+            self.client.cancel(list(places), force=True)
 
 
 @contextmanager
@@ -130,11 +119,16 @@ def open_executor(
     Raises BuildError without the extra `sweep`, InputError if nobody answers at cluster.
     """
     if workers is None and cluster is None:
-        from fdvv.parallel.executor import ProcessExecutor
-
         yield ProcessExecutor(processes or len(os.sched_getaffinity(0)))
         return
-    pass
-
-    with open_dask(workers, cluster) as executor:
-        yield executor
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise BuildError("dask workers need an extra: pip install 'fdvv[sweep]'") from error
+    if cluster is not None:
+        with _found(cluster) as client:
+            _check_workers(client, cluster)
+            yield DaskExecutor(client)
+        return
+    with started_workers(workers) as local, Client(local) as client:
+        yield DaskExecutor(client)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fdvv.compensation.feasibility.verdict import Following
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.compensation.method import Method
+from fdvv.compensation.method import Method, Tuning
 from fdvv.compensation.paper import PaperLaw, tuned_paper_law
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
@@ -21,7 +21,7 @@ from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.population.plan import seed_of
 from fdvv.rendering.compensate import compensate, uncompensated
-from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.rendering.feasibility import feasibility
 from fdvv.rendering.probe import probe
 from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.finger import Finger
@@ -81,18 +81,17 @@ class Measure:
 def _probe(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     """Compensate, then judge on fresh presses."""
     assert isinstance(about.button, FDVVModel)
-    speeds, rounds = settings["velocities_mm_s"], settings["rounds"]
+    speeds, presses = settings["velocities_mm_s"], settings["presses"]
     device = TwinDevice(about.rig, about.finger, seed_of(about.seed, LEARN))
     judge = TwinDevice(about.rig, about.finger, seed_of(about.seed, JUDGE))
     if about.method == NOT_COMPENSATED:
-        surface = uncompensated(device, about.button, speeds)
-        found, learned, skipped = probe(judge, about.button, surface, speeds, settings["presses"]), 0, 0
+        surface, tuning = uncompensated(device, about.button, speeds), Tuning()
+        learned, skipped = 0, 0
     else:
-        result = compensate(device, about.button, speeds, _law(about.method, rounds))
+        result = compensate(device, about.button, speeds, _law(about.method, settings["rounds"]))
+        surface, tuning = result.surface, result.outcome.tuning
         learned, skipped = result.presses, len(result.skipped)
-        found = probe(
-            judge, about.button, result.surface, speeds, settings["presses"], tuning=result.outcome.tuning
-        )
+    found = probe(judge, about.button, surface, speeds, presses, tuning=tuning)
     means = {(c.stroke, c.velocity_mm_s): c.outcome.mean_error_cN for c in found.curves}
     strokes = {s: [e for (stroke, _), e in means.items() if stroke is s] for s in Stroke}
     return {
@@ -124,16 +123,13 @@ def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     assert isinstance(about.button, FDVVModel)
     assert about.rig is not None
     known = _known(about.rig, about.finger, seed_of(about.seed, KNOW), tuple(settings["velocities_mm_s"]))
-    device = TwinDevice(about.rig, about.finger)
-    report = feasibility(
-        about.button, known, device.settings(), settings["velocities_mm_s"], info=device.info()
-    )
-    order = list(Following)
-    worst = max((curve.verdict.following for curve in report.curves), key=order.index)
+    device, speeds = TwinDevice(about.rig, about.finger), settings["velocities_mm_s"]
+    report = feasibility(about.button, known, device.settings(), speeds, info=device.info())
+    worst = max((curve.verdict.following for curve in report.curves), key=list(Following).index)
     kept = [c.reached.kept_ratio for c in report.curves if c.reached.kept_ratio is not None]
     return {
         "verdict": str(worst),
-        "followed_ratio": _share(report.curves),
+        "followed_ratio": float(np.mean([c.verdict.following is Following.FOLLOWS for c in report.curves])),
         "expected_error_cN": max(curve.expected.mean_cN for curve in report.curves),
         "largest_command_cN": max(float(np.abs(c.reached.command_cN).max()) for c in report.curves),
         "saturated_ratio": max(float(c.reached.saturated.mean()) for c in report.curves),
@@ -141,10 +137,6 @@ def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
         "lag_mm": max(c.reached.lag_mm for c in report.curves),
         "margin": min(float(c.stable.margin) for c in report.curves),
     }
-
-
-def _share(curves: tuple[CurveFeasibility, ...]) -> float:
-    return float(np.mean([curve.verdict.following is Following.FOLLOWS for curve in curves]))
 
 
 @lru_cache(maxsize=16)

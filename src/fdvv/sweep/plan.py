@@ -87,7 +87,6 @@ class SweepPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def measured(self) -> Measure:
-        """The measure itself."""
         return MEASURES[self.measure]
 
     def levels(self) -> dict[str, tuple[Value, ...]]:
@@ -100,7 +99,7 @@ class SweepPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def count(self) -> int:
-        """Count the cells."""
+        """Of the cells."""
         return int(np.prod([len(values) for values in self.levels().values()], dtype=object))
 
     def cells(self) -> Iterator[dict[str, Value]]:
@@ -238,10 +237,9 @@ class SweepWork:
     buttons: Mapping[str, FDVVModel | ButtonPhysics]
 
     def __call__(self, cells: Sequence[tuple[int, Mapping[str, Value]]]) -> list[Row]:
-        """Return the row of every cell."""
-        return [self.row(number, cell) for number, cell in cells]
+        return [self._row(number, cell) for number, cell in cells]
 
-    def row(self, number: int, cell: Mapping[str, Value]) -> Row:
+    def _row(self, number: int, cell: Mapping[str, Value]) -> Row:
         """Return a cell's row; one that fails is a row with its reason."""
         row: Row = {"cell": number, **cell, "seed": seed_of(self.seed, int(cell[REPEAT]))}
         try:
@@ -270,9 +268,8 @@ def sweep_work(plan: SweepPlan, folder: Path) -> SweepWork:
     names = {kind: [str(v) for v in levels.get(kind, ())] for kind in ("rig", "finger", "button", "method")}
     for method in names["method"]:
         if method not in METHODS:
-            raise InputError(
-                "plan", "factors.method", f"unknown: {method}", f"use one of {', '.join(METHODS)}"
-            )
+            remedy = f"use one of {', '.join(METHODS)}"
+            raise InputError("plan", "factors.method", f"unknown: {method}", remedy)
     work = SweepWork(
         plan.measure,
         _settings(plan),
@@ -293,9 +290,8 @@ def _settings(plan: SweepPlan) -> dict[str, Any]:
         if name == "velocities_mm_s":
             good = isinstance(value, list) and value and all(_above_0(v) for v in value)
             if not good or len(set(value)) != len(value):
-                raise InputError(
-                    "plan", place, f"got {value!r:.60}", "give one or more different speeds above 0"
-                )
+                remedy = "give one or more different speeds above 0"
+                raise InputError("plan", place, f"got {value!r:.60}", remedy)
             settings[name] = [float(v) for v in value]
         elif not (isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= 200):
             raise InputError("plan", place, f"got {value!r:.60}", "give a count from 1 to 200")
@@ -343,9 +339,8 @@ def _check_parameters(work: SweepWork, levels: Mapping[str, Sequence[Value]]) ->
             try:
                 _changed(next(iter(records.values())), kind, {name: value})
             except ModelError as error:
-                raise InputError(
-                    "plan", f"factors.{name}", str(error), "docs/reference/rig.md lists all"
-                ) from error
+                remedy = "docs/reference/rig.md lists all"
+                raise InputError("plan", f"factors.{name}", str(error), remedy) from error
 
 
 def _changed(record: Record, kind: str, cell: Mapping[str, Value]) -> Record:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,8 +20,8 @@ from fdvv.io.part_store import PartStore, need_parquet
 from fdvv.model.file import model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.population.plan import seed_of
-from fdvv.parallel.campaign import DEADLY, Progress, run_campaign
-from fdvv.parallel.executor import Executor
+from fdvv.parallel.campaign import Progress, run_campaign
+from fdvv.parallel.executor import DEADLY, Executor
 from fdvv.sweep.plan import REPEAT, Row, SweepPlan, SweepWork, Value, sweep_schema, sweep_work
 from fdvv.twin.files import button_to_toml, finger_to_toml, rig_to_toml
 
@@ -56,11 +56,12 @@ class SweepResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report of ``fdvv sweep --json``."""
-        counts = {"cells": self.cells, "failed": self.failed, "worked": self.worked}
         return {
             "measure": self.plan.measure,
             "simulated": True,
-            **counts,
+            "cells": self.cells,
+            "failed": self.failed,
+            "worked": self.worked,
             "results": str(self.path),
             "factors": {name: list(values) for name, values in self.plan.levels().items()},
         }
@@ -168,7 +169,7 @@ def preview_sweep(plan: SweepPlan, folder: Path | None = None, beside: Path = Pa
 def _begin(folder: Path, plan: SweepPlan, work: SweepWork) -> None:
     """Write the plan into a new folder, or check that the folder holds the same one."""
     path = folder / PLAN_FILE
-    record = {**msgspec.to_builtins(plan), "settings": dict(work.settings), "sha256": dict(_digests(work))}
+    record = {**msgspec.to_builtins(plan), "settings": dict(work.settings), "sha256": _digests(work)}
     if not path.exists():
         require_new_folder(folder, "name a new one, or that of the same sweep")
         write_atomic(path, pretty(record) + "\n")
@@ -183,15 +184,15 @@ def _begin(folder: Path, plan: SweepPlan, work: SweepWork) -> None:
         raise InputError(folder, "folder", reason, "give the same plan to go on, or name a new folder")
 
 
-def _digests(work: SweepWork) -> Iterator[tuple[str, str]]:
-    """Yield the SHA-256 of the rigs, fingers and buttons of a sweep, each under its name."""
+def _digests(work: SweepWork) -> dict[str, str]:
+    """Return the SHA-256 of the rigs, fingers and buttons of a sweep, each under its name."""
     texts: dict[str, str] = {f"rig {name}": rig_to_toml(rig) for name, rig in work.rigs.items()}
     texts |= {f"finger {name}": finger_to_toml(finger) for name, finger in work.fingers.items()}
-    for name, button in work.buttons.items():
-        text = model_to_json(button) if isinstance(button, FDVVModel) else button_to_toml(button)
-        texts[f"button {name}"] = text
-    for name, text in texts.items():
-        yield name, hashlib.sha256(text.encode()).hexdigest()
+    texts |= {
+        f"button {name}": model_to_json(one) if isinstance(one, FDVVModel) else button_to_toml(one)
+        for name, one in work.buttons.items()
+    }
+    return {name: hashlib.sha256(text.encode()).hexdigest() for name, text in texts.items()}
 
 
 def sweep_summary(result: SweepResult) -> list[dict[str, Any]]:
