@@ -80,7 +80,6 @@ class CapturedSession:
 
     @property
     def travel_mm(self) -> float:
-        """Get where the button's stop is."""
         return float(mm_from_m(self.button.curve.travel_m))
 
 
@@ -100,14 +99,8 @@ def captured_session(
     Whoever presses is the typical participant unless said: 4 % incomplete presses, 10 % wild ones.
     """
     button, random = load_button(name), np.random.default_rng(seed)
-    bench = CaptureBench(
-        button,
-        rig or CaptureRig(),
-        finger or Finger(),
-        sensor or ForceSensor(),
-        participant or PARTICIPANTS["typical"],
-        random,
-    )
+    parts = (rig or CaptureRig(), finger or Finger(), sensor or ForceSensor())
+    bench = CaptureBench(button, *parts, participant or PARTICIPANTS["typical"], random)
     steps: list[tuple[Stage, float | None]] = [(Stage.REST, None)]
     steps += [(Stage.PROBE, None)] if probe else []
     steps += [(Stage.PRESS, pace) for pace in paces_mm_s for _ in range(presses)]

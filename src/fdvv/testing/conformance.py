@@ -39,7 +39,6 @@ class DeviceConformance:
         return device.press(self.speed_mm_s)
 
     def test_it_tells_who_it_is(self) -> None:
-        """Name and limits are usable."""
         info = self.make().info()
         assert info.name
         assert info.force_limit_cN > 0
@@ -47,24 +46,20 @@ class DeviceConformance:
         assert 0 < info.tick_s <= 0.01
 
     def test_a_press_before_an_upload_is_refused(self) -> None:
-        """There is nothing to press yet."""
         refused(lambda: self.make().press(self.speed_mm_s))
 
     def test_a_table_beyond_the_force_limit_is_refused(self) -> None:
-        """Force beyond the limit, either sign."""
         device = self.make()
         limit = device.info().force_limit_cN
         for force in (limit + 1, -limit - 60):
             refused(partial(device.upload, plain_surface(force), self.travel_mm))
 
     def test_a_travel_beyond_the_stop_is_refused(self) -> None:
-        """Travel beyond the limit, or none at all."""
         device = self.make()
         for travel_mm in (device.info().travel_limit_mm + 0.1, 0.0, -1.0):
             refused(partial(device.upload, plain_surface(), travel_mm))
 
     def test_a_refused_upload_leaves_the_old_table(self) -> None:
-        """Whole or not at all."""
         device, other = self.make(), self.make()
         expected = self.pressed(other)
         device.upload(plain_surface(travel_mm=self.travel_mm), self.travel_mm)
@@ -72,14 +67,12 @@ class DeviceConformance:
         assert np.allclose(np.median(device.press(100.0).force_cN), np.median(expected.force_cN), atol=30)
 
     def test_a_speed_that_is_none_is_refused(self) -> None:
-        """Zero, negative and not-a-number speeds."""
         device = self.make()
         self.pressed(device)
         for speed in (0.0, -50.0, float("nan")):
             refused(partial(device.press, speed))
 
     def test_settings_are_written_whole_and_want_a_new_upload(self) -> None:
-        """What was configured is what is read, and a press needs a table again."""
         device = self.make()
         device.configure(other_settings(device))
         assert device.settings().lead_us == other_settings(self.make()).lead_us
@@ -87,7 +80,6 @@ class DeviceConformance:
         assert self.pressed(device).displacement_mm.max() > 0.98 * self.travel_mm
 
     def test_settings_at_odds_with_each_other_are_refused_and_the_old_ones_stay(self) -> None:
-        """Whole or not at all; the table stays too."""
         device = self.make()
         before = device.settings()
         self.pressed(device)
@@ -96,7 +88,6 @@ class DeviceConformance:
         device.press(self.speed_mm_s)
 
     def test_a_paced_table_is_pressed_like_any_other(self) -> None:
-        """Its row is that of the speed asked for."""
         device = self.make()
         surface = plain_surface(travel_mm=self.travel_mm)
         device.upload(surface, self.travel_mm, paced=True)
@@ -105,7 +96,6 @@ class DeviceConformance:
         assert 35 < np.median(press.commanded_cN) < 65
 
     def test_a_press_goes_down_and_comes_back(self) -> None:
-        """One stroke pair, from rest to the stop and back."""
         press = self.pressed(self.make())
         x = press.displacement_mm
         assert x[0] < 0.5
@@ -128,7 +118,6 @@ class ProgramConformance(DeviceConformance):
     """The contract of fdvv.device.contract.ProgramDevice: every device with the firmware."""
 
     def make(self) -> ProgramDevice:
-        """Return a fresh device."""
         raise NotImplementedError
 
     def program(self, force_cN: float = 40.0) -> bytes:
@@ -136,7 +125,6 @@ class ProgramConformance(DeviceConformance):
         return surface_image(plain_surface(force_cN, self.travel_mm), self.travel_mm)
 
     def test_a_program_is_pressed_like_a_surface(self) -> None:
-        """Uploaded as an image, it renders the same commands."""
         device = self.make()
         device.upload_program(self.program())
         press = device.press(self.speed_mm_s)
@@ -144,7 +132,6 @@ class ProgramConformance(DeviceConformance):
         assert 35 < np.median(press.commanded_cN) < 65
 
     def test_a_damaged_program_is_refused_and_the_old_one_stays(self) -> None:
-        """Whole or not at all."""
         device = self.make()
         device.upload_program(self.program())
         damaged = bytearray(self.program(80.0))
@@ -155,7 +142,6 @@ class ProgramConformance(DeviceConformance):
         assert np.max(press.commanded_cN) < 65
 
     def test_there_is_no_fault_after_a_press(self) -> None:
-        """And nothing to clear."""
         device = self.make()
         self.pressed(device)
         assert device.fault().fault is Fault.NONE
@@ -163,7 +149,6 @@ class ProgramConformance(DeviceConformance):
         refused(device.clear_fault)
 
     def test_stopping_is_always_allowed(self) -> None:
-        """Before an upload, after a press, and twice."""
         device = self.make()
         device.stop()
         self.pressed(device)
@@ -171,14 +156,12 @@ class ProgramConformance(DeviceConformance):
         device.stop()
 
     def test_a_press_misses_no_tick(self) -> None:
-        """Every tick of the press was reported."""
         press = self.pressed(self.make())
         assert press.tick is not None
         ticks = np.flatnonzero(press.tick)
         assert len(set(np.diff(ticks))) == 1
 
     def test_closing_twice_does_nothing_more(self) -> None:
-        """The second close is silent; a press afterwards is refused."""
         device = self.make()
         self.pressed(device)
         device.close()

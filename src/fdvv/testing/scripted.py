@@ -61,11 +61,9 @@ class ScriptedDevice:
         self._active: tuple[ForceSurface, float] | None = None
 
     def info(self) -> DeviceInfo:
-        """Return the device's identity and limits."""
         return self._info
 
     def settings(self) -> Settings:
-        """Return what was configured last."""
         return self._settings
 
     def configure(self, settings: Settings) -> None:
@@ -99,26 +97,13 @@ class ScriptedDevice:
         t, x, v = _stroke_pair(travel_mm, speed)
         held = np.arange(t.size) // TICKS * TICKS
         sensed = (x + self._noise_mm * self._random.standard_normal(t.size))[held]
-        wanted = np.where(
-            v[held] >= 0,
-            _read(surface, sensed, velocity_mm_s, Stroke.PRESS),
-            _read(surface, sensed, velocity_mm_s, Stroke.RELEASE),
-        )
+        down, up = (_read(surface, sensed, velocity_mm_s, stroke) for stroke in Stroke)
+        wanted = np.where(v[held] >= 0, down, up)
         command = np.clip(wanted, -self._info.force_limit_cN, self._info.force_limit_cN)
         felt = self._gain * command + self._offset_cN + self._drag_cN_s_mm * v
         felt = felt + self._noise_cN * self._random.standard_normal(t.size)
-        return Press(
-            t,
-            x,
-            felt,
-            velocity_mm_s,
-            sensed,
-            felt[held],
-            command,
-            command != wanted,
-            np.arange(t.size) % TICKS == 0,
-            simulated=True,
-        )
+        sensed_cN, cut, tick = felt[held], command != wanted, np.arange(t.size) % TICKS == 0
+        return Press(t, x, felt, velocity_mm_s, sensed, sensed_cN, command, cut, tick, simulated=True)
 
 
 def _stroke_pair(travel_mm: float, speed_mm_s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
